@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import shutil
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,12 +14,13 @@ from irsim.benchmarks.episode import Job, environment_of
 from irsim.benchmarks.plan import Plan, PlannedScenario
 from irsim.benchmarks.policies import job_keys, label_of
 from irsim.benchmarks.report.markdown import markdown
-from irsim.benchmarks.report.names import policy_labels
+from irsim.benchmarks.report.names import policy_labels, with_suite
 from irsim.benchmarks.report.page import Shown, page
 from irsim.benchmarks.report.table import MISSING, TABLE, has_tables, write_table
 from irsim.benchmarks.report.worst import worst_episodes
 from irsim.benchmarks.stored import PLAN
 from irsim.common.files import write_atomically
+from irsim.diagnostics.errors import ScenarioError
 from irsim.runs.files import RunError
 from irsim.scenario.limits import DEFAULT_LIMITS
 
@@ -62,12 +65,16 @@ def write_report(result: BenchmarkResult, folder: Path) -> Report:
     notes = [] if has_tables() else [MISSING]
     plan = Plan.model_validate_json((folder / PLAN).read_bytes())
     scenarios = {scenario.name: scenario for scenario in plan.scenarios}
+    result = with_suite(result, plan.suite)
     try:
         shown = [_shown(plan, scenarios[one.scenario], one, result, folder) for one in worst_episodes(result)]
-        if not notes:
+        notes += [
+            f"{one.caption}: without a replay, because its map cannot be copied" for one in shown if not one.replay
+        ]
+        if has_tables():
             write_table(result, plan.hash, folder / TABLE)
         write_atomically(folder / MARKDOWN, markdown(result, notes))
-        write_atomically(folder / PAGE, page(result, shown))
+        write_atomically(folder / PAGE, page(result, shown, notes))
     except OSError as error:
         raise RunError("not-writable", f"{folder}: {error.strerror}", "make room, then give --resume") from None
     return Report(folder / PAGE, notes)
@@ -91,21 +98,39 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
     name = f"{words[-MAX_NAME:]}-{one.seed}.html"
     failed = ", ".join(f"{robot}: {how}" for robot, how in list(one.failures.items())[:3])
     caption = f"{one.scenario}, {label}, seed {one.seed}: {one.outcome} after {one.sim_time:.1f} s ({failed})"
-    replayed = document.path is None and _replay(scenario.text, one, plan, policy, folder / REPLAYS / name)
+    replayed = _replay(scenario, one, plan, policy, folder / REPLAYS / name)
     return Shown(caption, png, f"{REPLAYS}/{name}" if replayed else "")
 
 
-def _replay(text: str, one: EpisodeRow, plan: Plan, policy: Policy, target: Path) -> bool:
-    """Run an episode again, and write its replay."""
+def _replay(scenario: PlannedScenario, one: EpisodeRow, plan: Plan, policy: Policy, target: Path) -> bool:
+    """Run an episode again, and write its replay; False if a map cannot be copied."""
     from irsim.api.run_scenario import run
     from irsim.runs.replay.export import replay
 
     target.parent.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as place:
-        record = Path(place) / "run"
-        run(
-            text=text, seed=one.seed, steps=one.steps, strict=plan.strict, imports=plan.imports, record=record,
-            policy=policy, perturb=plan.perturb or None,
-        )  # fmt: skip
-        replay(record, target)
+        try:
+            source = {"text": scenario.text} if scenario.folder is None else {"path": _copied(scenario, Path(place))}
+            run(
+                **source, seed=one.seed, steps=one.steps, strict=plan.strict, imports=plan.imports,
+                record=Path(place) / "run", policy=policy, perturb=plan.perturb or None,
+            )  # fmt: skip
+        except ScenarioError:
+            return False
+        replay(Path(place) / "run", target)
     return True
+
+
+def _copied(scenario: PlannedScenario, place: Path) -> Path:
+    """The file of a scenario in another folder, with its maps beside it, as they are found from there."""
+    up = max((Path(name).parts.count("..") for name in scenario.maps), default=0)
+    folder = place.joinpath("maps", *(str(depth) for depth in range(up)))
+    folder.mkdir(parents=True)
+    for name in scenario.maps:
+        source, copy = Path(scenario.folder or ".", name), Path(os.path.normpath(folder / name))
+        if copy.is_relative_to(place) and source.is_file():  # a full path needs no copy
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, copy)
+    file = folder / "scenario.yaml"
+    file.write_text(scenario.text, encoding="utf-8")
+    return file

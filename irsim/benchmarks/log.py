@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from irsim.benchmarks.incidents import incident_messages
-from irsim.benchmarks.summary import notes_of, perturbation_notes, rows_of
+from irsim.benchmarks.summary import notes_of, perturbation_notes, protocols_of, rows_of
 from irsim.common.files import write_atomically
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.runs.files import RunError, refusal, unreadable
@@ -143,7 +143,7 @@ def _line(number: int, episode: EpisodeRow) -> str:
 
 def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> BenchmarkResult:
     """A copy of a result with its episodes and with the rows and notes that follow from them."""
-    rows = rows_of(episodes, head.scenarios, head.behaviors, head.random)
+    rows = rows_of(episodes, head.scenarios, head.behaviors, head.random, protocols_of(head.scenarios))
     notes = perturbation_notes(head.perturbed) + notes_of(episodes, head.random, head.seeds)
     found = {"episodes": list(episodes), "rows": rows, "notes": notes, "incidents": incident_messages(episodes)}
     return head.model_copy(update=found)

@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any
+from typing import Any, get_args
 
 from irsim.benchmarks.incidents import incident_counts, placed
+from irsim.benchmarks.suite import Protocol
 from irsim.common.text import listed
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import bootstraps, newcombe, spread, wilson
 from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proportion
 
-__all__ = ["ALL", "KEYS", "estimates", "notes_of", "proportion", "rows_of"]
+__all__ = ["ALL", "KEYS", "estimates", "is_summary", "notes_of", "proportion", "protocols_of", "rows_of"]
 
 ALL = "(all)"
-"""Name of the rows over all scenarios."""
+"""Name of the rows over all scenarios; with several protocols those of one protocol are ``(all)/PROTOCOL``."""
 KEYS = tuple(metric.key for metric in (*METRICS, *EPISODE_METRICS))
 """Keys of the metrics of an episode."""
 _PROPORTIONS = frozenset(metric.key for metric in (*METRICS, *EPISODE_METRICS) if metric.unit == "0/1")
@@ -61,29 +62,55 @@ def estimates(columns: Mapping[str, Sequence[float | None]], shares: Collection[
     return found
 
 
+def is_summary(name: str) -> bool:
+    """Whether a row with this name is one over all scenarios, or over all of one protocol."""
+    return name.partition("/")[0] == ALL
+
+
+def protocols_of(scenarios: Sequence[str]) -> dict[str, str]:
+    """Protocol of each scenario, otherwise ``as-written``.
+
+    It is the last part of the name ``NAME/PROTOCOL`` that the scenarios of a suite with several protocols have.
+
+    Args:
+        scenarios: Names of the scenarios.
+    """
+    last = {name: name.rpartition("/")[2] for name in scenarios}
+    return {name: part if part in get_args(Protocol) else "as-written" for name, part in last.items()}
+
+
 def rows_of(
     episodes: Sequence[EpisodeRow],
     scenarios: Sequence[str],
     behaviors: Sequence[str],
     random: Mapping[str, Sequence[str]],
+    protocols: Mapping[str, str] | None = None,
 ) -> list[BenchmarkRow]:
     """Rows by scenario and behavior, then over all scenarios if each has the same number of episodes.
+
+    Scenarios of different protocols are never summarised together, because the same start and seed would count twice.
 
     Args:
         episodes: The episodes that are done.
         scenarios: The scenarios, in order.
         behaviors: The behaviors, in order.
         random: The random parts of each scenario.
+        protocols: The protocol of each scenario; None: all have the same.
     """
     groups = {name: [episode for episode in episodes if episode.scenario == name] for name in scenarios}
-    sizes = {len(group) for group in groups.values()}
-    once = sizes == {len(behaviors)}  # one episode per scenario and behavior
-    if len(sizes) == 1 and len(scenarios) >= (_MIN_SCENARIOS if once else 2):
-        groups[ALL] = list(episodes)
+    together = dict[str, list[str]]()
+    for name in scenarios:
+        together.setdefault("" if protocols is None else protocols[name], []).append(name)
+    for protocol, names in together.items():
+        sizes = {len(groups[name]) for name in names}
+        once = sizes == {len(behaviors)}  # one episode per scenario and behavior
+        if len(sizes) == 1 and len(names) >= (_MIN_SCENARIOS if once else 2):
+            summary = ALL if len(together) == 1 else f"{ALL}/{protocol}"
+            groups[summary] = [episode for name in names for episode in groups[name]]
     rows = []
     for name, chosen in groups.items():
         first = {_pair(episode): episode for episode in chosen if episode.behavior == behaviors[0]}
-        certain = name != ALL and not random[name]
+        certain = not is_summary(name) and not random[name]
         for behavior in behaviors:
             mine = [episode for episode in chosen if episode.behavior == behavior]
             if not placed(mine):  # no episode is done yet, or no seed has room
@@ -147,13 +174,13 @@ def _row(
         episodes=len(episodes),
         metrics=estimates({key: [episode.metrics[key] for episode in episodes] for key in KEYS}, shown_as_shares),
         paired=_paired_differences(pairs, shown_as_shares) if pairs else {},
-        zones={} if name == ALL else _zones(episodes),
+        zones={} if is_summary(name) else _zones(episodes),
         failed={
             outcome: [episode.seed for episode in episodes if episode.outcome == outcome]
             for outcome in ("collision", "timeout")
-            if outcome in outcomes and name != ALL
+            if outcome in outcomes and not is_summary(name)
         },
-        failures={} if name == ALL else _frequent_failures(episodes),
+        failures={} if is_summary(name) else _frequent_failures(episodes),
         incidents=incident_counts(every),
         **shares,
     )

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -33,6 +34,8 @@ _DIFFERENCES = (
 """(key of the metric, name in the line of differences, unit)."""
 MAX_FAILED_SEEDS = 10
 """Number of seeds that the line of a failed combination lists."""
+MAX_FAILED_LINES = 5
+"""Number of such lines of a suite."""
 MAX_FAILURES = 3
 """Number of reasons that the line of a failed combination lists."""
 _FULL_WIDTH = 112
@@ -163,6 +166,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from irsim.benchmarks.summary import is_summary
     from irsim.common.text import clean
     from irsim.results.labels import labels_of, seeds_of
 
@@ -212,15 +216,22 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     if any(heading == "human m" for _, heading, _ in columns):
         legend += "; human m: smallest distance to a human"
     out.print(Text(legend, "dim"))
+    summaries = {row.scenario for row in result.rows if is_summary(row.scenario)} or {
+        row.scenario for row in result.rows[-1:]
+    }
     for row in result.rows:
-        if row.paired and row.scenario == result.rows[-1].scenario:
-            out.print(_difference_line(row, behaviors[row.behavior], behaviors[result.behaviors[0]]))
-    for row in result.rows:
-        if row.failed:
-            failures = list(row.failures.items())[:MAX_FAILURES]
-            robots = [f"{clean(what)} {n} of {row.episodes}" for what, n in failures]
-            combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
-            out.print(f"failed: {combination}: {seeds_of(row.failed, MAX_FAILED_SEEDS)} ({', '.join(robots)})")
+        if row.paired and row.scenario in summaries:
+            where = f"{row.scenario}: " if len(summaries) > 1 else ""
+            out.print(where + _difference_line(row, behaviors[row.behavior], behaviors[result.behaviors[0]]))
+    suite = hasattr(result, "facts")
+    failed = [row for row in result.rows if row.failed]
+    for row in failed[: MAX_FAILED_LINES if suite else None]:
+        failures = list(row.failures.items())[:MAX_FAILURES]
+        robots = [f"{clean(what)} {n} of {row.episodes}" for what, n in failures]
+        combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
+        out.print(f"failed: {combination}: {seeds_of(row.failed, MAX_FAILED_SEEDS)} ({', '.join(robots)})")
+    if suite and len(failed) > MAX_FAILED_LINES:
+        out.print(f"failed: {len(failed) - MAX_FAILED_LINES} more rows; rates are in results.md, seeds in results.json")
     for note in result.notes:
         out.print(Text.assemble(("note: ", "bold"), clean(note, 400)))
     periods = sorted(set(result.step_time.values()))
@@ -297,8 +308,15 @@ def _print_csv(result: BenchmarkResult) -> None:
     from irsim.benchmarks.summary import KEYS
 
     first = ("scenario", "behavior", "seed", "outcome", "steps", "sim_time", "time_limit", "unreachable")
+    names, facts = _policies(result), {fact.name: fact for fact in getattr(result, "facts", ())}
+    varied = list(dict.fromkeys(key for fact in facts.values() for key in fact.values))
+    suite = ("policy", "family", "protocol", *(f"values.{key}" for key in varied)) if facts else ()
     lines = csv.writer(sys.stdout, lineterminator="\n")
-    lines.writerow([*first, *KEYS])
+    lines.writerow([*first, *suite, *KEYS])
     for episode in result.episodes:
-        values = [episode.metrics[key] for key in KEYS]
-        lines.writerow([*(getattr(episode, key) for key in first), *("" if v is None else v for v in values)])
+        values: list[Any] = [getattr(episode, key) for key in first]
+        if fact := facts.get(episode.scenario):
+            values += [names[episode.behavior], fact.family, fact.protocol]
+            given = [fact.values.get(key) for key in varied]
+            values += [json.dumps(value) if isinstance(value, (dict, list)) else value for value in given]
+        lines.writerow(["" if v is None else v for v in (*values, *(episode.metrics[key] for key in KEYS))])

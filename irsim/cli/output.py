@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TextIO
@@ -26,6 +27,8 @@ __all__ = [
 
 _PROGRESS_DELAY_S = 1.0
 """Time after which a progress bar appears [s]."""
+_LINE_PERIOD_S = 30.0
+"""Time between two lines of progress where there is no terminal [s]."""
 
 
 def prepare_streams() -> None:
@@ -80,7 +83,7 @@ def silence_stdout() -> None:
 
 @contextmanager
 def progress(label: str) -> Iterator[Callable[[int, int], None]]:
-    """Show a progress bar on standard error, if that is a terminal and the work takes longer than a second.
+    """Show a progress bar on standard error if the work takes longer than a second; in a file, a line every 30 s.
 
     Args:
         label: Text before the bar, such as ``simulating``.
@@ -89,7 +92,7 @@ def progress(label: str) -> Iterator[Callable[[int, int], None]]:
         Callback ``(done, total)``.
     """
     if not is_terminal(stderr=True):
-        yield lambda done, total: None
+        yield _lines(label)
         return
     bar = _Bar(label)
     timer = threading.Timer(_PROGRESS_DELAY_S, bar.show)
@@ -100,6 +103,19 @@ def progress(label: str) -> Iterator[Callable[[int, int], None]]:
     finally:
         timer.cancel()
         bar.close()
+
+
+def _lines(label: str) -> Callable[[int, int], None]:
+    """Callback ``(done, total)`` that prints a line from time to time."""
+    due = time.monotonic() + _LINE_PERIOD_S
+
+    def report(done: int, total: int) -> None:
+        nonlocal due
+        if time.monotonic() >= due:
+            due = time.monotonic() + _LINE_PERIOD_S
+            print(f"{label}: {done:,} of {total:,}", file=sys.stderr, flush=True)
+
+    return report
 
 
 class _Bar:

@@ -6,6 +6,7 @@ import math
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,8 @@ __all__ = ["PolicyDriver", "attach_policy", "decision_steps", "driver_of"]
 
 _CORE_CONTROLS = 3
 _NEVER = np.iinfo(np.int64).max
+MAX_DRIVES = 16
+"""Number of different drives of the robots that a policy of controls drives in one world."""
 
 
 def decision_steps(policy: Policy, step_time: float) -> int:
@@ -76,6 +79,9 @@ class PolicyDriver:
         self._ids: list[int] = []
         self._seen: Any = None
         worlds = simulation.copies
+        self._numbers: dict[str, int] = {}
+        self._begun = np.zeros((MAX_DRIVES, worlds), dtype=bool)
+        self._base = claim_worlds(policy, MAX_DRIVES * worlds, self)
         self._last = np.full(worlds, _NEVER)
         self._keys = np.zeros((3, worlds), dtype=np.uint64)
         self._held: Floats = np.zeros((worlds, 0, 0))
@@ -90,7 +96,6 @@ class PolicyDriver:
         seen = simulation.revision, simulation.scenario
         if self._seen is not None and seen[0] == self._seen[0] and seen[1] is self._seen[1]:
             return
-        self._seen = seen
         records = simulation.scenario.objects
         robots = [
             index
@@ -116,6 +121,7 @@ class PolicyDriver:
         first[:, kept] = self._first[:, taken]
         self._held, self._next, self._first = held, following, first
         self._active = np.zeros_like(first)
+        self._seen = seen  # a policy that does not fit is refused in every step
 
     def _grouped(self, simulation: Simulation, robots: list[int]) -> list[_Group]:
         drives = [drive_of(simulation, index) for index in robots]
@@ -123,9 +129,13 @@ class PolicyDriver:
         if self.policy.output == "velocity":
             return [_Group(0, names[0] if len(names) == 1 else "mixed", 2, np.arange(len(robots)))] if robots else []
         sizes = {name: simulation.scenario.objects[robots[drives.index(name)]].vel_dim for name in names}
+        for name in names:
+            self._numbers.setdefault(name, len(self._numbers))
+        if len(self._numbers) > MAX_DRIVES:
+            what = f"robots with more than {MAX_DRIVES} different drives are driven in one world"
+            raise PolicyError("policy-mismatch", what, "use a policy of velocities, or fewer drives")
         return [
-            _Group(number, name, sizes[name], np.flatnonzero(np.array(drives) == name))
-            for number, name in enumerate(names)
+            _Group(self._numbers[name], name, sizes[name], np.flatnonzero(np.array(drives) == name)) for name in names
         ]
 
     # a step -------------------------------------------------------------------------------------------------------
@@ -157,30 +167,34 @@ class PolicyDriver:
         rows: NDArray[np.int64] = starts[:, None] + self._robots
         return rows
 
+    def _slot(self, world: Any, group: _Group) -> Any:
+        """Index of a world as the policy knows it: each drive has one of its own, and so has each simulation."""
+        return self._base + group.number * len(self._last) + world
+
     def _begin_episodes(self, simulation: Simulation) -> None:
         state, count = simulation.state, simulation.count
         keys = np.stack([state.seed, state.scene.astype(np.uint64), state.noise.astype(np.uint64)])
         new = (count <= self._last) | (keys != self._keys).any(axis=0)
         self._keys, self._last = keys, count.copy()
-        if not new.any():
-            return
         self._next[new], self._first[new], self._held[new] = 0, True, 0.0
+        self._begun[:, new] = False
         if type(self.policy).reset is Policy.reset:
             return
         step_time = float(simulation.scenario.world.step_time)
-        for world in np.flatnonzero(new).tolist():
-            for group in self._groups:
-                robots = tuple(self._robots[group.places].tolist())
-                episode = Episode(world * len(self._groups) + group.number, robots, step_time, self._steps, group.drive)
+        for group in self._groups:
+            for world in np.flatnonzero(~self._begun[group.number]).tolist():
+                robots = tuple(simulation.ids[self._robots[group.places]].tolist())
+                episode = Episode(int(self._slot(world, group)), robots, step_time, self._steps, group.drive)
                 rng = generator(*simulation.key(world), stream="policy", object_id=group.number)
                 self._guarded(self.policy.reset, episode, rng)
+                self._begun[group.number, world] = True
 
     def _decide(self, simulation: Simulation, group: _Group, rows: NDArray[np.int64], due: NDArray[np.bool_]) -> None:
         world, place = np.nonzero(due[:, group.places])
         if not world.size:
             return
         place = group.places[place]
-        slot = world * len(self._groups) + group.number
+        slot = self._slot(world, group)
         chosen = rows[world, place]
         observations = self._observer.observe(chosen, self._first[world, place], slot)
         begin = time.perf_counter()
@@ -256,6 +270,19 @@ class PolicyDriver:
 
 def _python_drives(simulation: Simulation) -> list[int]:
     return [] if simulation.drives is None else simulation.drives.objects
+
+
+def claim_worlds(policy: Policy, count: int, driver: PolicyDriver) -> int:
+    """The first of ``count`` indices of worlds that no other living driver of the policy uses."""
+    known = vars(policy).get("_worlds_in_use", ())
+    used = sorted([item for item in known if item[2]() is not None], key=lambda item: item[0])
+    free = 0
+    for first, size, _ in used:
+        if free + count <= first:
+            break
+        free = max(free, first + size)
+    vars(policy)["_worlds_in_use"] = [*used, (free, count, ref(driver))]
+    return free
 
 
 def driver_of(simulation: Simulation) -> PolicyDriver | None:

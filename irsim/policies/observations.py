@@ -23,7 +23,7 @@ class Neighbors:
 
     Attributes:
         mask: (B, K) whether there is such a neighbor.
-        index: (B, K) index of the object in its world; -1 where there is none.
+        index: (B, K) index of the object among those of its world; -1 where there is none.
         position: (B, K, 2) x, y of the center of the bounding circle [m], world frame.
         heading: (B, K) [rad], world frame.
         velocity: (B, K, 2) true velocity [m/s], world frame.
@@ -81,7 +81,7 @@ class Observations:
 
     Attributes:
         world: (B,) index of the world of each robot, as in :meth:`irsim.policies.Policy.reset`.
-        robot: (B,) index of the robot among the objects of its world.
+        robot: (B,) id of the robot in its world, which it keeps when other objects come and go.
         first: (B,) whether this is the robot's first decision of an episode.
         time: (B,) simulated time [s].
         step_time: Period of the simulation [s].

@@ -98,7 +98,7 @@ class Observer:
         pace = np.where(self._paced[robot], simulation.pace[rows, None], 1.0)
         return Observations(
             world=slot,
-            robot=robot,
+            robot=simulation.ids[robot].astype(np.int64),
             first=first,
             time=simulation.count[world].astype(np.float64) * step_time,
             step_time=step_time,

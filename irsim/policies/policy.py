@@ -47,9 +47,10 @@ class Episode:
     """What a policy learns at the start of an episode.
 
     Attributes:
-        world: Index of the world among those that run together. Where a policy of controls drives robots with different
-            drives, those of each drive have an index of their own, as if they were in another world.
-        robots: Indices of the robots that the policy drives, among the objects of the world.
+        world: Index of the world among all that the policy object drives, also in other simulations. Where a policy of
+            controls drives robots with different drives, those of each drive have an index of their own, as if they
+            were in another world.
+        robots: Ids of the robots that the policy drives.
         step_time: Period of the simulation [s].
         decision_steps: Number of steps between two decisions.
         drive: Name of the drive of these robots; ``mixed`` where robots with different drives follow velocities.

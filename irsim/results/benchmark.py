@@ -48,7 +48,8 @@ class BenchmarkRow(Result):
 
     scenario: str
     """The file; ``(all)`` for all files together, if each has the same number of episodes, and that number is above
-    one or there are at least ten files."""
+    one or there are at least ten files. A suite with several protocols has ``(all)/freeze``, ``(all)/yield`` instead:
+    each protocol is summarised on its own."""
     behavior: str
     """The robots' behavior, or ``as-written``."""
     episodes: int
@@ -133,7 +134,8 @@ class BenchmarkResult(Result):
     random: dict[str, list[str]]
     """What the seed decides in each scenario; a scenario in which it decides nothing runs with the first seed only."""
     rows: list[BenchmarkRow]
-    """By scenario, then behavior; then all scenarios together, if there are several with equal numbers of episodes."""
+    """By scenario, then behavior; then all scenarios together, if there are several with equal numbers of episodes, and
+    each protocol of a suite on its own."""
     episodes: list[EpisodeRow]
     """Every episode."""
     incidents: list[str] = Field(default_factory=list)

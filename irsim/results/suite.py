@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
+
+from pydantic import Field
 
 from irsim.results.base import Result
 from irsim.results.benchmark import BenchmarkResult
@@ -32,6 +34,15 @@ class SuiteResult(BenchmarkResult):
     """Version of the suite."""
     title: str
     """What it is about."""
+    about: str = ""
+    """What it measures, and how to read its results."""
+    sources: list[str] = Field(default_factory=list)
+    """Papers and pages that the suite follows."""
+    steps: int | None = None
+    """Horizon in steps; scenarios may have their own."""
+    until: Literal["done", "first_collision"] | None = None
+    """When an episode ends before its horizon: when every robot has arrived or stopped (``done``), or already when one
+    collides."""
     suite_hash: str
     """Hash of the suite, whatever part of it is run."""
     hash: str

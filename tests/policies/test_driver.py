@@ -111,7 +111,7 @@ def test_controls_of_different_drives_are_asked_for_apart() -> None:
     policy = Straight([0.5, 0.1])
     drive(simulation(*robots, seeds=(0, 1)), policy)
     assert [(one.world, one.robots, one.drive) for one in policy.episodes] == [
-        (0, (0, 2), "diff"), (1, (1,), "omni"), (2, (0, 2), "diff"), (3, (1,), "omni"),
+        (0, (0, 2), "diff"), (1, (0, 2), "diff"), (2, (1,), "omni"), (3, (1,), "omni"),
     ]  # fmt: skip
     assert [one.world.tolist() for one in policy.asked] == [[0, 0, 2, 2], [1, 3]]
 

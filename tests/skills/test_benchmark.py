@@ -213,6 +213,16 @@ def test_verdicts(tmp_path: Path, counts: tuple[int, int], n: int, difference: A
     assert (answer["verdict"], code) == (said, 1 if said == "open" else 0)
 
 
+def test_verdicts_name_the_policies_of_a_suite(tmp_path: Path) -> None:
+    policies = {"one": "{name: orca, timeHorizon: 2}", "two": "dash"}
+    first, second = policies.values()
+    rows = [row(first, 9, 20, None), row(second, 20, 20, (0.55, 0.3, 0.8))]
+    text = json.dumps({"behaviors": [first, second], "policies": policies, "rows": rows, "notes": []})
+    (tmp_path / "results.json").write_text(text, encoding="utf-8")
+    [answer] = verdict(tmp_path / "results.json")[1]["differences"]
+    assert (answer["behavior"], answer["against"], answer["verdict"]) == ("two", "one", "better")
+
+
 def test_the_script_knows_what_is_better_without_irsim() -> None:
     script = runpy.run_path(str(VERDICT))
     known = (*METRICS, *EPISODE_METRICS)

@@ -6,9 +6,9 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from irsim.benchmarks.report.names import families, policy_labels, series
-from irsim.benchmarks.summary import ALL
-from irsim.results.benchmark import BenchmarkResult, BenchmarkRow
+from irsim.benchmarks.report.names import families, policy_labels, protocols, series
+from irsim.benchmarks.summary import is_summary
+from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,11 +29,15 @@ def charts(result: BenchmarkResult) -> list[tuple[str, str]]:
         for family, protocol, scenes in families(result)
     ]  # fmt: skip
     for key, heading in _DISTRIBUTIONS:
-        if any(episode.metrics.get(key) is not None for episode in result.episodes):
-            made.append(
-                (f"Episodes of all scenarios: {heading}",
-                 _drawn(lambda ax, key=key, heading=heading: _distribution(ax, result, key, heading)))
-            )  # fmt: skip
+        for protocol, names in protocols(result).items():
+            chosen = [e for e in result.episodes if e.scenario in names and e.metrics.get(key) is not None]
+            if chosen:
+                which = f"under the protocol {protocol}: " if protocol else ""
+                made.append(
+                    (f"Episodes of all scenarios{' ' if which else ': '}{which}{heading}",
+                     _drawn(lambda ax, key=key, heading=heading, chosen=chosen:
+                            _distribution(ax, policy_labels(result), chosen, key, heading)))
+                )  # fmt: skip
     if any(row.paired for row in result.rows):
         first = policy_labels(result)[result.behaviors[0]]
         made.append((f"Success minus that of {first} with the same seeds", _drawn(lambda ax: _paired(ax, result))))
@@ -73,12 +77,10 @@ def _against(ax: Axes, result: BenchmarkResult, scenes: Sequence[tuple[Any, str]
     ax.legend(frameon=False)
 
 
-def _distribution(ax: Axes, result: BenchmarkResult, key: str, heading: str) -> None:
+def _distribution(ax: Axes, labels: dict[str, str], episodes: Sequence[EpisodeRow], key: str, heading: str) -> None:
     """Boxes of a metric, one for each policy."""
-    labels = policy_labels(result)
     values = [
-        [v for e in result.episodes if e.behavior == behavior and (v := e.metrics.get(key)) is not None]
-        for behavior in labels
+        [v for e in episodes if e.behavior == behavior and (v := e.metrics.get(key)) is not None] for behavior in labels
     ]
     boxes = ax.boxplot(values, orientation="horizontal", widths=0.6, showfliers=False, patch_artist=True)
     for place, box in enumerate(boxes["boxes"]):
@@ -96,7 +98,7 @@ def _distribution(ax: Axes, result: BenchmarkResult, key: str, heading: str) -> 
 def _paired(ax: Axes, result: BenchmarkResult) -> None:
     """Paired differences of success, with their intervals."""
     labels = policy_labels(result)
-    rows = [row for row in result.rows if row.paired and row.scenario != ALL][: 3 * _MAX_CATEGORIES]
+    rows = [row for row in result.rows if row.paired and not is_summary(row.scenario)][: 3 * _MAX_CATEGORIES]
     scenes = list(dict.fromkeys(row.scenario for row in rows))
     others = [behavior for behavior in labels if behavior != result.behaviors[0]]
     step = 0.7 / max(1, len(others))

@@ -8,13 +8,41 @@ from irsim.benchmarks.report.names import policy_labels
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion
 from irsim.results.suite import SuiteResult
 
-__all__ = ["COLUMNS", "cells_of", "markdown"]
+__all__ = [
+    "INTERVALS",
+    "Table",
+    "about_of",
+    "cells_of",
+    "columns_of",
+    "differences_of",
+    "facts_of",
+    "markdown",
+    "title_of",
+    "zones_of",
+]
 
-COLUMNS = (
+_COLUMNS = (
     ("success", "success"), ("collision", "collision"), ("timeout", "timeout"), ("time_to_goal", "time [s]"),
     ("velocity_avg", "speed [m/s]"), ("path_length", "path [m]"), ("spl", "spl"), ("min_clearance", "clearance [m]"),
 )  # fmt: skip
-"""(key, heading) of the columns of the table."""
+"""(key, heading) of the columns of every table."""
+_SOMETIMES = (
+    ("distance_to_human_min", "human [m]"), ("discomfort_ratio", "discomfort"),
+    ("discomfort_min_dist", "discomfort [m]"),
+    ("seen_ratio", "seen"), ("time_in_zone", "in zones [s]"), ("zone_crossings", "crossings of zones"),
+)  # fmt: skip
+"""(key, heading) of columns that a table has if a row has a value."""
+_DIFFERENCES = (
+    ("success", "success"), ("collision", "collision"), ("timeout", "timeout"), ("time_to_goal", "time [s]"),
+    ("path_length", "path [m]"),
+)  # fmt: skip
+INTERVALS = (
+    "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Times are those "
+    "of robots that arrived."
+)
+"""What a reader must know of the numbers."""
+Table = tuple[list[str], list[list[str]]]
+"""Headings and rows of cells."""
 
 
 def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
@@ -24,21 +52,29 @@ def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
         result: The result.
         notes: Notes on the report itself.
     """
-    labels = policy_labels(result)
+    labels, columns = policy_labels(result), columns_of(result)
     lines = [f"# {title_of(result)}", "", *(f"{line}  " for line in facts_of(result)), ""]
-    lines += ["| scenario | policy | n | " + " | ".join(heading for _, heading in COLUMNS) + " |"]
-    lines += ["|---" * (3 + len(COLUMNS)) + "|"]
-    lines += [
-        f"| {row.scenario} | {labels[row.behavior]} | {row.episodes} | {' | '.join(cells_of(row))} |"
-        for row in result.rows
-    ]
+    for line in about_of(result):
+        lines += [line, ""]
+    rows = [[row.scenario, labels[row.behavior], str(row.episodes), *cells_of(row, columns)] for row in result.rows]
+    lines += _table((["scenario", "policy", "n", *(heading for _, heading in columns)], rows))
+    if zones := zones_of(result):
+        lines += ["", "Zones, means over the robots:", "", *_table(zones)]
+    if differences := differences_of(result):
+        first = labels[result.behaviors[0]]
+        lines += ["", f"Differences to {first} with the same seeds:", "", *_table(differences)]
     lines += ["", "Policies:", "", *(f"- {label}: `{text}`" for text, label in labels.items())]
     lines += ["", *(f"Note: {note}  " for note in (*result.notes, *notes))]
-    lines += [
-        "", "Intervals are 95 %: Wilson's for shares, bootstrap for means. Times are those of robots that arrived.", "",
-        f"Reproduce: `{result.reproduce}` with irsim {result.version}",
-    ]  # fmt: skip
+    lines += ["", INTERVALS, "", f"Reproduce: `{result.reproduce}` with irsim {result.version}"]
     return "\n".join(lines) + "\n"
+
+
+def _table(table: Table) -> list[str]:
+    """The lines of a table."""
+    headings, rows = table
+    cells = [[cell.replace("|", "\\|") for cell in row] for row in (headings, *rows)]
+    first, *others = [f"| {' | '.join(row)} |" for row in cells]
+    return [first, "|---" * len(headings) + "|", *others]
 
 
 def title_of(result: BenchmarkResult) -> str:
@@ -61,13 +97,68 @@ def facts_of(result: BenchmarkResult) -> list[str]:
     return lines
 
 
-def cells_of(row: BenchmarkRow) -> list[str]:
+def about_of(result: BenchmarkResult) -> list[str]:
+    """What a suite says about itself: its text, its sources, and when its episodes end; empty without a suite."""
+    if not isinstance(result, SuiteResult):
+        return []
+    lines = [result.about] if result.about else []
+    lines += ["Sources: " + "; ".join(result.sources)] if result.sources else []
+    limits = sorted({episode.time_limit for episode in result.episodes})
+    horizon = f"The horizon is {' or '.join(f'{limit:g}' for limit in limits)} s" if limits else ""
+    ends = {
+        "done": "an episode ends when every robot has arrived or stopped",
+        "first_collision": "an episode ends with the first collision",
+    }
+    parts = [horizon, ends.get(result.until or "", "")]
+    if any(parts):
+        lines.append("; ".join(part for part in parts if part) + ".")
+    return lines
+
+
+def columns_of(result: BenchmarkResult) -> list[tuple[str, str]]:
+    """Key and heading of the columns of the table: those of people, zones and views only if a row has a value."""
+    used = [(key, text) for key, text in _SOMETIMES if any(_has(row.metrics.get(key)) for row in result.rows)]
+    return [*_COLUMNS, *used]
+
+
+def zones_of(result: BenchmarkResult) -> Table | None:
+    """The table of zones, one row for each zone of each row; None without zones."""
+    labels = policy_labels(result)
+    keys = list(dict.fromkeys(key for row in result.rows for zone in row.zones.values() for key in zone))
+    rows = [
+        [row.scenario, labels[row.behavior], zone, *(_mean(values.get(key)) for key in keys)]
+        for row in result.rows
+        for zone, values in row.zones.items()
+    ]
+    headings = ["time_in_zone [s]" if key == "time_in_zone" else key for key in keys]
+    return (["scenario", "policy", "zone", *headings], rows) if rows else None
+
+
+def differences_of(result: BenchmarkResult) -> Table | None:
+    """The table of paired differences to the first policy; None with one policy."""
+    labels = policy_labels(result)
+    rows = [
+        [
+            row.scenario, labels[row.behavior], str(row.paired["success"].n),
+            *(_mean(row.paired[key], "+.2f") for key, _ in _DIFFERENCES),
+        ]
+        for row in result.rows
+        if row.paired
+    ]  # fmt: skip
+    return (["scenario", "policy", "pairs", *(heading for _, heading in _DIFFERENCES)], rows) if rows else None
+
+
+def cells_of(row: BenchmarkRow, columns: Sequence[tuple[str, str]] = _COLUMNS) -> list[str]:
     """The values of a row of the table."""
     cells = []
-    for key, _ in COLUMNS:
+    for key, _ in columns:
         share = getattr(row, key, None)
         cells.append(_share(share) if isinstance(share, Proportion) else _mean(row.metrics.get(key)))
     return cells
+
+
+def _has(found: Estimate | None) -> bool:
+    return found is not None and found.n > 0
 
 
 def _share(found: Proportion) -> str:
@@ -76,9 +167,9 @@ def _share(found: Proportion) -> str:
     return f"{found.rate:.0%} ({found.low:.0%} to {found.high:.0%})"
 
 
-def _mean(found: Estimate | None) -> str:
+def _mean(found: Estimate | None, form: str = ".2f") -> str:
     if found is None or found.mean is None:
         return ""
     if found.low is None or found.high is None:
-        return f"{found.mean:.2f}"
-    return f"{found.mean:.2f} ({found.low:.2f} to {found.high:.2f})"
+        return f"{found.mean:{form}}"
+    return f"{found.mean:{form}} ({found.low:{form}} to {found.high:{form}})"

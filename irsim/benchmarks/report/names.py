@@ -6,12 +6,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from irsim.benchmarks.suite import Suite
 from irsim.policies.catalog import SUFFIXES
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow
 from irsim.results.labels import labels_of
 from irsim.results.suite import SuiteResult
 
-__all__ = ["families", "policy_labels", "series"]
+__all__ = ["families", "policy_labels", "protocols", "series", "with_suite"]
 
 
 def policy_labels(result: BenchmarkResult) -> dict[str, str]:
@@ -44,7 +45,23 @@ def families(result: BenchmarkResult) -> Iterator[tuple[str, str, list[tuple[dic
             yield family, protocol, own
 
 
+def protocols(result: BenchmarkResult) -> dict[str, set[str]]:
+    """Protocol → its scenarios, of a suite with several protocols; otherwise all scenarios without a name."""
+    found = dict[str, set[str]]()
+    for fact in result.facts if isinstance(result, SuiteResult) else ():
+        found.setdefault(fact.protocol, set()).add(fact.name)
+    return found if len(found) > 1 else {"": set(result.scenarios)}
+
+
 def series(result: BenchmarkResult, names: list[str], behavior: str) -> list[BenchmarkRow]:
     """The rows of a policy on some scenarios, in the order of the names."""
     found = {row.scenario: row for row in result.rows if row.behavior == behavior}
     return [found[name] for name in names if name in found]
+
+
+def with_suite(result: BenchmarkResult, suite: Suite | None) -> BenchmarkResult:
+    """The result with what the suite says about itself: its text, its sources, its horizon and when episodes end."""
+    if suite is None:
+        return result
+    told = {"about": suite.about, "sources": suite.sources, "steps": suite.steps, "until": suite.until}
+    return result.model_copy(update=told)

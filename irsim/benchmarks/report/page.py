@@ -8,7 +8,17 @@ from dataclasses import dataclass
 from html import escape
 
 from irsim.benchmarks.report.charts import charts
-from irsim.benchmarks.report.markdown import COLUMNS, cells_of, facts_of, title_of
+from irsim.benchmarks.report.markdown import (
+    INTERVALS,
+    Table,
+    about_of,
+    cells_of,
+    columns_of,
+    differences_of,
+    facts_of,
+    title_of,
+    zones_of,
+)
 from irsim.benchmarks.report.names import policy_labels
 from irsim.results.benchmark import BenchmarkResult
 
@@ -30,31 +40,44 @@ class Shown:
     replay: str = ""
 
 
-def page(result: BenchmarkResult, shown: Sequence[Shown] = ()) -> str:
-    """The page: facts, table, charts, worst episodes, and how to run it again."""
-    labels = policy_labels(result)
+def page(result: BenchmarkResult, shown: Sequence[Shown] = (), notes: Sequence[str] = ()) -> str:
+    """The page: facts, tables, charts, worst episodes, notes, and how to run it again."""
+    labels, columns = policy_labels(result), columns_of(result)
     title = escape(title_of(result))
-    headings = "".join(f"<th>{escape(text)}</th>" for text in ("scenario", "policy", "n", *(h for _, h in COLUMNS)))
-    rows, last = [], None
-    for row in result.rows:
-        cells = [row.scenario if row.scenario != last else "", labels[row.behavior], str(row.episodes), *cells_of(row)]
-        mark = ' class="first"' if row.scenario != last else ""
-        rows.append(f"<tr{mark}>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
-        last = row.scenario
+    rows = [[row.scenario, labels[row.behavior], str(row.episodes), *cells_of(row, columns)] for row in result.rows]
+    main = (["scenario", "policy", "n", *(heading for _, heading in columns)], rows)
+    zones, differences = zones_of(result), differences_of(result)
+    failed = sum(one.outcome in ("collision", "timeout") for one in result.episodes)
     figures = [f"<figure>{svg}<figcaption>{escape(caption)}</figcaption></figure>" for caption, svg in charts(result)]
     worst = [_episode(one) for one in shown]
     parts = [
         f"<h1>{title}</h1>", *(f"<p>{escape(line)}</p>" for line in facts_of(result)),
-        f'<div class="wide"><table><thead><tr>{headings}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>',
-        '<p class="small">Intervals are 95 %: Wilson\'s for shares, bootstrap for means.</p>',
+        *(f"<p>{escape(line)}</p>" for line in about_of(result)),
+        _table(main), f'<p class="small">{escape(INTERVALS)}</p>',
+        "<h2>Zones</h2><p>Means over the robots.</p>" + _table(zones) if zones else "",
+        f"<h2>Differences to {escape(labels[result.behaviors[0]])} with the same seeds</h2>" + _table(differences)
+        if differences else "",
         "<h2>Policies</h2>", "<ul>",
         *(f"<li>{escape(label)}: <code>{escape(text)}</code></li>" for text, label in labels.items()), "</ul>",
-        *(f'<p class="note">{escape(note)}</p>' for note in result.notes),
+        *(f'<p class="note">{escape(note)}</p>' for note in (*result.notes, *notes)),
         "<h2>Charts</h2>" if figures else "", f'<div class="charts">{"".join(figures)}</div>',
-        "<h2>Episodes that failed</h2>" if worst else "", *worst,
+        f"<h2>Episodes that failed</h2><p>{len(worst)} of {failed:,} are shown.</p>" if worst else "", *worst,
         "<h2>Run it again</h2>", f"<pre>{escape(result.reproduce)}</pre><p>irsim {escape(result.version)}</p>",
     ]  # fmt: skip
     return _SHELL.format(title=title, body="\n".join(filter(None, parts)))
+
+
+def _table(table: Table) -> str:
+    """A table whose first column is empty where it repeats the row above."""
+    headings, rows = table
+    lines, last = [], None
+    for name, *cells in rows:
+        mark = ' class="first"' if name != last else ""
+        shown = [name if name != last else "", *cells]
+        lines.append(f"<tr{mark}>" + "".join(f"<td>{escape(cell)}</td>" for cell in shown) + "</tr>")
+        last = name
+    head = "".join(f"<th>{escape(text)}</th>" for text in headings)
+    return f'<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
 
 
 def _episode(one: Shown) -> str:

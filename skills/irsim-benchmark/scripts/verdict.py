@@ -5,9 +5,9 @@
 # ///
 """Judge each difference in a benchmark: is it real, and how many seeds would show it. Prints JSON.
 
-Reads the output of `irsim benchmark --json`, or the artifact that the tool `benchmark` names: a file, or - for standard
-input. Needs only Python. A difference is real if its 95 % interval does not contain zero and at least ten pairs of
-episodes have a value.
+Reads the output of `irsim benchmark --json`, results.json in the folder of a benchmark, or the artifact that the tool
+`benchmark` names: a file, or - for standard input. Needs only Python. Policies of a suite have their names there. A
+difference is real if its 95 % interval does not contain zero and at least ten pairs of episodes have a value.
 
 Exits with 0 if every difference is decided, 1 if at least one is open, 2 if the input is invalid.
 """
@@ -46,14 +46,17 @@ EITHER = """
 BETTER = dict.fromkeys(MORE, "more") | dict.fromkeys(LESS, "less") | dict.fromkeys(EITHER)
 
 
-def judge(metric: str, row: dict[str, Any], first: str, detect: float) -> dict[str, Any]:
-    """The verdict on one difference, with its numbers."""
+def judge(
+    metric: str, row: dict[str, Any], first: str, detect: float, names: dict[str, str] | None = None
+) -> dict[str, Any]:
+    """The verdict on one difference, with its numbers; names: behavior → name of the policy in a suite."""
+    names = names or {}
     found = row["paired"][metric]
     n, mean, low, high = (found[key] for key in ("n", "mean", "low", "high"))
     answer = {
         "scenario": row["scenario"],
-        "behavior": row["behavior"],
-        "against": first,
+        "behavior": names.get(row["behavior"], row["behavior"]),
+        "against": names.get(first, first),
         "metric": metric,
         "n": n,
         "difference": mean,
@@ -96,8 +99,9 @@ def main() -> int:
         else:
             with open(given.result, encoding="utf-8") as file:
                 result = json.load(file)
+        names = {text: name for name, text in (result.get("policies") or {}).items()}
         answers = [
-            judge(metric, row, result["behaviors"][0], given.detect)
+            judge(metric, row, result["behaviors"][0], given.detect, names)
             for row in result["rows"]
             if row["paired"]
             for metric in given.metric or ["success"]

@@ -1,0 +1,164 @@
+"""What the terminal, the page and the tables say of a benchmark: summaries by protocol, zones, facts of a suite."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+from typer.testing import CliRunner
+
+from irsim.api.benchmark_report import MARKDOWN, PAGE, REPLAYS, write_report
+from irsim.benchmarks.report.charts import charts
+from irsim.benchmarks.stored import run_plan
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.cli.app import app
+from irsim.cli.benchmark import show_benchmark
+from irsim.cli.output import progress
+from irsim.results.suite import SuiteResult
+
+SUITE = """
+suite: small
+version: 3
+title: Robots in a square
+about: Two sizes of a group that crosses a door.
+sources: ["A. Author: Doors, 2020"]
+scenarios:
+  - name: square
+    vary: {"robot[0].number": [2, 3]}
+    scenario:
+      world: {width: 6, height: 6, zones: [{name: door, line: [[3, 0], [3, 6]]}]}
+      robot:
+        - {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, distribution: {name: random}}
+seeds: {first: 5, count: 2}
+steps: 30
+until: first_collision
+protocols: [freeze, yield]
+policies: {orca: {name: orca, timeHorizon: 2}, dash: dash}
+"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, SuiteResult]:
+    """A folder with the report of a small suite, and its result."""
+    place = tmp_path_factory.mktemp("report")
+    (place / "small.yaml").write_text(SUITE, encoding="utf-8")
+    result = run_plan(suite_plan(str(place / "small.yaml")), place / "run", workers=1)
+    assert isinstance(result, SuiteResult)
+    write_report(result, place / "run")
+    return place / "run", result
+
+
+def shown(result: SuiteResult) -> str:
+    """The table as it is printed into a file."""
+    out = Console(width=140, force_terminal=False, markup=False, highlight=False)
+    with out.capture() as capture:
+        show_benchmark(result, out)
+    return capture.get()
+
+
+def test_each_protocol_is_summarised_on_its_own(made: tuple[Path, SuiteResult]) -> None:
+    place, result = made
+    summaries = [row for row in result.rows if row.scenario.startswith("(all)")]
+    names = [row.scenario for row in summaries]
+    assert names == ["(all)/freeze", "(all)/freeze", "(all)/yield", "(all)/yield"]
+    assert [row.episodes for row in summaries] == [4, 4, 4, 4]  # 2 scenarios with 2 seeds
+    assert [row.paired["success"].n for row in summaries if row.paired] == [4, 4]
+    for row in summaries:
+        protocol = row.scenario.partition("/")[2]
+        own = [r for r in result.rows if r.scenario.endswith(f"-2/{protocol}") or r.scenario.endswith(f"-3/{protocol}")]
+        assert row.timeout.count == sum(r.timeout.count for r in own if r.behavior == row.behavior)
+    text = shown(result)
+    for protocol in ("freeze", "yield"):
+        assert f"\n(all)/{protocol}: dash minus orca, same seeds: " in text
+        assert f"| (all)/{protocol} | dash | 4 |" in (place / MARKDOWN).read_text(encoding="utf-8")
+        assert f"<td>(all)/{protocol}</td>" in (place / PAGE).read_text(encoding="utf-8")
+    assert "| (all) |" not in (place / MARKDOWN).read_text(encoding="utf-8")
+
+
+def test_charts_of_all_episodes_are_of_one_protocol(made: tuple[Path, SuiteResult]) -> None:
+    captions = [caption for caption, _ in charts(made[1]) if caption.startswith("Episodes of all scenarios")]
+    assert len(captions) >= 2
+    assert all("under the protocol freeze: " in text or "under the protocol yield: " in text for text in captions)
+
+
+def test_a_suite_prints_few_lines_of_failures(made: tuple[Path, SuiteResult]) -> None:
+    lines = [line for line in shown(made[1]).splitlines() if line.startswith("failed: ")]
+    count = sum(bool(row.failed) for row in made[1].rows)
+    assert count > 5
+    assert len(lines) == 6
+    assert f"failed: {count - 5} more rows; rates are in results.md, seeds in results.json" == lines[-1]
+
+
+def test_csv_of_a_suite_names_policy_family_protocol_and_values(made: tuple[Path, SuiteResult], tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(SUITE, encoding="utf-8")
+    words = ["benchmark", str(tmp_path / "small.yaml"), "--csv", "-o", str(tmp_path / "run"), "--workers", "1"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0
+    rows = list(csv.DictReader(io.StringIO(done.stdout)))
+    assert len(rows) == len(made[1].episodes)
+    row = next(row for row in rows if row["scenario"] == "square-3/yield" and row["behavior"] == "dash")
+    found = [row[key] for key in ("policy", "family", "protocol", "values.robot[0].number")]
+    assert found == ["dash", "square", "yield", "3"]
+    assert {row["policy"] for row in rows} == {"orca", "dash"}
+
+
+def test_one_protocol_needs_no_name(tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(SUITE, encoding="utf-8")
+    plan = suite_plan(str(tmp_path / "small.yaml"), protocols=["yield"], seeds=2, policies=["dash"])
+    assert run_plan(plan, tmp_path / "run", workers=1).rows[-1].scenario == "(all)"
+
+
+def test_tables_of_zones_and_differences_and_what_the_suite_says(made: tuple[Path, SuiteResult]) -> None:
+    place, _ = made
+    text, html = (place / MARKDOWN).read_text(encoding="utf-8"), (place / PAGE).read_text(encoding="utf-8")
+    assert "| scenario | policy | zone | zone_crossings |" in text
+    assert "| square-2/freeze | orca | door | " in text
+    assert "Differences to orca with the same seeds:" in text
+    assert "| square-2/freeze | dash | 2 | " in text
+    for page in (text, html):
+        assert "Two sizes of a group that crosses a door." in page
+        assert "Sources: A. Author: Doors, 2020" in page
+        assert "The horizon is 3 s; an episode ends with the first collision." in page
+        assert "crossings of zones" in page
+        assert "human [m]" not in page  # there are no people
+    assert "<h2>Zones</h2>" in html
+    failed = sum(one.outcome != "success" for one in made[1].episodes)
+    assert f"<p>4 of {failed} are shown.</p>" in html
+
+
+def test_a_scenario_with_a_picture_as_map_has_replays(tmp_path: Path) -> None:
+    from PIL import Image
+
+    (tmp_path / "suites").mkdir()
+    Image.new("L", (20, 20), 255).save(tmp_path / "hall.png")
+    scene = "world: {width: 5, height: 5, obstacle_map: ../hall.png}\nrobot: {goal: [4, 4, 0]}\n"
+    (tmp_path / "suites" / "hall.yaml").write_text(scene, encoding="utf-8")
+    suite = """
+suite: halls
+version: 1
+title: One hall
+scenarios: [{name: hall, file: hall.yaml}]
+steps: 3
+policies: {dash: dash}
+"""
+    (tmp_path / "suites" / "halls.yaml").write_text(suite, encoding="utf-8")
+    plan = suite_plan(str(tmp_path / "suites" / "halls.yaml"), seeds=1)
+    report = write_report(run_plan(plan, tmp_path / "run", workers=1), tmp_path / "run")
+    assert not [note for note in report.notes if "replay" in note]
+    [replay] = (tmp_path / "run" / REPLAYS).iterdir()
+    assert f'href="{REPLAYS}/{replay.name}"' in report.page.read_text(encoding="utf-8")
+
+
+def test_without_a_terminal_progress_is_a_line_from_time_to_time(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [0.0]
+    monkeypatch.setattr("irsim.cli.output.time.monotonic", lambda: now[0])
+    with progress("simulating") as report:
+        for done in range(100):
+            now[0] = float(done)
+            report(done, 1000)
+    assert capsys.readouterr().err.splitlines() == [f"simulating: {done} of 1,000" for done in (30, 60, 90)]
