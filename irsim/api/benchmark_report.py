@@ -14,7 +14,7 @@ from irsim.benchmarks.episode import Job, environment_of
 from irsim.benchmarks.plan import Plan, PlannedScenario
 from irsim.benchmarks.policies import job_keys, label_of
 from irsim.benchmarks.report.markdown import markdown
-from irsim.benchmarks.report.names import policy_labels, with_suite
+from irsim.benchmarks.report.names import policy_labels
 from irsim.benchmarks.report.page import Shown, page
 from irsim.benchmarks.report.table import MISSING, TABLE, has_tables, write_table
 from irsim.benchmarks.report.worst import worst_episodes
@@ -65,7 +65,6 @@ def write_report(result: BenchmarkResult, folder: Path) -> Report:
     notes = [] if has_tables() else [MISSING]
     plan = Plan.model_validate_json((folder / PLAN).read_bytes())
     scenarios = {scenario.name: scenario for scenario in plan.scenarios}
-    result = with_suite(result, plan.suite)
     try:
         shown = [_shown(plan, scenarios[one.scenario], one, result, folder) for one in worst_episodes(result)]
         notes += [

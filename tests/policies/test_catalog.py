@@ -103,7 +103,7 @@ def test_files_have_a_digest_and_are_found_from_their_folder(tmp_path: Path) -> 
         ("{name: net.npz, sped: 1}", "'sped' is no option of a file"),
         ("{name: net.npz, decision_dt: -1}", "decision_dt must be a time"),
         ("{name: still, sped: 1}", "policy-failed: policy 'still' cannot be made: .*sped"),
-        ("{name: random, decision_dt: soon}", "policy 'random' cannot be made"),
+        ("{name: random, decison_dt: 1}", "policy 'random' cannot be made"),
     ],
 )
 def test_what_is_not_a_policy_is_refused(source: Any, message: str, tmp_path: Path) -> None:

@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from irsim.benchmarks.suite import Suite
 from irsim.policies.catalog import SUFFIXES
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow
 from irsim.results.labels import labels_of
 from irsim.results.suite import SuiteResult
 
-__all__ = ["families", "policy_labels", "protocols", "series", "with_suite"]
+__all__ = ["families", "policy_labels", "protocols", "series"]
 
 
 def policy_labels(result: BenchmarkResult) -> dict[str, str]:
@@ -57,11 +56,3 @@ def series(result: BenchmarkResult, names: list[str], behavior: str) -> list[Ben
     """The rows of a policy on some scenarios, in the order of the names."""
     found = {row.scenario: row for row in result.rows if row.behavior == behavior}
     return [found[name] for name in names if name in found]
-
-
-def with_suite(result: BenchmarkResult, suite: Suite | None) -> BenchmarkResult:
-    """The result with what the suite says about itself: its text, its sources, its horizon and when episodes end."""
-    if suite is None:
-        return result
-    told = {"about": suite.about, "sources": suite.sources, "steps": suite.steps, "until": suite.until}
-    return result.model_copy(update=told)

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from irsim.benchmarks.report.markdown import markdown
-from irsim.benchmarks.report.names import with_suite
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import EpisodeRow
@@ -47,8 +46,7 @@ def lines_of(episodes: Sequence[EpisodeRow], labels: dict[str, str]) -> list[str
 def main(suite: str) -> None:
     """Run a suite and keep its result."""
     with tempfile.TemporaryDirectory() as folder:
-        plan = suite_plan(suite)
-        result = with_suite(run_plan(plan, Path(folder)), plan.suite)
+        result = run_plan(suite_plan(suite), Path(folder))
     assert isinstance(result, SuiteResult)
     labels = {text: name for name, text in result.policies.items()}
     head = ",".join(("scenario", "policy", "seed", "outcome", "steps", *_METRICS))
