@@ -18,6 +18,7 @@ from pydantic import ValidationError
 from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.log import in_order
 from irsim.benchmarks.plan import Plan, map_hashes
+from irsim.benchmarks.timing import was_timed
 from irsim.common.files import TEMPORARY, write_atomically
 from irsim.common.version import version
 from irsim.episodes.episode import Progress
@@ -106,7 +107,8 @@ def run_plan(
             resume=resume,
             timing=timing,
         )
-        _write(folder / TIMING, json.dumps(timing, indent=1) + "\n")
+        if was_timed(timing) or not (folder / TIMING).exists():  # nothing new keeps the times of the first run
+            _write(folder / TIMING, json.dumps(timing, indent=1) + "\n")
         _write(folder / EPISODES, in_order(folder / EPISODES, result.episodes))
         _write(folder / RESULTS, result.model_dump_json(indent=1) + "\n")
         if finish is not None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["IN_ENGINE", "Decisions", "timing_report"]
+__all__ = ["IN_ENGINE", "Decisions", "timing_report", "was_timed"]
 
 Decisions = Sequence[tuple[float, int]]
 """Wall-clock time [s] of each decision of a policy, and the number of robots that it decided for."""
@@ -30,6 +30,11 @@ def timing_report(
         For each policy ``mean_ms`` and ``p95_ms`` per decision and per robot, or the reason why there are none.
     """
     return {"policies": {name: _summary(found, episodes[name]) for name, found in policies.items()}}
+
+
+def was_timed(report: Mapping[str, Any]) -> bool:
+    """Whether a report has times."""
+    return any("per_decision" in policy for policy in report["policies"].values())
 
 
 def _summary(found: Mapping[str, Decisions] | None, episodes: int) -> dict[str, Any]:

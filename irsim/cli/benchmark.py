@@ -53,13 +53,15 @@ def benchmark(
         str | None,
         typer.Option(
             "--policies",
-            "--behaviors",
             metavar="A,B,…",
             help="What drives all robots, to compare: behaviors such as rvo,orca or '{name: orca, timeHorizon: 5}', "
             "files (model.npz), plug-ins; irsim policies lists them. The first is the reference for differences. Of a "
             "suite: names of its policies, or others.",
             show_default="as-written, or all of a suite",
         ),
+    ] = None,
+    behaviors: Annotated[
+        str | None, typer.Option(metavar="A,B,…", help="Another name of --policies.", hidden=True)
     ] = None,
     seeds: Annotated[
         str,
@@ -141,11 +143,13 @@ def benchmark(
 
     if json_output and csv_output:
         raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
+    if policies is not None and behaviors is not None:
+        raise BenchmarkError("--policies and --behaviors are two names of one option", "give only --policies")
     import_user_modules(imports)
     wanted = Wanted(
-        files=files or [], policies=policies, seeds=seeds, perturb=perturb or [], steps=steps, strict=strict,
-        imports=imports or [], workers=workers, cluster=cluster, max_objects=max_objects, folder=output, resume=resume,
-        full=full, protocols=protocols or [], scenarios=scenarios or [],
+        files=files or [], policies=behaviors if policies is None else policies, seeds=seeds, perturb=perturb or [],
+        steps=steps, strict=strict, imports=imports or [], workers=workers, cluster=cluster, max_objects=max_objects,
+        folder=output, resume=resume, full=full, protocols=protocols or [], scenarios=scenarios or [],
     )  # fmt: skip
     result = run_benchmark(wanted)
     if json_output:

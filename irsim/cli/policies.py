@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -54,8 +54,28 @@ def policies(
         "drives": ", ".join(one.drives), "decides": period, "sha256": one.digest or "",
         "options": "; ".join(f"{key}: {value}" for key, value in one.options.items()),
     }  # fmt: skip
+    facts |= _network(one.facts)
     out.print(Text.assemble((clean(one.name, 200), "bold cyan"), ": ", clean(one.about, 1000)))
     for key, value in facts.items():
         if value:
             table.add_row(key, clean(value, 1000))
     out.print(table)
+
+
+def _network(facts: dict[str, Any]) -> dict[str, str]:
+    """What a network says of itself, as lines; empty for other policies."""
+    if not facts:
+        return {}
+    parts = [
+        f"{part['label']}: {', '.join(map(str, part.get('features') or [part['shape']]))}" for part in facts["observes"]
+    ]
+    output, card = facts["output"], facts["card"]
+    words = [f"{key} {value}" for key, value in output.items() if key != "input"]
+    card_words = {key: card[key] for key in ("license", "seeds", "protocol", "task") if card.get(key)}
+    return {
+        "observes": "; ".join(parts),
+        "output": ", ".join(words),
+        "layers": "; ".join(map(str, facts.get("layers", ()))),
+        "size": f"{facts['parameters']:,} parameters" if "parameters" in facts else "",
+        "card": ", ".join(f"{key}: {value}" for key, value in card_words.items()),
+    }

@@ -37,13 +37,13 @@ def run(
         str | None,
         typer.Option(
             "--policy",
-            "--behavior",
             metavar="NAME",
             help="Drive every robot by this policy instead of its own behavior: a behavior such as rvo or '{name: "
             "orca, timeHorizon: 5}', a file (model.npz), a plug-in; irsim policies lists them.",
             show_default=False,
         ),
     ] = None,
+    behavior: Annotated[str | None, typer.Option(metavar="NAME", help="Another name of --policy.", hidden=True)] = None,
     perturb: Perturb = None,
     imports: Imports = None,
     require_success: Annotated[
@@ -85,6 +85,7 @@ def run(
             steps=steps,
             strict=strict,
             policy=policy,
+            behavior=behavior,
             perturb=perturb,
             imports=imports or (),
             save=save_gif,

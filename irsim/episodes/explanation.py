@@ -48,7 +48,7 @@ def summary_message(
     env: Env,
     robots: list[RobotResult],
     hits: Sequence[Event],
-    behavior: str | None,
+    driven: str | None,
     parked: Sequence[str],
     held: dict[str, Event],
     events: Sequence[Event],
@@ -77,8 +77,7 @@ def summary_message(
         parts.append(zone)
     if sight := sights_message(events):
         parts.append(sight)
-    changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
-    return changed + "; ".join(parts)
+    return ("" if driven is None else f"with {driven} for all robots: ") + "; ".join(parts)
 
 
 def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequence[str]) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.text import clean
 from irsim.common.version import version
 from irsim.episodes.explanation import has_one_end, reason_message, summary_message
 from irsim.episodes.incidents import find_incidents
@@ -97,7 +98,9 @@ def run_result(
         policy_digest=None if policy is None else policy.digest,
         perturb=list(perturb),
         outcome=outcome,
-        summary=summary_message(env, robots, hits, behavior, parked, held, events, left, incidents, zones),
+        summary=summary_message(
+            env, robots, hits, _driven_by(behavior, policy), parked, held, events, left, incidents, zones
+        ),
         reason=None if outcome == "success" else reason_message(env, robots, hits, events, source, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
@@ -198,6 +201,13 @@ def _exits(env: Env) -> list[Left]:
         return np.vstack([simulation.state.initial_state(row)[None, :3], *past])
 
     return find_exits(env.scenario, track, int(simulation.count[0]))
+
+
+def _driven_by(behavior: str | None, policy: Policy | None) -> str | None:
+    """What drives all robots instead of their own behaviors, in words; None if nothing does."""
+    if policy is not None:
+        return f"policy {clean(policy.text or policy.name)}"
+    return None if behavior is None else f"behavior {behavior}"
 
 
 def _without_repeats(scenario: ResolvedScenario, events: Sequence[Event]) -> list[Event]:

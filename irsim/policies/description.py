@@ -11,6 +11,7 @@ from typing import Any
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import behavior_names, names_file, open_policy
+from irsim.policies.networks.network_policy import NetworkPolicy
 from irsim.policies.policy import Needs, Policy
 from irsim.policies.random import RandomPolicy
 from irsim.policies.registry import POLICIES, RANDOM
@@ -35,6 +36,7 @@ class PolicyInfo:
         decision_dt: Time between two decisions [s]; None: every step.
         options: Option → its default in words; ``required`` without one.
         digest: SHA-256 of its file; None without one.
+        facts: What a network says of itself: parts that it observes, what it returns, layers, sizes, card.
     """
 
     name: str
@@ -46,6 +48,7 @@ class PolicyInfo:
     decision_dt: float | None = None
     options: dict[str, str] = field(default_factory=dict)
     digest: str | None = None
+    facts: dict[str, Any] = field(default_factory=dict)
 
 
 def list_policies() -> list[PolicyInfo]:
@@ -110,6 +113,7 @@ def _info(name: str, kind: str, policy: Any, about: str, options: dict[str, str]
         decision_dt=policy.decision_dt if known else None,
         options=options,
         digest=policy.digest if known else None,
+        facts=policy.describe() if isinstance(policy, NetworkPolicy) else {},
     )
 
 
@@ -129,6 +133,8 @@ def _words(needs: Needs) -> list[str]:
 def _about(thing: Any) -> str:
     """The first sentence of a docstring, or what a network says about itself."""
     own = getattr(thing, "about", None)
+    if isinstance(thing, NetworkPolicy):
+        own = thing.head.card.description
     text = own if isinstance(own, str) and own else inspect.getdoc(thing if callable(thing) else type(thing)) or ""
     return " ".join(text.split("\n\n")[0].split())
 
