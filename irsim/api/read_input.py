@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -25,18 +26,19 @@ def read_input(path: str | Path | None, text: str | None, **options: Any) -> tup
         SuiteError: ``path`` is a suite, or begins with one that has no such scenario.
         Others: as ``read_scenario``.
     """
-    if path is not None and text is None and not Path(path).is_file():
+    named = Path(path) if isinstance(path, (str, os.PathLike)) and text is None else None
+    if named is not None and not named.is_file():
         from irsim.benchmarks.suite_scene import suite_scene
 
-        if (scene := suite_scene(path)) is not None:
+        if (scene := suite_scene(named)) is not None:
             return read_scenario(scene.document(), **options)
     try:
         return read_scenario(path, text=text, **options)
     except ScenarioError:
-        if path is not None and text is None:
+        if named is not None:
             from irsim.benchmarks.suite_scene import suite_scene
 
-            suite_scene(path)  # a suite is refused with a sentence of its own
+            suite_scene(named)  # a suite is refused with a sentence of its own
         raise
 
 
@@ -50,7 +52,7 @@ def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
     Raises:
         SuiteError: The suite is not valid.
     """
-    if path is None or not isinstance(policy, str) or Path(path).is_file():
+    if not isinstance(path, (str, os.PathLike)) or not isinstance(policy, str) or Path(path).is_file():
         return policy
     from irsim.benchmarks.suite_scene import suite_policy
 
