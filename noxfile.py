@@ -134,7 +134,8 @@ def run_linters(session: nox.Session) -> None:
 
 def run_slow_tests(session: nox.Session) -> None:
     """Tests marked slow, and properties with all of their examples."""
-    options = ("-m", "slow or (hypothesis and not browser)", "-n", "2", "--dist", "loadgroup", "--durations", "15")
+    chosen = "(slow or hypothesis) and not browser and not evals and not records and not onnx and not cluster"
+    options = ("-m", chosen, "-n", "2", "--dist", "loadgroup", "--durations", "15")
     timed(session, "slow tests", "pytest", *options, env={"IRSIM_TESTS": "thorough"})
 
 

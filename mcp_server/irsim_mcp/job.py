@@ -235,6 +235,20 @@ def _logged(job: dict[str, Any], progress: _Progress) -> str:
     return "null"
 
 
+def _suite_plan(job: dict[str, Any], progress: _Progress) -> str:
+    from pathlib import Path
+
+    from irsim_mcp.suites import plan_of
+
+    return plan_of(**job["arguments"], root=Path(job["workspace"])).model_dump_json()
+
+
+def _suite_scene(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim_mcp.suites import scenario_of_suite
+
+    return json.dumps({"text": scenario_of_suite(**job["arguments"])})
+
+
 def _lookup(job: dict[str, Any], progress: _Progress) -> str:
     from irsim_mcp.reference import explanation
 
@@ -257,6 +271,8 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "run_snapshot": _run_snapshot,
     "inspect": _inspect,
     "artifact": _artifact,
+    "suite_plan": _suite_plan,
+    "suite_scene": _suite_scene,
     "lookup": _lookup,
     "schema": _schema,
 }

@@ -13,7 +13,7 @@ from irsim_mcp.jobs import Jobs
 from irsim_mcp.json_answer import Found
 from irsim_mcp.limits import MAX_SEED, ServerLimits
 from irsim_mcp.sandbox import Workspace
-from irsim_mcp.suites import scenario_of_suite
+from irsim_mcp.suites import suite_of
 from irsim_mcp.worker import Progress, Workers
 
 __all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "line_of"]
@@ -91,7 +91,7 @@ class Services:
         Raises:
             ToolError: Neither or both are given, the path is refused, or the work failed.
         """
-        source = self._source(scenario_path, scenario_yaml)
+        source = await self._source(scenario_path, scenario_yaml)
         answer = await self.workers.call(task, {**source, **arguments}, seconds=seconds, progress=progress)
         return _result(answer, next(iter(source)))
 
@@ -149,26 +149,47 @@ class Services:
             return {"base_text": self._text(base, "base")}
         return {"base": self.workspace.scenario(base, "base")}
 
-    def _source(self, scenario_path: str | None, scenario_yaml: str | None) -> dict[str, str]:
+    async def _source(self, scenario_path: str | None, scenario_yaml: str | None) -> dict[str, str]:
         if bool(scenario_path) == bool(scenario_yaml):
             given = "both scenario_path and scenario_yaml are" if scenario_path else "no scenario is"
             fix = "give scenario_yaml (the YAML text) or scenario_path (a file in the workspace), and only one of them"
             raise failure("bad-argument", f"{given} given", fix=fix)
         if scenario_path:
-            text = scenario_of_suite(scenario_path, "scenario_path")
+            text = await self._suite_scene(scenario_path, "scenario_path")
             return {"path": self.workspace.scenario(scenario_path)} if text is None else {"text": text}
         assert scenario_yaml
         return {"text": self._text(scenario_yaml, "scenario_yaml")}
 
+    async def _suite_scene(self, given: str, argument: str) -> str | None:
+        """The text of ``SUITE/SCENARIO``; None if no bundled suite is named.
+
+        Raises:
+            ToolError: The suite has no such scenario.
+        """
+        if suite_of(given) is None:
+            return None
+        arguments = {"given": given, "argument": argument}
+        answer = await self.workers.read("suite_scene", arguments, seconds=self.limits.check_seconds)
+        return str(_result(answer, argument)["text"])
+
+    async def suite_plan(self, **arguments: Any) -> dict[str, Any]:
+        """The plan of a benchmark of a suite, as data; arguments as of :func:`irsim_mcp.suites.plan_of`.
+
+        Raises:
+            ToolError: A scenario is not of the suite, or a policy is not valid.
+        """
+        answer = await self.workers.read("suite_plan", arguments, seconds=self.limits.check_seconds)
+        return dict(_result(answer, "policies"))
+
     def scenario_source(self, given: str, argument: str = "scenarios") -> str:
-        """Check a scenario given as a file of the workspace, as ``SUITE/SCENARIO`` or, with a line break, as text.
+        """Check a scenario given as a file of the workspace or, with a line break, as text.
 
         Raises:
             ToolError: The path is refused, or the text too large.
         """
         if "\n" in given:
             return self._text(given, argument)
-        return scenario_of_suite(given, argument) or self.workspace.scenario(given, argument)
+        return self.workspace.scenario(given, argument)
 
     def _text(self, text: str, argument: str) -> str:
         size = len(text.encode("utf-8", "replace"))

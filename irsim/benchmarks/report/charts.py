@@ -82,7 +82,11 @@ def _distribution(ax: Axes, labels: dict[str, str], episodes: Sequence[EpisodeRo
     values = [
         [v for e in episodes if e.behavior == behavior and (v := e.metrics.get(key)) is not None] for behavior in labels
     ]
-    boxes = ax.boxplot(values, orientation="horizontal", widths=0.6, showfliers=False, patch_artist=True)
+    import matplotlib
+
+    newer = matplotlib.__version_info__ >= (3, 10)
+    sideways: dict[str, Any] = {"orientation": "horizontal"} if newer else {"vert": False}
+    boxes = ax.boxplot(values, **sideways, widths=0.6, showfliers=False, patch_artist=True)
     for place, box in enumerate(boxes["boxes"]):
         box.set_facecolor(COLORS[place % len(COLORS)])
         box.set_alpha(0.6)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import anyio
 from mcp.server.mcpserver import Context
@@ -11,7 +12,6 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean
-from irsim.diagnostics.errors import CodedError
 from irsim.results.labels import CROWDED, seeds_of
 from irsim.runs.store import RESULT
 from irsim_mcp.episodes import call_to_repeat, policy_names
@@ -28,11 +28,8 @@ from irsim_mcp.limits import (
 )
 from irsim_mcp.progress import reporter
 from irsim_mcp.services import Services, line_of
-from irsim_mcp.suites import plan_of
+from irsim_mcp.suites import suite_of
 from irsim_mcp.tool import StrictTool, strict
-
-if TYPE_CHECKING:
-    from irsim.benchmarks.plan import Plan
 
 __all__ = ["Benchmark", "answer", "tool"]
 
@@ -107,9 +104,19 @@ def tool(services: Services) -> StrictTool:
         max_steps: Annotated[int | None, Field(ge=1, le=MAX_STEPS, description="Default: the time limit.")] = None,
         wait_s: Annotated[int, Field(ge=0, le=MAX_WAIT_SECONDS)] = 45,
     ) -> Annotated[CallToolResult, Benchmark]:
-        arguments, total = await anyio.to_thread.run_sync(
-            _work, services, scenarios, policies, seeds, first_seed, perturb, max_steps
-        )
+        if any(suite_of(given) for given in scenarios):
+            arguments, total = await _suite(services, scenarios, policies, seeds, first_seed, perturb, max_steps)
+        else:
+            chosen = policies or ["as-written"]
+            _check(scenarios, chosen, seeds, first_seed)
+            arguments = {
+                "files": [services.scenario_source(item) for item in scenarios],
+                "policies": chosen,
+                "seeds": list(range(first_seed, first_seed + seeds)),
+                "perturb": perturb,
+                "steps": max_steps,
+            }
+            total = len(scenarios) * len(chosen) * seeds
         job = services.jobs.start("benchmark", arguments, total)
         try:
             state = await services.jobs.wait(job, wait_s, reporter(ctx, "episodes"))
@@ -126,7 +133,7 @@ def tool(services: Services) -> StrictTool:
     )  # fmt: skip
 
 
-def _work(
+async def _suite(
     services: Services,
     scenarios: Sequence[str],
     policies: Sequence[str] | None,
@@ -135,40 +142,20 @@ def _work(
     perturb: str | None,
     steps: int | None,
 ) -> tuple[dict[str, Any], int]:
-    """The arguments of the job, and its number of episodes."""
-    plan = _plan(services, scenarios, policies, seeds, first)
-    if plan is not None:
-        changes = {"perturb": [perturb]} if perturb else {}
-        if steps is not None:
-            what = "a suite has its own horizon"
-            raise failure("bad-argument", what, where="max_steps", fix="leave max_steps out")
-        total = len(plan.scenarios) * len(plan.policies) * seeds
-        return {"plan": plan.model_copy(update=changes).model_dump(mode="json")}, total
-    chosen = policies or ["as-written"]
-    _check(scenarios, chosen, seeds, first)
-    files = [services.scenario_source(item) for item in scenarios]
-    wanted = list(range(first, first + seeds))
-    arguments = {"files": files, "policies": chosen, "seeds": wanted, "perturb": perturb, "steps": steps}
-    return arguments, len(scenarios) * len(chosen) * seeds
-
-
-def _plan(
-    services: Services, scenarios: Sequence[str], policies: Sequence[str] | None, seeds: int, first: int
-) -> Plan | None:
-    """The plan of a suite; None for scenarios of the workspace.
+    """The arguments of the job of a suite, and its number of episodes.
 
     Raises:
-        ToolError: See :func:`irsim_mcp.suites.plan_of`; or a policy is not valid, or there are too many episodes.
+        ToolError: The suite has its own seeds and horizon; or see :func:`irsim_mcp.suites.plan_of`.
     """
-    if not scenarios or seeds < 1:
-        return None
-    try:
-        plan = plan_of(scenarios, policies, seeds, first, services.workspace.root)
-    except CodedError as error:
-        raise failure(error.code, error.message, where="policies", fix=error.fix) from None
-    if plan is not None:
-        _check_size(len(plan.scenarios), len(plan.policies), seeds)
-    return plan
+    for name, given, what in (("first_seed", first, "seeds"), ("max_steps", steps, "horizon")):
+        if given:
+            raise failure("bad-argument", f"a suite has its own {what}", where=name, fix=f"leave {name} out")
+    if not 1 <= seeds <= MAX_SEEDS:
+        raise failure("bad-argument", f"seeds must be 1 to {MAX_SEEDS}, got {seeds}", where="seeds", fix="give fewer")
+    plan = await services.suite_plan(scenarios=list(scenarios), policies=policies, seeds=seeds)
+    counts = len(plan["scenarios"]), len(plan["policies"]), seeds
+    _check_size(*counts)
+    return {"plan": plan | ({"perturb": [perturb]} if perturb else {})}, math.prod(counts)
 
 
 def _check(scenarios: Sequence[str], policies: Sequence[str], seeds: int, first: int) -> None:
