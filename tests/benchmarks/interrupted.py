@@ -13,12 +13,14 @@ import errno
 import os
 import signal
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
 phase, number, how = sys.argv[1], int(sys.argv[2]), sys.argv[3]
 sys.argv[:4] = ["irsim"]
 counts = {"run": 0, "report": -1}
+lock = threading.Lock()
 
 
 def counted(name: str) -> None:
@@ -28,11 +30,12 @@ def counted(name: str) -> None:
     def call(*words: Any, **options: Any) -> Any:
         if name in ("write", "writev") and words[0] < 3:
             return plain(*words, **options)
-        if name == "replace" and Path(words[1]).name == "results.json":
-            counts["report"] = 0
-        for each in counts:
-            counts[each] += counts[each] >= 0
-        now = counts[phase]
+        with lock:  # a recorder writes in a thread of its own
+            if name == "replace" and Path(words[1]).name == "results.json":
+                counts["report"] = 0
+            for each in counts:
+                counts[each] += counts[each] >= 0
+            now = counts[phase]
         if how == "full" and now >= number > 0 and name in ("write", "writev"):
             raise OSError(errno.ENOSPC, "No space left on device")
         if how in ("before", "half") and now == number:

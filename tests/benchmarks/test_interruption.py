@@ -55,7 +55,7 @@ policies: {dash: dash}
 """
 """Little work, for the quick tests."""
 REPORT_WRITES = 30
-"""Number of writes that there are at least from the result of SUITE to the end: replays are written in 34 or a few less."""
+"""Number of writes that there are at least from the result of SUITE to the end."""
 Moment = tuple[str, int, str]
 """Phase, number of the write, and what happens there: the arguments of ``interrupted.py``."""
 needs_kill = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs signals")
