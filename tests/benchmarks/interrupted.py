@@ -45,10 +45,11 @@ def counted(name: str) -> None:
                 data = b"".join(words[1])
                 os.write.__wrapped__(words[0], data[: len(data) // 2])  # type: ignore[attr-defined]
             os.kill(os.getpid(), signal.SIGKILL)
-        result = plain(*words, **options)
-        if how == "after" and now == number:
-            os.kill(os.getpid(), signal.SIGKILL)
-        return result
+        try:
+            return plain(*words, **options)
+        finally:  # also after a folder that exists already
+            if how == "after" and now == number:
+                os.kill(os.getpid(), signal.SIGKILL)
 
     call.__wrapped__ = plain  # type: ignore[attr-defined]
     setattr(os, name, call)
