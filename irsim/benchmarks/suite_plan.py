@@ -47,6 +47,7 @@ def suite_plan(
     found, file = (suite, Path("suite.yaml")) if isinstance(suite, Suite) else load_suite(suite)
     kept = _chosen("protocol", protocols or found.protocols, found.protocols)
     every = expand(found, file)
+    planned = dict(zip((one.name for one in every), _planned(every), strict=True))
     made = [one for one in every if one.protocol in kept]
     words = ["irsim", "benchmark", suite if isinstance(suite, str) else found.suite]
     if policies is not None:
@@ -69,12 +70,12 @@ def suite_plan(
     return Plan(
         name=found.suite,
         suite=found,
-        scenarios=_planned(made),
+        scenarios=[planned[one.name] for one in made],
         policies=texts,
         sources=sources,
         digests=digests,
         seeds=chosen,
-        suite_hash=_hash(found, every),
+        suite_hash=_hash(found, list(planned.values())),
         until=found.until,
         perturb=[perturbation_text(item) for item in perturbations],
         reproduce=shlex.join(words),
@@ -100,10 +101,10 @@ def _listed(seeds: Sequence[int]) -> str:
     return ",".join(map(str, seeds)) + ("," if len(seeds) == 1 else "")
 
 
-def _hash(suite: Suite, every: Sequence[Expanded]) -> str:
+def _hash(suite: Suite, every: Sequence[PlannedScenario]) -> str:
     """Hash of a suite: everything that it says, with the files that it names, whatever part of it is run."""
-    planned = [scenario.model_dump_json(exclude={"folder"}) for scenario in _planned(every)]
-    return short_hash("\n".join([suite.model_dump_json(), *planned]))
+    texts = [scenario.model_dump_json(exclude={"folder"}) for scenario in every]
+    return short_hash("\n".join([suite.model_dump_json(), *texts]))
 
 
 def _names(one: Expanded) -> set[str]:

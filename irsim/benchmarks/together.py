@@ -45,6 +45,8 @@ def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) 
     yield from (run_task(Task(job, seed), ways) for seed in alone)
     seeds = seeds[len(alone) :]
     if not seeds or scene is None:
+        if scene is not None:
+            scene.end(ending_time=0.0)
         return
     size = worlds_at_once(scene.simulation.objects, max(horizons.values()))
     ran: dict[int, tuple[Simulation, int, Trace]] = {}

@@ -43,11 +43,16 @@ def scenario_of_suite(given: str, argument: str) -> str:
     Raises:
         ArgumentError: The suite has no such scenario.
     """
-    suite, _, name = given.partition("/")
-    known = {scenario.name: scenario.text for scenario in _whole(suite).scenarios}
-    if name not in known:
-        raise _unknown(suite, list(known), name, argument)
-    return known[name]
+    from irsim.benchmarks.suite_files import SuiteError
+    from irsim.benchmarks.suite_scene import suite_scene
+
+    try:
+        scene = suite_scene(given)
+    except SuiteError as error:
+        raise _wrong(error.message, error.fix or "irsim suites lists them", argument) from None
+    if scene is None:
+        raise _wrong(f"{given!r} is no scenario of a suite", "irsim suites lists them", argument)
+    return scene.text
 
 
 def plan_of(scenarios: Sequence[str], policies: Sequence[str] | None, seeds: int, root: Path) -> Plan:
