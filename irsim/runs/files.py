@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -134,6 +135,8 @@ def claim(file: str | Path, text: bytes = b"") -> Claim:
         try:
             lock_file(descriptor, wait=True)
             write_all(descriptor, text)
+            now = time.time_ns()
+            os.utime(file, ns=(now, now))  # systems date files by a clock that stands still for milliseconds
         except BaseException:
             os.close(descriptor)
             raise

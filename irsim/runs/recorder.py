@@ -26,7 +26,7 @@ from irsim.runs.piece_writer import PieceWriter
 from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.pruning import prune, remove, tidy
 from irsim.runs.store import FILES, META, RESULT, SCENARIO_FILE, make_run_folder, mark_used, runs_path
-from irsim.simulation.events import read_events
+from irsim.simulation.events import Event, read_events
 from irsim.simulation.trace import sensors
 
 if TYPE_CHECKING:
@@ -245,7 +245,6 @@ class Recorder:
         self._writer.wait()
         events = read_events(self._simulation, start=self._events)
         self._events += len(events)
-        records = [event._asdict() for event in events]
         log, number = self._log, f"{self._pieces:04d}"
         if log.rows or events:
             self._pieces += 1
@@ -255,7 +254,7 @@ class Recorder:
             self._scan_rows -= log.rows
             until, pose = log.first + log.rows - 1, self._simulation.pose.copy()
             full = self._bytes - self._scan_bytes >= self._most_bytes
-            write = partial(self._write_piece, f"trace-{number}.npz", log, pose, records)
+            write = partial(self._write_piece, f"trace-{number}.npz", log, pose, events)
             if last or full:
                 write()
                 log.clear()
@@ -267,7 +266,7 @@ class Recorder:
                 self._detach()
                 self._write_meta(trace_until=until)
         elif events:
-            self._write(f"events-{number}.json", to_json(records))
+            self._write(f"events-{number}.json", to_json([event._asdict() for event in events]))
         self._due = time.monotonic() + _WRITE_PERIOD_S
 
     def _exchange_logs(self) -> None:
@@ -278,11 +277,9 @@ class Recorder:
         self._spare = self._log
         self._attach(spare)
 
-    def _write_piece(
-        self, name: str, log: core.Log, pose: NDArray[np.float64], records: Sequence[Mapping[str, Any]]
-    ) -> None:
+    def _write_piece(self, name: str, log: core.Log, pose: NDArray[np.float64], events: Sequence[Event]) -> None:
         """Write a piece, and delete older runs from time to time."""
-        self._write(name, *pack_chunk(log, self._movers, pose, records))
+        self._write(name, *pack_chunk(log, self._movers, pose, [event._asdict() for event in events]))
         if self._runs is not None and self._bytes - self._pruned_at > _PRUNING_INTERVAL_BYTES:
             self._pruned_at = self._bytes
             prune(Path(self._runs), keep=self.run_id)

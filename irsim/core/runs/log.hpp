@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <vector>
 
 #include "geometry/vec.hpp"
@@ -12,21 +13,36 @@ namespace irsim {
 
 struct State;
 
+/// Allocates numbers without setting them to zero, because each is written as soon as a vector has made room for it.
+template <class T>
+struct Unset : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = Unset<U>;
+  };
+  using std::allocator<T>::allocator;
+  template <class U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+};
+
 /// Numbers that can grow while NumPy arrays view them; the viewed numbers do not change.
 template <class T>
 struct Column {
-  std::shared_ptr<std::vector<T>> numbers = std::make_shared<std::vector<T>>();
+  using Numbers = std::vector<T, Unset<T>>;
+  std::shared_ptr<Numbers> numbers = std::make_shared<Numbers>();
 
   /// Add `count` numbers at the end and return where to write them.
   T* add(std::size_t count) {
-    if (numbers.use_count() > 1) numbers = std::make_shared<std::vector<T>>(*numbers);
+    if (numbers.use_count() > 1) numbers = std::make_shared<Numbers>(*numbers);
     numbers->resize(numbers->size() + count);
     return numbers->data() + numbers->size() - count;
   }
   /// Remove the numbers that were added last; nothing may view them.
   void remove(std::size_t count) { numbers->resize(numbers->size() - count); }
   void clear() {
-    if (numbers.use_count() > 1) numbers = std::make_shared<std::vector<T>>();
+    if (numbers.use_count() > 1) numbers = std::make_shared<Numbers>();
     numbers->clear();
   }
   std::size_t size() const { return numbers->size(); }
