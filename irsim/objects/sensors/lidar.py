@@ -25,7 +25,10 @@ MISS_MARGIN = 0.02
 _HIGHLIGHT = "#56B4E9"
 """Colour of beams picked out by ``set_laser_color``."""
 
-
+_VELOCITY_COLORS = frozenset(
+    {"zero_velocity_color", "positive_velocity_color", "negative_velocity_color", "no_hit_color"}
+)
+"""Drawing options of an FMCW lidar that are read as arrays."""
 _FIXED = frozenset(
     {
         "parent",
@@ -312,7 +315,9 @@ class Lidar2D:
 class FMCWLidar2D(Lidar2D):
     """A lidar that also measures the radial velocity of each hit.
 
-    The drawing options of the scenario (``velocity_color``, ``velocity_color_max``, …) are attributes, too.
+    The drawing options of the scenario (``velocity_color``, ``velocity_linewidth``, …) are attributes, too; a write
+    shows in the next frame. Colours are read as arrays of red, green and blue, (3,) from 0 to 1, and may be set in any
+    form that Matplotlib knows; ``velocity_marker_edge_color`` stays as it is written.
 
     Attributes:
         motion_compensate: Whether the motion of the carrier is subtracted from the radial velocities.
@@ -331,6 +336,10 @@ class FMCWLidar2D(Lidar2D):
 
     def __getattr__(self, name: str) -> Any:
         drawing = self.__dict__.get("drawing", {})
+        if name in _VELOCITY_COLORS and name in drawing:
+            from matplotlib.colors import to_rgb
+
+            return np.array(to_rgb(drawing[name]))
         if name in drawing:
             return drawing[name]
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
@@ -338,9 +347,19 @@ class FMCWLidar2D(Lidar2D):
     def __setattr__(self, name: str, value: Any) -> None:
         drawing = self.__dict__.get("drawing", {})
         if name in drawing:
-            drawing[name] = value
+            drawing[name] = self._drawable(name, value)
         else:
             super().__setattr__(name, value)
+
+    def _drawable(self, name: str, value: Any) -> Any:
+        """Return a drawing option that is to be written, after a check.
+
+        Raises:
+            ValueError: The value is not valid.
+        """
+        plain = tuple(value.tolist()) if isinstance(value, np.ndarray) else value
+        sensor_options(self.options, f"the {self.sensor_type} of {self.parent.name!r}", **{name: plain})
+        return plain
 
     @property
     def radial_velocity(self) -> Floats:
