@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -41,6 +41,8 @@ MODES = ("dynamic", "static", "all")
 
 _FOG_ZORDER = 2
 _GRID_ZORDER = 0.0
+WAITING_ALPHA = 0.4
+"""Factor of the opacity of an object until its ``start_time``."""
 MIN_ARROW_SPEED = 1e-9
 """Speed [m/s] up to which the arrow of an ``omni`` drive shows the heading of the body."""
 
@@ -190,6 +192,8 @@ class SceneBuilder:
             scene.grids.append(self._grid(view))
             return
         style = self.style(view, overrides)
+        if self.simulation.waits(view.row):
+            style = replace(style, obj_alpha=WAITING_ALPHA * style.obj_alpha)
         heading = self._heading(view, pose) if style.show_arrow else pose[2]
         body = self.body(view)
         key = (style, body, pose, str(goal), heading, view.text, view.goal_text, view.description)

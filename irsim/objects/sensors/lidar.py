@@ -77,6 +77,7 @@ class Lidar2D:
     obj_id: int
     sensor_type: str
     number: int
+    endpoint: bool
     range_min: float
     range_max: float
     angle_range: float
@@ -100,6 +101,7 @@ class Lidar2D:
     _velocities: Floats
     _settings: ClassVar[tuple[str, ...]] = (
         "number",
+        "endpoint",
         "range_min",
         "range_max",
         "angle_range",
@@ -146,7 +148,8 @@ class Lidar2D:
         own["offset"] = column(options.offset)
         own["has_velocity"] = bool(options.has_velocity) and len(self._velocities) == 2
         own["angle_min"], own["angle_max"] = float(angles[0]), float(angles[-1])
-        own["angle_inc"] = self.angle_range / (number - 1) if number > 1 else 0.0
+        spaces = number - 1 if self.endpoint else number
+        own["angle_inc"] = self.angle_range / spaces if number > 1 else 0.0
         own["time_inc"] = 0.0
         self._fixed = {
             "angle_min": self.angle_min,

@@ -67,6 +67,9 @@ def resolve(
                 placements.append(placement)
         if objects:
             first_group = max(record.group for record in objects) + 1
+    for placement in placements:
+        for name, radius in placement.clear_of:
+            placement.kept += [(record.id, radius) for record in objects if name in (record.name, record.group_name)]
     if grid is not None and grid.occupied != 0:
         objects.append(_scenery(scenario.world, len(objects), MapCells(grid), f"obstacle_{len(objects)}"))
     if scenario.world.boundary == "walls":
@@ -163,6 +166,7 @@ class _Maker:
             path=self.path,
             distribution=options.name,
             options=drawn.kernel,
+            clear_of=drawn.clear_of,
         )
 
     def _is_random(self) -> bool:
@@ -235,6 +239,7 @@ class _Maker:
             drive_tau=self._tau(kinematics),
             tags=tuple(value["tags"]),
             watches=entry.fov is not None,
+            start_time=value["start_time"],
         )
 
     def _tau(self, kinematics: KinematicsOptions | None) -> float:
@@ -274,6 +279,7 @@ SPREAD_KEYS = (
     "state",
     "goal",
     "waypoints",
+    "start_time",
     "velocity",
     "kinematics",
     "shape",
