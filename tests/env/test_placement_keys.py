@@ -149,3 +149,19 @@ def test_a_scene_without_room_says_which_keys_to_lower(make: Make) -> None:
     text = CLUTTER.replace("{point: [5, 5], radius: 1.5}", "{point: [5, 5], radius: 12}")
     with pytest.raises(ScenarioError, match="must hold keep_clear"):
         make(text, seed=1)
+
+
+def test_a_name_means_the_object_and_not_the_group_of_the_same_name(make: Make) -> None:
+    env = make(
+        """
+world: {width: 10, height: 10}
+robot: {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [[1, 1], [5, 5]],
+  goal: [[2, 1], [6, 5]], behavior: {name: dash}}
+obstacle: {number: 30, shape: {name: circle, radius: 0.2},
+  distribution: {name: random, min_distance: 0.5, keep_clear: [{object: robot_0, radius: 2}]}}
+""",
+        seed=2,
+    )
+    places = np.array([view.state[:2, 0] for view in env.obstacle_list])
+    assert np.linalg.norm(places - [1, 1], axis=1).min() >= 2.4 - 1e-9
+    assert np.linalg.norm(places - [5, 5], axis=1).min() < 2.0, "robot_1 is of the group robot_0"

@@ -12,6 +12,7 @@ from irsim.options.vectors import is_vector
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.scenario import Entry
+from irsim.scenario.resolve.expand import named
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _PLANE = 2
@@ -74,7 +75,7 @@ def _keep_clear(context: Context, path: Path, options: Any) -> Iterator[Finding]
 
 
 def _kept_object(context: Context, path: Path, name: str, later: set[int]) -> Iterator[Finding]:
-    records = [record for record in context.entry_objects if name in (record.name, record.group_name)]
+    records = named(context.entry_objects, name)
     if not records:
         known = {word: None for record in context.entry_objects for word in (record.name, record.group_name)}
         near = nearest(name, known)

@@ -19,7 +19,7 @@ from irsim.scenario.model.scenario import Entry, Scenario, WorldModel
 from irsim.scenario.resolve.per_object import kind_of, spread
 from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario
 
-__all__ = ["SPREAD_KEYS", "resolve"]
+__all__ = ["SPREAD_KEYS", "named", "resolve"]
 
 Role = Literal["robot", "obstacle"]
 DEFAULT_STATE = [1.0, 1.0, 0.0]
@@ -69,7 +69,7 @@ def resolve(
             first_group = max(record.group for record in objects) + 1
     for placement in placements:
         for name, radius in placement.clear_of:
-            placement.kept += [(record.id, radius) for record in objects if name in (record.name, record.group_name)]
+            placement.kept += [(record.id, radius) for record in named(objects, name)]
     if grid is not None and grid.occupied != 0:
         objects.append(_scenery(scenario.world, len(objects), MapCells(grid), f"obstacle_{len(objects)}"))
     if scenario.world.boundary == "walls":
@@ -86,6 +86,12 @@ def resolve(
         text=text,
         grid=grid,
     )
+
+
+def named(objects: Sequence[ObjectRecord], name: str) -> list[ObjectRecord]:
+    """The object of that name or, if there is none, the members of the group of that name."""
+    own = [record for record in objects if record.name == name]
+    return own or [record for record in objects if record.group_name == name]
 
 
 def _scenery(world: WorldModel, object_id: int, shape: MapCells | Walls, name: str) -> ObjectRecord:
