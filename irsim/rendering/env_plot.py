@@ -220,7 +220,11 @@ class EnvPlot(PlotSteps, ScriptDrawings):
 
     def _show(self, figure: SceneFigure) -> None:
         with self.as_shown():
-            figure.show(self.scene(), self._title())
+            scene, tracks = self._builder.frame(
+                status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
+            )
+            shown = [track for track in tracks if track.object not in self._hidden]
+            figure.show(self._completed(scene), self._title(), shown)
             if self.env.simulation.measurements:
                 objects = views(self.env.simulation)
                 shown = [view for view in objects if self._builder.style(view, {}).show_sensor]
@@ -246,6 +250,9 @@ class EnvPlot(PlotSteps, ScriptDrawings):
         scene = self._builder.build(
             status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
         )
+        return self._completed(scene)
+
+    def _completed(self, scene: Scene) -> Scene:
         if self._region is not None:
             scene.look_at(self._region)
         if self._options.show_zones:

@@ -1,8 +1,9 @@
 """Draws a figure into pixels, fast.
 
 The axes and the layers that no longer change are drawn once and kept as a background; the other layers are drawn over a
-copy of it. The drawing order is Matplotlib's (by zorder), so a frame looks as ``figure.canvas.draw()`` would draw it.
-For that reason only layers below the lowest changing one can be part of the background.
+copy of it. Tracks, which only grow, are part of the background too: where they have grown, it is put together again
+from its sheets. The drawing order is Matplotlib's (by zorder), so a frame looks as ``figure.canvas.draw()`` would draw
+it. For that reason only layers below the lowest changing one can be part of the background.
 
 "Furniture" is what surrounds the scene: the paper, both axes with ticks and labels.
 """
@@ -21,7 +22,9 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from irsim.graphics.encoding.pixels import Pixels
+from irsim.graphics.figure.background import Background, Resting, Sheet, TrackLayer
 from irsim.graphics.figure.glyphs import QuickText
+from irsim.graphics.figure.tracks import Canvas
 
 __all__ = ["Compositor"]
 
@@ -47,15 +50,15 @@ class Compositor:
         self._furniture: Any = None
         self._furniture_key: tuple[Any, ...] | None = None
         self._furniture_box: Bbox | None = None
-        self._base: Any = None
-        self._base_key: tuple[Any, ...] | None = None
+        self._background = Background()
 
-    def draw(self, versions: Mapping[Artist, tuple[int, int]]) -> None:
+    def draw(self, versions: Mapping[Artist, tuple[int, int]], tracks: Mapping[Artist, TrackLayer]) -> None:
         """Draw everything into the canvas.
 
         Args:
             versions: Artist -> (version, number of scenes without a change). Artists that are not listed are drawn in
                 every frame.
+            tracks: Artist -> layer of the artists that only grow.
         """
         canvas = self._canvas()
         if len(self.figure.axes) != 1 or self.figure.texts or self.figure.artists or self.figure.legends:
@@ -67,25 +70,24 @@ class Compositor:
         artists = [a for a in self.ax.get_children() if a not in furniture and a.get_visible()]
         artists.sort(key=lambda artist: artist.get_zorder())
         self._draw_furniture(canvas)
-        resting = []
+        renderer = canvas.get_renderer()
+        sheets: list[Sheet] = []
+        drawn = 0
         for artist in artists:
             version, resting_scenes = versions.get(artist, (0, 0))
-            if resting_scenes < MIN_RESTING_SCENES:
+            if (layer := tracks.get(artist)) is not None and layer.growing:
+                sheets.append(layer)
+            elif resting_scenes >= MIN_RESTING_SCENES:
+                if not sheets or not isinstance(sheets[-1], Resting):
+                    sheets.append(Resting())
+                sheets[-1].add(artist, version)
+            else:
                 break
-            resting.append((artist, version))
-        key = tuple((id(artist), version) for artist, version in resting)
-        renderer = canvas.get_renderer()
-        if not resting:
-            self._base = None
-            canvas.restore_region(self._furniture)
-        elif self._base is None or key != self._base_key:
-            canvas.restore_region(self._furniture)
-            for artist, _ in resting:
-                artist.draw(renderer)
-            self._base, self._base_key = canvas.copy_from_bbox(self.figure.bbox), key
-        else:
-            canvas.restore_region(self._base)
-        for artist in artists[len(resting) :]:
+            drawn += 1
+        np.asarray(renderer.buffer_rgba())[...] = self._background.update(
+            self._furniture, sheets, Canvas(self.ax, self.size)
+        )
+        for artist in artists[drawn:]:
             artist.draw(renderer)
 
     def draw_without_cache(self) -> None:
@@ -119,10 +121,9 @@ class Compositor:
         figure.patch.draw(renderer)
         for part in parts:
             part.draw(renderer)
-        self._furniture, self._furniture_key = canvas.copy_from_bbox(figure.bbox), key
+        self._furniture, self._furniture_key = np.array(renderer.buffer_rgba()), key
         boxes = [part.get_tightbbox(renderer) for part in parts[1:]]
         self._furniture_box = Bbox.union([ax.bbox, *[box for box in boxes if box is not None]])
-        self._base = None
         for label in labels:
             label.stale = False
 

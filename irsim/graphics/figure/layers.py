@@ -20,11 +20,11 @@ from irsim.graphics.scene.scene import Beams, Circle, Dots, Fog, Geometry, Line,
 
 __all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "rgba"]
 
-_PARTS = ("field", "zone", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
+PARTS = ("field", "zone", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
 """Drawing order of the parts that have the same zorder."""
 
-_ZORDER_STEP = 1e-3
-"""Added to the zorder per rank in `_PARTS`.
+ZORDER_STEP = 1e-3
+"""Added to the zorder per rank in `PARTS`.
 
 Matplotlib draws artists of equal zorder in the order in which they were added, which is not the order of the parts.
 """
@@ -36,7 +36,7 @@ _TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
 
 def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, ...]:
     """Return the key of the layer that a mark belongs to; keys sort in drawing order."""
-    return float(zorder), _PARTS.index(part), round_caps
+    return float(zorder), PARTS.index(part), round_caps
 
 
 class MarkLayer:
@@ -48,10 +48,11 @@ class MarkLayer:
         resting_scenes: Number of consecutive scenes without a change.
     """
 
-    def __init__(self, ax: Axes, key: tuple[Any, ...]) -> None:
+    def __init__(self, ax: Axes, key: tuple[Any, ...], artist: type[PathCollection] = PathCollection) -> None:
+        self.key = key
         caps, joins = ("round", "round") if key[2] else ("butt", "miter")
-        joins = "round" if key[1] == _PARTS.index("trajectory") else joins
-        self.artist = PathCollection([], capstyle=caps, joinstyle=joins, zorder=key[0] + _ZORDER_STEP * key[1])
+        joins = "round" if key[1] == PARTS.index("trajectory") else joins
+        self.artist: Any = artist([], capstyle=caps, joinstyle=joins, zorder=key[0] + ZORDER_STEP * key[1])
         ax.add_collection(self.artist, autolim=False)
         self.version = self.resting_scenes = 0
         self._marks: list[Mark] = []
@@ -90,7 +91,7 @@ class BeamLayer:
 
     def __init__(self, ax: Axes, zorder: float) -> None:
         self._ax = ax
-        self.artist = _Spokes(zorder + _ZORDER_STEP * _PARTS.index("beams"))
+        self.artist = _Spokes(zorder + ZORDER_STEP * PARTS.index("beams"))
         ax.add_collection(self.artist, autolim=False)
         self._dots: PathCollection | None = None
 
