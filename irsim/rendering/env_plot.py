@@ -304,8 +304,14 @@ class EnvPlot(PlotSteps, ScriptDrawings):
         """Show the present state in the window for ``interval`` seconds; without a window return at once."""
         if not self._display:
             return
-        figure = self.synced_figure()
+        if self._figure is None:
+            from irsim.graphics.figure import window
+
+            if not window.has_screen():
+                return
+            self.made_figure()
         if self._window is not None and self._window.open:
+            figure = self.synced_figure()
             with self.as_shown():
                 figure.draw()
             self._window.refresh(interval)

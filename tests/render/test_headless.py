@@ -73,6 +73,7 @@ def test_a_window_shows_each_frame(make: Any, monkeypatch: pytest.MonkeyPatch) -
         return opened[-1]
 
     monkeypatch.setattr(window, "open_window", open_window)
+    monkeypatch.setattr(window, "has_screen", lambda: True)
     env = make(SCENARIO, display=True)
     for _ in range(3):
         env.step()

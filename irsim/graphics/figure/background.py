@@ -90,7 +90,7 @@ class Background:
             self._pixels = furniture.copy()
             boxes = [(0, 0, canvas.width, canvas.height)]
         self._furniture, self._sheets, self._key = furniture, list(sheets), canvas.key
-        for box in boxes:
+        for box in _merged(boxes):
             left, top, right, bottom = box
             patch = furniture[top:bottom, left:right, :3].astype(np.float32)
             for sheet in sheets:
@@ -102,3 +102,19 @@ class Background:
 
 def _identity(sheet: Sheet) -> Any:
     return sheet.key if isinstance(sheet, Resting) else id(sheet)
+
+
+def _merged(boxes: Sequence[Box]) -> list[Box]:
+    """Replace boxes that overlap by one around both."""
+    merged: list[Box] = []
+    for box in boxes:
+        left, top, right, bottom = box
+        apart = []
+        for other in merged:
+            if other[0] < right and left < other[2] and other[1] < bottom and top < other[3]:
+                left, top = min(left, other[0]), min(top, other[1])
+                right, bottom = max(right, other[2]), max(bottom, other[3])
+            else:
+                apart.append(other)
+        merged = [*apart, (left, top, right, bottom)]
+    return merged

@@ -32,6 +32,8 @@ _MARGIN_PX = 2
 """Margin around what is drawn, for antialiased edges."""
 _OVERLAP = 2
 """Number of segments of a line that are drawn again with its new ones, so that no joint shows."""
+_ALIGNED_PX = 1e-4
+"""Deviation up to which Agg takes a segment for horizontal or vertical."""
 MAX_MASKS = 200
 """Lines of more objects are drawn anew in every frame, because their masks would take too much memory."""
 _POINTS_PER_INCH = 72.0
@@ -63,6 +65,10 @@ class Canvas:
             max(0, min(self.width, math.ceil(right + margin))),
             max(0, min(self.height, math.ceil(self.height - bottom + margin))),
         )
+
+    def pixels(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Convert points (N, 2) of the world to pixels from the lower left corner."""
+        return np.asarray(points @ self.matrix[:2, :2].T + self.matrix[:2, 2])
 
     def renderer(self) -> Any:
         """Return a transparent canvas of the same size."""
@@ -135,8 +141,8 @@ class LineLayer:
         left, top, right, bottom = box
         for line in self._tracks:
             mask = self._masks[line]
-            if mask.meets(box):
-                _over(patch, mask.color, mask.coverage[top:bottom, left:right] * np.float32(mask.alpha / _OPAQUE))
+            if mask.meets(box) and (covered := mask.coverage[top:bottom, left:right]).any():
+                _over(patch, mask.color, covered * np.float32(mask.alpha / _OPAQUE))
 
 
 class _Mask:
@@ -152,6 +158,7 @@ class _Mask:
         self.coverage: NDArray[np.uint8] = np.zeros((canvas.height, canvas.width), np.uint8)
         self.color: NDArray[np.float32] = np.array(color[:3], np.float32) * np.float32(_OPAQUE)
         self.alpha = color[3]
+        self._aligned = True  # Agg draws lines along the axes of the picture at whole pixels
         self._box: Box | None = None
 
     def meets(self, box: Box) -> bool:
@@ -167,20 +174,27 @@ class _Mask:
         self.count = line.count
         if at_rest or len(points) < 2:  # noqa: PLR2004 (two ends)
             return []
-        pixels = points @ canvas.matrix[:2, :2].T + canvas.matrix[:2, 2]
+        pixels = canvas.pixels(points)
+        boxes = []
+        if self._aligned and not _is_aligned(pixels):
+            self._aligned = False
+            if start > 0 and self._box is not None:
+                boxes, self._box = [self._box], None
+                self.coverage = np.zeros_like(self.coverage)
+                pixels = canvas.pixels(line.points)
         stroke = line.stroke
         width = stroke.width * (scale if stroke.metric else 1.0)
         reach = width / 2 * canvas.dpi / _POINTS_PER_INCH + _MARGIN_PX
         (x0, y0), (x1, y1) = pixels.min(axis=0).tolist(), pixels.max(axis=0).tolist()
         box = _common(canvas.within(x0, y0, x1, y1, reach), canvas.box)
         if box is None:
-            return []
+            return boxes
         context = scratch.new_gc()
         context.set_foreground((1.0, 1.0, 1.0, 1.0), isRGBA=True)
         context.set_linewidth(width)
         context.set_capstyle("round" if round_caps else "butt")
         context.set_joinstyle("round")
-        context.set_snap(False)
+        context.set_snap(None if self._aligned else False)
         context.set_clip_rectangle(canvas.clip)
         scratch.draw_path(context, Path(pixels), IdentityTransform())
         context.restore()
@@ -191,7 +205,7 @@ class _Mask:
         drawn[...] = 0
         own = self._box or box
         self._box = min(own[0], left), min(own[1], top), max(own[2], right), max(own[3], bottom)
-        return [box]
+        return [*boxes, box]
 
 
 class TrailLayer:
@@ -302,10 +316,15 @@ def _in_order_of_time(trails: Sequence[GrowingTrail], drawn: Mapping[GrowingTrai
 
 def _mark_box(mark: Mark, canvas: Canvas) -> Box | None:
     x0, y0, x1, y1 = bounds(mark.geometry)
-    corners = np.array([(x0, y0), (x1, y1)]) @ canvas.matrix[:2, :2].T + canvas.matrix[:2, 2]
+    corners = canvas.pixels(np.array([(x0, y0), (x1, y1)]))
     margin = mark.stroke.width * canvas.dpi / _POINTS_PER_INCH + _MARGIN_PX
     (left, bottom), (right, top) = corners.tolist()
     return _common(canvas.within(left, bottom, right, top, margin), canvas.box)
+
+
+def _is_aligned(pixels: NDArray[np.float64]) -> bool:
+    """Whether each segment of a line (N, 2) runs along an axis of the picture."""
+    return bool((np.abs(np.diff(pixels, axis=0)) < _ALIGNED_PX).any(axis=1).all())
 
 
 def _common(box: Box, other: Box) -> Box | None:
@@ -320,7 +339,8 @@ def lay_over(patch: NDArray[np.float32], image: NDArray[np.uint8], box: Box) -> 
     """Lay a part of a transparent image (H, W, 4) over a patch (h, w, 3)."""
     left, top, right, bottom = box
     part = image[top:bottom, left:right]
-    _over(patch, part[..., :3].astype(np.float32), part[..., 3] * np.float32(1 / _OPAQUE))
+    if part[..., 3].any():
+        _over(patch, part[..., :3].astype(np.float32), part[..., 3] * np.float32(1 / _OPAQUE))
 
 
 def _over(patch: NDArray[np.float32], color: NDArray[np.float32], alpha: NDArray[np.float32]) -> None:
