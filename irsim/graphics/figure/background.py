@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.artist import Artist
 from numpy.typing import NDArray
 
-from irsim.graphics.figure.tracks import Box, Canvas, LineLayer, TrailLayer, lay_over
+from irsim.graphics.encoding.pixels import changed_box
+from irsim.graphics.figure.tracks import Box, Canvas, LineLayer, TrailLayer, around, common, lay_over, part_of
 
 __all__ = ["Background", "Resting", "Sheet", "TrackLayer"]
 
@@ -22,6 +23,7 @@ class Resting:
     def __init__(self) -> None:
         self._artists: list[tuple[Artist, int]] = []
         self._image: NDArray[np.uint8] | None = None
+        self._box: Box | None = None
 
     def add(self, artist: Artist, version: int) -> None:
         """Put an artist on top of the sheet."""
@@ -34,7 +36,7 @@ class Resting:
 
     def keep(self, earlier: Resting) -> None:
         """Take over the pixels of a sheet with the same key."""
-        self._image = earlier._image
+        self._image, self._box = earlier._image, earlier._box
 
     def update(self, canvas: Canvas) -> list[Box]:
         """Draw the artists if that has not been done; see :meth:`irsim.graphics.figure.tracks.TrailLayer.update`."""
@@ -44,12 +46,20 @@ class Resting:
         for artist, _ in self._artists:
             artist.draw(renderer)
         self._image = np.asarray(renderer.buffer_rgba())
-        return [(0, 0, canvas.width, canvas.height)]
+        opaque = self._image[..., 3] > 0
+        self._box = changed_box(opaque) if opaque.any() else None
+        return self.boxes
+
+    @property
+    def boxes(self) -> list[Box]:
+        """Boxes outside of which the sheet is empty."""
+        return [] if self._box is None else [self._box]
 
     def blend(self, patch: NDArray[np.float32], box: Box) -> None:
         """Lay the sheet over a patch (h, w, 3) of a picture."""
         assert self._image is not None
-        lay_over(patch, self._image, box)
+        if self._box is not None and (shared := common(self._box, box)) is not None:
+            lay_over(part_of(patch, box, shared), self._image, shared)
 
 
 Sheet = Resting | LineLayer | TrailLayer
@@ -88,7 +98,7 @@ class Background:
         boxes = [box for sheet in sheets for box in sheet.update(canvas)]
         if not same or self._pixels is None:
             self._pixels = furniture.copy()
-            boxes = [(0, 0, canvas.width, canvas.height)]
+            boxes = [box for sheet in sheets for box in sheet.boxes]
         self._furniture, self._sheets, self._key = furniture, list(sheets), canvas.key
         for box in _merged(boxes):
             left, top, right, bottom = box
@@ -112,8 +122,7 @@ def _merged(boxes: Sequence[Box]) -> list[Box]:
         apart = []
         for other in merged:
             if other[0] < right and left < other[2] and other[1] < bottom and top < other[3]:
-                left, top = min(left, other[0]), min(top, other[1])
-                right, bottom = max(right, other[2]), max(bottom, other[3])
+                left, top, right, bottom = around([other, (left, top, right, bottom)]) or other
             else:
                 apart.append(other)
         merged = [*apart, (left, top, right, bottom)]

@@ -14,6 +14,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import matplotlib
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -43,7 +44,24 @@ class Compositor:
     def __init__(self, figure: Figure, ax: Axes) -> None:
         self.figure = figure
         self.ax = ax
+        self._new: tuple[Any, tuple[Any, ...], Bbox] | None = None
+        self._options: dict[str, Any] = {}
         self.forget()
+
+    def settle(self) -> None:
+        """Note that the axes are as a new figure has them; the first furniture of such axes serves again."""
+        options = dict(dict.items(matplotlib.rcParams))
+        if options != self._options:
+            self._new, self._options = None, options
+        if self._new is not None:
+            self._furniture, self._furniture_key, self._furniture_box = self._new
+        for part in self._parts():
+            part.stale = False
+
+    def _parts(self) -> tuple[Artist, ...]:
+        """Return the artists that make up the furniture; a change by a script makes one of them stale."""
+        ax = self.ax
+        return (ax.xaxis.label, ax.yaxis.label, ax.xaxis, ax.yaxis, ax.patch, self.figure.patch)
 
     def forget(self) -> None:
         """Drop the kept background: the next frame is drawn from scratch."""
@@ -113,8 +131,8 @@ class Compositor:
             ax.axison,
         )
         parts = (ax.patch, ax.xaxis, ax.yaxis) if ax.axison else ()
-        labels = (ax.xaxis.label, ax.yaxis.label, ax.xaxis, ax.yaxis, ax.patch, figure.patch)
-        if self._furniture is not None and key == self._furniture_key and not any(a.stale for a in labels):
+        is_changed = any(part.stale for part in self._parts())
+        if self._furniture is not None and key == self._furniture_key and not is_changed:
             return
         renderer = canvas.get_renderer()
         renderer.clear()
@@ -124,8 +142,10 @@ class Compositor:
         self._furniture, self._furniture_key = np.array(renderer.buffer_rgba()), key
         boxes = [part.get_tightbbox(renderer) for part in parts[1:]]
         self._furniture_box = Bbox.union([ax.bbox, *[box for box in boxes if box is not None]])
-        for label in labels:
-            label.stale = False
+        if not is_changed and self._new is None:
+            self._new = self._furniture, key, self._furniture_box
+        for part in self._parts():
+            part.stale = False
 
     def tight_box(self, pad_inches: float) -> tuple[int, int, int, int]:
         """Return the padded bounding box (left, top, right, bottom) [px] of the drawing, clipped to the figure.

@@ -116,6 +116,7 @@ class SceneFigure:
             ax.set_axis_off()
         self._title_artist = self._quick_title()
         self.compositor.forget()
+        self._settled = False
 
     def _quick_title(self) -> Text:
         """Replace the title of the axes by a QuickText at the same place."""
@@ -150,15 +151,13 @@ class SceneFigure:
         if fit_title:
             self._fit_title()
         scale = self._points_per_metre()
-        if track_layers(self.ax, self._tracks, tracks, scale):
-            self.compositor.forget()
+        track_layers(self.ax, self._tracks, tracks, scale)
         groups: dict[tuple[Any, ...], list[Any]] = {key: [] for key in self._marks}
         for mark in scene.marks:
             groups.setdefault(layer_key(mark.part, mark.zorder, mark.stroke.round_caps), []).append(mark)
         for key, marks in groups.items():
             if key not in self._marks:
                 self._marks[key] = MarkLayer(self.ax, key)
-                self.compositor.forget()
             self._marks[key].show(marks, scale)
         for shown, beam_layer in self._beams.items():
             if not any(shown == (beams.object, beams.sensor) for beams in scene.beams):
@@ -174,6 +173,9 @@ class SceneFigure:
         self._show_grids(scene.grids)
         self._show_pictures(scene.pictures)
         self._show_labels(scene)
+        if not self._settled:
+            self._settled = True
+            self.compositor.settle()
 
     def draw(self) -> None:
         """Draw the artists into the canvas."""
@@ -254,7 +256,6 @@ class SceneFigure:
         for grid in grids:
             if grid.object not in self._grids:
                 self._grids[grid.object] = GridLayer(self.ax, grid.zorder)
-                self.compositor.forget()
             self._grids[grid.object].show(grid)
 
     def _show_pictures(self, pictures: Sequence[Picture]) -> None:

@@ -24,7 +24,7 @@ from irsim.graphics.scene.bodies import bounds
 from irsim.graphics.scene.scene import Mark
 from irsim.graphics.scene.tracks import GrowingLine, GrowingTrail, Track
 
-__all__ = ["Box", "Canvas", "LineLayer", "TrailLayer", "lay_over", "track_layers"]
+__all__ = ["Box", "Canvas", "LineLayer", "TrailLayer", "around", "common", "lay_over", "part_of", "track_layers"]
 
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom of a part of a canvas [px], top row first."""
@@ -138,11 +138,19 @@ class LineLayer:
 
     def blend(self, patch: NDArray[np.float32], box: Box) -> None:
         """Lay the layer over a patch (h, w, 3) of a picture."""
-        left, top, right, bottom = box
         for line in self._tracks:
             mask = self._masks[line]
-            if mask.meets(box) and (covered := mask.coverage[top:bottom, left:right]).any():
-                _over(patch, mask.color, covered * np.float32(mask.alpha / _OPAQUE))
+            if mask.box is None or (shared := common(mask.box, box)) is None:
+                continue
+            left, top, right, bottom = shared
+            covered = mask.coverage[top:bottom, left:right]
+            if covered.any():
+                _over(part_of(patch, box, shared), mask.color, covered * np.float32(mask.alpha / _OPAQUE))
+
+    @property
+    def boxes(self) -> list[Box]:
+        """Boxes outside of which the layer is empty."""
+        return [mask.box for mask in self._masks.values() if mask.box is not None]
 
 
 class _Mask:
@@ -151,6 +159,7 @@ class _Mask:
     Attributes:
         count: Number of points drawn.
         coverage: (H, W) 0..255; memory is taken only where it is not 0.
+        box: Where it is not 0, or None.
     """
 
     def __init__(self, canvas: Canvas, color: tuple[float, float, float, float]) -> None:
@@ -159,12 +168,7 @@ class _Mask:
         self.color: NDArray[np.float32] = np.array(color[:3], np.float32) * np.float32(_OPAQUE)
         self.alpha = color[3]
         self._aligned = True  # Agg draws lines along the axes of the picture at whole pixels
-        self._box: Box | None = None
-
-    def meets(self, box: Box) -> bool:
-        """Whether the line may be seen in a box."""
-        own = self._box
-        return own is not None and own[0] < box[2] and box[0] < own[2] and own[1] < box[3] and box[1] < own[3]
+        self.box: Box | None = None
 
     def extend(self, canvas: Canvas, scratch: Any, line: GrowingLine, scale: float, round_caps: bool) -> list[Box]:
         """Draw the new points of the line; return where that was."""
@@ -178,15 +182,15 @@ class _Mask:
         boxes = []
         if self._aligned and not _is_aligned(pixels):
             self._aligned = False
-            if start > 0 and self._box is not None:
-                boxes, self._box = [self._box], None
+            if start > 0 and self.box is not None:
+                boxes, self.box = [self.box], None
                 self.coverage = np.zeros_like(self.coverage)
                 pixels = canvas.pixels(line.points)
         stroke = line.stroke
         width = stroke.width * (scale if stroke.metric else 1.0)
         reach = width / 2 * canvas.dpi / _POINTS_PER_INCH + _MARGIN_PX
         (x0, y0), (x1, y1) = pixels.min(axis=0).tolist(), pixels.max(axis=0).tolist()
-        box = _common(canvas.within(x0, y0, x1, y1, reach), canvas.box)
+        box = common(canvas.within(x0, y0, x1, y1, reach), canvas.box)
         if box is None:
             return boxes
         context = scratch.new_gc()
@@ -203,8 +207,7 @@ class _Mask:
         covered = self.coverage[top:bottom, left:right]
         np.maximum(covered, drawn, out=covered)
         drawn[...] = 0
-        own = self._box or box
-        self._box = min(own[0], left), min(own[1], top), max(own[2], right), max(own[3], bottom)
+        self.box = around([box, self.box or box])
         return [*boxes, box]
 
 
@@ -231,6 +234,7 @@ class TrailLayer:
         self._drawn: dict[GrowingTrail, int] = {}
         self._renderer: Any = None
         self._image: NDArray[np.uint8] = np.empty((0, 0, 4), np.uint8)
+        self._box: Box | None = None
 
     def show(self, tracks: Sequence[Any], points_per_metre: float) -> None:
         """Show exactly these trails."""
@@ -258,13 +262,19 @@ class TrailLayer:
             brush.show(new, self._scale)
             brush.artist.draw(self._renderer)
             brush.artist.remove()
-        if gone:
-            return [canvas.box]
-        return [box for box in (_mark_box(mark, canvas) for mark in new) if box is not None]
+        boxes = [box for box in (_mark_box(mark, canvas) for mark in new) if box is not None]
+        self._box = around([*([] if self._box is None else [self._box]), *boxes])
+        return [canvas.box] if gone else boxes
 
     def blend(self, patch: NDArray[np.float32], box: Box) -> None:
         """Lay the layer over a patch (h, w, 3) of a picture."""
-        lay_over(patch, self._image, box)
+        if self._box is not None and (shared := common(self._box, box)) is not None:
+            lay_over(part_of(patch, box, shared), self._image, shared)
+
+    @property
+    def boxes(self) -> list[Box]:
+        """Boxes outside of which the layer is empty."""
+        return [] if self._box is None else [self._box]
 
 
 class _TrackArtist(PathCollection):
@@ -280,7 +290,7 @@ class _TrackArtist(PathCollection):
 
 def track_layers(
     ax: Axes, known: dict[tuple[Any, ...], LineLayer | TrailLayer], tracks: Sequence[Track], points_per_metre: float
-) -> bool:
+) -> None:
     """Distribute tracks to layers, which are made when they are needed.
 
     Args:
@@ -288,20 +298,15 @@ def track_layers(
         known: The layers, by zorder, part and ends of lines; new ones are added.
         tracks: All tracks that are shown.
         points_per_metre: Scale of the view, for line widths given in metres.
-
-    Returns:
-        Whether a layer has been added.
     """
     groups: dict[tuple[Any, ...], list[Track]] = {key: [] for key in known}
     for track in tracks:
         caps = isinstance(track, GrowingLine) and track.stroke.round_caps
         groups.setdefault((float(track.zorder), track.part, caps), []).append(track)
-    count = len(known)
     for key, members in groups.items():
         if key not in known:
             known[key] = LineLayer(ax, key[0], key[2]) if key[1] == "trajectory" else TrailLayer(ax, key[0])
         known[key].show(members, points_per_metre)
-    return len(known) > count
 
 
 def _in_order_of_time(trails: Sequence[GrowingTrail], drawn: Mapping[GrowingTrail, int]) -> list[Mark]:
@@ -319,7 +324,7 @@ def _mark_box(mark: Mark, canvas: Canvas) -> Box | None:
     corners = canvas.pixels(np.array([(x0, y0), (x1, y1)]))
     margin = mark.stroke.width * canvas.dpi / _POINTS_PER_INCH + _MARGIN_PX
     (left, bottom), (right, top) = corners.tolist()
-    return _common(canvas.within(left, bottom, right, top, margin), canvas.box)
+    return common(canvas.within(left, bottom, right, top, margin), canvas.box)
 
 
 def _is_aligned(pixels: NDArray[np.float64]) -> bool:
@@ -327,7 +332,21 @@ def _is_aligned(pixels: NDArray[np.float64]) -> bool:
     return bool((np.abs(np.diff(pixels, axis=0)) < _ALIGNED_PX).any(axis=1).all())
 
 
-def _common(box: Box, other: Box) -> Box | None:
+def part_of(patch: NDArray[np.float32], box: Box, part: Box) -> NDArray[np.float32]:
+    """Return the part of a patch that shows ``box`` that lies in a smaller box."""
+    left, top = box[:2]
+    return patch[part[1] - top : part[3] - top, part[0] - left : part[2] - left]
+
+
+def around(boxes: Sequence[Box]) -> Box | None:
+    """Return the box around others; None without others."""
+    if not boxes:
+        return None
+    lefts, tops, rights, bottoms = zip(*boxes, strict=True)
+    return min(lefts), min(tops), max(rights), max(bottoms)
+
+
+def common(box: Box, other: Box) -> Box | None:
     """Return the part that two boxes share, or None."""
     left, top, right, bottom = (
         max(box[0], other[0]), max(box[1], other[1]), min(box[2], other[2]), min(box[3], other[3])
