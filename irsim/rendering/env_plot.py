@@ -223,8 +223,8 @@ class EnvPlot(PlotSteps, ScriptDrawings):
             scene, tracks = self._builder.frame(
                 status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
             )
-            shown = [track for track in tracks if track.object not in self._hidden]
-            figure.show(self._completed(scene), self._title(), shown)
+            left = [track for track in tracks if track.object not in self._hidden]
+            figure.show(self._completed(scene), self._title(), left)
             if self.env.simulation.measurements:
                 objects = views(self.env.simulation)
                 shown = [view for view in objects if self._builder.style(view, {}).show_sensor]

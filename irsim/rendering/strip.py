@@ -13,6 +13,7 @@ from irsim.graphics.figure.figure import SceneFigure
 from irsim.graphics.figure.layers import opaque_colors
 from irsim.graphics.scene.scene import Scene
 from irsim.objects.views import views
+from irsim.rendering.readability import can_move
 from irsim.rendering.snapshot import Extra, legible_scene, png_of
 
 if TYPE_CHECKING:
@@ -92,13 +93,14 @@ class Strip:
 def _simplify(scene: Scene, simulation: Simulation, *, first: bool) -> None:
     """Remove what a small tile has no space for.
 
-    Obstacles have no paths, goals and goal labels; the first tile names the obstacles, if they are few, and has the
-    labels that belong to no object.
+    Goals of obstacles have no labels; the first tile names the obstacles, if they are few, and has the labels that
+    belong to no object. What does not move has neither path nor goal.
     """
+    movers = {view.id for view in views(simulation) if view.role == "robot" or can_move(view)}
     robots = {view.id for view in views(simulation) if view.role == "robot"}
     named = sum(label.object >= 0 and label.object not in robots and label.part == "name" for label in scene.labels)
     names_obstacles = first and named <= MAX_OBSTACLE_NAMES
-    scene.marks = [mark for mark in scene.marks if mark.object in robots or mark.part not in ("trajectory", "goal")]
+    scene.marks = [mark for mark in scene.marks if mark.object in movers or mark.part not in ("trajectory", "goal")]
     scene.labels = [
         label
         for label in scene.labels

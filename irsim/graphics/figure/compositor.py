@@ -44,19 +44,22 @@ class Compositor:
     def __init__(self, figure: Figure, ax: Axes) -> None:
         self.figure = figure
         self.ax = ax
-        self._new: tuple[Any, tuple[Any, ...], Bbox] | None = None
+        self._new: tuple[Any, tuple[Any, ...], Bbox | None] | None = None
         self._options: dict[str, Any] = {}
         self.forget()
 
     def settle(self) -> None:
         """Note that the axes are as a new figure has them; the first furniture of such axes serves again."""
-        options = dict(dict.items(matplotlib.rcParams))
+        options: dict[str, Any] = {str(name): value for name, value in dict.items(matplotlib.rcParams)}
         if options != self._options:
             self._new, self._options = None, options
         if self._new is not None:
-            self._furniture, self._furniture_key, self._furniture_box = self._new
+            self._keep(*self._new)
         for part in self._parts():
             part.stale = False
+
+    def _keep(self, furniture: Any, key: tuple[Any, ...] | None, box: Bbox | None) -> None:
+        self._furniture, self._furniture_key, self._furniture_box = furniture, key, box
 
     def _parts(self) -> tuple[Artist, ...]:
         """Return the artists that make up the furniture; a change by a script makes one of them stale."""
@@ -65,9 +68,7 @@ class Compositor:
 
     def forget(self) -> None:
         """Drop the kept background: the next frame is drawn from scratch."""
-        self._furniture: Any = None
-        self._furniture_key: tuple[Any, ...] | None = None
-        self._furniture_box: Bbox | None = None
+        self._keep(None, None, None)
         self._background = Background()
 
     def draw(self, versions: Mapping[Artist, tuple[int, int]], tracks: Mapping[Artist, TrackLayer]) -> None:
@@ -96,9 +97,10 @@ class Compositor:
             if (layer := tracks.get(artist)) is not None and layer.growing:
                 sheets.append(layer)
             elif resting_scenes >= MIN_RESTING_SCENES:
-                if not sheets or not isinstance(sheets[-1], Resting):
-                    sheets.append(Resting())
-                sheets[-1].add(artist, version)
+                below = sheets[-1] if sheets else None
+                sheet = below if isinstance(below, Resting) else Resting()
+                sheet.add(artist, version)
+                sheets += [] if sheet is below else [sheet]
             else:
                 break
             drawn += 1
@@ -144,8 +146,8 @@ class Compositor:
         self._furniture_box = Bbox.union([ax.bbox, *[box for box in boxes if box is not None]])
         if not is_changed and self._new is None:
             self._new = self._furniture, key, self._furniture_box
-        for part in self._parts():
-            part.stale = False
+        for changed in self._parts():
+            changed.stale = False
 
     def tight_box(self, pad_inches: float) -> tuple[int, int, int, int]:
         """Return the padded bounding box (left, top, right, bottom) [px] of the drawing, clipped to the figure.

@@ -1,8 +1,8 @@
 """Layers of tracks: only what came new since the last frame is drawn, onto what stands.
 
-A layer keeps pixels of its own: trails in one transparent image, to which new snapshots are added in the order of time;
-lines as one mask of coverage each, because a translucent line that crosses itself is nowhere darker. `blend` lays a part
-of the layer over a picture. The artist of a layer draws the same for every other canvas, such as that of a PDF.
+A layer keeps pixels of its own: trails in one transparent image, to which new snapshots are added in the order of
+time; lines as one mask of coverage each, because a translucent line that crosses itself is nowhere darker. `blend` lays
+a part of the layer over a picture. The artist of a layer draws the same for every other canvas, such as that of a PDF.
 """
 
 from __future__ import annotations
@@ -176,7 +176,7 @@ class _Mask:
         points = line.points[start:]
         at_rest = self.count > 0 and bool((points[self.count - 1 - start :] == points[self.count - 1 - start]).all())
         self.count = line.count
-        if at_rest or len(points) < 2:  # noqa: PLR2004 (two ends)
+        if at_rest or len(points) < 2:
             return []
         pixels = canvas.pixels(points)
         boxes = []

@@ -56,7 +56,7 @@ class GrowingLine:
 
     def marks(self) -> list[Mark]:
         """Return the line as one mark; a single point makes no line."""
-        if self.count < 2:  # noqa: PLR2004 (two ends)
+        if self.count < 2:
             return []
         line = Line(self.points.copy())
         return [Mark(self.object, self.part, line, None, self.stroke, self.alpha, self.zorder)]

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.bodies import Body, Pose, box, ellipse, place
+from irsim.graphics.scene.bodies import Body, Pose, box, ellipse, place, point_on
 from irsim.graphics.scene.scene import Circle, Geometry, Label, Line, Mark, Sector, Stroke
-from irsim.graphics.scene.style import ObjectStyle
+from irsim.graphics.scene.style import TEXT_GAP_M, ObjectStyle, default_text_position
 
 __all__ = [
+    "name_label",
     "shape_mark",
     "text_label",
     "trail_mark",
@@ -38,6 +39,16 @@ def text_label(number: int, part: str, x: float, y: float, text: str, style: Obj
     dx, dy = style.text_position
     size, alpha = style.text_size, style.text_alpha
     return Label(number, part, x + dx, y + dy, (x, y), str(text), style.text_color, size, alpha, style.text_zorder)
+
+
+def name_label(number: int, text: str, body: Body, style: ObjectStyle, pose: Pose) -> Label:
+    """The name of an object, beside its body; the pose of a line or a compound may lie anywhere else."""
+    if body.kind not in ("linestring", "compound") or style.text_position != default_text_position(body.radius):
+        return text_label(number, "name", pose[0], pose[1], text, style)
+    x, y = point_on(place(body.geometry, pose)) or pose[:2]
+    label = text_label(number, "name", x, y, text, style)
+    label.x, label.y = x + TEXT_GAP_M, y + TEXT_GAP_M
+    return label
 
 
 def view_sector(number: int, angle: float, radius: float, style: ObjectStyle, pose: Pose) -> Mark:

@@ -24,7 +24,7 @@ from irsim.graphics.scene.scene import (
 from irsim.graphics.scene.style import ObjectStyle, resolve_style, tint_of
 from irsim.graphics.scene.tracks import Track
 from irsim.graphics.scene.zones import DrawnZones, draw_zones
-from irsim.objects.drawing.object_marks import shape_mark, text_label, trail_mark, trajectory_line, view_sector
+from irsim.objects.drawing.object_marks import name_label, shape_mark, text_label, trail_mark, trajectory_line, view_sector
 from irsim.objects.drawing.tracks import Tracks
 from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.contact_drawing import draw_forces
@@ -340,9 +340,9 @@ def _draw(
         color = style.arrow_color
         marks.append(Mark(number, "arrow", pointer, color, Stroke(color), style.arrow_alpha, style.arrow_zorder))
     if style.show_text and view.shape != "walls":  # the walls round the world need no label
-        text = view.abbr if view.text is None else view.text
-        drawn.labels.append(text_label(number, "name", pose[0], pose[1], text, style))
+        text = view.label if view.text is None else view.text
+        drawn.labels.append(name_label(number, text, body, style, pose))
         if style.show_goal and style.show_goal_text and has_goal:
-            text = view.goal_abbr if view.goal_text is None else view.goal_text
+            text = f"G-{view.label}" if view.goal_text is None else view.goal_text
             drawn.labels.append(text_label(number, "goal", goal[0], goal[1], text, style))
     return drawn
