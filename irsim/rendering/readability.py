@@ -171,6 +171,7 @@ def _arrange(scene: Scene, objects: dict[int, ObjectView]) -> list[Label]:
                 if point is None:
                     continue
                 middle, (left, top) = point, point
+                left += _LABEL_GAP_SHARE * (y1 - y0)
             label = replace(label, x=left, y=top + _LABEL_GAP_SHARE * (y1 - y0), anchor=middle, zorder=_LABEL_ZORDER)
         if label.part == "goal" and view.role != "robot":
             label = replace(label, size=min(label.size, _SMALL_TEXT_PT), alpha=label.alpha * _OBSTACLE_ALPHA)

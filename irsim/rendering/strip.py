@@ -57,13 +57,17 @@ class Strip:
         self._tiles: list[tuple[str, Image.Image]] = []
         self._colors: dict[tuple[int, int, int], None] = {}
         self._columns, self._tile = 1, (1, 1)
+        self._title = ""
 
     def add(self, simulation: Simulation, extra: Extra | None = None) -> None:
         """Add a tile that shows the present moment."""
         scene, pictures = legible_scene(simulation, region=self._region, overrides=self._overrides, extra=extra)
         if not self._tiles:
             x0, x1, y0, y1 = scene.extent
-            self._columns, self._tile = tiling(self._count, x1 - x0, y1 - y0, self._size)
+            options = simulation.scenario.world.plot
+            self._title = options.title if options.title and options.show_title else ""
+            side = self._size - (_LINE_HEIGHT_PX if self._title else 0)
+            self._columns, self._tile = tiling(self._count, x1 - x0, y1 - y0, side)
         _simplify(scene, simulation, first=not self._tiles)
         dpi = min(MAX_DPI, max(MIN_DPI, max(self._tile) / _PX_PER_DPI))
         figure = SceneFigure(self._tile, dpi, axis=False, tight=False, pictures=pictures, halo=True)
@@ -78,11 +82,13 @@ class Strip:
         (width, height), columns = self._tile, self._columns
         rows = math.ceil(len(self._tiles) / columns)
         step_x, step_y = width + _GAP_PX, height + _LINE_HEIGHT_PX + _GAP_PX
-        sheet = Image.new("RGB", (columns * step_x + _GAP_PX, rows * step_y + _GAP_PX), "white")
+        head = _LINE_HEIGHT_PX if self._title else 0
+        sheet = Image.new("RGB", (columns * step_x + _GAP_PX, head + rows * step_y + _GAP_PX), "white")
         draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(_FONT_SIZE_PX)
+        draw.text((sheet.width / 2, head), self._title, fill=_TEXT_COLOR, font=font, anchor="ms")
         for number, (text, image) in enumerate(self._tiles):
             left = _GAP_PX + number % columns * step_x
-            top = _GAP_PX + number // columns * step_y + _LINE_HEIGHT_PX
+            top = head + _GAP_PX + number // columns * step_y + _LINE_HEIGHT_PX
             sheet.paste(image, (left, top))
             draw.rectangle((left - 1, top - 1, left + width, top + height), outline=_FRAME_COLOR)
             short = text if draw.textlength(text, font=font) <= width else text.partition("  ")[0]

@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import RendererAgg
-from matplotlib.collections import PathCollection
 from matplotlib.path import Path
 from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
-from irsim.graphics.figure.layers import PARTS, MarkLayer, rgba
+from irsim.graphics.figure.layers import PARTS, MarkLayer, paint, rgba
 from irsim.graphics.scene.bodies import bounds
 from irsim.graphics.scene.scene import Mark
 from irsim.graphics.scene.tracks import GrowingLine, GrowingTrail, Track
@@ -84,9 +83,9 @@ class LineLayer:
     """
 
     def __init__(self, ax: Axes, zorder: float, round_caps: bool) -> None:
-        self._marks = MarkLayer(ax, (zorder, PARTS.index("trajectory"), round_caps), _TrackArtist)
+        self._marks = MarkLayer(ax, (zorder, PARTS.index("trajectory"), round_caps))
         self.artist = self._marks.artist
-        self.artist.fill = self._fill
+        self.artist.before = self._collect
         self._round = round_caps
         self._tracks: list[GrowingLine] = []
         self._scale = 0.0
@@ -107,7 +106,7 @@ class LineLayer:
         self._tracks, self._scale = list(tracks), points_per_metre
         self.artist.set_visible(bool(tracks))
 
-    def _fill(self) -> None:
+    def _collect(self) -> None:
         self._marks.show([mark for line in self._tracks for mark in line.marks()], self._scale)
 
     def update(self, canvas: Canvas) -> list[Box]:
@@ -222,9 +221,9 @@ class TrailLayer:
 
     def __init__(self, ax: Axes, zorder: float) -> None:
         self._ax = ax
-        self._marks = MarkLayer(ax, (zorder, PARTS.index("trail"), False), _TrackArtist)
+        self._marks = MarkLayer(ax, (zorder, PARTS.index("trail"), False))
         self.artist = self._marks.artist
-        self.artist.fill = self._fill
+        self.artist.before = self._collect
         self._tracks: list[GrowingTrail] = []
         self._scale = 0.0
         self._forget(None)
@@ -241,7 +240,7 @@ class TrailLayer:
         self._tracks, self._scale = list(tracks), points_per_metre
         self.artist.set_visible(bool(tracks))
 
-    def _fill(self) -> None:
+    def _collect(self) -> None:
         self._marks.show(_in_order_of_time(self._tracks, {}), self._scale)
 
     def update(self, canvas: Canvas) -> list[Box]:
@@ -258,10 +257,7 @@ class TrailLayer:
         new = _in_order_of_time(self._tracks, self._drawn)
         self._drawn = {trail: len(trail.snapshots) for trail in self._tracks}
         if new:
-            brush = MarkLayer(self._ax, self._marks.key)
-            brush.show(new, self._scale)
-            brush.artist.draw(self._renderer)
-            brush.artist.remove()
+            paint(self._renderer, self._ax, new, self._scale, ("butt", "miter"))
         boxes = [box for box in (_mark_box(mark, canvas) for mark in new) if box is not None]
         self._box = around([*([] if self._box is None else [self._box]), *boxes])
         return [canvas.box] if gone else boxes
@@ -275,17 +271,6 @@ class TrailLayer:
     def boxes(self) -> list[Box]:
         """Boxes outside of which the layer is empty."""
         return [] if self._box is None else [self._box]
-
-
-class _TrackArtist(PathCollection):
-    """Shows a layer on any canvas; its paths are made when it is drawn."""
-
-    fill: Any = None
-
-    def draw(self, renderer: Any) -> None:
-        """Draw all tracks of the layer."""
-        self.fill()
-        super().draw(renderer)
 
 
 def track_layers(

@@ -144,7 +144,8 @@ def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None 
     """Return a point of a geometry that a label can stand at.
 
     Args:
-        geometry: The geometry; a line has its point in the middle of its longest segment, other shapes inside.
+        geometry: The geometry; a line has its point in the middle of its longest segment, other shapes on their upper
+            edge.
         view: Left, bottom, right and top of the part of the world that is seen [m]; default: everything.
 
     Returns:
@@ -152,10 +153,11 @@ def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None 
     """
     import shapely
 
+    shape: Any
     if isinstance(geometry, Circle | Sector):
         shape = shapely.Point(geometry.x, geometry.y).buffer(geometry.radius)
     elif isinstance(geometry, Line):
-        shape = shapely.MultiLineString([pair for pair in zip(geometry.points[:-1], geometry.points[1:], strict=True)])
+        shape = shapely.MultiLineString(list(zip(geometry.points[:-1], geometry.points[1:], strict=True)))
     else:
         shape = _polygon_of(geometry)
     seen = shape if view is None else shape.intersection(shapely.box(*view))
@@ -164,9 +166,12 @@ def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None 
         return None
     if isinstance(geometry, Line):
         middle = max(pieces, key=lambda piece: piece.length).interpolate(0.5, normalized=True)
-    else:
-        middle = max(pieces, key=lambda piece: piece.area).representative_point()
-    return float(middle.x), float(middle.y)
+        return float(middle.x), float(middle.y)
+    piece = max(pieces, key=lambda piece: piece.area)
+    inside = piece.representative_point()
+    column = piece.intersection(shapely.LineString([(inside.x, inside.y), (inside.x, piece.bounds[3])]))
+    lowest = min(getattr(column, "geoms", [column]), key=lambda part: part.bounds[1])
+    return float(inside.x), float(lowest.bounds[3])
 
 
 def _polygon_of(region: Region) -> Any:

@@ -24,7 +24,14 @@ from irsim.graphics.scene.scene import (
 from irsim.graphics.scene.style import ObjectStyle, resolve_style, tint_of
 from irsim.graphics.scene.tracks import Track
 from irsim.graphics.scene.zones import DrawnZones, draw_zones
-from irsim.objects.drawing.object_marks import name_label, shape_mark, text_label, trail_mark, trajectory_line, view_sector
+from irsim.objects.drawing.object_marks import (
+    name_label,
+    shape_mark,
+    text_label,
+    trail_mark,
+    trajectory_line,
+    view_sector,
+)
 from irsim.objects.drawing.tracks import Tracks
 from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.contact_drawing import draw_forces
