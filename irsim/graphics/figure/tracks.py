@@ -95,6 +95,7 @@ class LineLayer:
         self._key = key
         self._masks: dict[GrowingLine, _Mask] = {}
         self._scratch: Any = None
+        self._brush: Any = None
 
     @property
     def growing(self) -> bool:
@@ -118,6 +119,11 @@ class LineLayer:
         if canvas.key != self._key:
             self._forget(canvas.key)
             self._scratch = canvas.renderer()
+            self._brush = self._scratch.new_gc()
+            self._brush.set_foreground((1.0, 1.0, 1.0, 1.0), isRGBA=True)
+            self._brush.set_capstyle("round" if self._round else "butt")
+            self._brush.set_joinstyle("round")
+            self._brush.set_clip_rectangle(canvas.clip)
         shown = set(self._tracks)
         if not shown.issuperset(self._masks):
             self._masks = {line: mask for line, mask in self._masks.items() if line in shown}
@@ -132,7 +138,7 @@ class LineLayer:
                 color = rgba(line.color, line.alpha) if line.color is not None else (0.0, 0.0, 0.0, 0.0)
                 mask = self._masks[line] = _Mask(canvas, color)
             if mask.count < line.count:
-                boxes += mask.extend(canvas, self._scratch, line, self._scale, self._round)
+                boxes += mask.extend(canvas, self._scratch, self._brush, line, self._scale)
         return boxes
 
     def blend(self, patch: NDArray[np.float32], box: Box) -> None:
@@ -169,7 +175,7 @@ class _Mask:
         self._aligned = True  # Agg draws lines along the axes of the picture at whole pixels
         self.box: Box | None = None
 
-    def extend(self, canvas: Canvas, scratch: Any, line: GrowingLine, scale: float, round_caps: bool) -> list[Box]:
+    def extend(self, canvas: Canvas, scratch: Any, brush: Any, line: GrowingLine, scale: float) -> list[Box]:
         """Draw the new points of the line; return where that was."""
         start = max(0, self.count - 1 - _OVERLAP)
         points = line.points[start:]
@@ -192,15 +198,9 @@ class _Mask:
         box = common(canvas.within(x0, y0, x1, y1, reach), canvas.box)
         if box is None:
             return boxes
-        context = scratch.new_gc()
-        context.set_foreground((1.0, 1.0, 1.0, 1.0), isRGBA=True)
-        context.set_linewidth(width)
-        context.set_capstyle("round" if round_caps else "butt")
-        context.set_joinstyle("round")
-        context.set_snap(None if self._aligned else False)
-        context.set_clip_rectangle(canvas.clip)
-        scratch.draw_path(context, Path(pixels), IdentityTransform())
-        context.restore()
+        brush.set_linewidth(width)
+        brush.set_snap(None if self._aligned else False)
+        scratch.draw_path(brush, Path(pixels), IdentityTransform())
         left, top, right, bottom = box
         drawn = np.asarray(scratch.buffer_rgba())[top:bottom, left:right, 3]
         covered = self.coverage[top:bottom, left:right]
