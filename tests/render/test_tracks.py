@@ -36,7 +36,7 @@ SHAPES = [
     ("acker", "{name: rectangle, length: 0.9, width: 0.5, wheelbase: 0.5}"),
     (
         "diff",
-        "{name: compound, parts: [{name: circle, radius: 0.3}, {name: rectangle, length: 1, width: 1, pose: [0, 1]}]}",
+        "{name: compound, parts: [{name: circle, radius: 0.3}, {name: circle, radius: 0.2, center: [0.2, 0.3]}]}",
     ),
 ]
 
