@@ -662,10 +662,12 @@ class State:
         """Kinds of the parts: "circle", "polygon", "linestring", "room", "cells" (vertices: corners of their box)."""
     def cells(self, row: int) -> OccupancyGrid | None:
         """The cells of a row that is a map; None for other rows."""
-    def trajectory(self, row: int) -> Floats:
-        """(K, 3 + E) state after each executed step since the last reset, if the state was made with history.
+    def recorded(self, row: int) -> int:
+        """Number K of states in the trajectory of a row."""
+    def trajectory(self, row: int, first: int = 0) -> Floats:
+        """(K - first, 3 + E) state after each executed step since the last reset, if the state was made with history.
 
-        Steps in which the object was static or stopped are left out.
+        Steps in which the object was static or stopped are left out, and so are the ``first`` ones of the others.
         """
     def standings(self, row: int) -> tuple[NDArray[np.int64], Floats, Flags]:
         """(K,) steps, (K, 3) goals and (K,) `stopped` of an object that can move, one entry per change.

@@ -201,11 +201,11 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
         return any(other.id == detected_object.id for other in self.get_fov_detected_objects())
 
     def set_text(self, text: str | None) -> None:
-        """Set the label that is drawn in place of ``abbr``; None restores ``abbr``."""
+        """Set the text that is drawn in place of ``label``; None restores ``label``."""
         self.text = text
 
     def set_goal_text(self, text: str | None) -> None:
-        """Set the label that is drawn in place of ``goal_abbr``; None restores ``goal_abbr``."""
+        """Set the text that is drawn at the goal in place of ``G-`` and ``label``; None restores that."""
         self.goal_text = text
 
     def __repr__(self) -> str:
