@@ -21,8 +21,8 @@ def describe(
         list[str] | None,
         typer.Argument(
             metavar="[TOPIC]...",
-            help="Several, separated by commas, are answered briefly. A key such as vel_max or robot.sensors.lidar2d.range_max, a component such as behavior dash, a "
-            "template, a metric, or an error code.",
+            help="A key such as vel_max or robot.sensors.lidar2d.range_max, a component such as behavior dash, a "
+            "template, a metric, or an error code. Several, separated by commas, are answered briefly.",
             show_default=False,
         ),
     ] = None,

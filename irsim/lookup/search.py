@@ -117,7 +117,7 @@ def _hit(path: tuple[str, ...], node: Node) -> Key:
 
 
 def _line_of(schema: Node, name: str) -> Key:
-    """Return the line of a guide, of a template, or of a path of the language, even if another path has the same text."""
+    """Return the line of a guide, a template or a path of the language, even if another path has the same text."""
     if name in GUIDES:
         return Key(name=name, text=GUIDES[name].title)
     if name in templates.names():

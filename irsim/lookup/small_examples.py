@@ -79,16 +79,12 @@ _VALUES: dict[str, Any] = {
     "width": 8,
 }
 """Values that say more than the default does, by the last words of a path."""
+_OUTLINE = ("avg_radius_range", "center_range", "irregularity_range", "spikeyness_range", "num_vertices_range")
+"""Keys of random outlines."""
 _TOGETHER: dict[str, dict[str, Any]] = {
-    **dict.fromkeys(("alpha", "std", "angle_std"), {"noise": True}),
-    **dict.fromkeys(("range_low", "range_high"), {"wander": True}),
-    **dict.fromkeys(
-        (
-            *("radius_range", "avg_radius_range", "center_range", "irregularity_range", "spikeyness_range"),
-            *("num_vertices_range", "is_convex"),
-        ),
-        {"random_shape": True},
-    ),
+    **{key: {"noise": True} for key in ("alpha", "std", "angle_std")},
+    **{key: {"wander": True} for key in ("range_low", "range_high")},
+    **{key: {"random_shape": True} for key in (*_OUTLINE, "radius_range", "is_convex")},
     "fov": {"fov_radius": 4, "fov_occlusion": True, "plot": {"show_fov": True}},
     "fov_radius": {"fov": 1.5708, "plot": {"show_fov": True}},
     "fov_occlusion": {"fov": 1.5708, "fov_radius": 4},

@@ -15,7 +15,7 @@ from irsim_mcp.json_answer import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
 
-__all__ = ["Report", "tool"]
+__all__ = ["Report", "report_of", "text_of", "tool"]
 
 _DESCRIPTION = """
     Check a scenario and try it. Use it after every edit. Returns all problems at once; an
@@ -92,8 +92,8 @@ def tool(services: Services) -> StrictTool:
             simulate=simulate,
             **services.base(base),
         )
-        report = _report(found, max_issues, response_format == "detailed", services.limits.text)
-        text = TextContent(type="text", text=_text(report))
+        report = report_of(found, max_issues, response_format == "detailed", services.limits.text)
+        text = TextContent(type="text", text=text_of(report))
         if response_format == "json":
             text = json_answer(found, services.limits.text, "fix the first problems, or use response_format=detailed")
         return CallToolResult(content=[text], structured_content=report.model_dump(exclude_none=True))
@@ -103,7 +103,7 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def _report(found: dict[str, Any], most: int, detailed: bool, most_characters: int) -> Report:
+def report_of(found: dict[str, Any], most: int, detailed: bool, most_characters: int) -> Report:
     few = found["valid"] and found["hints"] <= _MAX_SHOWN_HINTS
     findings = [item for item in found["findings"] if detailed or few or item["severity"] != "hint"]
     summary = found["summary"] if found["valid"] else f"invalid: {found['summary']}"
@@ -217,7 +217,7 @@ def _issue(item: dict[str, Any], detailed: bool) -> Issue:
     )
 
 
-def _text(report: Report) -> str:
+def text_of(report: Report) -> str:
     """The report in words, with everything that the structured content has."""
     lines = [report.summary]
     lines += [_issue_text(number, issue) for number, issue in enumerate(report.issues, 1)]
