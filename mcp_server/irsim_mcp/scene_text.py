@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from irsim.common.text import clean
-from irsim.results.labels import seeds_of
+from irsim.common.text import clean, listed
 
 __all__ = ["scene_lines"]
 
 _MAX_ROWS = 30
 """Number of entries that are shown."""
+_MAX_SEEDS = 10
+"""Number of seeds that a line names."""
 
 
 def scene_lines(table: Mapping[str, Any], labels: Mapping[str, str], seed: int) -> list[str]:
@@ -28,9 +29,9 @@ def scene_lines(table: Mapping[str, Any], labels: Mapping[str, str], seed: int) 
     if len(rows) > _MAX_ROWS:
         lines.append(f"- {len(rows) - _MAX_ROWS} more entries")
     if table["crowded"]:
-        count = len(table["crowded"])
+        count, named = len(table["crowded"]), listed([str(seed) for seed in table["crowded"]], _MAX_SEEDS)
         lines.append(
-            f"No room for an object in {count} of {table['seeds']} seeds ({seeds_of(table['crowded'], 10)}): "
+            f"No room for an object in {count} of {table['seeds']} seeds ({named}): "
             "use fewer or smaller objects, or larger ranges"
         )
     return lines

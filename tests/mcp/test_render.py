@@ -142,3 +142,12 @@ async def test_a_later_step_is_only_drawn(empty: Path) -> None:
         text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "step": 5}))
     assert "\n" not in text
     assert "at (" in text
+
+
+async def test_a_step_beyond_the_end_and_a_moved_view_are_said(empty: Path) -> None:
+    moved = ROOM.replace("world: {", "world: {plot: {viewpoint: [1, 1]}, ")
+    assert moved != ROOM
+    async with connected(empty) as client:
+        text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": moved, "step": 900}))
+    assert "beyond the end of the episode, which is step" in text
+    assert "as plot.viewpoint centres the view" in text

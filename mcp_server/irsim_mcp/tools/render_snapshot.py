@@ -73,8 +73,8 @@ def tool(services: Services) -> StrictTool:
             "draw": return_image,
         }
         if run_id is None:
-            check = {"check": step == 0 and strip is None}
-            answer = await services.scenario_job("snapshot", scenario_path, scenario_yaml, seed=seed, **check, **what)
+            what["check"] = step == 0 and strip is None
+            answer = await services.scenario_job("snapshot", scenario_path, scenario_yaml, seed=seed, **what)
         elif scenario_path or scenario_yaml or seed is not None:
             fix = "give run_id alone: the run has its scenario and its seed"
             raise failure("bad-argument", "a run_id and a scenario or a seed are given", where="run_id", fix=fix)
@@ -121,6 +121,15 @@ def _line(scene: dict[str, Any], run_id: str | None, brief: bool = False) -> str
         f"{size}{moments}t={scene['sim_time']:g} s (step {scene['steps']}, {chance})",
         f"world x {left:g}..{right:g} m, y {low:g}..{top:g} m",
     ]
+    if scene["ended"] is not None:
+        parts.append(f"beyond the end of the episode, which is step {scene['ended']}")
+    if scene["view"] is not None:
+        x0, x1, y0, y1 = scene["view"]
+        region = [left, low, right, top]
+        parts.append(
+            f"shows only x {x0:g}..{x1:g} m, y {y0:g}..{y1:g} m, as plot.viewpoint centres the view: "
+            f"region=[{', '.join(f'{value:g}' for value in region)}] shows the world"
+        )
     robots, moving = ([], []) if brief else (scene["robots"], scene["moving"])
     parts += [_robot(robot) for robot in robots[:_MAX_NAMED]]
     parts += [_plan(plan) for plan in scene["plans"][:_MAX_NAMED]]

@@ -104,6 +104,14 @@ def tool(services: Services) -> StrictTool:
 
 
 def report_of(found: dict[str, Any], most: int, detailed: bool, most_characters: int) -> Report:
+    """The result of the tool.
+
+    Args:
+        found: The report of a worker, as data.
+        most: Greatest number of issues.
+        detailed: With hints, columns and all allowed values.
+        most_characters: Greatest number of characters of all issues.
+    """
     few = found["valid"] and found["hints"] <= _MAX_SHOWN_HINTS
     findings = [item for item in found["findings"] if detailed or few or item["severity"] != "hint"]
     summary = found["summary"] if found["valid"] else f"invalid: {found['summary']}"
