@@ -271,7 +271,8 @@ def _advice(found: dict[str, Any]) -> str:
     step = first if found["outcome"] == "success" else found["decisive_step"]
     look = f"render_snapshot{run} {_STRIP}" + (f" step={step}" if step else "")
     view = "collisions" if found["outcome"] != "timeout" or first is not None else "speeds"
-    more = "" if found["run_id"] is None else f" and inspect_run{run} view={view}"
+    whose = " robot=all" if step == first and first is not None else ""  # by default the table is about robots
+    more = "" if found["run_id"] is None else f" and inspect_run{run} view={view}{whose}"
     if found["outcome"] == "success":
         return f"A collision stopped moving obstacles: intended? Look with {look}{more}."
     when = "" if not step else f" (step {step} decided it)"
