@@ -23,9 +23,8 @@ _DESCRIPTION = """
     Simulate one episode, until every robot has arrived or stopped, or time is up. Outcome is success (every robot
     reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit what,
     where and when, and how far robots were from their goals. Also returns robots (unsuccessful first), first events,
-    the command that repeats it, and a run_id, kept for 24 hours. Next: after a failure inspect_run and draw that
-    moment with render_snapshot (run_id, step), change the scenario, validate and run again; after a success try other
-    seeds if anything is random.
+    the command that repeats it, and a run_id, kept for 24 hours. Next: after a failure the
+    call that `next` has, change the scenario and run again; after a success try other seeds if anything is random.
 """
 _UNDRIVEN = "has no behavior"
 """Part of the reason of a run with a robot that nothing drives."""

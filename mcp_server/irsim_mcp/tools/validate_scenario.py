@@ -18,12 +18,12 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Report", "report_of", "text_of", "tool"]
 
 _DESCRIPTION = """
-    Check a scenario and try it. Use it after every edit. Returns all problems at once; an
+    Check a scenario and try it, without a picture (render_snapshot checks, too). Returns all problems at once; an
     invalid scenario is a normal result with valid=false. Each issue has a code, path, line, cause and fix. Errors must
     be fixed; with warnings it may misbehave; hints are worth knowing. not-yet-simulated: this version
     cannot do it, tell the user. dry_run lists robots that arrived, collided, got stuck or left the world in the first
-    steps. With base (the scenario before an edit) changes lists what differs, by key and in the world. Next: fix and
-    validate again; once valid, look with render_snapshot.
+    steps. With base (the scenario before an edit) changes lists what differs, by key and in the world. Next: fix,
+    then render_snapshot.
 """
 
 
