@@ -75,8 +75,6 @@ def _show(answer: Answer, out: Console) -> None:
         line(answer.text)
     if answer.about is not None:
         line(Text(facts(answer.about), style="green"))
-        if answer.about.per_object:
-            line(Text("or a list with one value per object of the entry", style="green"))
     for heading, keys in answer.groups.items():
         if keys:
             line()

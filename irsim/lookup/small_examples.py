@@ -51,7 +51,7 @@ _VALUES: dict[str, Any] = {
     "obj_zorder": 4,
     "obstacle_map.perlin.resolution": 0.2,
     "obstacle_map.image.path": "cave.png",
-    "obstacle_map.ros.path": "room.yaml",
+    "obstacle_map.ros.path": "maps/floor.yaml",
     "offset": [0.2, 0, 3.14159],
     "plot.alpha": 0.1,
     "polygon": [[6, 1], [9, 1], [7, 4]],

@@ -82,12 +82,13 @@ EVERYDAY: dict[str, str] = {
     "world.step_time": "time step, step time, timestep, dt, period, frequency, sampling time, step size",
     "world.seed": "seed, random seed, reproducible",
     "gui.keyboard": "keyboard, teleop, manual control, joystick",
+    "avoidance": "between walls, among walls",
     "dead-ends": "deadlock, stuck, trap",
+    "guard-patrol": "guard, watchman, surveillance, vision cone, sight cone",
+    "room-evacuation": "evacuation, evacuate, emergency exit, exit, escape, room exit",
+    "l-passage": "bend, l-bend, passage, corner, blind corner",
     "corridor-passing": "passage, corridor, hallway, aisle",
-    "bottleneck": "evacuation, evacuate, emergency exit, exit, escape",
-    "doorway": "passage, narrow passage, door, evacuation, room exit, gap",
-    "t-junction": "bend, corner, blind corner, junction, l-passage",
-    "watched-rooms": "surveillance, guard, watchman, camera, vision cone",
+    "doorway": "passage, narrow passage, door, gap",
 }
 """Topic -> its everyday names, separated by commas; the names of the language itself are not repeated here."""
 

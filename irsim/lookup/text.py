@@ -20,7 +20,7 @@ def as_text(answer: Answer) -> str:
     if answer.text:
         lines.append(answer.text)
     if answer.about is not None:
-        lines.append(facts(answer.about) + ("; or a list, one per object" if answer.about.per_object else ""))
+        lines.append(facts(answer.about))
     for heading, keys in answer.groups.items():
         if keys:
             lines += ["", f"{heading}:", *(_line(key) for key in keys)]
@@ -38,7 +38,7 @@ def as_brief_text(answer: Answer) -> str:
     if answer.text:
         lines.append(answer.text if answer.kind == "guide" else first_sentence(answer.text, least=_MIN_BRIEF_TEXT))
     if answer.about is not None:
-        lines.append(facts(answer.about) + ("; or a list, one per object" if answer.about.per_object else ""))
+        lines.append(facts(answer.about))
     for heading, keys in answer.groups.items():
         shown = [] if "in common" in heading or heading == "keys of all" else keys[:_MAX_BRIEF_KEYS]
         lines += [_brief_line(key) for key in shown]
@@ -84,4 +84,6 @@ def facts(key: Key) -> str:
         facts.append("required")
     if key.default is not None:
         facts.append(f"default {key.default}")
+    if key.per_object:
+        facts.append("or a list, one per object")
     return "; ".join(fact for fact in facts if fact)

@@ -235,13 +235,13 @@ def test_an_unknown_topic_among_others_does_not_stop_the_others(irsim: Run) -> N
     ("word", "topic"),
     [
         ("vision cone", "robot.fov"),
-        ("guard", "watched-rooms"),
+        ("guard", "guard-patrol"),
         ("sees", "robot.fov"),
         ("surveillance", "robot.fov"),
         ("courtyard", "robot.shape.linestring"),
         ("passage", "corridor-passing"),
-        ("bend", "t-junction"),
-        ("evacuation", "bottleneck"),
+        ("bend", "l-passage"),
+        ("evacuation", "room-evacuation"),
         ("braking", "robot.acce"),
     ],
 )

@@ -22,7 +22,7 @@ async def test_from_a_template_to_a_run(workspace: Path, era: str) -> None:
         tools = {tool.name: tool for tool in (await client.list_tools()).tools}
 
         index = text_of(await client.call_tool("lookup", {}))
-        assert len(index.splitlines()) <= 64
+        assert len(index.splitlines()) <= 70
         assert "corridor-passing" in index
 
         answer = text_of(await client.call_tool("lookup", {"topic": "corridor-passing", "parameters": {"width": 1.4}}))
