@@ -22,6 +22,7 @@ from irsim.episodes.episode import (
     seed_of,
 )
 from irsim.episodes.reproduce import region_options, reproduce_command
+from irsim.episodes.room import MAX_TRIES, crowded_message, first_with_room
 from irsim.episodes.run_report import run_result
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
@@ -30,6 +31,7 @@ from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
+from irsim.simulation.random_streams import fresh_seed
 from irsim.validation.validate import diff, fix, validate
 
 if TYPE_CHECKING:
@@ -94,7 +96,8 @@ def run(
     Raises:
         ScenarioError: The scenario has errors; ScenarioNotFoundError: there is no such file.
         OverLimitError: ``steps`` exceeds the limits.
-        PlacementError: There is no room for an object that is placed at random or perturbed.
+        PlacementError: There is no room for an object that is placed at random or perturbed; without a seed, with
+            none of 20 drawn ones.
         BenchmarkError: There is no such policy, or ``perturb`` is not a valid perturbation.
         PolicyError: The policy cannot drive these robots, or failed.
         ArgumentError: ``steps`` is not a whole number, or both ``policy`` and ``behavior`` are given.
@@ -111,9 +114,11 @@ def run(
         error.where = "behavior" if policy is None else "policy"
         raise
     scenario, perturb_texts = perturbed(scenario, perturbations), [perturbation_text(item) for item in perturbations]
-    chosen = seed_of(scenario, seed)
-    hidden = save is None and not show
-    env = Env(scenario, seed=chosen, display=show, headless=hidden, log_level="ERROR", policy=driver)
+    chosen, hidden = seed_of(scenario, seed), save is None and not show
+    env, crowded = first_with_room(
+        lambda drawn: Env(scenario, seed=drawn, display=show, headless=hidden, log_level="ERROR", policy=driver),
+        (fresh_seed() for _ in range(MAX_TRIES)) if chosen is None else [chosen],
+    )
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     options = {
         "strict": strict,
@@ -143,6 +148,8 @@ def run(
             policy=driver,
             perturb=perturb_texts,
         )
+        if skipped := crowded_message(crowded):
+            result.summary += f"; {skipped}"
         if recorder is not None:
             recorder.finish(result)
     env.end(ending_time=0.0)

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Literal
 
 from irsim.api.film_strip import draw_strip, moments_of
 from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
+from irsim.api.picture_notes import ended_before, moved_view
 from irsim.api.read_input import read_input
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
 from irsim.episodes.reproduce import overlay_options, region_options, reproduce_command, strip_options
+from irsim.episodes.room import MAX_TRIES, first_with_room
 from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.findings import Finding
 from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
@@ -19,6 +21,7 @@ from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.outcome import robot_outcomes
+from irsim.simulation.random_streams import fresh_seed
 
 if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
@@ -106,7 +109,11 @@ def snapshot_of(
 
         region_extent(region)  # reports an invalid region before the simulation
     shown = None if overlays is None else overlays_from(overlays)
-    env = Env(scenario, seed=seed_of(scenario, seed), headless=True, log_level="ERROR")
+    chosen_seed = seed_of(scenario, seed)
+    env, _ = first_with_room(
+        lambda drawn: Env(scenario, seed=drawn, headless=True, log_level="ERROR"),
+        (fresh_seed() for _ in range(MAX_TRIES)) if chosen_seed is None else [chosen_seed],
+    )
     if strip is not None:
         moments_of(0, strip)
         steps = steps or None
@@ -189,6 +196,8 @@ def snapshot_of_env(
         extent=(x, right, y, top),
         obstacles=counts["obstacles"],
         contents=in_words(counts, robots=False, sensors=False),
+        view=None if region is not None else moved_view(env),
+        ended=ended_before(env),
         robots=_poses(env),
         moving=[_moving(view) for view in env.obstacle_list if not view.record.static],
         moments=list(moments or ()),

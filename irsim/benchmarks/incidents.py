@@ -8,7 +8,7 @@ from irsim.common.text import listed
 from irsim.results.benchmark import EpisodeRow
 from irsim.results.labels import CROWDED
 
-__all__ = ["incident_counts", "incident_messages", "placed"]
+__all__ = ["incident_counts", "incident_messages", "incident_seeds", "placed"]
 
 _MAX_SEEDS = 5
 """Number of seeds that a message lists."""
@@ -21,14 +21,23 @@ def placed(episodes: Sequence[EpisodeRow]) -> list[EpisodeRow]:
 
 def incident_counts(episodes: Sequence[EpisodeRow]) -> dict[str, int]:
     """Number of episodes by incident; incidents that did not occur are left out."""
-    counts = {
-        "human_contacts": sum(episode.human_contacts > 0 for episode in episodes),
-        "left": sum(bool(episode.left) for episode in episodes),
-        "jumped": sum(bool(episode.jumped) for episode in episodes),
-        "seen": sum((episode.metrics.get("seen_ratio") or 0.0) > 0.0 for episode in episodes),
-        CROWDED: len(episodes) - len(placed(episodes)),
+    return {key: len(found) for key, found in _episodes_with(episodes).items() if found}
+
+
+def incident_seeds(episodes: Sequence[EpisodeRow]) -> dict[str, list[int]]:
+    """Seeds of the episodes of one row by incident; incidents that did not occur are left out."""
+    return {key: sorted(episode.seed for episode in found) for key, found in _episodes_with(episodes).items() if found}
+
+
+def _episodes_with(episodes: Sequence[EpisodeRow]) -> dict[str, list[EpisodeRow]]:
+    """Episodes with each incident."""
+    return {
+        "human_contacts": [episode for episode in episodes if episode.human_contacts > 0],
+        "left": [episode for episode in episodes if episode.left],
+        "jumped": [episode for episode in episodes if episode.jumped],
+        "seen": [episode for episode in episodes if (episode.metrics.get("seen_ratio") or 0.0) > 0.0],
+        CROWDED: [episode for episode in episodes if episode.outcome == CROWDED],
     }
-    return {key: count for key, count in counts.items() if count}
 
 
 def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:

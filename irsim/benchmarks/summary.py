@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, get_args
 
-from irsim.benchmarks.incidents import incident_counts, placed
+from irsim.benchmarks.incidents import incident_counts, incident_seeds, placed
 from irsim.benchmarks.suite import Protocol
 from irsim.common.text import listed
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
@@ -182,6 +182,7 @@ def _row(
         },
         failures={} if is_summary(name) else _frequent_failures(episodes),
         incidents=incident_counts(every),
+        incident_seeds={} if is_summary(name) else incident_seeds(every),
         **shares,
     )
 

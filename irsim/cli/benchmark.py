@@ -236,6 +236,9 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
         out.print(f"failed: {combination}: {seeds_of(row.failed, MAX_FAILED_SEEDS)} ({', '.join(robots)})")
     if suite and len(failed) > MAX_FAILED_LINES:
         out.print(f"failed: {len(failed) - MAX_FAILED_LINES} more rows; rates are in results.md, seeds in results.json")
+    for row in [row for row in result.rows if row.incident_seeds][:MAX_FAILED_LINES]:
+        combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
+        out.print(f"besides: {combination}: {seeds_of(row.incident_seeds, MAX_FAILED_SEEDS)}")
     for note in result.notes:
         out.print(Text.assemble(("note: ", "bold"), clean(note, 400)))
     periods = sorted(set(result.step_time.values()))

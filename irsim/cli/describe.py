@@ -11,7 +11,7 @@ from irsim.cli.options import Json
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
-    from irsim.lookup import Answer, Key
+    from irsim.lookup import Answer, Key, TopicError
 
 __all__ = ["describe"]
 
@@ -22,7 +22,7 @@ def describe(
         typer.Argument(
             metavar="[TOPIC]...",
             help="A key such as vel_max or robot.sensors.lidar2d.range_max, a component such as behavior dash, a "
-            "template, a metric, or an error code.",
+            "template, a metric, or an error code. Several, separated by commas, are answered briefly.",
             show_default=False,
         ),
     ] = None,
@@ -30,13 +30,36 @@ def describe(
 ) -> None:
     """Explain a key, a component, a template, a metric or an error code. Without a topic, list all topics."""
     from irsim.cli.output import console, print_json
-    from irsim.lookup import lookup
+    from irsim.lookup import lookup, lookup_several, topics_of
 
-    answer = lookup(" ".join(topic or ()))
+    asked = " ".join(topic or ())
+    if len(topics := topics_of(asked)) > 1:
+        _show_several(lookup_several(topics), json_output)
+        return
+    answer = lookup(asked)
     if json_output:
         print_json(answer)
     else:
         _show(answer, console())
+
+
+def _show_several(found: list[Answer | TopicError], json_output: bool) -> None:
+    """Print the answers to several topics briefly, or all of them as a JSON list; errors go to standard error."""
+    from rich.text import Text
+
+    from irsim.cli.output import console, print_json
+    from irsim.lookup import Answer, Answers, as_brief_text
+
+    known = [one for one in found if isinstance(one, Answer)]
+    for one in found:
+        if not isinstance(one, Answer):
+            typer.echo(f"{one.message}. Fix: {one.fix}.", err=True)
+    if json_output:
+        print_json(Answers(answers=known))
+        return
+    for place, answer in enumerate(known):
+        title, _, rest = as_brief_text(answer).partition("\n")
+        console().print(*([""] if place else []), Text(title, style="bold"), Text(rest), sep="\n")
 
 
 def _show(answer: Answer, out: Console) -> None:
@@ -52,8 +75,6 @@ def _show(answer: Answer, out: Console) -> None:
         line(answer.text)
     if answer.about is not None:
         line(Text(facts(answer.about), style="green"))
-        if answer.about.per_object:
-            line(Text("or a list with one value per object of the entry", style="green"))
     for heading, keys in answer.groups.items():
         if keys:
             line()

@@ -36,7 +36,13 @@ def inspect(
             "who entered a region or crossed a line of world.zones; sight: who saw whom (fov)."
         ),
     ] = "rows",
-    robot: Annotated[str | None, typer.Option(help="Show only this robot or object.", show_default=False)] = None,
+    robot: Annotated[
+        str | None,
+        typer.Option(
+            help="Show only this object, or all, robots, obstacles, a tag, or several names separated by commas.",
+            show_default=False,
+        ),
+    ] = None,
     from_step: Annotated[int, typer.Option("--from", min=0, metavar="STEP", help="First step.")] = 0,
     to_step: Annotated[
         int | None, typer.Option("--to", min=0, metavar="STEP", help="Last step.", show_default=False)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
-from irsim.episodes.incidents import Incidents, contacts_message, jumps_message
+from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
 from irsim.episodes.out_of_bounds import exits_message
 from irsim.episodes.stuck import (
     find_circling,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
-__all__ = ["has_one_end", "others_arrived_message", "reason_message", "summary_message"]
+__all__ = ["first_collision", "has_one_end", "others_arrived_message", "reason_message", "summary_message"]
 
 _MAX_NAMED = 3
 """Number of robots that a sentence names."""
@@ -54,6 +54,7 @@ def summary_message(
     events: Sequence[Event],
     left: Sequence[Left],
     incidents: Incidents,
+    nearest: Mapping[str, float],
     zones: Mapping[str, ZoneResult],
 ) -> str:
     """Say which robots arrived, the first collision, and what else happened to objects."""
@@ -61,11 +62,13 @@ def summary_message(
     if waiting := _waiting_message(env):
         parts.append(waiting)
     if hit := _first_collision_message({robot.name for robot in robots}, hits):
-        parts.append(hit)
+        parts.append(hit + _standing_message(env, {robot.name for robot in robots}, hits))
     if out := exits_message(env.scenario, left):
         parts.append(out)
-    if jumps := jumps_message(incidents.jumps):
+    if jumps := jumps_message(incidents.jumps, nearest):
         parts.append(jumps)
+    if returns := returns_message(incidents.returns, {robot.name for robot in robots}):
+        parts.append(returns)
     if gone := _departures_message(env, robots):
         parts.append(gone)
     if others := others_arrived_message(env.scenario, events):
@@ -182,8 +185,25 @@ def reason_message(
     return "; ".join(reasons)
 
 
+def first_collision(names: Collection[str], events: Sequence[Event]) -> Event | None:
+    """The first collision of one of these objects; None if there was none."""
+    return next((e for e in events if e.kind == "collision" and {e.object, str(e.partner)} & set(names)), None)
+
+
+def _standing_message(env: Env, names: set[str], hits: Sequence[Event]) -> str:
+    """Say who has stood since the first collision, which stops what touches; empty if nobody has."""
+    first, rows = first_collision(names, hits), {record.name: k for k, record in enumerate(env.scenario.objects)}
+    pair = [] if first is None else [rows[name] for name in (first.object, str(first.partner)) if name in rows]
+    held = [
+        env.scenario.objects[row].name
+        for row in pair
+        if env.simulation.stopped[row] and not env.simulation.arrived[row] and not env.scenario.objects[row].static
+    ]
+    return "" if not held else ", both stand since" if len(held) == 2 else f", {quoted(held[0])} stands since"
+
+
 def _first_collision_message(names: set[str], events: Sequence[Event]) -> str | None:
-    first = next((e for e in events if e.kind == "collision" and names & {e.object, str(e.partner)}), None)
+    first = first_collision(names, events)
     if first is None:
         return None
     place = f"({first.x:.2f}, {first.y:.2f})"

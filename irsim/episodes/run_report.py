@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from irsim.common.text import clean
 from irsim.common.version import version
+from irsim.episodes.decisive import decisive_step, nearest_to_goals
 from irsim.episodes.explanation import has_one_end, reason_message, summary_message
 from irsim.episodes.incidents import find_incidents
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, find_exits
@@ -99,9 +100,20 @@ def run_result(
         perturb=list(perturb),
         outcome=outcome,
         summary=summary_message(
-            env, robots, hits, _driven_by(behavior, policy), parked, held, events, left, incidents, zones
+            env,
+            robots,
+            hits,
+            _driven_by(behavior, policy),
+            parked,
+            held,
+            events,
+            left,
+            incidents,
+            nearest_to_goals(env, incidents.jumps),
+            zones,
         ),
         reason=None if outcome == "success" else reason_message(env, robots, hits, events, source, parked, held),
+        decisive_step=decisive_step(env, robots, hits, events, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
         time_limit=horizon * env.step_time,

@@ -4,8 +4,20 @@ The answers are generated from the registries, the schema of the models, the tem
 cannot contradict them.
 """
 
-from irsim.lookup.answer import Answer, Key, TopicError
-from irsim.lookup.text import as_text
+from irsim.lookup.answer import Answer, Answers, Key, TopicError
+from irsim.lookup.several import lookup_several, topics_of
+from irsim.lookup.text import as_brief_text, as_text
 from irsim.lookup.topics import lookup, schema_part
 
-__all__ = ["Answer", "Key", "TopicError", "as_text", "lookup", "schema_part"]
+__all__ = [
+    "Answer",
+    "Answers",
+    "Key",
+    "TopicError",
+    "as_brief_text",
+    "as_text",
+    "lookup",
+    "lookup_several",
+    "schema_part",
+    "topics_of",
+]

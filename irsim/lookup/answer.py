@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict
 from irsim.common.text import clean
 from irsim.diagnostics.errors import CodedError
 
-__all__ = ["Answer", "Key", "Kind", "TopicError"]
+__all__ = ["Answer", "Answers", "Key", "Kind", "TopicError"]
 
 Kind = Literal["index", "key", "component", "template", "code", "guide", "metric", "search", "suite"]
 
@@ -59,6 +59,13 @@ class Answer(_Data):
     """YAML or a command to start from."""
     see: list[str] = []
     """Related topics."""
+
+
+class Answers(_Data):
+    """The descriptions of several topics."""
+
+    answers: list[Answer]
+    """One for each topic that is known, in the order of the question."""
 
 
 class TopicError(CodedError, LookupError):

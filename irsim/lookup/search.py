@@ -16,6 +16,7 @@ from irsim.lookup.index import all_codes, code_answer
 from irsim.lookup.metrics import METRIC_TOPICS, metric_line
 from irsim.lookup.schema_walk import Node, alternatives, paths, step
 from irsim.lookup.synonyms import EVERYDAY, named
+from irsim.lookup.text import first_sentence
 from irsim.options.registry import REGISTRIES
 
 __all__ = ["MAX_HITS", "all_topics", "near_topics", "search_answer"]
@@ -83,7 +84,7 @@ def _documents(schema: Node, keys: list[tuple[Key, Node]]) -> tuple[list[full_te
 
     def add(name: str, line: str, heads: str, text: str) -> None:
         documents.append(full_text.Document(name, heads, text))
-        lines[name] = Key(name=name, text=_one_sentence(line))
+        lines[name] = Key(name=name, text=first_sentence(line))
 
     for name, guide in GUIDES.items():
         add(name, guide.title, f"{name} {guide.title} {' '.join(guide.words)}", guide.text)
@@ -105,10 +106,6 @@ def _documents(schema: Node, keys: list[tuple[Key, Node]]) -> tuple[list[full_te
     return documents, lines
 
 
-def _one_sentence(text: str) -> str:
-    return re.split(r"(?<=[.])\s", text, maxsplit=1)[0]
-
-
 def _choices(schema: Node, node: Node) -> list[object]:
     """Return the allowed words of a key; none if they are many."""
     values = [value for option in alternatives(schema, node) for value in option.get("enum", [])]
@@ -120,11 +117,13 @@ def _hit(path: tuple[str, ...], node: Node) -> Key:
 
 
 def _line_of(schema: Node, name: str) -> Key:
-    """Return the line of a guide, or of a path of the language, even if another path has the same text."""
+    """Return the line of a guide, a template or a path of the language, even if another path has the same text."""
     if name in GUIDES:
         return Key(name=name, text=GUIDES[name].title)
+    if name in templates.names():
+        return Key(name=name, text=first_sentence(templates.load(name).purpose))
     [node, *_] = functools.reduce(lambda nodes, word: step(schema, nodes, word), name.split("."), [schema])
-    return Key(name=name, text=_one_sentence(_hit((), node).text))
+    return Key(name=name, text=first_sentence(_hit((), node).text))
 
 
 def _last(hit: Key) -> str:

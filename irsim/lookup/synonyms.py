@@ -14,7 +14,8 @@ EVERYDAY: dict[str, str] = {
     "robot.sensors": "sensor, camera, depth camera, imu, gps",
     "robot.sensors.lidar2d.noise": "lidar noise, laser noise, sensor noise, measurement noise, noise",
     "robot.kinematics.diff.noise": "motion noise, actuator noise, odometry noise, noise",
-    "robot.fov": "field of view, view angle, visual range, sees, seen, visible, visibility, surveillance, guard",
+    "robot.fov": "field of view, view angle, visual range, sees, seen, visible, visibility, surveillance, guard, "
+    "vision cone, view cone, sight cone, cone of vision, cone, camera, line of sight, watch, sight",
     "robot.kinematics.acker": "car, ackermann, ackerman, car-like, bicycle, bicycle model, vehicle, truck, bus, "
     "steering, tricycle, lorry, forklift",
     "robot.kinematics.diff": "differential, differential drive, diff drive, unicycle, turtlebot, two wheels, tank, "
@@ -29,7 +30,7 @@ EVERYDAY: dict[str, str] = {
     "robot.behavior.rvo": "velocity obstacle, reciprocal velocity obstacle, vo, hrvo, collision avoidance",
     "robot.behavior.dash": "straight line, drive straight, go straight, go to goal, point to point",
     "robot.behavior.dash.wander": "wander, random walk, roam, wandering, random goals",
-    "robot.behavior.dash.loop": "loop, patrol, patrolling, back and forth, shuttle, to and fro",
+    "robot.behavior.dash.loop": "loop, patrol, patrolling, back and forth, shuttle, to and fro, guard",
     "robot.behavior.follow": "path following, follow path, navigate, path planning, route, plan, pure pursuit, "
     "global planner",
     "robot.behavior": "behavior, behaviour, controller, policy, local planner, navigation",
@@ -45,7 +46,8 @@ EVERYDAY: dict[str, str] = {
     "robot.shape.circle": "disc, disk, round, cylinder, post, pillar, robot size",
     "robot.shape.rectangle": "box, square, crate, table, shelf, oblong, wall",
     "robot.shape.polygon": "triangle, hexagon, polyhedron, irregular, vertex, vertices",
-    "robot.shape.linestring": "line, wall, fence, segment, polyline, barrier",
+    "robot.shape.linestring": "line, wall, fence, segment, polyline, barrier, courtyard, yard, room, bend, l-bend, "
+    "corner",
     "robot.shape.compound": "l-shape, l-shaped, t-shape, several parts, composite",
     "robot.shape.circle.radius": "radius, diameter",
     "robot.state": "start, start position, initial position, initial pose, start pose, pose, spawn, position, "
@@ -55,7 +57,7 @@ EVERYDAY: dict[str, str] = {
     "robot.goal_threshold": "goal tolerance, arrival tolerance, goal radius, arrive",
     "robot.number": "number of robots, how many robots, number of obstacles, count, fleet size",
     "robot.vel_max": "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity",
-    "robot.acce": "acceleration, acceleration limit, braking, deceleration",
+    "robot.acce": "acceleration, acceleration limit, braking, brake, braking distance, stopping distance, deceleration",
     "robot.distribution": "random positions, random placement, random start, scatter, spread, placement",
     "robot.distribution.random": "random positions, random placement, random start, scatter",
     "robot.distribution.circle_crossing": "crowdnav, circle crossing, random angles of a circle, opposite goals",
@@ -67,18 +69,26 @@ EVERYDAY: dict[str, str] = {
     "obstacle": "obstacle, moving obstacle, dynamic obstacle, static obstacle, door, chair",
     "world": "environment, arena, scene",
     "world.width": "world size, arena size, size of the world",
-    "world.boundary": "boundary, border, wall, edge of the world, closed world",
+    "world.boundary": "boundary, border, wall, edge of the world, closed world, courtyard, yard",
     "world.obstacle_map": "map, occupancy grid, grid map, gridmap, floor plan, grid, bitmap, terrain",
     "world.obstacle_map.image": "image map, png, floor plan, bitmap, picture",
     "world.obstacle_map.ros": "ros map, map server, pgm, slam",
     "world.obstacle_map.perlin": "random map, forest, procedural",
-    "world.zones": "zone, region, gate, finish line, trip wire, geofence, enters, crosses a line, restricted area",
+    "world.zones": "zone, region, gate, finish line, trip wire, geofence, enters, crosses a line, restricted area, "
+    "surveillance",
+    "world.plot.title": "title, caption, heading of the picture",
     "world.collision_mode": "collision, crash, hit, bump, collide, impact",
     "world.time_limit": "time limit, timeout, duration, horizon, episode length, max steps, deadline",
     "world.step_time": "time step, step time, timestep, dt, period, frequency, sampling time, step size",
     "world.seed": "seed, random seed, reproducible",
     "gui.keyboard": "keyboard, teleop, manual control, joystick",
+    "avoidance": "between walls, among walls",
     "dead-ends": "deadlock, stuck, trap",
+    "guard-patrol": "guard, watchman, surveillance, vision cone, sight cone",
+    "room-evacuation": "evacuation, evacuate, emergency exit, exit, escape, room exit",
+    "l-passage": "bend, l-bend, passage, corner, blind corner",
+    "corridor-passing": "passage, corridor, hallway, aisle",
+    "doorway": "passage, narrow passage, door, gap",
 }
 """Topic -> its everyday names, separated by commas; the names of the language itself are not repeated here."""
 

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 from irsim.lookup.answer import Answer, Key
 
-__all__ = ["as_text", "facts"]
+__all__ = ["as_brief_text", "as_text", "facts", "first_sentence"]
+
+_MAX_BRIEF_KEYS = 8
+"""Number of keys that a brief answer describes; further ones are only named."""
+_MIN_BRIEF_TEXT = 200
+"""Number of characters from which on the next sentence ends the text of a brief answer."""
 
 
 def as_text(answer: Answer) -> str:
@@ -13,13 +20,52 @@ def as_text(answer: Answer) -> str:
     if answer.text:
         lines.append(answer.text)
     if answer.about is not None:
-        lines.append(facts(answer.about) + ("; or a list, one per object" if answer.about.per_object else ""))
+        lines.append(facts(answer.about))
     for heading, keys in answer.groups.items():
         if keys:
             lines += ["", f"{heading}:", *(_line(key) for key in keys)]
     if answer.see:
         lines += ["", f"see also: {', '.join(answer.see)}"]
     return "\n".join(lines)
+
+
+def as_brief_text(answer: Answer) -> str:
+    """Return the essence of an answer: first sentences, its own keys, and the example.
+
+    Keys that a component has in common with its siblings, and those beyond the first ones, are only named.
+    """
+    lines = [answer.title]
+    if answer.text:
+        lines.append(answer.text if answer.kind == "guide" else first_sentence(answer.text, least=_MIN_BRIEF_TEXT))
+    if answer.about is not None:
+        lines.append(facts(answer.about))
+    for heading, keys in answer.groups.items():
+        shown = [] if "in common" in heading or heading == "keys of all" else keys[:_MAX_BRIEF_KEYS]
+        lines += [_brief_line(key) for key in shown]
+        if rest := [_with_default(key) for key in keys[len(shown) :]]:
+            lines.append(f"- {'also' if shown else heading}: {', '.join(rest)}")
+    if answer.example:
+        lines.append(
+            f"For example: {answer.example}" if "\n" not in answer.example else f"For example:\n{answer.example}"
+        )
+    return "\n".join(lines)
+
+
+def _brief_line(key: Key) -> str:
+    parts = [part for part in (_with_default(key), first_sentence(key.text)) if part]
+    return "- " + ": ".join(parts)
+
+
+def _with_default(key: Key) -> str:
+    """Return name, unit and default of a key: ``vmax [m/s] = 1.5``."""
+    unit = "" if not key.unit else f" {key.unit}" if key.unit.startswith("[") else f" [{key.unit}]"
+    return f"{key.name}{unit}{' (required)' if key.required else '' if key.default is None else f' = {key.default}'}"
+
+
+def first_sentence(text: str, *, least: int = 0) -> str:
+    """Return the first sentences of a text that together have at least ``least`` characters, by default one."""
+    end = re.compile(r"(?<=[.])\s").search(text, least)
+    return text if end is None else text[: end.start()]
 
 
 def _line(key: Key) -> str:
@@ -38,4 +84,6 @@ def facts(key: Key) -> str:
         facts.append("required")
     if key.default is not None:
         facts.append(f"default {key.default}")
+    if key.per_object:
+        facts.append("or a list, one per object")
     return "; ".join(fact for fact in facts if fact)

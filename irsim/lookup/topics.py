@@ -34,6 +34,7 @@ from irsim.lookup.schema_walk import (
     step,
 )
 from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
+from irsim.lookup.small_examples import BETTER, small_example
 from irsim.lookup.suites import suite_answer, suite_key_answer, suite_names, suites_answer
 from irsim.lookup.synonyms import named
 from irsim.options.registry import REGISTRIES, Registry
@@ -193,7 +194,7 @@ def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
         text=text,
         about=None if feature_name or path in (("world",), ("robot",), ("obstacle",)) else about,
         groups=groups,
-        example=example_of(path, feature_name) or _bare_example(path, node, feature_name),
+        example=_example(schema, path, node, feature_name),
         see=_related(path, registry, feature_name),
     )
 
@@ -243,6 +244,14 @@ def _component_line(registry: Registry, name: str) -> Key:
     doc = " ".join((feature.options.__doc__ or "").split()) if feature is not None else ""
     later = "" if feature is None or feature.simulated else " (not simulated yet)"
     return Key(name=name, text=doc + later)
+
+
+def _example(schema: Node, path: tuple[str, ...], node: Node, name: str | None) -> str | None:
+    """Return YAML for a part of the language: from a template, or made of values that say what the key is for."""
+    small = None if name else small_example(schema, path)
+    if small is not None and path[-1] in BETTER:
+        return small
+    return example_of(path, name) or small or _bare_example(path, node, name)
 
 
 def _bare_example(path: tuple[str, ...], node: Node, name: str | None) -> str | None:

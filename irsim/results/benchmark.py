@@ -79,6 +79,8 @@ class BenchmarkRow(Result):
     object left the world), ``jumped`` (one jumped over its goal), ``seen`` (a robot was in the ``fov`` of another
     object); and ``placement-crowded``, the number of seeds without room, which are not among ``episodes``. Only those
     above 0."""
+    incident_seeds: dict[str, list[int]] = Field(default_factory=dict)
+    """Seeds of these episodes by the same names; empty for ``(all)``."""
 
 
 class EpisodeRow(Result):

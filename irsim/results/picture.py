@@ -96,6 +96,11 @@ class SnapshotResult(Result):
     """Number of obstacles from entries, without the boundary and the map."""
     contents: str
     """The obstacles in words, with the boundary and the map."""
+    view: tuple[float, float, float, float] | None = None
+    """Part that the picture shows [m]: x_min, x_max, y_min, y_max, if ``world.plot.viewpoint`` moves it away from the
+    world; None if it shows the world or a region that was asked for."""
+    ended: int | None = None
+    """Step in which the episode had ended, if the picture shows a later one."""
     robots: list[RobotPose]
     """One entry per robot."""
     moving: list[MovingPose]

@@ -141,6 +141,9 @@ class RunResult(Result):
     """One sentence: which robots arrived, which did not, and why."""
     reason: str | None = None
     """Why the run failed: the first collision, and what robots that did not arrive were doing; None on success."""
+    decisive_step: int | None = None
+    """Step that decided the outcome: of the first collision of a robot, or in which the first robot that did not arrive
+    ceased to make progress; None on success, and if such robots moved on until the end."""
     steps: int
     """Number of executed steps."""
     sim_time: float

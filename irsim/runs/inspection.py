@@ -17,6 +17,7 @@ from irsim.results.run import RunTable
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.runs.resimulation import scenario_of
+from irsim.runs.selection import chosen_objects
 from irsim.runs.tables import Cell, Field, Question, Table, paged, rounded
 from irsim.runs.watching import sight_view, zone_view
 from irsim.scenario.limits import Limits
@@ -61,7 +62,9 @@ def inspect_run(
             omnidirectional drives); ``max_turn_rate`` is a magnitude, too. ``zones``: who was in a region of
             ``world.zones`` from when to when, and who crossed a line in which direction; ``sight``: who saw whom from
             when to when.
-        robot: Name of one robot, or of another object; default: all robots, in ``zones`` and ``sight`` all objects.
+        robot: Name of one robot, or of another object; ``all`` (all objects that can move), ``robots``, ``obstacles``
+            (those that can move), a tag, or several of these, separated by commas; default: all robots, in ``zones``
+            and ``sight`` all objects.
         from_step: First step.
         to_step: Last step; default: the last step of the run.
         every: Take every Nth step; default: the smallest N with which the table fits into ``limit``.
@@ -83,10 +86,10 @@ def inspect_run(
         what = f"run {opened.id} has no steps from {from_step} {to}"
         raise RunError("step-out-of-range", what, opened.extent, where="from_step" if from_step > end else "to_step")
     chosen = _fields(fields)
-    objects = _objects(opened, robot)
+    objects, named = chosen_objects(opened, robot)
     start = _start(cursor)
     question = Question(
-        opened, trace, objects, robot, from_step - begin, last - begin, every, chosen, start, limit, limits
+        opened, trace, objects, named, from_step - begin, last - begin, every, chosen, start, limit, limits
     )
     found = VIEWS[view](question)
     if start and start >= found.total:
@@ -122,13 +125,6 @@ def _fields(names: Sequence[str] | None) -> Sequence[Field]:
             fix = suggestion(name, FIELDS, f"the fields are {', '.join(FIELDS)}")
             raise RunError("bad-argument", f"{clean(name)!r} is not a valid field", fix, where=f"fields[{index}]")
     return [field for field in FIELDS if field in names]
-
-
-def _objects(run: Run, robot: str | None) -> list[int]:
-    if robot is None:
-        roles = [item.get("role") for item in run.resolved["objects"]]
-        return [index for index, role in enumerate(roles) if role == "robot"]
-    return [run.index_of(robot)]
 
 
 def _start(cursor: str | None) -> int:

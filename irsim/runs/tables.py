@@ -25,8 +25,8 @@ class Question:
 
     Attributes:
         run, trace: The run and its trace.
-        objects: Indices of the chosen objects: the one that was named, or all robots.
-        named: Name of the chosen object, None for all.
+        objects: Indices of the chosen objects: those that were named, or all robots.
+        named: Names of the chosen objects, None for all.
         first, last: First and last row of the trace.
         every: Take every Nth row; None: as many rows as fit.
         fields: Columns of the view ``rows``.
@@ -38,7 +38,7 @@ class Question:
     run: Run
     trace: Trace
     objects: list[int]
-    named: str | None
+    named: frozenset[str] | None
     first: int
     last: int
     every: int | None
@@ -46,6 +46,10 @@ class Question:
     start: int
     limit: int | None
     limits: Limits | None
+
+    def concerns(self, *names: str | None) -> bool:
+        """Whether one of these objects was chosen, or none was named."""
+        return self.named is None or any(name in self.named for name in names)
 
     @property
     def steps(self) -> tuple[int, int]:

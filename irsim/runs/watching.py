@@ -27,7 +27,7 @@ class _Span(NamedTuple):
 
 def zone_view(asked: Question) -> Table:
     """Visits to regions and crossings of lines, in order of time."""
-    events = [e for e in asked.run.events if e.zone is not None and asked.named in (None, e.object)]
+    events = [e for e in asked.run.events if e.zone is not None and asked.concerns(e.object)]
     rows = []
     for begin, end in _within(asked, _spans(events, "zone_exit")):
         times: list[Cell] = [*_times(asked, begin, end)]
@@ -40,7 +40,7 @@ def zone_view(asked: Question) -> Table:
 def sight_view(asked: Question) -> Table:
     """Who saw whom, in order of time; x and y are the place of the object that is seen."""
     kinds = ("sight_start", "sight_end")
-    events = [e for e in asked.run.events if e.kind in kinds and asked.named in (None, e.object, e.partner)]
+    events = [e for e in asked.run.events if e.kind in kinds and asked.concerns(e.object, e.partner)]
     rows: list[list[Cell]] = [
         [begin.object, begin.partner, *_times(asked, begin, end)]
         for begin, end in _within(asked, _spans(events, "sight_end"))

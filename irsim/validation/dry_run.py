@@ -15,6 +15,7 @@ from irsim.env import Env
 from irsim.episodes.episode import horizon_of
 from irsim.episodes.explanation import has_one_end, others_arrived_message
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, exits_message, find_exits
+from irsim.episodes.room import MAX_TRIES, crowded_message, first_with_room
 from irsim.episodes.stuck import (
     find_circling,
     find_jammed,
@@ -61,7 +62,8 @@ def dry_run(
 
     Args:
         scenario: The scenario.
-        seed: Overrides the scenario's own seed. Without either, the seed is 0, so every dry run is the same.
+        seed: Overrides the scenario's own seed. Without either it is the first one, from 0 on, that leaves room for
+            every object, so every dry run is the same.
         budget: Greatest work, estimated from the scenario: the same budget gives the same steps on every machine.
         seconds: Computing time [s] after which the dry run ends even within its budget, counted from the end of the
             first step, in which routes are planned.
@@ -69,19 +71,24 @@ def dry_run(
         limits: Limits of a run.
 
     Raises:
-        PlacementError: There is no free place for a random object with this seed.
+        PlacementError: There is no free place for a random object with this seed, or without one with any tried.
     """
-    if seed is None:
-        seed = scenario.world.seed if scenario.world.seed is not None else 0
-    env = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
+    own = scenario.world.seed if seed is None else seed
+    env, crowded = first_with_room(
+        lambda tried: Env(scenario, seed=tried, display=False, headless=True, log_level="ERROR"),
+        range(MAX_TRIES) if own is None else [own],
+    )
     try:
         horizon, source = horizon_of(scenario, env, None, limits or DEFAULT_LIMITS)
         affordable = max(1, int(budget / max(1.0, step_work(scenario, env.simulation))))
         wanted = min(horizon, affordable if steps is None else min(steps, affordable))
         trace, late = _simulate(env.simulation, wanted, seconds)
-        return _summarise(
-            env, scenario, trace, seed, None if source == "limits" else horizon, seconds if late else None
+        found = _summarise(
+            env, scenario, trace, env.seed, None if source == "limits" else horizon, seconds if late else None
         )
+        if skipped := crowded_message(crowded):
+            found.summary += f"; {skipped}"
+        return found
     finally:
         env.end(ending_time=0.0)
 

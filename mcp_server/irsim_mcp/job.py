@@ -143,6 +143,16 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
 
     arguments, limits = job["arguments"], _limits(job)
     path, text = arguments.pop("path", None), arguments.pop("text", None)
+    checked = ""
+    if arguments.pop("check"):
+        from irsim.api import validate
+
+        report = validate(path, text=text, strict=True, simulate=True, seed=arguments["seed"], limits=limits)
+        checked = f', "report": {report.model_dump_json()}'
+        if not report.valid:
+            return f'{{"png": "", "scene": null{checked}}}'
+        if arguments["seed"] is None and report.dry_run is not None:
+            arguments["seed"] = report.dry_run.seed  # the picture and the check are of the same layout
     scenario, warnings = read_scenario(path, text=text, strict=True, limits=limits)
     if arguments["draw"]:
         os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
@@ -151,7 +161,11 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
         os.chdir(job["workspace"])
     result = snapshot_of(scenario, path, warnings=warnings, strict=True, limits=limits, progress=progress, **arguments)
     png = base64.b64encode(result.png).decode()
-    return f'{{"png": "{png}", "scene": {result.model_dump_json()}}}'
+    if checked:
+        from irsim.validation.scene_table import scene_table
+
+        checked += f', "table": {scene_table(scenario, result.seed).model_dump_json()}'
+    return f'{{"png": "{png}", "scene": {result.model_dump_json()}{checked}}}'
 
 
 def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:

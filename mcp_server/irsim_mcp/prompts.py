@@ -128,10 +128,11 @@ Robots use the drive {kinematics}. Difficulty: {difficulty}. {meaning}
 
 1. List the elements that the goal needs (robots, obstacles, which of them move, positions of goals), with numbers in \
 m and s.
-2. Call lookup without a topic, then with the closest template; change that template rather than starting from scratch.
-3. Call validate_scenario after each edit, and fix what it reports by code and line, until the scenario is valid and \
+2. Call lookup once with all topics, separated by commas, then with the closest template; change that template rather \
+than starting from scratch.
+3. Call render_snapshot after each edit, and fix what it reports by code and line, until the scenario is valid and \
 each remaining warning is intended.
-4. Call render_snapshot and look: is everything where it should be, is there a path to each goal?
+4. Look at its picture and table: is everything where it should be, is there a path to each goal?
 5. Call run_episode with a seed. If the outcome does not serve the goal, find the cause with inspect_run, change the \
 scenario and go back to 3.
 6. Report the YAML, each element with the lines that express it, the outcome, the seed, and what could not be done."""

@@ -6,7 +6,8 @@ import json
 from typing import Any
 
 from irsim.bundled import templates
-from irsim.lookup import TopicError, as_text, schema_part
+from irsim.diagnostics.errors import ArgumentError
+from irsim.lookup import TopicError, as_brief_text, as_text, lookup_several, schema_part, topics_of
 from irsim.lookup import lookup as look_up
 from irsim.runs.files import RunError
 from irsim.scenario.yaml.modeline import without_modeline
@@ -28,6 +29,8 @@ def explanation(topic: str, parameters: dict[str, Any] | None) -> str:
     """
     if parameters:
         return _template(topic.strip(), parameters)
+    if len(topics := topics_of(topic)) > 1:
+        return _several(topics)
     try:
         answer = look_up(topic)
     except TopicError as error:
@@ -41,6 +44,27 @@ def explanation(topic: str, parameters: dict[str, Any] | None) -> str:
         return as_text(answer)
     groups = {**answer.groups, **look_up("templates").groups}  # with the purpose of each template
     return f"{as_text(answer.model_copy(update={'title': _INDEX_TITLE, 'groups': groups}))}\n\n{_INDEX_HELP}"
+
+
+def _several(topics: list[str]) -> str:
+    """Brief explanations of several topics; of templates, the YAML."""
+    try:
+        found = lookup_several(topics)
+    except TopicError as error:
+        fix = f"did you mean {' or '.join(error.near)}?" if error.near else "lookup without a topic lists all topics"
+        raise RunError("unknown-topic", error.message, fix, where="topic") from None
+    except ArgumentError as error:
+        raise RunError("bad-argument", error.message, error.fix, where="topic") from None
+    parts = []
+    for one in found:
+        if isinstance(one, TopicError):
+            near = f": did you mean {' or '.join(one.near)}?" if one.near else ""
+            parts.append(f"{one.message}{near}")
+        elif one.kind == "template":
+            parts.append(_template(one.topic, {}))
+        else:
+            parts.append(as_brief_text(one))
+    return "\n\n".join(f"== {part}" for part in parts)
 
 
 def schema_text(section: str) -> str:

@@ -198,10 +198,29 @@ def test_a_seed_without_room_is_a_finding() -> None:
         "robot: {number: 27, distribution: {name: random, range_low: [0, 0, -3], range_high: [6, 6, 3]},"
         " kinematics: {name: omni}, shape: {name: circle, radius: 0.5}, behavior: {name: dash}}\n",
         simulate=True,
+        seed=0,
     )
     assert report.dry_run is None
     assert not report.valid
     assert report.findings[0].code == "placement-crowded"
+
+
+def test_without_a_seed_the_first_one_with_room_is_tried_and_the_others_are_named() -> None:
+    report = irsim.validate(text=TIGHT, simulate=True)
+    assert report.valid
+    assert report.dry_run is not None
+    assert report.dry_run.seed == 5
+    assert "seeds 0, 1, 2, 3, 4 had no room (placement-crowded)" in report.dry_run.summary
+    [tight] = [item for item in report.findings if item.code == "placement-tight"]
+    assert "(0, 1, 2, 3, 4 and 9 more)" in tight.message
+
+
+TIGHT = """
+world: {width: 6, height: 6}
+robot:
+  - {number: 5, kinematics: {name: diff}, shape: {name: circle, radius: 0.55}, behavior: {name: dash},
+     distribution: {name: random, range_low: [1, 1, 0], range_high: [5, 5, 0], min_distance: 2.0}}
+"""
 
 
 PEOPLE = """\

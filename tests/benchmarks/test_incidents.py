@@ -69,9 +69,8 @@ def test_robots_that_left_or_jumped_are_in_the_summary_of_a_run() -> None:
     assert [item.name for item in found.left] == ["stray"]
     assert found.jumped == ["fast"]
     [jump] = [event for event in found.events if event.kind == "overshoot" and event.object == "fast"][:1]
-    assert f"'fast' jumped over its goal at {round(jump.time, 2):g} s (raise goal_threshold or lower step_time)" in (
-        found.summary
-    )
+    assert f"'fast' jumped over its goal at {round(jump.time, 2):g} s, at no step nearer than 0.3 m " in found.summary
+    assert "(raise goal_threshold above that or lower step_time)" in found.summary
     assert "'stray' left the world at" in found.summary
 
 

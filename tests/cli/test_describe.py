@@ -215,3 +215,39 @@ def test_numbers_without_a_unit_are_told_without() -> None:
     for template in templates.load_all():
         for parameter in template.parameters.values():
             assert not parameter.allowed().endswith(" 1") or parameter.max == 1
+
+
+def test_several_topics_are_answered_briefly_in_one_call(irsim: Run) -> None:
+    shown = irsim("describe", "robot.fov,", "sfm,", "behavior", "dash").stdout
+    assert shown.index("robot.fov") < shown.index("behavior sfm") < shown.index("behavior dash")
+    assert len(shown) < len(irsim("describe", "sfm").stdout)
+    assert "keys it has in common with the others: wander" in shown
+
+
+def test_an_unknown_topic_among_others_does_not_stop_the_others(irsim: Run) -> None:
+    result = irsim("describe", "robot.fov, rangemax", "--json")
+    assert [answer["topic"] for answer in parsed(result)["answers"]] == ["robot.fov"]
+    assert "rangemax" in result.stderr
+    assert irsim("describe", "rangemax, rovo").exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("word", "topic"),
+    [
+        ("vision cone", "robot.fov"),
+        ("guard", "guard-patrol"),
+        ("sees", "robot.fov"),
+        ("surveillance", "robot.fov"),
+        ("courtyard", "robot.shape.linestring"),
+        ("passage", "corridor-passing"),
+        ("bend", "l-passage"),
+        ("evacuation", "room-evacuation"),
+        ("braking", "robot.acce"),
+    ],
+)
+def test_everyday_words_lead_to_the_part_of_the_language(word: str, topic: str) -> None:
+    assert topic in [key.name for key in lookup(word).groups["topics"][:3]]
+
+
+def test_title_is_the_key_of_pictures() -> None:
+    assert lookup("title").topic == "world.plot.title"

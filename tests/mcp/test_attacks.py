@@ -121,9 +121,12 @@ async def test_scenarios_that_are_not_validated_first(trap: Path, tool: str, nam
     scenario, code = SCENARIOS[name]
     async with connected(trap) as client:
         with at_once():
-            told = error_of(await client.call_tool(tool, {"scenario_yaml": scenario}))
-    assert told.startswith("invalid-scenario: ")
+            result = await client.call_tool(tool, {"scenario_yaml": scenario})
+    told = error_of(result) if tool == "run_episode" else text_of(result)
+    assert told.startswith("invalid-scenario: " if tool == "run_episode" else "invalid: ")
     assert code in told
+    assert len(result.content) == 1
+    assert not (trap / "pwned").exists()
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -120,11 +120,11 @@ async def test_one_line_with_a_fix(
     assert re.search(r"\. Fix: .*[.?]$", told)
 
 
-@pytest.mark.parametrize("tool", ["run_episode", "render_snapshot"])
-async def test_an_invalid_scenario_names_its_first_problems(empty: Path, tool: str) -> None:
+@pytest.mark.parametrize(("tool", "step"), [("run_episode", None), ("render_snapshot", 5)])
+async def test_an_invalid_scenario_names_its_first_problems(empty: Path, tool: str, step: int | None) -> None:
     wrong = ROOM.replace("dash", "dahs").replace("world: {", "world: {foo: 1, ").replace("goal:", "gaol:")
     async with connected(empty) as client:
-        told = error_of(await client.call_tool(tool, {"scenario_yaml": wrong}))
+        told = error_of(await client.call_tool(tool, {"scenario_yaml": wrong} | ({"step": step} if step else {})))
     assert told.startswith("invalid-scenario: 3 errors: world.foo line 1 unknown-key: ")
     assert "robot[0].behavior.name line 8 unknown-behavior" in told
     assert told.endswith("Fix: validate_scenario lists every problem with its fix.")

@@ -29,7 +29,7 @@ async def looked_up(empty: Path, topic: str, **arguments: object) -> str:
 async def test_index_fits_a_screen_and_leads_on(empty: Path) -> None:
     index = await looked_up(empty, "")
     lines = index.splitlines()
-    assert len(lines) <= 60
+    assert len(lines) <= 24 + len(templates.names())  # one line for each template
     for name in (
         "world",
         "robot",
@@ -169,3 +169,17 @@ async def test_names_are_completed(empty: Path) -> None:
         ref = ResourceTemplateReference(type="ref/resource", uri="irsim://templates/{name}")
         found = await client.complete(ref, {"name": "name", "value": "c"})
     assert {"car-park", "circle-swap", "corridor-passing", "crossing"} <= set(found.completion.values)
+
+
+async def test_several_topics_are_answered_in_one_call(empty: Path) -> None:
+    text = await looked_up(empty, "robot.fov, sfm, doorway, no-such-thing-zq")
+    assert "== robot.fov" in text
+    assert "== behavior sfm" in text
+    assert "scenario.yaml with the default parameters" in text  # of the template
+    assert "no-such-thing-zq" in text
+
+
+async def test_too_many_topics_are_refused(empty: Path) -> None:
+    async with connected(empty) as client:
+        result = await client.call_tool("lookup", {"topic": ", ".join(f"robot.k{n}" for n in range(13))})
+    assert "bad-argument" in error_of(result)

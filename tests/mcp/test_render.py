@@ -17,10 +17,13 @@ pytestmark = pytest.mark.anyio
 async def test_line_and_picture(workspace: Path) -> None:
     async with connected(workspace) as client:
         result = await client.call_tool("render_snapshot", {"scenario_yaml": CRASH, "seed": 1, "size_px": 300})
-    line = text_of(result)
-    assert "\n" not in line
-    assert "t=0 s (step 0, nothing is random); world x 0..8 m, y 0..6 m; rover at (1.00, 1.00)" in line
-    assert "goal (7.00, 1.00); 1 obstacle" in line
+    text = text_of(result)
+    line = text.splitlines()[0]
+    assert "t=0 s (step 0, nothing is random); world x 0..8 m, y 0..6 m" in line
+    assert "'rover': diff, circle r 0.3, at (1.00, 1.00) heading 0.00 goal (7.00, 1.00)" in text
+    assert "'crate': static obstacle" in text
+    assert "dash-into-obstacle" in text
+    assert "collision of 'rover' with 'crate' at 2.2 s" in text
     assert "irsim render scenario.yaml --seed 1 --steps 0 --strict --size 300" in line
     picture = image_of(result)
     data = base64.b64decode(picture.data)
@@ -102,3 +105,49 @@ async def test_pictures_of_the_workspace_are_found(workspace: Path) -> None:
         with Image.open(io.BytesIO(base64.b64decode(image_of(result).data))) as image:
             colors = {color for _, color in image.convert("RGB").getcolors(100_000) or []}
         assert any(abs(r - 250) + abs(g - 10) + abs(b - 200) < 12 for r, g, b in colors)
+
+
+async def test_an_invalid_scenario_gives_all_its_errors_and_no_picture(empty: Path) -> None:
+    wrong = ROOM.replace("goal:", "gaol:").replace("diff", "dif")
+    async with connected(empty) as client:
+        result = await client.call_tool("render_snapshot", {"scenario_yaml": wrong})
+    assert len(result.content) == 1
+    assert "1." in text_of(result)
+    assert "2." in text_of(result)
+    assert "Fix:" in text_of(result)
+    assert "No picture" in text_of(result)
+
+
+RANDOM = """
+world: {width: 6, height: 6}
+robot:
+  - number: 5
+    kinematics: {name: diff}
+    shape: {name: circle, radius: 0.3}
+    distribution: {name: random, range_low: [1, 1, 0], range_high: [5, 5, 0], min_distance: 1.4}
+    behavior: {name: dash}
+"""
+
+
+async def test_ranges_over_seeds_and_seeds_without_room_are_named(empty: Path) -> None:
+    async with connected(empty) as client:
+        text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": RANDOM, "seed": 1}))
+    assert "Objects with seed 1 (random: placement)" in text
+    assert "and 2 more: diff" in text
+    assert "over 20 seeds starts x 1." in text
+
+
+async def test_a_later_step_is_only_drawn(empty: Path) -> None:
+    async with connected(empty) as client:
+        text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "step": 5}))
+    assert "\n" not in text
+    assert "at (" in text
+
+
+async def test_a_step_beyond_the_end_and_a_moved_view_are_said(empty: Path) -> None:
+    moved = ROOM.replace("world: {", "world: {plot: {viewpoint: [1, 1]}, ")
+    assert moved != ROOM
+    async with connected(empty) as client:
+        text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": moved, "step": 900}))
+    assert "beyond the end of the episode, which is step" in text
+    assert "as plot.viewpoint centres the view" in text

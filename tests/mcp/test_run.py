@@ -40,7 +40,7 @@ async def test_collision_names_both_the_place_and_the_step_to_look_at(empty: Pat
         assert data["outcome"] == "collision"
         assert f"'rover' hit 'crate' at {hit['time']:.1f} s near ({hit['x']:.2f}, {hit['y']:.2f})" in data["reason"]
         assert (hit["kind"], hit["object"], hit["partner"]) == ("collision", "rover", "crate")
-        assert f"render_snapshot run_id={data['run_id']} step={hit['step']}" in data["next"]
+        assert f"render_snapshot run_id={data['run_id']} strip=6 step={hit['step']}" in data["next"]
         for said in (data["summary"], data["reason"], data["reproduce"], data["next"], "'rover' collision"):
             assert said in text
         look = {"scenario_yaml": CRASH, "seed": 3, "step": hit["step"], "return_image": False}

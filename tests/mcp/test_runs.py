@@ -215,5 +215,5 @@ async def test_what_cannot_be_recorded_runs_all_the_same(workspace: Path) -> Non
     data = data_of(result)
     assert data["outcome"] == "collision"
     assert "run_id" not in data
-    assert "render_snapshot step=" in data["next"]
+    assert "render_snapshot strip=6 step=" in data["next"]
     assert "Record: none" in text_of(result)

@@ -315,3 +315,14 @@ def test_the_command_line(crash: Path) -> None:
     for words in (("inspect", "nothing-123456"), ("inspect", "last", "--view", "speed"), ("inspect", "..")):
         result = CliRunner().invoke(app, words)
         assert result.exit_code == 2
+
+
+def test_all_objects_at_once(pair: Run) -> None:
+    speeds = inspect_run(pair, view="speeds", robot="all")
+    assert [row[0] for row in speeds.rows] == ["left", "right", "walker"]
+    assert [row[0] for row in inspect_run(pair, view="speeds", robot="obstacles").rows] == ["walker"]
+    assert [row[0] for row in inspect_run(pair, view="speeds", robot="walker, left").rows] == ["left", "walker"]
+    rows = inspect_run(pair, robot="all", every=7, limit=None)
+    assert [row[2] for row in rows.rows[:3]] == ["left", "right", "walker"]
+    with pytest.raises(RunError, match="did you mean 'left'"):
+        inspect_run(pair, robot="right, lefd")

@@ -23,14 +23,16 @@ class BehaviorOptions(Options):
     name: str
     """Name of the behavior."""
     wander: Bool = False
-    """Drive to random goals between `range_low` and `range_high`; each arrival draws the next."""
+    """Drive to random goals between `range_low` and `range_high`; each arrival draws the next, for each object on its
+    own."""
     loop: Bool = False
     """After the last goal, start again with the first; with one goal, shuttle between it and the start. `wander` takes
     precedence."""
     range_low: Pose | None = None
-    """Lower corner of random goals; null is the world's own. Two numbers leave the heading free."""
+    """Lower corner of random goals, for the middle of the object; null is the world's own, where bodies at the edge
+    reach beyond. Two numbers leave the heading free."""
     range_high: Pose | None = None
-    """Upper corner of random goals; null is the world's own. Two numbers leave the heading free."""
+    """Upper corner of random goals, as `range_low`; null is the world's own."""
     target_roles: Literal["all", "robot", "obstacle"] = "all"
     """Role of the other objects that the behavior reacts to."""
 

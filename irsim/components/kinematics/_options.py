@@ -44,7 +44,7 @@ class KinematicsOptions(Options):
     name: str
     """Name of the drive, which is the motion model."""
     noise: Bool = False
-    """Add Gaussian noise to the executed velocity."""
+    """Add Gaussian noise to the executed velocity, drawn in each step for each object."""
     mode: str | None = None
     """Only `acker` uses it; the other drives accept and ignore it."""
     tau: Annotated[Seconds, Field(ge=0)] | None = None

@@ -31,7 +31,7 @@ class RandomOutline(ShapeOptions):
     vertices: list[Point] | None = None
     """Corners in the body frame, used as given; the object's `state` moves and turns them."""
     random_shape: Bool = False
-    """Draw random vertices for every scene instead."""
+    """Draw random vertices for every scene instead; with `number`, each object has its own."""
     center_range: Annotated[list[Component], vector(("m", "m", "m", "m"), 4)] = [0.0, 0.0, 0.0, 0.0]
     """Range of the middle of a random outline, body frame: [xmin, ymin, xmax, ymax]."""
     avg_radius_range: Annotated[list[Annotated[Component, Field(ge=0)]], vector(("m", "m"), 2)] = [0.1, 1.0]

@@ -24,7 +24,7 @@ class Circle(ShapeOptions):
     center: Point = [0.0, 0.0]
     """Offset of the middle of the disc in the body frame; it turns with the heading."""
     random_shape: Bool = False
-    """Draw a random radius for every scene instead."""
+    """Draw a random radius for every scene instead; with `number`, each object has its own."""
     radius_range: Annotated[list[Annotated[Meters, Field(gt=0)]], vector(("m", "m"), 2)] = [0.1, 1.0]
     """Range of the random radius, with `random_shape`."""
 

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
+from irsim.common.text import listed
 from irsim.scenario.checks import Context
 from irsim.scenario.messages.findings import Finding, error, warning
 from irsim.scenario.resolve.resolved import Placement
 from irsim.validation.feasibility.scenes import Drawn
 
 __all__ = ["check"]
+
+_MAX_SEEDS = 5
+"""Number of seeds that a message names."""
 
 
 def check(context: Context, drawn: Drawn) -> Iterator[Finding]:
@@ -23,7 +27,8 @@ def check(context: Context, drawn: Drawn) -> Iterator[Finding]:
     if placement is None:
         return
     failed, tried = len(drawn.failed), drawn.tried
-    what = f"with {failed} of {tried} seeds, not all objects find a free place"
+    seeds = listed([str(seed) for seed in sorted(drawn.failed)], _MAX_SEEDS)
+    what = f"with {failed} of {tried} seeds, not all objects find a free place ({seeds})"
     place, fix = _words(placement)
     where = (*path, "distribution")
     if failed == tried or drawn.own in drawn.failed:

@@ -266,7 +266,11 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) ->
             f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_MAX_FAILURES]
         ]
         shown["failed"] = f"{failed} ({', '.join(robots)})"
-    return shown | ({"incidents": row["incidents"]} if row["incidents"] else {})
+    if row["incidents"]:
+        shown["incidents"] = row["incidents"]
+    if row["incident_seeds"]:
+        shown["incident_seeds"] = seeds_of(row["incident_seeds"], _MAX_FAILED_SEEDS)
+    return shown
 
 
 def _defined(found: dict[str, Any], keys: Sequence[str], episodes: int) -> dict[str, Any]:
@@ -293,7 +297,9 @@ def _text(found: Benchmark) -> str:
     for row in found.rows:
         values = _lines(row) + [f"difference of {line}" for line in _lines(row.get("diff", {}))]
         values += [f"failed: {row['failed']}"] if "failed" in row else []
-        if incidents := row.get("incidents"):
+        if "incident_seeds" in row:
+            values.append(f"episodes with {row['incident_seeds']}")
+        elif incidents := row.get("incidents"):
             values.append(f"episodes with {', '.join(f'{name}: {count}' for name, count in incidents.items())}")
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(values)}")
     lines += [f"Note: {note}" for note in found.notes]

@@ -58,7 +58,7 @@ def tool(services: Services) -> StrictTool:
     async def inspect_run(
         run_id: RunId,
         view: Literal["rows", "collisions", "closest", "speeds", "zones", "sight"] = "rows",
-        robot: Annotated[str | None, Field(description="Name; default: all robots.")] = None,
+        robot: Annotated[str | None, Field(description="Names, a tag, all or obstacles; default: robots.")] = None,
         from_step: Annotated[int, Field(ge=0)] = 0,
         to_step: Annotated[int | None, Field(ge=0)] = None,
         every: Annotated[int | None, Field(ge=1)] = None,

@@ -13,12 +13,12 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["tool"]
 
 _DESCRIPTION = """
-    Explain what scenario files may contain, and give templates to start from. Call it first, without a topic: an index
-    of sections, components (behaviors, drives, sensors, shapes), templates and error codes. Then with a topic: a
+    Explain what scenario files may contain, and give templates to start from. Call it first with all topics you need,
+    separated by commas ('crowd, robot.fov, lidar2d'): each is answered briefly. Alone, a topic is answered in full: a
     template name returns a complete scenario as YAML, with `parameters` filled in on request; a key or path
-    ('robot.sensors.lidar2d', 'vel_max'), a component ('dash'), a code ('unknown-key'), a metric ('spl') or any word
-    ('parking') returns meaning, unit, range, default and an example. Returns text. Start from the closest template.
-    Next: edit the YAML and call validate_scenario.
+    ('vel_max'), a component ('dash'), a code ('unknown-key'), a metric ('spl') or any word ('parking') returns
+    meaning, unit, range, default and an example. Returns text. Start from the closest template. Next: edit the YAML and
+    call render_snapshot.
 """
 
 
@@ -27,7 +27,7 @@ def tool(services: Services) -> StrictTool:
     most = services.limits.text
 
     async def lookup(
-        topic: Annotated[str, Field(max_length=200, description="Empty for the index.")] = "",
+        topic: Annotated[str, Field(max_length=200, description="One or several; empty: index.")] = "",
         parameters: Annotated[
             dict[str, str | bool | int | float] | None,
             Field(description='Of a template, such as {"width": 1.4}; its answer lists them.'),

@@ -14,22 +14,27 @@ from irsim_mcp.errors import failure
 from irsim_mcp.limits import MAX_STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.run_resources import uri
+from irsim_mcp.scene_text import scene_lines
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
 from irsim_mcp.tool import StrictTool, strict
+from irsim_mcp.tools.validate_scenario import report_of, text_of
 
 __all__ = ["tool"]
 
 _DESCRIPTION = """
-    Draw a scenario at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading; omni: where it
-    moves), goals (pale), names, lidar beams, paths. Use it on a valid scenario and after a failed run. At step 0: do
-    things overlap, lie outside the world, are goals in obstacles? Returns a line of text (meaning of r0 and G-r0, its
-    goal; poses) and the image; writes no file. Next: edit and validate again, or run_episode.
+    Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading; omni:
+    where it moves), goals (pale), names, lidar beams, paths. Use it after every edit and after a failed run. At step 0
+    the text has what validate_scenario finds, and a table of all objects: drive, footprint, pose, goal, limits, ranges
+    over seeds (r0 is a robot, G-r0 its goal). An invalid scenario gives only its errors. Writes no file. Next: edit
+    and look again, or run_episode.
 """
 _OVERLAYS = (
     "Default: names, goals, paths, zones. clearance: shaded where a robot's middle can't be; plan: paths to goals."
 )
 _MAX_NAMED = 10
 """Number of robots, plans and moving obstacles that the text lists."""
+_MAX_FINDINGS = 20
+"""Number of findings that the text lists."""
 
 
 def tool(services: Services) -> StrictTool:
@@ -68,21 +73,46 @@ def tool(services: Services) -> StrictTool:
             "draw": return_image,
         }
         if run_id is None:
+            what["check"] = step == 0 and strip is None
             answer = await services.scenario_job("snapshot", scenario_path, scenario_yaml, seed=seed, **what)
         elif scenario_path or scenario_yaml or seed is not None:
             fix = "give run_id alone: the run has its scenario and its seed"
             raise failure("bad-argument", "a run_id and a scenario or a seed are given", where="run_id", fix=fix)
         else:
             answer = await services.run_job("run_snapshot", run_id, **what)
-        line = TextContent(type="text", text=_line(answer["scene"], run_id))
-        if not return_image:
+        line = TextContent(type="text", text=_text(answer, run_id, services.limits.text))
+        if not return_image or answer["scene"] is None:
             return [line]
         return [line, ImageContent(type="image", data=answer["png"], mime_type="image/png")]
 
     return strict(render_snapshot, title="Draw a scenario", description=_DESCRIPTION, read_only=True, idempotent=True)
 
 
-def _line(scene: dict[str, Any], run_id: str | None) -> str:
+def _text(answer: dict[str, Any], run_id: str | None, most: int) -> str:
+    """One line about the picture and, if the scenario was checked, the findings and a table of its objects."""
+    if "report" not in answer:
+        return _line(answer["scene"], run_id)
+    report = report_of(answer["report"], _MAX_FINDINGS, False, most // 2)
+    if answer["scene"] is None:
+        report.next = "No picture: fix the errors first; lookup explains a code or a key."
+        return text_of(report)
+    labels = {robot["name"]: robot["label"] for robot in answer["scene"]["robots"]}
+    table = scene_lines(answer["table"], labels, answer["scene"]["seed"])
+    report.next = (
+        "If the picture is right, run_episode." if not report.issues else "Fix what is not meant, then run_episode."
+    )
+    head, *findings, advice = text_of(report).splitlines()
+    return "\n".join([_line(answer["scene"], run_id, brief=True), head, *findings, *table, advice])
+
+
+def _line(scene: dict[str, Any], run_id: str | None, brief: bool = False) -> str:
+    """Describe a picture.
+
+    Args:
+        scene: The snapshot.
+        run_id: The run that it shows; None for a scenario.
+        brief: Leave out places and warnings, which the other lines have.
+    """
     left, right, low, top = scene["extent"]
     moments = f"steps {', '.join(map(str, scene['moments']))}, the last: " if scene["moments"] else ""
     size = "x".join(map(str, scene["size"])) + " px, " if any(scene["size"]) else ""
@@ -91,17 +121,27 @@ def _line(scene: dict[str, Any], run_id: str | None) -> str:
         f"{size}{moments}t={scene['sim_time']:g} s (step {scene['steps']}, {chance})",
         f"world x {left:g}..{right:g} m, y {low:g}..{top:g} m",
     ]
-    parts += [_robot(robot) for robot in scene["robots"][:_MAX_NAMED]]
+    if scene["ended"] is not None:
+        parts.append(f"beyond the end of the episode, which is step {scene['ended']}")
+    if scene["view"] is not None:
+        x0, x1, y0, y1 = scene["view"]
+        region = [left, low, right, top]
+        parts.append(
+            f"shows only x {x0:g}..{x1:g} m, y {y0:g}..{y1:g} m, as plot.viewpoint centres the view: "
+            f"region=[{', '.join(f'{value:g}' for value in region)}] shows the world"
+        )
+    robots, moving = ([], []) if brief else (scene["robots"], scene["moving"])
+    parts += [_robot(robot) for robot in robots[:_MAX_NAMED]]
     parts += [_plan(plan) for plan in scene["plans"][:_MAX_NAMED]]
-    more = len(scene["robots"]) - _MAX_NAMED
+    more = len(robots) - _MAX_NAMED
     if more > 0:
         parts.append(f"{more} more robots")
-    parts.append(scene["contents"])
-    parts += [_moving(item) for item in scene["moving"][:_MAX_NAMED]]
-    if (rest := len(scene["moving"]) - _MAX_NAMED) > 0:
+    parts += [] if brief else [scene["contents"]]
+    parts += [_moving(item) for item in moving[:_MAX_NAMED]]
+    if (rest := len(moving) - _MAX_NAMED) > 0:
         parts.append(f"{rest} more moving obstacles")
     warnings = sum(item["severity"] == "warning" for item in scene["warnings"])
-    if warnings:
+    if warnings and not brief:
         parts.append(f"{warnings} warning{'s' * (warnings != 1)}, see validate_scenario")
     again = f"Run: {uri(run_id, 'run.json')}" if run_id else f"Again: {clean(scene['reproduce'], 300)}"
     return "; ".join(parts) + f". {again}"

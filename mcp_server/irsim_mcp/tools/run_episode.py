@@ -23,9 +23,8 @@ _DESCRIPTION = """
     Simulate one episode, until every robot has arrived or stopped, or time is up. Outcome is success (every robot
     reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit what,
     where and when, and how far robots were from their goals. Also returns robots (unsuccessful first), first events,
-    the command that repeats it, and a run_id, kept for 24 hours. Next: after a failure inspect_run and draw that
-    moment with render_snapshot (run_id, step), change the scenario, validate and run again; after a success try other
-    seeds if anything is random.
+    the command that repeats it, and a run_id, kept for 24 hours. Next: after a failure the
+    call that `next` has, change the scenario and run again; after a success try other seeds if anything is random.
 """
 _UNDRIVEN = "has no behavior"
 """Part of the reason of a run with a robot that nothing drives."""
@@ -36,6 +35,8 @@ _MAX_CONCISE = 10
 _MAX_DETAILED = 50
 """Number of robots and events in a detailed result."""
 _DECIMALS = 3
+_STRIP = "strip=6"
+"""Argument of ``render_snapshot`` that shows a run from its start to a step, 0 being its end."""
 _WATCHED = {
     "time_in_zone": "in zones for {:g} s",
     "zone_crossings": "{:g} zone crossings",
@@ -259,26 +260,27 @@ def _advice(found: dict[str, Any]) -> str:
     held = set(found["jammed"])
     if found["outcome"] == "success" and not held:
         more = "; try other seeds" if found["random"] else ""
-        return f"See the paths with render_snapshot{run} step=-1{more}."
+        return f"See it with render_snapshot{run} {_STRIP}{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
         return "Nothing to change if it is meant to stay or a program drives it; to try the layout: policy=dash."
     late = [robot["name"] for robot in found["robots"] if robot["outcome"] != "success"]
     if late and set(late) <= set(found["parked"]) and not held:
-        return f"Nothing to change if it is meant to stay; see it with render_snapshot{run} step=-1."
-    touches = [event for event in found["events"] if event["kind"] == "collision"]
-    hits = [
-        event["step"]
-        for event in touches
-        if found["outcome"] == "collision" or held & {event["object"], event["partner"]}
-    ]
-    if hits:
-        look, view = f"step={hits[0]}", "collisions"
-    else:
-        look, view = "step=-1", "speeds"
-    more = "" if found["run_id"] is None else f" and inspect_run view={view}"
+        return f"Nothing to change if it is meant to stay; see it with render_snapshot{run} {_STRIP}."
+    first = min((event["step"] for event in found["events"] if _stops(event, held)), default=None)
+    step = first if found["outcome"] == "success" else found["decisive_step"]
+    look = f"render_snapshot{run} {_STRIP}" + (f" step={step}" if step else "")
+    view = "collisions" if found["outcome"] != "timeout" or first is not None else "speeds"
+    whose = " robot=all" if step == first and first is not None else ""  # by default the table is about robots
+    more = "" if found["run_id"] is None else f" and inspect_run{run} view={view}{whose}"
     if found["outcome"] == "success":
-        return f"A collision stopped moving obstacles: intended? Look with render_snapshot{run} {look}{more}."
-    return f"Look with render_snapshot{run} {look}{more}, change the scenario, validate and run again."
+        return f"A collision stopped moving obstacles: intended? Look with {look}{more}."
+    when = "" if not step else f" (step {step} decided it)"
+    return f"Look with {look}{when}{more}, change the scenario, and run again."
+
+
+def _stops(event: dict[str, Any], held: set[str]) -> bool:
+    """Whether an event is a collision that stopped one of these obstacles."""
+    return event["kind"] == "collision" and bool(held & {event["object"], event["partner"]})
 
 
 def _text(episode: Episode) -> str:
@@ -317,7 +319,9 @@ def _robot_text(robot: Robot) -> str:
         facts.append(f"came as near as {robot.min_clearance + 0.0:g} m to {robot.nearest!r}, edge to edge")
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
     if robot.infeasible_steps is not None:
-        facts.append(f"{robot.infeasible_steps} steps in which its behavior found no collision-free velocity")
+        many = "steps" if robot.infeasible_steps != 1 else "step"
+        mattered = "and it touched something" if robot.collision_count else "but it touched nothing"
+        facts.append(f"its behavior found no collision-free velocity in {robot.infeasible_steps} {many}, {mattered}")
     if robot.path_length is not None:
         facts.append(f"drove {robot.path_length:g} m")
     facts += [

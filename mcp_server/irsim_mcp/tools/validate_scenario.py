@@ -15,15 +15,15 @@ from irsim_mcp.json_answer import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
 
-__all__ = ["Report", "tool"]
+__all__ = ["Report", "report_of", "text_of", "tool"]
 
 _DESCRIPTION = """
-    Check a scenario and try it. Use it after every edit. Returns all problems at once; an
+    Check a scenario and try it, without a picture (render_snapshot checks, too). Returns all problems at once; an
     invalid scenario is a normal result with valid=false. Each issue has a code, path, line, cause and fix. Errors must
     be fixed; with warnings it may misbehave; hints are worth knowing. not-yet-simulated: this version
     cannot do it, tell the user. dry_run lists robots that arrived, collided, got stuck or left the world in the first
-    steps. With base (the scenario before an edit) changes lists what differs, by key and in the world. Next: fix and
-    validate again; once valid, look with render_snapshot.
+    steps. With base (the scenario before an edit) changes lists what differs, by key and in the world. Next: fix,
+    then render_snapshot.
 """
 
 
@@ -92,8 +92,8 @@ def tool(services: Services) -> StrictTool:
             simulate=simulate,
             **services.base(base),
         )
-        report = _report(found, max_issues, response_format == "detailed", services.limits.text)
-        text = TextContent(type="text", text=_text(report))
+        report = report_of(found, max_issues, response_format == "detailed", services.limits.text)
+        text = TextContent(type="text", text=text_of(report))
         if response_format == "json":
             text = json_answer(found, services.limits.text, "fix the first problems, or use response_format=detailed")
         return CallToolResult(content=[text], structured_content=report.model_dump(exclude_none=True))
@@ -103,7 +103,15 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def _report(found: dict[str, Any], most: int, detailed: bool, most_characters: int) -> Report:
+def report_of(found: dict[str, Any], most: int, detailed: bool, most_characters: int) -> Report:
+    """The result of the tool.
+
+    Args:
+        found: The report of a worker, as data.
+        most: Greatest number of issues.
+        detailed: With hints, columns and all allowed values.
+        most_characters: Greatest number of characters of all issues.
+    """
     few = found["valid"] and found["hints"] <= _MAX_SHOWN_HINTS
     findings = [item for item in found["findings"] if detailed or few or item["severity"] != "hint"]
     summary = found["summary"] if found["valid"] else f"invalid: {found['summary']}"
@@ -217,7 +225,7 @@ def _issue(item: dict[str, Any], detailed: bool) -> Issue:
     )
 
 
-def _text(report: Report) -> str:
+def text_of(report: Report) -> str:
     """The report in words, with everything that the structured content has."""
     lines = [report.summary]
     lines += [_issue_text(number, issue) for number, issue in enumerate(report.issues, 1)]

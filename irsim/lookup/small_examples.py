@@ -1,0 +1,162 @@
+"""Small examples for keys that no template uses, above all keys that draw, sense or are random; tests validate each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from irsim.lookup.schema_walk import Node, alternatives, component_name, mappings, step, yaml_text
+
+__all__ = ["BETTER", "small_example"]
+
+BETTER = ("fov", "fov_radius", "fov_occlusion", "show_fov")
+"""Keys whose small example says more than those of templates, because they need each other."""
+
+_VALUES: dict[str, Any] = {
+    "acce": [0.5, 1.0],
+    "after_arrival": "freeze",
+    "angle_std": 0.01,
+    "angle_tolerance": 0.05,
+    "attenuation": 2,
+    "avg_radius_range": [0.3, 0.8],
+    "center": [0.1, 0],
+    "center_range": [0, 0, 0, 0],
+    "approach_time": 0.5,
+    "clearance": 0.3,
+    "complexity": 0.1,
+    "distribution.circle_crossing.center": [6, 6],
+    "distribution.circle_crossing.noise": 0.3,
+    "distribution.square_crossing.center": [6, 6],
+    "facecolor": "white",
+    "format": "png",
+    "fov": 1.5708,
+    "fov_radius": 4,
+    "fractal": 2,
+    "gaze_vision_angle": 1.5,
+    "goal_color": "green",
+    "group_repulsion_threshold": 0.6,
+    "irregularity_range": [0, 0.5],
+    "keep_traj_length": 100,
+    "keep_trail_length": 10,
+    "kinematics.acker.alpha": [0.03, 0, 0, 0.03],
+    "kinematics.diff.alpha": [0.03, 0, 0, 0.03],
+    "kinematics.omni.alpha": [0.03, 0.03],
+    "kinematics.omni_angular.alpha": [0.03, 0.03, 0.03],
+    "lookahead": 1.5,
+    "metadata": {"Title": "run 1"},
+    "maxSpeed": 1.2,
+    "no_hit_alpha": 0.1,
+    "neighborDist": 8,
+    "noise": True,
+    "num_vertices_range": [4, 8],
+    "obj_zorder": 4,
+    "obstacle_map.perlin.resolution": 0.2,
+    "obstacle_map.image.path": "cave.png",
+    "obstacle_map.ros.path": "maps/floor.yaml",
+    "offset": [0.2, 0, 3.14159],
+    "plot.alpha": 0.1,
+    "polygon": [[6, 1], [9, 1], [7, 4]],
+    "radius": 4,
+    "resolution": 0.1,
+    "radius_range": [0.2, 0.6],
+    "range_high": [11, 11],
+    "range_low": [1, 1],
+    "range_min": 0.1,
+    "replan": 2,
+    "responsibility": 1,
+    "rvo.acce": 0.5,
+    "safety_radius": 0.2,
+    "social_groups": [[0, 1], [2, 3]],
+    "spikeyness_range": [0, 0.3],
+    "std": 0.05,
+    "text_position": [0.3, 0.3],
+    "tau": 0.2,
+    "title": "Two robots pass each other",
+    "trail_type": "circle",
+    "velocity_color_max": 1,
+    "vertices": [[0, 0], [1, 0], [0, 1]],
+    "viewpoint": "robot_0",
+    "wheelbase": 0.5,
+    "width": 8,
+}
+"""Values that say more than the default does, by the last words of a path."""
+_OUTLINE = ("avg_radius_range", "center_range", "irregularity_range", "spikeyness_range", "num_vertices_range")
+"""Keys of random outlines."""
+_TOGETHER: dict[str, dict[str, Any]] = {
+    **{key: {"noise": True} for key in ("alpha", "std", "angle_std")},
+    **{key: {"wander": True} for key in ("range_low", "range_high")},
+    **{key: {"random_shape": True} for key in (*_OUTLINE, "radius_range", "is_convex")},
+    "fov": {"fov_radius": 4, "fov_occlusion": True, "plot": {"show_fov": True}},
+    "fov_radius": {"fov": 1.5708, "plot": {"show_fov": True}},
+    "fov_occlusion": {"fov": 1.5708, "fov_radius": 4},
+    "shape.linestring.wheelbase": {"vertices": [[0, 0], [3, 0], [3, 2]]},
+    "shape.linestring.number": {"vertices": [[0, 0], [3, 0], [3, 2]]},
+    "show_goal_text": {"show_text": True, "show_goal": True},
+    "trail_freq": {"show_trail": True},
+    "zones.color": {"name": "court", "rectangle": [6, 1, 9, 4]},
+    "zones.polygon": {"name": "court"},
+    "perlin.complexity": {"resolution": 0.2},
+    "perlin.fractal": {"resolution": 0.2},
+    "perlin.attenuation": {"resolution": 0.2, "fractal": 2},
+}
+"""Keys without which another has no effect, by the last words of its path."""
+_LISTS = ("parts", "sensors", "zones")
+"""Keys whose components stand in a list."""
+
+
+def small_example(schema: Node, path: tuple[str, ...]) -> str | None:
+    """Return YAML for a key of the language, inside the component that it belongs to.
+
+    Args:
+        schema: JSON Schema of the language.
+        path: Words of the path, such as ``("robot", "sensors", "lidar2d", "angle_std")``.
+
+    Returns:
+        The example, from the key of the section on; None for keys of which no telling value is known.
+    """
+    nodes, chain, needed = [schema], list[bool](), list[set[str]]()  # whether a word names a component; what that needs
+    for word in path:
+        options = [option for node in nodes for option in mappings(schema, node)]
+        chain.append(any(component_name(option) == word for option in options))
+        nodes = step(schema, nodes, word)
+        needed.append(set(nodes[0].get("required", [])) if nodes else set())
+    if not nodes or len(path) < 2:
+        return None
+    value = {} if chain[-1] else _value(schema, path, nodes[0])
+    if value is None:
+        return None
+    together = {} if _stands_alone(path) else _of(_TOGETHER, path) or {}
+    for place in range(len(path) - 1, 0, -1):
+        word = path[place]
+        if chain[place]:
+            if needed[place] - {"name", *value}:
+                return None
+            value = {"name": word, **value}
+        else:
+            value = {word: [value] if word in _LISTS and isinstance(value, dict) else value, **together}
+            together = {}
+    return ", ".join(f"{key}: {yaml_text(item)}" for key, item in value.items())
+
+
+def _stands_alone(path: tuple[str, ...]) -> bool:
+    """Whether a key has only its name in common with one that needs others."""
+    opacity = path[-1] == "alpha" and "kinematics" not in path
+    return opacity or (path[-1] in ("range_low", "range_high") and "distribution" in path)
+
+
+def _of(table: dict[str, Any], path: tuple[str, ...]) -> Any:
+    """Return the entry of a table for the last words of a path; the longest match counts."""
+    names = (".".join(path[start:]) for start in range(len(path)))
+    return next((table[name] for name in names if name in table), None)
+
+
+def _value(schema: Node, path: tuple[str, ...], node: Node) -> Any:
+    """Return a value for a key: that of the table, the other state of a switch, or the default."""
+    known = _of(_VALUES, path)
+    if known is not None:
+        return known
+    if any(option.get("type") == "boolean" for option in alternatives(schema, node)):
+        return not node.get("default", False)
+    if path[-1].endswith("color"):
+        return "red"
+    default = node.get("default")
+    return None if default in ({}, []) else default

@@ -1,0 +1,139 @@
+"""What a scenario becomes: one row for each entry, with what is random and its range over 20 seeds."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+import irsim._core as core
+from irsim.episodes.scene_summary import MAP_OR_WALLS
+from irsim.results.scene import SceneRow, SceneTable
+from irsim.scenario.resolve.body_size import has_fixed_shape
+from irsim.scenario.resolve.randomness import random_parts
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+from irsim.simulation.build import build_world
+
+__all__ = ["SEEDS", "scene_table"]
+
+SEEDS = 20
+"""Number of seeds that are tried if places are random."""
+_MAX_OBJECTS = 6_000
+"""Number of objects in all these worlds together; larger scenarios are tried with fewer seeds, at least two."""
+MAX_SHOWN = 3
+"""Number of objects of an entry that are described one by one."""
+
+
+def scene_table(scenario: ResolvedScenario, seed: int | None = None) -> SceneTable:
+    """Describe the objects of a scenario at its start.
+
+    Args:
+        scenario: The scenario.
+        seed: Seed of the places that are described one by one; default: the scenario's own, else 0.
+    """
+    own = scenario.world.seed if seed is None else seed
+    placed = bool(scenario.placements)
+    count = max(2, min(SEEDS, _MAX_OBJECTS // max(1, len(scenario.objects)))) if placed else 0
+    seeds = [own or 0, *range(count)]
+    bare = [replace(record, sensors=[], behavior=None, group_behavior=None) for record in scenario.objects]
+    world = scenario.world.model_copy(update={"fog_map": False, "collision_mode": "unobstructed"})
+    built = build_world(replace(scenario, objects=bare, world=world), len(seeds))
+    state = core.State(built, np.array(seeds, dtype=np.uint64), False)
+    crowded = [seed for w, seed in enumerate(seeds) if state.failed_placement[w] >= 0]
+    good = [w for w, seed in enumerate(seeds) if seed not in crowded]
+    shown = next((w for w in (0, *good) if w in good), 0)
+    drawn = {index for placement in scenario.placements for index in placement.objects}
+    entries = [
+        list(entry)
+        for _, entry in itertools.groupby(
+            (k for k, record in enumerate(scenario.objects) if not isinstance(record.shape, MAP_OR_WALLS)),
+            key=lambda k: scenario.objects[k].path,
+        )
+    ]
+    rows = [_row(scenario, entry, state, built.objects, shown, good if drawn & set(entry) else []) for entry in entries]
+    return SceneTable(
+        rows=rows, random=random_parts(scenario), seeds=max(1, count), crowded=sorted(set(crowded) & set(range(count)))
+    )
+
+
+def _row(
+    scenario: ResolvedScenario, entry: Sequence[int], state: core.State, objects: int, shown: int, worlds: list[int]
+) -> SceneRow:
+    """Describe an entry.
+
+    Args:
+        scenario: The scenario.
+        entry: Ids of its objects.
+        state: Worlds of several seeds.
+        objects: Number of objects of each world.
+        shown: World whose places are described one by one.
+        worlds: Worlds over which places are ranges; empty if they are the same in all.
+    """
+    records = [scenario.objects[k] for k in entry]
+    first, some = records[0], list(entry)[:MAX_SHOWN]
+    behavior: Any = first.behavior or first.group_behavior
+    starts = [state.pose[w * objects + k][:2] for w in worlds for k in entry]
+    ends = [goals[0][:2] for w in worlds for k in entry if (goals := state.goals(w * objects + k))]
+    return SceneRow(
+        names=[scenario.objects[k].name for k in some],
+        count=len(records),
+        role=first.role,
+        drive=None if first.static or first.kinematics is None else str(getattr(first.kinematics, "name", "")),
+        behavior=None if first.static or behavior is None else behavior.name + first.wander * " wander" + _loops(first),
+        footprint=footprint_of(first) + (", each its own" if _differ(records) else ""),
+        poses=[_pose(state.pose[shown * objects + k]) for k in some],
+        goals=[_goal(scenario, scenario.objects[k], state.goals(shown * objects + k)) for k in some],
+        vel_max=[] if first.static else list(first.vel_max),
+        starts=_range(starts),
+        ends=None if first.static else _range(ends),
+    )
+
+
+def footprint_of(record: ObjectRecord) -> str:
+    """Shape and size of an object in words: ``circle r 0.3``, ``rectangle 0.6 x 0.4``."""
+    shape: Any = record.shape
+    if not has_fixed_shape(shape) and shape.name == "circle":
+        return "circle r {:g}..{:g} (random)".format(*shape.radius_range)
+    if not has_fixed_shape(shape) and shape.name in ("polygon", "linestring"):
+        return f"{shape.name} mean r {shape.avg_radius_range[0]:g}..{shape.avg_radius_range[1]:g} (random)"
+    if shape.name == "circle":
+        return f"circle r {shape.radius:g}"
+    if shape.name == "rectangle":
+        return f"rectangle {shape.length:g} x {shape.width:g}"
+    if shape.name == "compound":
+        return f"compound of {len(shape.parts)} parts"
+    vertices = getattr(shape, "vertices", None)
+    if not vertices:
+        return str(shape.name)
+    width, height = np.ptp(np.asarray(vertices, dtype=float), axis=0)[:2]
+    return f"{shape.name} with {len(vertices)} vertices, {width:g} x {height:g}"
+
+
+def _differ(records: Sequence[ObjectRecord]) -> bool:
+    """Whether the objects of an entry have different footprints."""
+    return any(record.shape != records[0].shape for record in records)
+
+
+def _loops(record: ObjectRecord) -> str:
+    return " loop" if record.loop and not record.wander else ""
+
+
+def _pose(pose: Any) -> tuple[float, float, float]:
+    x, y, heading = (float(value) for value in pose[:3])
+    return x, y, heading
+
+
+def _goal(scenario: ResolvedScenario, record: ObjectRecord, goals: Sequence[Any]) -> tuple[float, float] | None:
+    if record.static or not goals or scenario.is_parked(record):
+        return None
+    return float(goals[0][0]), float(goals[0][1])
+
+
+def _range(places: Sequence[Any]) -> tuple[float, float, float, float] | None:
+    if not places:
+        return None
+    (x0, y0), (x1, y1) = np.min(places, axis=0), np.max(places, axis=0)
+    return float(x0), float(x1), float(y0), float(y1)

@@ -1,0 +1,69 @@
+"""What a scenario becomes, as lines of text: one for each entry, and what is random."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from irsim.common.text import clean, listed
+
+__all__ = ["scene_lines"]
+
+_MAX_ROWS = 30
+"""Number of entries that are shown."""
+_MAX_SEEDS = 10
+"""Number of seeds that a line names."""
+
+
+def scene_lines(table: Mapping[str, Any], labels: Mapping[str, str], seed: int) -> list[str]:
+    """Describe the objects of a scenario at its start.
+
+    Args:
+        table: A scene table (:class:`irsim.results.scene.SceneTable`) as data.
+        labels: Name of each robot -> its label in the picture.
+        seed: Seed of the places.
+    """
+    rows = table["rows"]
+    lines = ["Objects:" if not table["random"] else f"Objects with seed {seed} (random: {', '.join(table['random'])}):"]
+    lines += [f"- {_row_text(row, labels, table['seeds'])}" for row in rows[:_MAX_ROWS]]
+    if len(rows) > _MAX_ROWS:
+        lines.append(f"- {len(rows) - _MAX_ROWS} more entries")
+    if table["crowded"]:
+        count, named = len(table["crowded"]), listed([str(seed) for seed in table["crowded"]], _MAX_SEEDS)
+        lines.append(
+            f"No room for an object in {count} of {table['seeds']} seeds ({named}): "
+            "use fewer or smaller objects, or larger ranges"
+        )
+    return lines
+
+
+def _row_text(row: Mapping[str, Any], labels: Mapping[str, str], seeds: int) -> str:
+    names = [_name(name, labels) for name in row["names"]]
+    more = row["count"] - len(names)
+    facts = [f"{', '.join(names)}{f' and {more} more' if more > 0 else ''}: {row['drive'] or 'static'}"]
+    facts[0] += "" if row["role"] == "robot" else " obstacle" if row["count"] == 1 else " obstacles"
+    facts.append(row["footprint"])
+    goals = row["goals"] if any(row["goals"]) else [None] * len(names)
+    facts.append("; ".join(_place(pose, goal) for pose, goal in zip(row["poses"], goals, strict=True)))
+    if row["starts"]:
+        ends = f", goals {_box(row['ends'])}" if row["ends"] else ""
+        facts.append(f"over {seeds} seeds starts {_box(row['starts'])}{ends}")
+    if row["drive"]:
+        facts.append(row["behavior"] or "no behavior")
+        facts.append("vel_max [{}]".format(", ".join(f"{value:g}" for value in row["vel_max"])))
+    return ", ".join(facts)
+
+
+def _name(name: str, labels: Mapping[str, str]) -> str:
+    label = labels.get(name, name)
+    return repr(clean(name)) if label == name else f"{label} {clean(name)!r}"
+
+
+def _place(pose: Sequence[float], goal: Sequence[float] | None) -> str:
+    x, y, heading = pose
+    end = "" if goal is None else " goal ({:.2f}, {:.2f})".format(*goal)
+    return f"at ({x:.2f}, {y:.2f}) heading {heading:.2f}{end}"
+
+
+def _box(box: Sequence[float]) -> str:
+    return "x {:.1f}..{:.1f} y {:.1f}..{:.1f}".format(*box)

@@ -1,0 +1,82 @@
+"""The step that decided an episode, and who stood since: by hand, with small scenarios."""
+
+from __future__ import annotations
+
+import irsim
+from irsim.api import snapshot
+
+BODY = "kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, behavior: {name: dash}"
+WALKER = "kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: dash}, tags: [pedestrian]"
+TOUCH = f"""
+world: {{width: 12, height: 6}}
+robot:
+  - {{name: a, {BODY}, state: [1, 3, 0], goal: [11, 3]}}
+  - {{name: b, {BODY}, state: [11, 3, 3.14159], goal: [1, 3]}}
+  - {{name: c, {BODY}, state: [1, 1, 0], goal: [11, 1]}}
+obstacle:
+  - {{name: p, {WALKER}, state: [3, 5, 0], goal: [3, 1.6]}}
+  - {{name: q, {WALKER}, state: [3, 4, 0], goal: [3, 5.5]}}
+"""
+
+
+def test_the_collision_of_robots_decides_and_not_an_earlier_one_of_obstacles() -> None:
+    found = irsim.run(text=TOUCH)
+    first = found.events[0]
+    assert (first.kind, first.object, first.step) == ("collision", "p", 4)
+    assert found.outcome == "collision"
+    assert found.decisive_step == 48
+    assert "'a' hit 'b' at 4.8 s near (6.00, 3.00), both stand since" in found.summary
+
+
+def test_success_has_no_decisive_step() -> None:
+    found = irsim.run(text=f"world: {{width: 9, height: 4}}\nrobot: {{{BODY}, state: [1, 2, 0], goal: [4, 2]}}\n")
+    assert (found.outcome, found.decisive_step) == ("success", None)
+
+
+def test_a_jump_over_the_goal_decides_a_time_out() -> None:
+    text = f"""
+world: {{width: 12, height: 6}}
+robot: {{{BODY}, state: [1, 3, 0], goal: [9.93, 3], vel_max: [2, 1.5], vel_min: [-2, -1.5], goal_threshold: 0.06}}
+"""
+    found = irsim.run(text=text)
+    assert (found.outcome, found.decisive_step) == ("timeout", 45)
+    assert "at no step nearer than 0.07 m" in found.summary
+
+
+def test_a_robot_that_is_caught_is_decided_when_it_ceases_to_get_on() -> None:
+    text = """
+world: {width: 10, height: 6, time_limit: 20}
+robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 3, 0], goal: [9, 3],
+        behavior: {name: sfm}}
+obstacle: {shape: {name: rectangle, length: 0.3, width: 5}, state: [5, 3, 0]}
+"""
+    found = irsim.run(text=text)
+    assert found.outcome == "timeout"
+    assert found.decisive_step is not None
+    assert 20 < found.decisive_step < 120
+
+
+def test_a_robot_that_passed_its_goal_and_came_back_is_in_the_summary() -> None:
+    text = """
+world: {width: 12, height: 6}
+robot: {name: fast, kinematics: {name: omni, noise: true, alpha: [0.1, 0.1]}, shape: {name: circle, radius: 0.2},
+        state: [1, 3, 0], goal: [9.93, 3], vel_max: [1.5, 1.5], vel_min: [-1.5, -1.5], goal_threshold: 0.05,
+        behavior: {name: dash}}
+"""
+    found = irsim.run(text=text, seed=0)
+    assert (found.outcome, found.jumped) == ("success", [])
+    assert "'fast' passed its goal between two steps at 6.1 s, came back and arrived at 6.3 s" in found.summary
+
+
+def test_a_picture_beyond_the_end_of_the_episode_says_so() -> None:
+    assert snapshot(text=TOUCH, steps=100, draw=False).ended is None
+    assert snapshot(text=TOUCH, steps=101, draw=False).ended == 100
+    limited = TOUCH.replace("height: 6", "height: 6, time_limit: 2")
+    assert snapshot(text=limited, steps=40, draw=False).ended == 20
+
+
+def test_a_picture_that_follows_a_viewpoint_says_what_it_shows() -> None:
+    followed = TOUCH.replace("height: 6", "height: 6, plot: {viewpoint: a}")
+    assert snapshot(text=followed, draw=False).view == (-5.0, 7.0, 0.0, 6.0)
+    assert snapshot(text=followed, region=[0, 0, 4, 4], draw=False).view is None
+    assert snapshot(text=TOUCH, draw=False).view is None
