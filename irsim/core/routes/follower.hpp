@@ -69,8 +69,15 @@ class Follower {
   void steer_to_corner(Vec3& u);
   /// Let a car back up first when its goal lies within its turning circle.
   void back_off_from_goal();
+  /// Note how much of the way is left, and whether the object gets on.
+  void track_progress();
+  /// Find the lines between this object and its moving neighbors, and write its sides of them to `Workspace::sides`.
+  void find_sides();
+  /// Slow down or turn aside where the command would cross such a line, so that nothing that moves is touched.
+  void keep_apart(Vec3& u);
   /// Slow down, veer or back up where the command would end in a collision with a static object.
   void keep_clear(Vec3& u);
+  /// Whether the body at a pose touches nothing static and stays on its `Workspace::sides`.
   bool clear_at(const Pose& pose);
   /// Whether a command, followed by braking as hard as the limits allow, leads to no collision.
   bool clear_after(const Vec3& command);

@@ -26,12 +26,13 @@ void Follower::update_target() {
     target.x = target.y = kNone;
     return;
   }
+  if (route_.legs.empty()) advance();
+  track_progress();
   if (!route_.legs.empty()) {
     const Vec2 point = route_.legs[route_.leg].pose.position();
     target = {point.x, point.y, kNone};
     return;
   }
-  advance();
   if (route_.next + 1 == route_.path.size() && !(options_.lookahead > 0.0)) return;
   aim(target);
 }
@@ -45,13 +46,14 @@ void Follower::adjust_command() {
   }
   if (!route_.legs.empty()) {
     follow_legs(u);
-    if (!route_.legs.empty()) return;
+    if (!route_.legs.empty()) return keep_apart(u);
   }
   if (route_.uncertain) report_if_stuck();
   if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) steer_to_corner(u);
   if (route_.keeps_heading) u[2] = 0.0;
   back_off_from_goal();
   keep_clear(u);
+  keep_apart(u);
 }
 
 Vec2 Follower::position() const { return state_.pose[row_].position(); }

@@ -41,6 +41,10 @@ struct Route {
   bool keeps_heading = false;   // the path is free of collisions only at the present heading
   int backing_steps = 0;        // remaining steps of backing up
   double wall_radius = 0.0;     // radius of the disc about the origin that behaviors keep off walls [m]
+  double way_ahead = 0.0;       // length of the rest of the path [m]
+  double shortest_way = 0.0;    // shortest that it was at the last progress [m]
+  std::int64_t progress_at = 0; // step of that progress
+  bool held_up = false;         // whether the object has made no progress for some time
   bool reported = false;        // whether the missing path to this goal was logged
   // The path is free for a smaller body only, because poses for the whole body were not found from `failed_pose`.
   bool uncertain = false;

@@ -7,6 +7,7 @@
 #include "contact/contact.hpp"
 #include "orca/crowd.hpp"
 #include "planning/problem.hpp"
+#include "routes/sides.hpp"
 #include "rvo/velocity_obstacles.hpp"
 #include "surroundings/neighbors.hpp"
 
@@ -43,6 +44,7 @@ struct Workspace {
   OrcaCrowd orca;
   SearchMemory search;  // memory of planners
   Outlines ghost;       // outline of an object at a pose that is tried
+  std::vector<Side> sides;  // lines that an object on a route must not cross
 };
 
 }  // namespace irsim
