@@ -21,7 +21,7 @@ class Follower {
         route_(state.routes[row_]),
         fixed_(*state.scenes[w].fixed),
         shapes_(*state.scenes[w].shapes),
-        blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data()} {}
+        blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data(), nullptr} {}
 
   /// Plan where that is due, and set `State::target` to the point that the behavior heads for.
   void update_target();
@@ -71,6 +71,15 @@ class Follower {
   void back_off_from_goal();
   /// Note how much of the way is left, and whether the object gets on.
   void track_progress();
+  /// Note the poses of the last metres, along which the object can retreat.
+  void keep_track();
+  /// Turn round what blocks an object that cannot move sideways: it plans again round those in its way, or retreats
+  /// along its track for another one that goes first.
+  void recover();
+  /// Start a retreat. Returns false if there is no track or no reverse gear.
+  bool retreat();
+  /// Plan poses round all movers where they are. The present route stays if there is no such plan.
+  bool plan_among_others();
   /// Find the lines between this object and its moving neighbors, and write its sides of them to `Workspace::sides`.
   void find_sides();
   /// Slow down or turn aside where the command would cross such a line, so that nothing that moves is touched.

@@ -68,6 +68,7 @@ void Follower::plan() {
   route_.planned_among = state_.scenes[w_].fixed;
   route_.path.clear();
   route_.legs.clear();
+  route_.retreats = false;
   route_.keeps_heading = false;
   route_.blocked_steps = 0;
   route_.next = 1;

@@ -1,6 +1,6 @@
 #include "routes/right_of_way.hpp"
 
-#include "orca/half_planes.hpp"
+#include "routes/extents.hpp"
 #include "routes/follower.hpp"
 #include "routes/sides.hpp"
 #include "world/features.hpp"
@@ -11,14 +11,13 @@ namespace {
 constexpr double kProgress = 0.05;    // shortening of the way ahead that counts as progress [m]
 constexpr double kPatience = 1.0;     // an object without progress for this time is held up [s]
 constexpr double kDetour = 0.5;       // a way ahead that grew by more belongs to another path [m]
-constexpr double kSideMargin = 0.01;  // distance that objects keep from the line between them [m]
-constexpr double kRounding = 1e-9;    // [m]
-
-bool has_route(const World& world, const State& state, int w, int object) {
-  const int row = w * world.objects + object;
-  return world.specs[object].route && !world.is_static[object] && !state.stopped[row] && !state.given[row] &&
-         !state.waits(row);
-}
+constexpr double kRecovery = 2.0;     // an object without progress for this time tries another way [s]
+constexpr double kNear = 0.6;         // distance to those who are in the way [m]
+constexpr double kTrackStep = 0.1;    // distance between the poses of the track [m]
+constexpr double kTrackTurn = 0.15;   // turn between the poses of the track [rad]
+constexpr std::size_t kTrackLength = 24;  // poses of the track
+constexpr double kRetreat = 1.2;          // length of a retreat [m]
+constexpr double kWait = 3.0;             // time that an object waits after its retreat [s]
 
 /// Way that is left to the goal [m]. Objects that have arrived or have no way give way to all others.
 double way_ahead(const State& state, int row) {
@@ -27,8 +26,14 @@ double way_ahead(const State& state, int row) {
 
 }  // namespace
 
+bool follows_route(const World& world, const State& state, int w, int object) {
+  const int row = w * world.objects + object;
+  return world.specs[object].route && !world.is_static[object] && !state.stopped[row] && !state.given[row] &&
+         !state.waits(row);
+}
+
 Precedence precedence(const World& world, const State& state, int w, int object, int other) {
-  if (state.routes.empty() || !has_route(world, state, w, object) || !has_route(world, state, w, other))
+  if (state.routes.empty() || !follows_route(world, state, w, object) || !follows_route(world, state, w, other))
     return Precedence::shared;
   const int a = w * world.objects + object, b = w * world.objects + other;
   const auto held_up = [&](int row) { return state.routes[row].held_up && !state.arrived[row]; };
@@ -59,75 +64,79 @@ void Follower::track_progress() {
   route_.held_up = static_cast<double>(now - route_.progress_at) * world_.step_time >= kPatience;
 }
 
-void Follower::find_sides() {
-  std::vector<Side>& sides = work_.sides;
-  sides.clear();
-  const Vec3 &top = state_.vel_max[row_], &acce = world_.acce[object_];
-  const double dt = world_.step_time, speed = std::max(std::fabs(top[0]), std::fabs(state_.vel_min[row_][0]));
-  const double braking = std::isfinite(acce[0]) && acce[0] > 0.0 ? 0.5 * speed * speed / acce[0] : 0.0;
-  const double reach = 2.0 * (2.0 * speed * dt + braking) + 0.1;
-  const Footprint body = state_.scenes[w_].moving.footprint(shapes_, object_);
-  for (const int other : world_.moving) {
-    if (other == object_ || world_.unobstructed[other]) continue;
-    const Footprint there = state_.scenes[w_].moving.footprint(shapes_, other);
-    if (norm(there.centre - body.centre) > body.radius + there.radius + reach) continue;
-    Vec2 normal;
-    const double width = widest_strip(body, there, normal);
-    if (!(width >= 0.0)) continue;
-    const int row = w_ * world_.objects + other;
-    double mine = 0.5 * width - kSideMargin;
-    if (!has_route(world_, state_, w_, other)) {
-      mine = width - kSideMargin;
-      if (!state_.stopped[row]) mine -= std::max(0.0, -dot(velocity_world(world_, state_, row), normal)) * dt;
-    }
-    sides.push_back({normal, support(body, normal) + std::max(mine, 0.0) + kRounding});
+void Follower::keep_track() {
+  std::vector<Leg>& track = route_.track;
+  const Pose& pose = state_.pose[row_];
+  const double speed = state_.control[row_][0];
+  if (!track.empty()) {
+    const Pose& last = track.back().pose;
+    const bool moved = norm(pose.position() - last.position()) >= kTrackStep;
+    if (!moved && std::fabs(wrap(pose.theta - last.theta)) < kTrackTurn) return;
+    if (track.size() == kTrackLength) track.erase(track.begin());
+    track.push_back({pose, moved ? (speed < 0.0 ? -1 : 1) : 0});
+  } else {
+    track.push_back({pose, 1});
   }
 }
 
-void Follower::keep_apart(Vec3& u) {
-  if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior) ||
-      std::holds_alternative<std::monostate>(world_.drive[object_]))
+bool Follower::retreat() {
+  std::vector<Leg>& track = route_.track;
+  if (track.size() < 2 || !(state_.vel_min[row_][0] < 0.0)) return false;
+  route_.legs = {{state_.pose[row_], 0}};
+  double length = 0.0;
+  while (track.size() > 1 && length < kRetreat) {
+    const Leg last = track.back();
+    track.pop_back();
+    length += norm(track.back().pose.position() - last.pose.position());
+    route_.legs.push_back({track.back().pose, -last.way});
+  }
+  route_.leg = 1;
+  route_.blocked_steps = 0;
+  route_.retreats = true;
+  route_.wait_until = state_.count[w_] + static_cast<std::int64_t>((kRetreat / top_speed(-1) + kWait) / world_.step_time);
+  return true;
+}
+
+bool Follower::plan_among_others() {
+  std::vector<Footprint> others;
+  for (const int i : world_.moving) {
+    if (i != object_ && !world_.unobstructed[i]) others.push_back(state_.scenes[w_].moving.footprint(shapes_, i));
+  }
+  const Route before = route_;
+  blockers_.others = &others;
+  const bool found = find_legs(extent_of(shapes_, object_).reach);
+  blockers_.others = nullptr;
+  if (!found) route_ = before;
+  return found;
+}
+
+void Follower::recover() {
+  const bool steers = std::holds_alternative<AckerOptions>(world_.drive[object_]) ||
+                      (std::holds_alternative<DiffOptions>(world_.drive[object_]) && !route_.legs.empty());
+  if (!steers || std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) return;
+  if (route_.retreats) {
+    if (state_.count[w_] >= route_.wait_until) plan();
     return;
-  find_sides();
-  if (work_.sides.empty() || clear_after(u)) return work_.sides.clear();
-  const bool sideways = std::holds_alternative<OmniOptions>(world_.drive[object_]) ||
-                        std::holds_alternative<OmniAngularOptions>(world_.drive[object_]);
-  const auto tried = [&](const Vec3& command) {
-    if (!clear_after(command)) return false;
-    u = command;
-    return true;
-  };
-  const auto slowed = [&](double share, double turn) {
-    Vec3 v = u;
-    v[0] *= share;
-    v[1] *= sideways ? share : turn;
-    v[2] *= turn;
-    return v;
-  };
-  bool found = false;
-  if (sideways) {  // slide along the lines
-    const Vec2 heading = state_.heading(row_), wanted = rotate({u[0], u[1]}, heading);
-    const Footprint body = state_.scenes[w_].moving.footprint(shapes_, object_);
-    std::vector<HalfPlane> planes, scratch;
-    for (const Side& side : work_.sides) {
-      const double most = std::max(0.0, side.offset - support(body, side.normal) - 2 * kRounding) / world_.step_time;
-      planes.push_back({side.normal * most, {-side.normal.y, side.normal.x}});
-    }
-    const int count = static_cast<int>(planes.size());
-    Vec2 velocity;
-    if (choose_velocity(planes.data(), count, count, norm(wanted), wanted, scratch, velocity)) {
-      const Vec2 control = unrotate(velocity, heading);
-      Vec3 v = u;
-      v[0] = control.x, v[1] = control.y;
-      found = tried(v);
-    }
   }
-  const bool car = std::holds_alternative<AckerOptions>(world_.drive[object_]);
-  for (const double turn : {1.0, 0.0}) {
-    for (const double share : {0.5, 0.25, 0.1, 0.0}) found = found || tried(slowed(share, car ? 1.0 : turn));
+  keep_track();
+  const auto due = [&](int row) {
+    const Route& route = state_.routes[row];
+    const auto patience = static_cast<std::int64_t>(kRecovery / world_.step_time);
+    const std::int64_t held = state_.count[w_] - route.progress_at;
+    return !state_.arrived[row] && held > 0 && held % std::max<std::int64_t>(patience, 1) == 0;
+  };
+  const Footprint body = state_.scenes[w_].moving.footprint(shapes_, object_);
+  for (const int other : world_.routed) {
+    if (other == object_ || !follows_route(world_, state_, w_, other)) continue;
+    const Footprint there = state_.scenes[w_].moving.footprint(shapes_, other);
+    Vec2 normal;
+    if (norm(there.centre - body.centre) > body.radius + there.radius + kNear ||
+        widest_strip(body, there, normal) > kNear ||
+        precedence(world_, state_, w_, object_, other) != Precedence::second)
+      continue;
+    if (due(w_ * world_.objects + other) && retreat()) return;
   }
-  if (!found) u = slowed(0.0, car ? 1.0 : 0.0);
-  work_.sides.clear();
+  if (due(row_)) plan_among_others();
 }
 
 }  // namespace irsim

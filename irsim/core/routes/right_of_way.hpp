@@ -8,6 +8,9 @@ namespace irsim {
 struct World;
 struct State;
 
+/// Whether an object drives along its route in this step.
+bool follows_route(const World& world, const State& state, int w, int object);
+
 enum class Precedence { shared, first, second };
 
 /// Whether `object` goes before `other`, objects of world w, or shares the avoidance with it. Both orders of the

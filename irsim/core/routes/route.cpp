@@ -1,6 +1,7 @@
 #include "routes/route.hpp"
 
 #include "routes/follower.hpp"
+#include "routes/right_of_way.hpp"
 #include "world/features.hpp"
 
 namespace irsim {
@@ -8,11 +9,6 @@ namespace {
 
 constexpr double kCornerReached = 0.05;       // a corner this near counts as reached [m]
 constexpr double kMinTimeBetweenPlans = 1.0;  // after a plan, before another is made because the path was lost [s]
-
-bool follows_route(const World& world, const State& state, int w, int object) {
-  const int row = w * world.objects + object;
-  return !world.is_static[object] && !state.stopped[row] && !state.given[row] && !state.waits(row);
-}
 
 }  // namespace
 
@@ -28,6 +24,7 @@ void Follower::update_target() {
   }
   if (route_.legs.empty()) advance();
   track_progress();
+  recover();
   if (!route_.legs.empty()) {
     const Vec2 point = route_.legs[route_.leg].pose.position();
     target = {point.x, point.y, kNone};
@@ -41,6 +38,10 @@ void Follower::adjust_command() {
   Vec3& u = state_.command[row_];
   if (std::isnan(state_.goal[row_].x)) return;
   if (route_.path.empty()) {
+    u = {};
+    return;
+  }
+  if (route_.retreats && route_.legs.empty()) {
     u = {};
     return;
   }

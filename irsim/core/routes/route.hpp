@@ -45,6 +45,9 @@ struct Route {
   double shortest_way = 0.0;    // shortest that it was at the last progress [m]
   std::int64_t progress_at = 0; // step of that progress
   bool held_up = false;         // whether the object has made no progress for some time
+  std::vector<Leg> track;       // last poses of a drive that cannot move sideways, and how each was reached
+  bool retreats = false;        // whether the legs lead back along the track; the object then waits there ...
+  std::int64_t wait_until = 0;  // ... until this step
   bool reported = false;        // whether the missing path to this goal was logged
   // The path is free for a smaller body only, because poses for the whole body were not found from `failed_pose`.
   bool uncertain = false;
