@@ -47,7 +47,7 @@ class Follower {
   /// Report that there is no path if the object rests for long on a path that was planned for a smaller body.
   void report_if_stuck();
   /// Plan poses for a drive that cannot move sideways and cannot turn everywhere.
-  bool find_legs(double reach);
+  bool find_legs(double reach, int most = kMaxPoses);
   /// Plan a path on which `wide` fits; `tight` is the body for which corners must stay in sight. Without `search` only
   /// the straight line is tried.
   bool attempt(const Body& wide, const Body& tight, bool search);
@@ -78,6 +78,8 @@ class Follower {
   void recover();
   /// Start a retreat. Returns false if there is no track or no reverse gear.
   bool retreat();
+  /// End a retreat.
+  void forget_retreat();
   /// Plan poses round all movers where they are. The present route stays if there is no such plan.
   bool plan_among_others();
   /// Find the lines between this object and its moving neighbors, and write its sides of them to `Workspace::sides`.

@@ -15,7 +15,8 @@ constexpr double kRecovery = 2.0;     // an object without progress for this tim
 constexpr double kNear = 0.6;         // distance to those who are in the way [m]
 constexpr double kTrackStep = 0.1;    // distance between the poses of the track [m]
 constexpr double kTrackTurn = 0.15;   // turn between the poses of the track [rad]
-constexpr std::size_t kTrackLength = 24;  // poses of the track
+constexpr std::size_t kTrackLength = 100;  // poses of the track
+constexpr int kMaxPosesAmongOthers = 15000;  // poses after which a plan among others is given up
 constexpr double kRetreat = 1.2;          // length of a retreat [m]
 constexpr double kWait = 3.0;             // time that an object waits after its retreat [s]
 
@@ -44,6 +45,7 @@ Precedence precedence(const World& world, const State& state, int w, int object,
 }
 
 void Follower::track_progress() {
+  if (route_.retreats) return;
   double left = 0.0;
   Vec2 from = position();
   if (route_.legs.empty()) {
@@ -80,21 +82,28 @@ void Follower::keep_track() {
 }
 
 bool Follower::retreat() {
-  std::vector<Leg>& track = route_.track;
+  const std::vector<Leg>& track = route_.track;
   if (track.size() < 2 || !(state_.vel_min[row_][0] < 0.0)) return false;
   route_.legs = {{state_.pose[row_], 0}};
   double length = 0.0;
-  while (track.size() > 1 && length < kRetreat) {
-    const Leg last = track.back();
-    track.pop_back();
-    length += norm(track.back().pose.position() - last.pose.position());
-    route_.legs.push_back({track.back().pose, -last.way});
+  for (std::size_t k = track.size(); k-- > 1 && length < kRetreat;) {
+    length += norm(track[k - 1].pose.position() - track[k].pose.position());
+    route_.legs.push_back({track[k - 1].pose, -track[k].way});
   }
+  route_.retraced = route_.legs.size() - 1;
   route_.leg = 1;
   route_.blocked_steps = 0;
   route_.retreats = true;
   route_.wait_until = state_.count[w_] + static_cast<std::int64_t>((kRetreat / top_speed(-1) + kWait) / world_.step_time);
   return true;
+}
+
+void Follower::forget_retreat() {
+  if (!route_.retreats) return;
+  route_.retreats = false;
+  // What was driven back is no longer a part of the track.
+  const std::size_t driven = route_.legs.empty() ? route_.retraced : route_.leg - 1;
+  route_.track.resize(route_.track.size() - std::min(driven, route_.track.size() - 1));
 }
 
 bool Follower::plan_among_others() {
@@ -104,10 +113,17 @@ bool Follower::plan_among_others() {
   }
   const Route before = route_;
   blockers_.others = &others;
-  const bool found = find_legs(extent_of(shapes_, object_).reach);
+  route_.path.clear();
+  route_.next = 1;
+  const bool found = find_legs(extent_of(shapes_, object_).reach, kMaxPosesAmongOthers);
   blockers_.others = nullptr;
-  if (!found) route_ = before;
-  return found;
+  if (!found) {
+    route_ = before;
+    return false;
+  }
+  route_.uncertain = false;
+  route_.planned_at = state_.count[w_];
+  return true;
 }
 
 void Follower::recover() {
@@ -119,24 +135,28 @@ void Follower::recover() {
     return;
   }
   keep_track();
-  const auto due = [&](int row) {
-    const Route& route = state_.routes[row];
-    const auto patience = static_cast<std::int64_t>(kRecovery / world_.step_time);
-    const std::int64_t held = state_.count[w_] - route.progress_at;
-    return !state_.arrived[row] && held > 0 && held % std::max<std::int64_t>(patience, 1) == 0;
+  const auto steps_held = [&](int row) {
+    return state_.arrived[row] ? 0 : state_.count[w_] - state_.routes[row].progress_at;
   };
+  const auto patience = std::max<std::int64_t>(1, static_cast<std::int64_t>(kRecovery / world_.step_time));
   const Footprint body = state_.scenes[w_].moving.footprint(shapes_, object_);
+  bool near = false;
   for (const int other : world_.routed) {
     if (other == object_ || !follows_route(world_, state_, w_, other)) continue;
     const Footprint there = state_.scenes[w_].moving.footprint(shapes_, other);
     Vec2 normal;
     if (norm(there.centre - body.centre) > body.radius + there.radius + kNear ||
-        widest_strip(body, there, normal) > kNear ||
-        precedence(world_, state_, w_, object_, other) != Precedence::second)
+        widest_strip(body, there, normal) > kNear)
       continue;
-    if (due(w_ * world_.objects + other) && retreat()) return;
+    near = true;
+    const std::int64_t held = steps_held(w_ * world_.objects + other);
+    if (held > 0 && held % patience == 0 &&
+        precedence(world_, state_, w_, object_, other) == Precedence::second && retreat())
+      return;
   }
-  if (due(row_)) plan_among_others();
+  // Searching takes long, so the second search comes after twice the time, the third after four times, and so on.
+  const std::int64_t held = steps_held(row_), times = held / patience;
+  if (near && held > 0 && held % patience == 0 && (times & (times - 1)) == 0) plan_among_others();
 }
 
 }  // namespace irsim

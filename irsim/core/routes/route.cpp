@@ -18,13 +18,15 @@ void Follower::update_target() {
   target = goal;
   if (std::isnan(goal.x)) return;
   if (plan_is_due()) plan();
-  if (route_.path.empty()) {
+  if (!route_.path.empty()) {
+    if (route_.legs.empty() && !route_.retreats) advance();
+    track_progress();
+    recover();
+  }
+  if (route_.path.empty() || (route_.retreats && route_.legs.empty())) {
     target.x = target.y = kNone;
     return;
   }
-  if (route_.legs.empty()) advance();
-  track_progress();
-  recover();
   if (!route_.legs.empty()) {
     const Vec2 point = route_.legs[route_.leg].pose.position();
     target = {point.x, point.y, kNone};

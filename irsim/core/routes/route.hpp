@@ -48,6 +48,7 @@ struct Route {
   std::vector<Leg> track;       // last poses of a drive that cannot move sideways, and how each was reached
   bool retreats = false;        // whether the legs lead back along the track; the object then waits there ...
   std::int64_t wait_until = 0;  // ... until this step
+  std::size_t retraced = 0;     // number of legs of that retreat
   bool reported = false;        // whether the missing path to this goal was logged
   // The path is free for a smaller body only, because poses for the whole body were not found from `failed_pose`.
   bool uncertain = false;
