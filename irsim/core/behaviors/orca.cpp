@@ -8,6 +8,7 @@
 #include "orca/crowd.hpp"
 #include "orca/obstacles.hpp"
 #include "routes/right_of_way.hpp"
+#include "surroundings/sidestep.hpp"
 #include "world/spec.hpp"
 
 namespace irsim {
@@ -227,7 +228,8 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     const OrcaAgent& agent = all.movers[self];
     const double speed = top_speed(options, world, state, row, i);
     all.planes.clear();
-    Vec2 preferred = preferred_velocity(options, world, state, row, i, speed);
+    Vec2 preferred =
+        sidestepped(decision, k, preferred_velocity(options, world, state, row, i, speed), options.sidestep);
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
     if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
     if (const Route* route = state.route_of(row)) {  // a route already avoids static objects

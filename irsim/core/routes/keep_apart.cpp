@@ -81,6 +81,11 @@ void Follower::keep_apart(Vec3& u) {
     for (const double share : {0.5, 0.25, 0.1, 0.0}) found = found || tried(slowed(share, car ? 1.0 : turn));
   }
   if (!found) u = slowed(0.0, car ? 1.0 : 0.0);
+  if (!found && car) {  // whichever way it is to leave, one of both steerings may be free: straight, or as wanted
+    const auto& drive = std::get<AckerOptions>(world_.drive[object_]);
+    const double psi = state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
+    if (std::fabs(psi) > kRounding) u[1] = drive.mode == Steering::steer ? 0.0 : -psi / world_.step_time;
+  }
   work_.sides.clear();
 }
 

@@ -156,7 +156,9 @@ void Follower::recover() {
   }
   // Searching takes long, so the second search comes after twice the time, the third after four times, and so on.
   const std::int64_t held = steps_held(row_), times = held / patience;
-  if (near && held > 0 && held % patience == 0 && (times & (times - 1)) == 0) plan_among_others();
+  if (held <= 0 || held % patience != 0) return;
+  if (!near && !route_.legs.empty()) return plan();
+  if (near && (times & (times - 1)) == 0) plan_among_others();
 }
 
 }  // namespace irsim
