@@ -78,7 +78,9 @@ void Follower::keep_apart(Vec3& u) {
   }
   const bool car = std::holds_alternative<AckerOptions>(world_.drive[object_]);
   for (const double turn : {1.0, 0.0}) {
-    for (const double share : {0.5, 0.25, 0.1, 0.0}) found = found || tried(slowed(share, car ? 1.0 : turn));
+    for (const double share : {0.5, 0.25, 0.1, 0.0}) {
+      if (!car || share > 0.0) found = found || tried(slowed(share, car ? 1.0 : turn));
+    }
   }
   if (!found) u = slowed(0.0, car ? 1.0 : 0.0);
   if (!found && car) {  // whichever way it is to leave, one of both steerings may be free: straight, or as wanted
