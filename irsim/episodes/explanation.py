@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
+from irsim.episodes.detours import closeness_message, shunting_message
 from irsim.episodes.incidents import Incidents, contacts_message, jumps_message
 from irsim.episodes.out_of_bounds import exits_message
 from irsim.episodes.stuck import (
@@ -66,6 +67,10 @@ def summary_message(
         parts.append(jumps)
     if gone := _departures_message(env, robots):
         parts.append(gone)
+    if shunted := shunting_message(env, robots, parked):
+        parts.append(shunted)
+    if close := closeness_message(robots):
+        parts.append(close)
     if others := others_arrived_message(env.scenario, events):
         parts.append(others)
     said = bool(held) or incidents.human_contacts[:1] == list(hits[:1])
