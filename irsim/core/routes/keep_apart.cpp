@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kSideMargin = 0.01;  // distance that objects keep from the line between them [m]
 constexpr double kReachSlack = 0.1;         // objects farther away than they can drive, and this, have no line [m]
+constexpr double kMinSlide = 0.1;     // share of the wanted speed for which it is worth turning along a line
+constexpr double kMinTurn = 0.02;     // smaller turns are not worth it [rad]
 constexpr double kRounding = 1e-9;    // [m]
 
 }  // namespace
@@ -59,8 +61,9 @@ void Follower::keep_apart(Vec3& u) {
     return v;
   };
   bool found = false;
-  if (sideways) {  // slide along the lines
-    const Vec2 heading = state_.heading(row_), wanted = rotate({u[0], u[1]}, heading);
+  const bool car = std::holds_alternative<AckerOptions>(world_.drive[object_]);
+  if (!car) {  // slide along the lines
+    const Vec2 heading = state_.heading(row_), wanted = rotate({u[0], sideways ? u[1] : 0.0}, heading);
     const Footprint body = state_.scenes[w_].moving.footprint(shapes_, object_);
     std::vector<HalfPlane> planes, scratch;
     for (const Side& side : work_.sides) {
@@ -69,14 +72,19 @@ void Follower::keep_apart(Vec3& u) {
     }
     const int count = static_cast<int>(planes.size());
     Vec2 velocity;
-    if (choose_velocity(planes.data(), count, count, norm(wanted), wanted, scratch, velocity)) {
+    const bool chosen = choose_velocity(planes.data(), count, count, norm(wanted), wanted, scratch, velocity);
+    Vec3 v = u;
+    if (chosen && sideways) {
       const Vec2 control = unrotate(velocity, heading);
-      Vec3 v = u;
       v[0] = control.x, v[1] = control.y;
       found = tried(v);
+    } else if (chosen && u[0] > 0.0 && norm(velocity) > kMinSlide * norm(wanted)) {  // turn there before driving
+      const double error = std::atan2(cross(heading, velocity), dot(heading, velocity));
+      const double most = std::fabs(state_.vel_max[row_][1]);
+      v[0] = 0.0, v[1] = clip(error / world_.step_time, -most, most);
+      found = std::fabs(error) > kMinTurn && tried(v);
     }
   }
-  const bool car = std::holds_alternative<AckerOptions>(world_.drive[object_]);
   for (const double turn : {1.0, 0.0}) {
     for (const double share : {0.5, 0.25, 0.1, 0.0}) {
       if (!car || share > 0.0) found = found || tried(slowed(share, car ? 1.0 : turn));
