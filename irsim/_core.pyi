@@ -811,6 +811,9 @@ def renew_row(world: World, state: State, row: int) -> None:
 def decide_row(world: World, state: State, row: int) -> None:
     """Let the native behavior of a row fill its `command`; zero without one."""
 
+def impose_row(world: World, state: State, row: int, control: Sequence[float] | NDArray[np.float64]) -> bool:
+    """Impose a control on a row for the next step, and return whether limits of speed or acceleration will cut it."""
+
 def limit_row(world: World, state: State, row: int) -> None: ...
 def integrate_row(world: World, state: State, row: int) -> None: ...
 def remember_row(world: World, state: State, row: int) -> None:

@@ -102,6 +102,9 @@ class _ReExports(_Loader):
             __getattr__=get,
             __dir__=listing,
         )
+        homes = set(self._homes.values())
+        if len(homes) == 1:  # the path is only imported for what is there, and not in the middle of a script
+            import_module(homes.pop().partition(":")[0])
         for name in modules:
             if name in self._homes:  # importing the module later would replace the function of the same name
                 import_module(f"{own}.{name}")

@@ -8,7 +8,7 @@ from irsim.common.log import LEVELS
 from irsim.env.live import drive_by_keyboard
 from irsim.env.queries import get_object_by_name
 from irsim.env.state import EnvState
-from irsim.objects.actions import assign_actions, beyond_limits
+from irsim.objects.actions import assign_actions
 from irsim.objects.base import SimObject
 from irsim.simulation.active_env import use
 from irsim.simulation.episode_recorder import EpisodeRecorder
@@ -42,8 +42,7 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
     else:
         if action is not None:
             for view, control in assign_actions(env._objects, action, action_id, env.logger.warning_once):
-                simulation.impose(view.row, control)
-                if view.id not in env._limit_warnings:
+                if simulation.impose(view.row, control) and view.id not in env._limit_warnings:
                     _report_limits(env, view, control)
         if env.world_param.control_mode == "keyboard":
             drive_by_keyboard(env)
@@ -53,7 +52,7 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
 
 def _report_limits(env: EnvState, view: SimObject, control: list[float]) -> None:
     """Log, once per object, that its limits cut an action."""
-    if view.static or not beyond_limits(view, control):
+    if view.static:
         return
     env._limit_warnings.add(view.id)
     low, high = (", ".join(f"{v:.6g}" for v in limit[:, 0]) for limit in view.get_vel_range())

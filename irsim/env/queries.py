@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -144,10 +145,11 @@ def get_lidar_offset(env: EnvState, id: int = 0) -> list[float]:
 
 
 def _robot(env: EnvState, index: int) -> ObjectView:
-    robots = robot_list(env)
-    if not 0 <= index < len(robots):
-        raise IndexError(f"no robot {index}: this scenario has {len(robots)}")
-    return robots[index]
+    robots = (view for view in env._objects if view.role == "robot")
+    found = next(islice(robots, index, None), None) if index >= 0 else None
+    if found is None:
+        raise IndexError(f"no robot {index}: this scenario has {robot_number(env)}")
+    return found
 
 
 def time(env: EnvState) -> float:

@@ -10,10 +10,8 @@ import numpy as np
 
 from irsim.objects.base import SimObject
 
-__all__ = ["assign_actions", "beyond_limits"]
+__all__ = ["assign_actions"]
 
-TOLERANCE = 1e-9
-"""An excess over a limit below this is a rounding error."""
 Assignments = list[tuple[SimObject, list[float]]]
 
 
@@ -21,7 +19,10 @@ def _is_one(action: Any) -> bool:
     """Whether ``action`` is one control vector rather than a list of them."""
     if isinstance(action, np.ndarray):
         return True
-    return len(action) > 0 and all(isinstance(v, (int, float, np.number)) and not isinstance(v, bool) for v in action)
+    for value in action:
+        if type(value) is not float and (isinstance(value, bool) or not isinstance(value, (int, float, np.number))):
+            return False
+    return len(action) > 0
 
 
 def _find(objects: Sequence[SimObject], key: Any) -> SimObject:
@@ -41,6 +42,18 @@ def _find(objects: Sequence[SimObject], key: Any) -> SimObject:
 
 
 def _control(view: SimObject, action: Any) -> list[float]:
+    numbers = action.tolist() if isinstance(action, np.ndarray) and action.ndim == 1 else action
+    if isinstance(numbers, (list, tuple)) and len(numbers) == view.vel_dim and all(map(_is_finite_float, numbers)):
+        return list(numbers)
+    return _checked_control(view, action)
+
+
+def _is_finite_float(value: Any) -> bool:
+    return type(value) is float and math.isfinite(value)
+
+
+def _checked_control(view: SimObject, action: Any) -> list[float]:
+    """Convert an action of any type; NumPy takes longer for it than a step of a small world."""
     try:
         values = np.asarray(action, dtype=np.float64).reshape(-1)
     except (TypeError, ValueError):
@@ -51,19 +64,6 @@ def _control(view: SimObject, action: Any) -> list[float]:
     if not np.isfinite(values).all():
         raise ValueError(f"the action for {view.name!r} is not finite: {values.tolist()}")
     return list(map(float, values))
-
-
-def beyond_limits(view: SimObject, control: Sequence[float]) -> bool:
-    """Return whether the limits of speed or acceleration cut a control."""
-    limits = zip(control, view.vel_min[:, 0], view.vel_max[:, 0], strict=True)
-    if any(not low - TOLERANCE <= value <= high + TOLERANCE for value, low, high in limits):
-        return True
-    if all(rate == math.inf for rate in view.record.acce):
-        return False
-    lowest, highest = view.get_vel_range()
-    return bool(
-        (np.array(control) < lowest[:, 0] - TOLERANCE).any() or (np.array(control) > highest[:, 0] + TOLERANCE).any()
-    )
 
 
 def assign_actions(
@@ -86,10 +86,12 @@ def assign_actions(
         TypeError: ``action`` is not a valid type of action.
         ValueError: A target does not exist, or a control has the wrong size or is not finite.
     """
-    if isinstance(action, Mapping):
+    if not isinstance(action, (list, tuple, np.ndarray)):
+        if not isinstance(action, Mapping):
+            raise TypeError(f"action must be a list, tuple, ndarray or mapping, got {type(action).__name__}")
         pairs = [(_find(objects, key), value) for key, value in action.items()]
-    elif not isinstance(action, (list, tuple, np.ndarray)):
-        raise TypeError(f"action must be a list, tuple, ndarray or mapping, got {type(action).__name__}")
+    elif action_id is None and _is_one(action):
+        pairs = [(view, action) for view in objects[:1]]
     else:
         several_ids = isinstance(action_id, (list, tuple, np.ndarray))
         if several_ids:

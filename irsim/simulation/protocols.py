@@ -24,6 +24,9 @@ class WideControls(Protocol):
     control: Floats
     drive: Floats
 
+    def impose(self, control: Sequence[float] | Floats, limits: tuple[Floats, Floats], dt: float) -> bool:
+        """Set the command, and return whether limits will cut it."""
+
 
 class ExternalDrives(Protocol):
     """Drives written in Python, which move the rows that the core leaves alone.

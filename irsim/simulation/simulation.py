@@ -243,12 +243,12 @@ class Simulation:
         self._views = {0: list(shown)}
 
     # one row ----------------------------------------------------------------------------------------------------------
-    def impose(self, row: int, control: NDArray[np.float64] | Sequence[float]) -> None:
-        """Impose a control on a row for the next step, instead of the one that its behavior decides."""
-        self.command[row, : min(3, len(control))] = control[:3]
+    def impose(self, row: int, control: Sequence[float] | NDArray[np.float64]) -> bool:
+        """Impose a control on a row for the next step, and return whether limits of speed or acceleration cut it."""
+        cut = core.impose_row(self.world, self.state, row, control)
         if len(control) > 3 and self.drives is not None and (wide := self.drives.wide(row)) is not None:
-            wide.command[:] = control
-        self.given[row] = 1
+            return wide.impose(control, self.limits(row), self.scenario.world.step_time)
+        return cut
 
     def command_of(self, row: int, size: int) -> NDArray[np.float64]:
         """Return the (size,) command of a row."""

@@ -175,7 +175,8 @@ def test_agrees_with_the_models_on_damaged_files(changes: list[tuple[tuple[Any, 
     reading = read(copy.deepcopy(data), strict=True)
     accepted = validator().is_valid(data)
     errors = [(item.code, item.path) for item in reading.errors]
-    if not accepted:
+    ignored = [item for item in reading.diagnostics if item.code == "behavior-without-kinematics"]
+    if not accepted and not ignored:  # where nothing moves, the models ignore the name of the behavior
         assert errors, json.dumps(data)
     told = [(code, path) for code, path in errors if code not in INEXPRESSIBLE]
     told = [(code, path) for code, path in told if code != "wrong-length" or not CONTROLS & set(path)]

@@ -60,6 +60,11 @@ SITUATIONS = [
         "perpendicular streams",
         "line crossing",
         "field of view",
+        "vision cone",
+        "evacuation",
+        "bend",
+        "slalom",
+        "curriculum",
     ),
 ]
 

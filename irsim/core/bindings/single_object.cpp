@@ -1,4 +1,6 @@
 // The phases of a step for a single object, and drives without a world.
+#include <algorithm>
+
 #include "bindings/bound_state.hpp"
 #include "phases.hpp"
 #include "world/features.hpp"
@@ -60,6 +62,24 @@ Numbers drive_deviation(const Drive& drive, const Numbers& control) {
   return {sigma[0], sigma[1], sigma[2]};
 }
 
+/// Impose a control on a row for the next step, and return whether limits of speed or acceleration will cut it. What
+/// the drive itself refuses does not count, nor does an excess below `kRounding`, which is a rounding error.
+bool impose_row(const World& world, BoundState& bound, int row, const Numbers& control) {
+  constexpr double kRounding = 1e-9;
+  State& state = bound.of(world);
+  bound.check_row(row);
+  const Vec3 &now = state.control[row], &acce = world.acce[row % world.objects];
+  bool cut = false;
+  for (int c = 0; c < 3 && c < static_cast<int>(control.size()); ++c) {
+    const double wanted = control[static_cast<std::size_t>(c)], change = acce[c] * world.step_time;
+    state.command[row][c] = wanted;
+    cut |= wanted < std::max(state.vel_min[row][c], now[c] - change) - kRounding ||
+           wanted > std::min(state.vel_max[row][c], now[c] + change) + kRounding;
+  }
+  state.given[row] = 1;
+  return cut;
+}
+
 /// Bind a phase of a single row.
 template <class Phase>
 void bind_phase(nb::module_& m, const char* name, Phase phase) {
@@ -79,6 +99,7 @@ void bind_object(nb::module_& m) {
   using W = const World&;
   bind_phase(m, "renew_row", [](W world, State& s, int w, int i) { renew_goals(world, s, w, i); });
   bind_phase(m, "decide_row", [](W world, State& s, int w, int i) { decide(world, s, w, s.workspaces.front(), i); });
+  m.def("impose_row", &impose_row, nb::arg("world"), nb::arg("state"), nb::arg("row"), nb::arg("control"));
   bind_phase(m, "limit_row", [](W world, State& s, int w, int i) { limit(world, s, w, i); });
   bind_phase(m, "integrate_row", [](W world, State& s, int w, int i) { integrate(world, s, w, i); });
   bind_phase(m, "remember_row", [](W world, State& s, int w, int i) { remember(s, w * world.objects + i); });

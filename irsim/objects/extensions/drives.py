@@ -25,6 +25,7 @@ __all__ = ["PythonDrives", "attach_python_drives"]
 
 _CORE_CONTROLS = 3
 _CONTACT = COLLISION_MODES["contact"]
+_ROUNDING = 1e-9
 _DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
 
 
@@ -49,15 +50,20 @@ class Wide:
         self.command[:] = 0.0
         self.control[:] = self.drive[:] = self.record.velocity
 
+    def impose(self, control: Sequence[float] | Floats, limits: tuple[Floats, Floats], dt: float) -> bool:
+        """Set the command, and return whether the limits will cut it by more than a rounding error."""
+        self.command[:] = control
+        return bool((np.abs(self._limited(limits, dt) - self.command) > _ROUNDING).any())
+
     def limit(self, limits: tuple[Floats, Floats], dt: float, *, moves: bool) -> None:
         """Limit the command and make it the executed control; 0 for an object that does not move."""
-        if moves:
-            change = np.asarray(self.record.acce) * dt
-            low = np.maximum(limits[0], self.control - change)
-            high = np.minimum(limits[1], self.control + change)
-            self.control[:] = np.minimum(np.maximum(self.command, low), high)
-        else:
-            self.control[:] = 0.0
+        self.control[:] = self._limited(limits, dt) if moves else 0.0
+
+    def _limited(self, limits: tuple[Floats, Floats], dt: float) -> Floats:
+        change = np.asarray(self.record.acce) * dt
+        low = np.maximum(limits[0], self.control - change)
+        high = np.minimum(limits[1], self.control + change)
+        return np.minimum(np.maximum(self.command, low), high)
         self.command[:] = 0.0
 
 

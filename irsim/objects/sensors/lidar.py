@@ -95,6 +95,7 @@ class Lidar2D:
     _hits: NDArray[np.int32]
     _valid: NDArray[np.uint8]
     _velocities: Floats
+    _no_velocities: Floats
     _settings: ClassVar[tuple[str, ...]] = (
         "number",
         "range_min",
@@ -145,6 +146,7 @@ class Lidar2D:
         own["angle_min"], own["angle_max"] = float(angles[0]), float(angles[-1])
         own["angle_inc"] = self.angle_range / (number - 1) if number > 1 else 0.0
         own["time_inc"] = 0.0
+        own["_no_velocities"] = np.zeros((2, self.number))
         self._fixed = {
             "angle_min": self.angle_min,
             "angle_max": self.angle_max,
@@ -194,7 +196,7 @@ class Lidar2D:
     @property
     def velocity(self) -> Floats:
         """Copy of the world velocities at the hits, (2, number) [m/s]; zeros without ``has_velocity`` or a hit."""
-        return self._velocities.copy() if self.has_velocity else np.zeros((2, self.number))
+        return (self._velocities if self.has_velocity else self._no_velocities).copy()
 
     @property
     def lidar_origin(self) -> Floats:
@@ -236,11 +238,8 @@ class Lidar2D:
             ``range_min``, ``range_max``, ``ranges`` (number,) [m], ``intensities`` None, ``velocity`` (2, number)
             [m/s], ``valid`` (number,) bool.
         """
-        scan: dict[str, Any] = dict(self._fixed)
-        scan["ranges"] = self._ranges.copy()
-        scan["velocity"] = self.velocity
-        scan["valid"] = self._valid.astype(bool)
-        return scan
+        velocity = (self._velocities if self.has_velocity else self._no_velocities).copy()
+        return {**self._fixed, "ranges": self._ranges.copy(), "velocity": velocity, "valid": self._valid.astype(bool)}
 
     def get_points(self) -> Floats | None:
         """Return the points of the valid hits in the sensor frame, (2, K) [m]; None without a hit."""
