@@ -46,9 +46,9 @@ class Orca(BehaviorOptions):
     """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
     speed."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
-    """While something that moves is ahead on the way to the goal, want to pass it on this side: the wanted velocity turns
-    by this angle to the right, to the left if negative. 10 breaks exact symmetry: trailing a slower one, stopping when
-    two meet head-on, a ring that locks up. 0 is off."""
+    """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
+    turns by this angle to the right, to the left if negative. 10 breaks exact symmetry: trailing a slower one, stopping
+    when two meet head-on, a ring that locks up. 0 is off."""
 
 
 BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

@@ -187,8 +187,7 @@ bool avoid_discs(const World& world, const State& state, int w, int self, int ot
 }
 
 /// Add half-planes of the nearest movers.
-void avoid_movers(const OrcaOptions& options, const World& world, const State& state, int w, int self,
-                  OrcaCrowd& all) {
+void avoid_movers(const OrcaOptions& options, const World& world, const State& state, int w, int self, OrcaCrowd& all) {
   const int object = world.moving[self], group = all.member_of[self];
   const OrcaAgent& agent = all.movers[self];
   const int most = std::min(options.maxNeighbors, static_cast<int>(all.movers.size()) - 1);

@@ -19,7 +19,7 @@ constexpr double kBackwardCost = 1.5;   // cost of driving backward, per length
 constexpr double kSwitchCost = 0.3;     // cost of changing between forward and backward [m]
 constexpr double kSteeringCost = 0.02;  // cost of an arc [m]
 constexpr double kHeuristicWeight =
-    1.5;                          // weight of the distance to the goal: few nodes, paths longer by this factor at most
+    1.5;  // weight of the distance to the goal: few nodes, paths longer by this factor at most
 constexpr double kFieldCell = 0.1;         // smallest cell of the field of distances to the goal [m]
 constexpr double kMaxFieldCells = 250000;  // largest number of its cells
 

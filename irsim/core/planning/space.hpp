@@ -14,7 +14,7 @@ struct Blockers {
   const Shapes& shapes;
   const Outlines& outlines;
   const Grid& grid;
-  const std::uint8_t* passable;  // (N,) 1 for objects that are not obstacles; null if all are
+  const std::uint8_t* passable;                    // (N,) 1 for objects that are not obstacles; null if all are
   const std::vector<Footprint>* others = nullptr;  // more obstacles, or null
 
   bool counts(int id) const { return passable == nullptr || !passable[id]; }

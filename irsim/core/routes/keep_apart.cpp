@@ -8,7 +8,7 @@ namespace irsim {
 namespace {
 
 constexpr double kSideMargin = 0.01;  // distance that objects keep from the line between them [m]
-constexpr double kReachSlack = 0.1;         // objects farther away than they can drive, and this, have no line [m]
+constexpr double kReachSlack = 0.1;   // objects farther away than they can drive, and this, have no line [m]
 constexpr double kMinSlide = 0.1;     // share of the wanted speed for which it is worth turning along a line
 constexpr double kMinTurn = 0.02;     // smaller turns are not worth it [rad]
 constexpr double kRounding = 1e-9;    // [m]

@@ -8,17 +8,17 @@
 namespace irsim {
 namespace {
 
-constexpr double kProgress = 0.05;    // shortening of the way ahead that counts as progress [m]
-constexpr double kPatience = 1.0;     // an object without progress for this time is held up [s]
-constexpr double kDetour = 0.5;       // a way ahead that grew by more belongs to another path [m]
-constexpr double kRecovery = 2.0;     // an object without progress for this time tries another way [s]
-constexpr double kNear = 0.6;         // distance to those who are in the way [m]
-constexpr double kTrackStep = 0.1;    // distance between the poses of the track [m]
-constexpr double kTrackTurn = 0.15;   // turn between the poses of the track [rad]
-constexpr std::size_t kTrackLength = 100;  // poses of the track
+constexpr double kProgress = 0.05;           // shortening of the way ahead that counts as progress [m]
+constexpr double kPatience = 1.0;            // an object without progress for this time is held up [s]
+constexpr double kDetour = 0.5;              // a way ahead that grew by more belongs to another path [m]
+constexpr double kRecovery = 2.0;            // an object without progress for this time tries another way [s]
+constexpr double kNear = 0.6;                // distance to those who are in the way [m]
+constexpr double kTrackStep = 0.1;           // distance between the poses of the track [m]
+constexpr double kTrackTurn = 0.15;          // turn between the poses of the track [rad]
+constexpr std::size_t kTrackLength = 100;    // poses of the track
 constexpr int kMaxPosesAmongOthers = 15000;  // poses after which a plan among others is given up
-constexpr double kRetreat = 1.2;          // length of a retreat [m]
-constexpr double kWait = 3.0;             // time that an object waits after its retreat [s]
+constexpr double kRetreat = 1.2;             // length of a retreat [m]
+constexpr double kWait = 3.0;                // time that an object waits after its retreat [s]
 
 /// Way that is left to the goal [m]. Objects that have arrived or have no way give way to all others.
 double way_ahead(const State& state, int row) {
@@ -94,7 +94,8 @@ bool Follower::retreat() {
   route_.leg = 1;
   route_.blocked_steps = 0;
   route_.retreats = true;
-  route_.wait_until = state_.count[w_] + static_cast<std::int64_t>((kRetreat / top_speed(-1) + kWait) / world_.step_time);
+  route_.wait_until =
+      state_.count[w_] + static_cast<std::int64_t>((kRetreat / top_speed(-1) + kWait) / world_.step_time);
   return true;
 }
 
@@ -150,8 +151,8 @@ void Follower::recover() {
       continue;
     near = true;
     const std::int64_t held = steps_held(w_ * world_.objects + other);
-    if (held > 0 && held % patience == 0 &&
-        precedence(world_, state_, w_, object_, other) == Precedence::second && retreat())
+    if (held > 0 && held % patience == 0 && precedence(world_, state_, w_, object_, other) == Precedence::second &&
+        retreat())
       return;
   }
   // Searching takes long, so the second search comes after twice the time, the third after four times, and so on.

@@ -1,6 +1,6 @@
-// Who goes first where objects on routes meet. As long as they move they share the avoidance. One that gets no nearer to
-// its goal is held up; then the one with the longer way ahead gives way alone, so that two at a door do not block each
-// other for good.
+// Who goes first where objects on routes meet. As long as they move they share the avoidance. One that gets no nearer
+// to its goal is held up; then the one with the longer way ahead gives way alone, so that two at a door do not block
+// each other for good.
 #pragma once
 
 namespace irsim {

@@ -1,5 +1,5 @@
-// A small preference for one side, which breaks exact symmetry: without it an object trails one straight ahead for ever,
-// two that meet head-on brake to a stand, and a ring locks up.
+// A small preference for one side, which breaks exact symmetry: without it an object trails one straight ahead for
+// ever, two that meet head-on brake to a stand, and a ring locks up.
 #pragma once
 
 #include "decision.hpp"

@@ -42,8 +42,8 @@ struct Workspace {
   std::vector<int> walls;  // walls found near an object
   VelocityObstacles velocity_obstacles;
   OrcaCrowd orca;
-  SearchMemory search;  // memory of planners
-  Outlines ghost;       // outline of an object at a pose that is tried
+  SearchMemory search;      // memory of planners
+  Outlines ghost;           // outline of an object at a pose that is tried
   std::vector<Side> sides;  // lines that an object on a route must not cross
 };
 

@@ -216,8 +216,8 @@ def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     yield report(
         "goal-overshoot",
         record.path,
-        f"'{record.name}' drives {step:.3g} m per step and {'a car' if car else repr(name)} does not slow down: {effect},"
-        f" which counts as reached within {record.goal_threshold:g} m",
+        f"'{record.name}' drives {step:.3g} m per step and {'a car' if car else repr(name)} does not slow down: "
+        f"{effect}, which counts as reached within {record.goal_threshold:g} m",
         fix=f"goal_threshold: {threshold:g} or more, a smaller step_time, or a lower vel_max",
     )
 
