@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import pytest
 
@@ -15,7 +16,7 @@ LOCALS = {
 }
 
 
-def world(behavior: str, *robots: tuple[list[float], list[float], float]) -> str:
+def world(behavior: str, *robots: tuple[Sequence[float], Sequence[float], float]) -> str:
     entries = "".join(
         f"  - {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.25}}, state: {state}, goal: {goal}, "
         f"goal_threshold: 0.2, vel_max: [{top}, {top}], vel_min: [{-top}, {-top}], behavior: {{{behavior}}}}}\n"
