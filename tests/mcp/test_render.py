@@ -19,7 +19,7 @@ async def test_line_and_picture(workspace: Path) -> None:
         result = await client.call_tool("render_snapshot", {"scenario_yaml": CRASH, "seed": 1, "size_px": 300})
     line = text_of(result)
     assert "\n" not in line
-    assert "t=0 s (step 0, nothing is random); world x 0..8 m, y 0..6 m; r0 'rover' at (1.00, 1.00)" in line
+    assert "t=0 s (step 0, nothing is random); world x 0..8 m, y 0..6 m; rover at (1.00, 1.00)" in line
     assert "goal (7.00, 1.00); 1 obstacle" in line
     assert "irsim render scenario.yaml --seed 1 --steps 0 --strict --size 300" in line
     picture = image_of(result)
@@ -35,7 +35,7 @@ async def test_line_and_picture(workspace: Path) -> None:
 
 async def test_later_moments_and_no_picture(empty: Path) -> None:
     async with connected(empty) as client:
-        for step, said in ((10, "(step 10,"), (-1, "'rover' arrived")):
+        for step, said in ((10, "(step 10,"), (-1, "rover arrived")):
             arguments = {"scenario_yaml": ROOM, "step": step, "return_image": False}
             result = await client.call_tool("render_snapshot", arguments)
             assert said in text_of(result)
@@ -74,7 +74,7 @@ async def test_plans_in_words(empty: Path) -> None:
         given = {"scenario_yaml": ROOM, "overlays": ["plan", "clearance"], "size_px": 300}
         result = await client.call_tool("render_snapshot", given)
         refused = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "strip": 13})
-    assert "a path for r0: " in text_of(result)
+    assert "a path for rover: " in text_of(result)
     assert "(strip)" in error_of(refused)
     assert "2 to 12" in error_of(refused)
 
