@@ -48,11 +48,20 @@ class OrcaOptions(_Options):
         maxSpeed: float | None,
         responsibility: float | None,
         approach_time: float | None,
+        sidestep: float,
     ) -> None: ...
 
 class RvoOptions(_Options):
     def __init__(
-        self, *, vxmax: float, vymax: float, acce: float, factor: float, mode: str, neighbor_threshold: float
+        self,
+        *,
+        vxmax: float,
+        vymax: float,
+        acce: float,
+        factor: float,
+        mode: str,
+        neighbor_threshold: float,
+        sidestep: float,
     ) -> None: ...
 
 class SfmOptions(_Options):
@@ -71,6 +80,7 @@ class SfmOptions(_Options):
         n_angular: float,
         n_velocity: float,
         safety_radius: float,
+        sidestep: float,
         social_groups: Sequence[Sequence[int]] | None,
         force_factor_coherence: float,
         force_factor_group_repulsion: float,

@@ -8,7 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
+<<<<<<< HEAD
 from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
+=======
+from irsim.episodes.detours import closeness_message, shunting_message
+from irsim.episodes.incidents import Incidents, contacts_message, jumps_message
+>>>>>>> follow
 from irsim.episodes.out_of_bounds import exits_message
 from irsim.episodes.stuck import (
     find_circling,
@@ -71,6 +76,10 @@ def summary_message(
         parts.append(returns)
     if gone := _departures_message(env, robots):
         parts.append(gone)
+    if shunted := shunting_message(env, robots, parked):
+        parts.append(shunted)
+    if close := closeness_message(robots):
+        parts.append(close)
     if others := others_arrived_message(env.scenario, events):
         parts.append(others)
     said = bool(held) or incidents.human_contacts[:1] == list(hits[:1])

@@ -42,6 +42,7 @@ def options(**overrides: Any) -> core.OrcaOptions:
         "maxSpeed": None,
         "responsibility": None,
         "approach_time": None,
+        "sidestep": 0.0,
     }
     return core.OrcaOptions(**{**default, **overrides})
 

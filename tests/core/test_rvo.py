@@ -24,6 +24,7 @@ DEFAULTS: dict[str, Any] = {
     "factor": 1.0,
     "mode": "rvo",
     "neighbor_threshold": 3.0,
+    "sidestep": 0.0,
 }
 TURNING = {"tolerance": 0.1, "guarantee_time": 0.2, "max_rate": 1.5}
 

@@ -36,7 +36,7 @@ robot:
     kinematics: {name: omni}
     shape: [{name: circle, radius: 0.3}]
     distribution: {name: circle, radius: 6, center: [0, 0]}
-    group_behavior: {name: orca, safe_radius: 0.2}
+    group_behavior: {name: orca, safe_radius: 0.2, sidestep: 10}
     color: [r, g, b]
 obstacle:
   - number: 5

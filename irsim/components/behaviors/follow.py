@@ -26,6 +26,11 @@ class Follow(BehaviorOptions):
     static objects it keeps only the clearance that the path has, without its own margins, horizons and forces, which
     would close narrow passages. Where there is no space to turn, `diff` and `acker` follow a path of poses instead,
     with the turning circle of a car, and wait for objects in the way.
+
+    With any local behavior but `dash` objects on routes touch nobody who keeps to their own side of the line between
+    them, as others on routes do. One that gets no nearer to its goal for a second goes first if its way is the shorter
+    one, and the other gives way alone. Cars that block each other plan round those in their way, or back up along their
+    track; that needs a reverse gear (`vel_min`).
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {

@@ -9,7 +9,7 @@ from pydantic import Field
 import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.options.registry import BEHAVIORS
-from irsim.options.units import Count, Fraction, Meters, MetersPerSecond, Seconds
+from irsim.options.units import Count, Degrees, Fraction, Meters, MetersPerSecond, Seconds
 
 
 class Orca(BehaviorOptions):
@@ -45,6 +45,10 @@ class Orca(BehaviorOptions):
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
     """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
     speed."""
+    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
+    """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
+    turns by this angle to the right, to the left if negative. 10 breaks exact symmetry: trailing a slower one, stopping
+    when two meet head-on, a ring that locks up. 0 is off."""
 
 
 BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

@@ -4,8 +4,11 @@
 #include <algorithm>
 
 #include "geometry/predicates.hpp"
+#include "orca/body_discs.hpp"
 #include "orca/crowd.hpp"
 #include "orca/obstacles.hpp"
+#include "routes/right_of_way.hpp"
+#include "surroundings/sidestep.hpp"
 #include "world/spec.hpp"
 
 namespace irsim {
@@ -160,8 +163,31 @@ void avoid_obstacles(double horizon, const World& world, const Obstacles& obstac
   }
 }
 
+/// Add half-planes of two movers, at least one of which is long, from the discs that cover them. On a route this closes
+/// no passage that is wide enough for both. Returns false if both are their bounding circles.
+bool avoid_discs(const World& world, const State& state, int w, int self, int other, double share, double horizon,
+                 OrcaCrowd& all) {
+  const Shapes& shapes = *state.scenes[w].shapes;
+  const int movers[] = {self, other};
+  BodyDiscs discs[2];
+  for (int side = 0; side < 2; ++side) discs[side] = body_discs(shapes, world.moving[movers[side]]);
+  if (discs[0].count == 1 && discs[1].count == 1) return false;
+  const auto disc = [&](int side, int k) {
+    const int m = movers[side], object = world.moving[m], row = w * world.objects + object;
+    const double margin = all.movers[m].radius - shapes.radius[object];
+    const Vec2 centre = state.pose[row].position() + rotate(discs[side].centres[k], state.heading(row));
+    return OrcaAgent{centre, all.movers[m].velocity, discs[side].radius + margin};
+  };
+  for (int k = 0; k < discs[0].count; ++k) {
+    for (int n = 0; n < discs[1].count; ++n) {
+      all.planes.push_back(avoid_agent(disc(0, k), disc(1, n), share, horizon, world.step_time, self < other));
+    }
+  }
+  return true;
+}
+
 /// Add half-planes of the nearest movers.
-void avoid_movers(const OrcaOptions& options, const World& world, int self, OrcaCrowd& all) {
+void avoid_movers(const OrcaOptions& options, const World& world, const State& state, int w, int self, OrcaCrowd& all) {
   const int object = world.moving[self], group = all.member_of[self];
   const OrcaAgent& agent = all.movers[self];
   const int most = std::min(options.maxNeighbors, static_cast<int>(all.movers.size()) - 1);
@@ -176,7 +202,14 @@ void avoid_movers(const OrcaOptions& options, const World& world, int self, Orca
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
     // not give way.
     const bool mutual = all.group[m] >= 0 && (all.group[m] == group || targets_role(world, world.moving[m], object));
-    const double share = options.responsibility ? *options.responsibility : mutual ? 0.5 : 1.0;
+    double share = options.responsibility ? *options.responsibility : mutual ? 0.5 : 1.0;
+    if (mutual) {
+      const Precedence order = precedence(world, state, w, object, world.moving[m]);
+      if (order == Precedence::first) continue;
+      if (order == Precedence::second) share = 1.0;
+    }
+    const bool routed = state.route_of(w * world.objects + object) != nullptr;
+    if (routed && avoid_discs(world, state, w, self, m, share, options.timeHorizon, all)) continue;
     all.planes.push_back(avoid_agent(agent, all.movers[m], share, options.timeHorizon, world.step_time, self < m));
   }
 }
@@ -194,7 +227,8 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     const OrcaAgent& agent = all.movers[self];
     const double speed = top_speed(options, world, state, row, i);
     all.planes.clear();
-    Vec2 preferred = preferred_velocity(options, world, state, row, i, speed);
+    Vec2 preferred =
+        sidestepped(decision, k, preferred_velocity(options, world, state, row, i, speed), options.sidestep);
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
     if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
     if (const Route* route = state.route_of(row)) {  // a route already avoids static objects
@@ -204,7 +238,7 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
       avoid_obstacles(options.timeHorizonObst, world, obstacles, agent, i, speed, all);
     }
     const int hard = static_cast<int>(all.planes.size());
-    avoid_movers(options, world, self, all);
+    avoid_movers(options, world, state, decision.w(), self, all);
     Vec2 velocity;
     const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
                                       all.scratch, velocity);

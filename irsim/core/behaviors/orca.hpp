@@ -20,12 +20,14 @@ struct OrcaOptions {
   std::optional<double>
       responsibility;                   // share of a change of velocity; none: half for objects that give way, else all
   std::optional<double> approach_time;  // time constant of slowing down at the goal [s]; none: full speed
+  double sidestep;  // angle to the right of the wanted velocity while something moving is ahead [degrees]
   static constexpr auto fields() {
     using O = OrcaOptions;
     return std::make_tuple(field("neighborDist", &O::neighborDist), field("maxNeighbors", &O::maxNeighbors),
                            field("timeHorizon", &O::timeHorizon), field("timeHorizonObst", &O::timeHorizonObst),
                            field("safe_radius", &O::safe_radius), field("maxSpeed", &O::maxSpeed),
-                           field("responsibility", &O::responsibility), field("approach_time", &O::approach_time));
+                           field("responsibility", &O::responsibility), field("approach_time", &O::approach_time),
+                           field("sidestep", &O::sidestep));
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include "rvo/velocity_obstacles.hpp"
 #include "surroundings/ego.hpp"
+#include "surroundings/sidestep.hpp"
 
 namespace irsim {
 namespace {
@@ -123,7 +124,8 @@ Intent turning_intent(const VelocityObstacles& obstacles, const Ego& ego, Vec2 v
 void rvo(const RvoOptions& options, const Decision& decision, Intent* intents) {
   VelocityObstacles& obstacles = decision.work.velocity_obstacles;
   for (int k = 0; k < decision.count; ++k) {
-    const Ego ego = ego_of(decision, k);
+    Ego ego = ego_of(decision, k);
+    ego.desired = sidestepped(decision, k, ego.desired, options.sidestep);
     look_around(options, decision, ego, obstacles);
     const Vec2 v = ego.velocity;
     const Axis x = window(v.x, options.acce, options.vxmax * ego.pace);

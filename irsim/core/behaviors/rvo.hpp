@@ -16,12 +16,13 @@ struct RvoOptions {
   double factor;        // weight of the time to collision if every velocity is blocked
   Avoidance mode;
   double neighbor_threshold;  // reach within which objects are avoided [m]
+  double sidestep;            // angle to the right of the wanted velocity while something moving is ahead [degrees]
 
   static constexpr auto fields() {
     using R = RvoOptions;
     return std::make_tuple(field("vxmax", &R::vxmax), field("vymax", &R::vymax), field("acce", &R::acce),
                            field("factor", &R::factor), choice("mode", &R::mode, "rvo", "hrvo", "vo"),
-                           field("neighbor_threshold", &R::neighbor_threshold));
+                           field("neighbor_threshold", &R::neighbor_threshold), field("sidestep", &R::sidestep));
   }
 };
 

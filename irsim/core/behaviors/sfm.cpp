@@ -2,6 +2,7 @@
 
 #include "geometry/predicates.hpp"
 #include "surroundings/ego.hpp"
+#include "surroundings/sidestep.hpp"
 
 namespace irsim {
 namespace {
@@ -145,7 +146,8 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
   const World& world = decision.world;
   const double dt = world.step_time;
   for (int k = 0; k < decision.count; ++k) {
-    const Ego ego = ego_of(decision, k);
+    Ego ego = ego_of(decision, k);
+    ego.desired = sidestepped(decision, k, ego.desired, options.sidestep);
     const double speed = norm(ego.desired);
     const double most = options.vmax * ego.pace;
     const Vec2 desired = speed > 0.0 ? ego.desired * (most / speed) : Vec2{};

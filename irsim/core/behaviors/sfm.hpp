@@ -19,6 +19,7 @@ struct SfmOptions {
   double sigma_obstacle;  // decay length of the force of walls [m]
   double lambda_importance, gamma, n_angular, n_velocity;
   double safety_radius;  // [m]
+  double sidestep;       // angle to the right of the wanted velocity while something moving is ahead [degrees]
   // forces between members of a group behavior
   std::optional<std::vector<std::vector<int>>> social_groups;  // indices in Decision::members
   double force_factor_coherence, force_factor_group_repulsion;
@@ -34,7 +35,7 @@ struct SfmOptions {
         field("force_factor_social", &S::force_factor_social),
         field("force_factor_obstacle", &S::force_factor_obstacle), field("sigma_obstacle", &S::sigma_obstacle),
         field("lambda_importance", &S::lambda_importance), field("gamma", &S::gamma), field("n_angular", &S::n_angular),
-        field("n_velocity", &S::n_velocity), field("safety_radius", &S::safety_radius),
+        field("n_velocity", &S::n_velocity), field("safety_radius", &S::safety_radius), field("sidestep", &S::sidestep),
         field("social_groups", &S::social_groups), field("force_factor_coherence", &S::force_factor_coherence),
         field("force_factor_group_repulsion", &S::force_factor_group_repulsion),
         field("group_repulsion_threshold", &S::group_repulsion_threshold),

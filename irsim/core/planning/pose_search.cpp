@@ -19,8 +19,7 @@ constexpr double kBackwardCost = 1.5;   // cost of driving backward, per length
 constexpr double kSwitchCost = 0.3;     // cost of changing between forward and backward [m]
 constexpr double kSteeringCost = 0.02;  // cost of an arc [m]
 constexpr double kHeuristicWeight =
-    1.5;                          // weight of the distance to the goal: few nodes, paths longer by this factor at most
-constexpr int kMaxPoses = 60000;  // number of poses after which the search gives up
+    1.5;  // weight of the distance to the goal: few nodes, paths longer by this factor at most
 constexpr double kFieldCell = 0.1;         // smallest cell of the field of distances to the goal [m]
 constexpr double kMaxFieldCells = 250000;  // largest number of its cells
 
@@ -48,7 +47,7 @@ class PoseSearch {
       if (closed_[k]) continue;
       closed_[k] = 1;
       if (norm(nodes_[k].pose.position() - p_.goal) <= std::max(p_.near, step_)) return legs(k);
-      if (nodes_.size() > kMaxPoses) return {};
+      if (nodes_.size() > static_cast<std::size_t>(p_.most)) return {};
       if (p_.radius > 0.0) {
         arcs(k);
       } else {

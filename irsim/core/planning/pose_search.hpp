@@ -13,6 +13,8 @@ struct Leg {
   int way;  // 1 forward, -1 backward, 0 by turning on the spot
 };
 
+constexpr int kMaxPoses = 60000;  // poses after which the search for a plan gives up
+
 /// What is to be planned.
 struct PoseProblem {
   const Blockers& blockers;
@@ -27,6 +29,7 @@ struct PoseProblem {
   double reach;          // farthest point of the footprint from its origin [m]
   double room;           // radius of a disc about the origin within the footprint [m]
   const Region* region;  // area that positions must not leave, or null
+  int most;              // number of poses after which the search gives up
 };
 
 /// Legs from start to goal, starting with the start; empty if none are found. Hybrid A* (Dolgov, Thrun, Montemerlo,

@@ -1,5 +1,7 @@
 #include "planning/space.hpp"
 
+#include <algorithm>
+
 #include "collision/touch.hpp"
 #include "geometry/predicates.hpp"
 
@@ -8,7 +10,9 @@ namespace irsim {
 bool Blockers::meet(const Footprint& body) const {
   bool met = false;
   grid.query(body.box, [&](int id) { met = met || (counts(id) && touch(body, outlines.footprint(shapes, id))); });
-  return met;
+  if (met || others == nullptr) return met;
+  return std::any_of(others->begin(), others->end(),
+                     [&](const Footprint& other) { return body.box.meets(other.box) && touch(body, other); });
 }
 
 void Terrain::add(const std::vector<Outline>& outlines, const Pose& pose) {

@@ -15,7 +15,8 @@ struct Blockers {
   const Shapes& shapes;
   const Outlines& outlines;
   const Grid& grid;
-  const std::uint8_t* passable;  // (N,) 1 for objects that are not obstacles; null if all are
+  const std::uint8_t* passable;                    // (N,) 1 for objects that are not obstacles; null if all are
+  const std::vector<Footprint>* others = nullptr;  // more obstacles, or null
 
   bool counts(int id) const { return passable == nullptr || !passable[id]; }
   bool meet(const Footprint& body) const;
@@ -29,7 +30,7 @@ class Terrain {
   void add(const std::vector<Outline>& outlines, const Pose& pose);
   void build();
 
-  Blockers blockers() const { return {shapes_, outlines_, grid_, nullptr}; }
+  Blockers blockers() const { return {shapes_, outlines_, grid_, nullptr, nullptr}; }
   const Box& bounds() const { return bounds_; }
 
  private:

@@ -23,6 +23,10 @@ void Follower::follow_legs(Vec3& u) {
   }
   if (route_.leg >= route_.legs.size()) {  // from the last pose the goal is reached in a straight line
     route_.legs.clear();
+    if (route_.retreats) {
+      u = {};
+      return;
+    }
     route_.path = {position(), route_.goal};
     route_.next = 1;
     return;

@@ -21,7 +21,7 @@ class Follower {
         route_(state.routes[row_]),
         fixed_(*state.scenes[w].fixed),
         shapes_(*state.scenes[w].shapes),
-        blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data()} {
+        blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data(), nullptr} {
     if (!options_.within.empty()) within_.emplace(options_.within);
   }
 
@@ -50,7 +50,7 @@ class Follower {
   /// Report that there is no path if the object rests for long on a path that was planned for a smaller body.
   void report_if_stuck();
   /// Plan poses for a drive that cannot move sideways and cannot turn everywhere.
-  bool find_legs(double reach);
+  bool find_legs(double reach, int most = kMaxPoses);
   /// Plan a path on which `wide` fits; `tight` is the body for which corners must stay in sight. Without `search` only
   /// the straight line is tried.
   bool attempt(const Body& wide, const Body& tight, bool search);
@@ -72,8 +72,26 @@ class Follower {
   void steer_to_corner(Vec3& u);
   /// Let a car back up first when its goal lies within its turning circle.
   void back_off_from_goal();
+  /// Note how much of the way is left, and whether the object gets on.
+  void track_progress();
+  /// Note the poses of the last metres, along which the object can retreat.
+  void keep_track();
+  /// Turn round what blocks an object that cannot move sideways: it plans again round those in its way, or retreats
+  /// along its track for another one that goes first.
+  void recover();
+  /// Start a retreat. Returns false if there is no track or no reverse gear.
+  bool retreat();
+  /// End a retreat.
+  void forget_retreat();
+  /// Plan poses round all movers where they are. The present route stays if there is no such plan.
+  bool plan_among_others();
+  /// Find the lines between this object and its moving neighbors, and write its sides of them to `Workspace::sides`.
+  void find_sides();
+  /// Slow down or turn aside where the command would cross such a line, so that nothing that moves is touched.
+  void keep_apart(Vec3& u);
   /// Slow down, veer or back up where the command would end in a collision with a static object.
   void keep_clear(Vec3& u);
+  /// Whether the body at a pose touches nothing static and stays on its `Workspace::sides`.
   bool clear_at(const Pose& pose);
   /// Whether a command, followed by braking as hard as the limits allow, leads to no collision.
   bool clear_after(const Vec3& command);

@@ -85,6 +85,7 @@ void Follower::plan() {
   route_.planned_at = state_.count[w_];
   route_.planned_among = state_.scenes[w_].fixed;
   route_.path.clear();
+  forget_retreat();
   route_.legs.clear();
   route_.keeps_heading = false;
   route_.blocked_steps = 0;
@@ -143,7 +144,7 @@ void Follower::report_if_stuck() {
   if (stood >= kStuckTime && left > world_.goal_threshold[object_]) report_no_path();
 }
 
-bool Follower::find_legs(double reach) {
+bool Follower::find_legs(double reach, int most) {
   const Drive& drive = world_.drive[object_];
   const auto* car = std::get_if<AckerOptions>(&drive);
   if (car == nullptr && !std::holds_alternative<DiffOptions>(drive)) return false;
@@ -151,8 +152,8 @@ bool Follower::find_legs(double reach) {
   const double room = inner_radius(shapes_, object_);
   const bool backs = state_.vel_min[row_][0] < 0.0;
   const PoseProblem problem{
-      blockers_, shapes_, object_, bounds(), state_.pose[row_], route_.goal, world_.goal_threshold[object_],
-      backs,     radius,  reach,   room,     region()};
+      blockers_, shapes_, object_, bounds(), state_.pose[row_], route_.goal, world_.goal_threshold[object_], backs,
+      radius,    reach,   room,    region(), most};
   route_.legs = search_poses(problem);
   route_.leg = 1;
   if (route_.legs.size() < 2) {

@@ -1,6 +1,7 @@
 #include "routes/route.hpp"
 
 #include "routes/follower.hpp"
+#include "routes/right_of_way.hpp"
 #include "world/features.hpp"
 
 namespace irsim {
@@ -8,11 +9,6 @@ namespace {
 
 constexpr double kCornerReached = 0.05;       // a corner this near counts as reached [m]
 constexpr double kMinTimeBetweenPlans = 1.0;  // after a plan, before another is made because the path was lost [s]
-
-bool follows_route(const World& world, const State& state, int w, int object) {
-  const int row = w * world.objects + object;
-  return !world.is_static[object] && !state.stopped[row] && !state.given[row] && !state.waits(row);
-}
 
 }  // namespace
 
@@ -22,7 +18,12 @@ void Follower::update_target() {
   target = goal;
   if (std::isnan(goal.x)) return;
   if (plan_is_due()) plan();
-  if (route_.path.empty()) {
+  if (!route_.path.empty()) {
+    if (route_.legs.empty() && !route_.retreats) advance();
+    track_progress();
+    recover();
+  }
+  if (route_.path.empty() || (route_.retreats && route_.legs.empty())) {
     target.x = target.y = kNone;
     return;
   }
@@ -31,7 +32,6 @@ void Follower::update_target() {
     target = {point.x, point.y, kNone};
     return;
   }
-  advance();
   if (route_.next + 1 == route_.path.size() && !(options_.lookahead > 0.0)) return;
   aim(target);
 }
@@ -43,15 +43,20 @@ void Follower::adjust_command() {
     u = {};
     return;
   }
+  if (route_.retreats && route_.legs.empty()) {
+    u = {};
+    return;
+  }
   if (!route_.legs.empty()) {
     follow_legs(u);
-    if (!route_.legs.empty()) return;
+    if (!route_.legs.empty()) return keep_apart(u);
   }
   if (route_.uncertain) report_if_stuck();
   if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) steer_to_corner(u);
   if (route_.keeps_heading) u[2] = 0.0;
   back_off_from_goal();
   keep_clear(u);
+  keep_apart(u);
 }
 
 Vec2 Follower::position() const { return state_.pose[row_].position(); }

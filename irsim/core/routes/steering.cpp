@@ -2,6 +2,7 @@
 #include "routes/follower.hpp"
 
 #include "collision/touch.hpp"
+#include "routes/sides.hpp"
 #include "world/features.hpp"
 
 namespace irsim {
@@ -130,6 +131,9 @@ bool Follower::clear_at(const Pose& pose) {
   work_.ghost.place(shapes_, object_, pose, unit(pose.theta));
   const Footprint body = work_.ghost.footprint(shapes_, object_);
   if (blockers_.meet(body)) return false;
+  for (const Side& side : work_.sides) {
+    if (support(body, side.normal) > side.offset) return false;
+  }
   if (route_.legs.empty()) return true;
   // An object cannot leave its legs, so it waits for moving objects that are in its way.
   return std::none_of(world_.moving.begin(), world_.moving.end(), [&](int i) {

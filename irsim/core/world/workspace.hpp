@@ -7,6 +7,7 @@
 #include "contact/contact.hpp"
 #include "orca/crowd.hpp"
 #include "planning/problem.hpp"
+#include "routes/sides.hpp"
 #include "rvo/velocity_obstacles.hpp"
 #include "surroundings/neighbors.hpp"
 
@@ -41,8 +42,9 @@ struct Workspace {
   std::vector<int> walls;  // walls found near an object
   VelocityObstacles velocity_obstacles;
   OrcaCrowd orca;
-  SearchMemory search;  // memory of planners
-  Outlines ghost;       // outline of an object at a pose that is tried
+  SearchMemory search;      // memory of planners
+  Outlines ghost;           // outline of an object at a pose that is tried
+  std::vector<Side> sides;  // lines that an object on a route must not cross
 };
 
 }  // namespace irsim

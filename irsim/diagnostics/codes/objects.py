@@ -172,7 +172,8 @@ OBJECTS: dict[str, Code] = {
         "'dash' drives at full speed until the goal is within 'goal_threshold'. When one step (vel_max × step_time)"
         " is longer than twice the threshold, the object can jump over its goal, turn, and jump over it again. "
         "Example: 3 m/s × 0.1 s = 0.3 m with goal_threshold 0.1; write goal_threshold: 0.2, or step_time: 0.05. "
-        "With a threshold of 0 no object ever arrives.",
+        "With a threshold of 0 no object ever arrives. A car under 'follow' cannot turn round on the spot: it shunts "
+        "back and forth at its goal, and without reverse it may never get there.",
     ),
     "turning-circle": Code(
         "goal inside the turning circle",
@@ -262,6 +263,12 @@ OBJECTS: dict[str, Code] = {
         "'vmax' of sfm, 'vxmax' and 'vymax' of rvo and 'maxSpeed' of orca limit the speed that the behavior wants; "
         "the object drives no faster than its 'vel_max' and 'vel_min' allow, 1 by default. Example: behavior: "
         "{name: orca, maxSpeed: 3}; write vel_max: [3, 1] beside it.",
+    ),
+    "exact-symmetry": Code(
+        "starts too symmetric to pass each other",
+        "orca, rvo and sfm choose no side by themselves. Where two objects meet exactly head-on both brake and may "
+        "stand for ever (under sfm they touch), and one straight behind a slower one trails it. 'sidestep: 10' makes "
+        "them pass on the right. Example: behavior: {name: orca, sidestep: 10}.",
     ),
     "vel-min-default": Code(
         "vel_min keeps its default", "Raising vel_max alone leaves vel_min at -1 for each component."

@@ -195,21 +195,29 @@ def _unobstructed_robot(context: Context, record: ObjectRecord) -> Iterator[Find
 
 
 def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """Goals that ``dash``, which never slows down, can overshoot again and again."""
+    """Goals that ``dash``, and cars on routes, which do not slow down, can overshoot again and again."""
     options: Any = record.behavior if record.group_behavior is None else None
+    drive: Any = record.kinematics
+    car = getattr(options, "name", "") == "follow" and drive.name == "acker"
     options = getattr(options, "local", options)
-    if getattr(options, "name", "") != "dash" or record.static or not record.goals or record.goal_threshold <= 0:
+    name = getattr(options, "name", "")
+    if not (name == "dash" or car) or record.static or not record.goals or record.goal_threshold <= 0:
         return
     dt = context.scenario.world.step_time
     step = top_speed(record) * dt
     if not 2 * record.goal_threshold * (1 + 1e-9) < step <= MAX_MAGNITUDE:
         return
     threshold = math.ceil(step / 2 * 100 + 1) / 100
-    yield hint(
+    effect = "it may overshoot its goal"
+    if car:
+        backs = bool(record.vel_min) and record.vel_min[0] < 0
+        effect = "it may shunt to and fro at its goal" if backs else "without reverse it may never get to its goal"
+    report = warning if car else hint
+    yield report(
         "goal-overshoot",
         record.path,
-        f"'{record.name}' drives {step:.3g} m per step and 'dash' does not slow down: it may overshoot its goal, which "
-        f"counts as reached within {record.goal_threshold:g} m",
+        f"'{record.name}' drives {step:.3g} m per step and {'a car' if car else repr(name)} does not slow down: "
+        f"{effect}, which counts as reached within {record.goal_threshold:g} m",
         fix=f"goal_threshold: {threshold:g} or more, a smaller step_time, or a lower vel_max",
     )
 

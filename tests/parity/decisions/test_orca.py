@@ -34,6 +34,7 @@ def decide(index: int) -> np.ndarray:
         maxSpeed=None,
         responsibility=None,
         approach_time=None,
+        sidestep=0.0,
     )
     agents = [
         robot(

@@ -1,0 +1,16 @@
+// A small preference for one side, which breaks exact symmetry: without it an object trails one straight ahead for
+// ever, two that meet head-on brake to a stand, and a ring locks up.
+#pragma once
+
+#include "decision.hpp"
+
+namespace irsim {
+
+/// Turn the wanted velocity of object k of a decision to the right while a moving object is in its lane to the goal.
+///
+/// Args:
+///   wanted: Velocity toward the goal, world frame [m/s].
+///   angle: Angle to the right; negative to the left, 0 returns `wanted` [degrees].
+Vec2 sidestepped(const Decision& decision, int k, Vec2 wanted, double angle);
+
+}  // namespace irsim

@@ -1,0 +1,123 @@
+"""Checks for starts and goals that are so symmetric that behaviors which avoid others stop or follow each other."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+from irsim.diagnostics.diagnostic import Edit
+from irsim.scenario.checks._context import Context, distinct
+from irsim.scenario.messages.findings import Finding, warning
+from irsim.scenario.resolve.body_size import top_speed
+from irsim.scenario.resolve.resolved import ObjectRecord
+
+_SIDESTEPPING = ("orca", "rvo", "sfm")
+"""Behaviors with the key ``sidestep``."""
+_ANGLE = 10.0
+"""Angle that is proposed [degrees]."""
+_OFF_LINE = 0.01
+"""Ways less apart than this count as one line [m]."""
+_MOST = 2000
+"""Scenarios with more such objects are not checked."""
+
+
+class _Way(NamedTuple):
+    """The straight way of one object to its first goal: it moves from ``start`` to ``end`` on a line."""
+
+    record: ObjectRecord
+    start: float
+    end: float
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """Find objects on one line that move towards each other, or one behind a slower one; one finding per entry."""
+    yield from distinct(_findings(context))
+
+
+def _findings(context: Context) -> Iterator[Finding]:
+    drawn = {row for placement in context.resolved.placements for row in placement.objects}
+    records = [
+        record
+        for record in context.entry_objects
+        if record.id not in drawn and record.goals and not record.wander and not record.unobstructed
+        and record.spreads is None and 0 < top_speed(record) < math.inf and _needs_side(record)
+    ]  # fmt: skip
+    if not 1 < len(records) <= _MOST:
+        return
+    for ways in _lines(records):
+        for a, b in itertools.pairwise(sorted(ways, key=lambda way: way.start)):
+            if b.start == a.start:
+                continue
+            if a.end > a.start and b.end < b.start and a.end > b.end:
+                yield _finding(context, a.record, f"meets '{b.record.name}' exactly head-on: {_effect(a.record)}")
+                continue
+            behind, ahead = (a, b) if a.end > a.start and b.end > b.start else (b, a)
+            if (a.end > a.start) == (b.end > b.start) and _catches_up(behind, ahead):
+                yield _finding(
+                    context,
+                    behind.record,
+                    f"starts straight behind '{ahead.record.name}', which is slower: it trails it instead of passing",
+                )
+
+
+def _needs_side(record: ObjectRecord) -> bool:
+    options = _options(record)
+    return getattr(options, "name", "") in _SIDESTEPPING and getattr(options, "sidestep", 0.0) == 0.0
+
+
+def _options(record: ObjectRecord) -> Any:
+    options = record.behavior if record.group_behavior is None else record.group_behavior
+    return getattr(options, "local", options)
+
+
+def _lines(records: Sequence[ObjectRecord]) -> Iterator[list[_Way]]:
+    """Ways that lie on one line, together."""
+    lines: dict[tuple[int, int], list[_Way]] = defaultdict(list)
+    for record in records:
+        (x, y), goal = record.state[:2], record.goals[0]
+        dx, dy = goal[0] - x, goal[1] - y
+        length = math.hypot(dx, dy)
+        if not 0 < length < math.inf:
+            continue
+        angle = math.atan2(dy, dx) % math.pi
+        if math.pi - angle < 1e-6:
+            angle = 0.0
+        along = (math.cos(angle), math.sin(angle))
+        across = along[0] * y - along[1] * x
+        start = along[0] * x + along[1] * y
+        key = round(angle / _OFF_LINE), round(across / _OFF_LINE)
+        lines[key].append(_Way(record, start, start + math.copysign(length, along[0] * dx + along[1] * dy)))
+    return (ways for ways in lines.values() if len(ways) > 1)
+
+
+def _catches_up(behind: _Way, ahead: _Way) -> bool:
+    """Whether it would reach the one ahead, on the same line and in the same direction, before either goal."""
+    fast, slow = top_speed(behind.record), top_speed(ahead.record)
+    if fast <= slow:
+        return False
+    time = abs(ahead.start - behind.start) / (fast - slow)
+    return time * fast < abs(behind.end - behind.start) and time * slow < abs(ahead.end - ahead.start)
+
+
+def _effect(record: ObjectRecord) -> str:
+    if _options(record).name == "sfm":
+        return "social forces along one line only brake them, so they touch"
+    return "both brake, and may stand there for ever"
+
+
+def _finding(context: Context, record: ObjectRecord, what: str) -> Finding:
+    key = "behavior" if record.group_behavior is None else "group_behavior"
+    path = context.entry_path(record, key)
+    inner = "local" if hasattr(getattr(record, key), "local") else None
+    where = (*path, inner) if inner else path
+    name = _options(record).name
+    return warning(
+        "exact-symmetry",
+        where if inner else path,
+        f"'{record.name}' {what}",
+        fix=f"add 'sidestep: {_ANGLE:g}' to {name}, or move a start or a goal aside by its radius",
+        edit=Edit("add", (*where, "sidestep"), _ANGLE, safe=False),
+    )

@@ -1,0 +1,111 @@
+"""Several objects under follow with orca: they pass doors, corridors and mazes without a jam and without a touch."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from typing import Any
+
+import pytest
+
+import irsim
+
+DRIVES: dict[str, tuple[str, str, list[float], float]] = {
+    "omni": ("{name: omni}", "{name: circle, radius: 0.25}", [0.8, 0.8], 0.2),
+    "omni_angular": ("{name: omni_angular}", "{name: circle, radius: 0.25}", [0.8, 0.8, 1.5], 0.2),
+    "diff": ("{name: diff}", "{name: circle, radius: 0.25}", [0.8, 1.5], 0.2),
+    "acker": ("{name: acker}", "{name: rectangle, length: 0.8, width: 0.5, wheelbase: 0.5}", [0.8, 0.6], 0.35),
+}
+UP, WEST = math.pi / 2, 3.14159
+LONG = [(9.5, 0.2, x, y, 0) for x, y in ((4.75, 2.4), (7.25, 4.8), (4.75, 7.2), (7.25, 9.6))]
+# name -> (width, height, time limit), starts, goals, walls: length, width, x, y, heading
+SCENES: dict[str, tuple[tuple[float, ...], list[Any], list[Any], list[tuple[float, ...]]]] = {
+    "door of 0.9 m": (
+        (12.2, 8, 60), [[1.5, 2, 0], [1.5, 4, 0], [1.5, 6, 0]], [[10.7, 2], [10.7, 4], [10.7, 6]],
+        [(3.55, 0.2, 6.1, 1.775, UP), (3.55, 0.2, 6.1, 6.225, UP)],
+    ),
+    "doorway, both ways": (
+        (12, 8, 90), [[2, 2, 0], [2, 6, 0], [11, 1.2, WEST], [11, 6.8, WEST]], [[10, 2], [10, 6], [2, 4.5], [2, 3.5]],
+        [(3.2, 0.2, 6, 1.6, UP), (3.2, 0.2, 6, 6.4, UP)],
+    ),
+    "corridor, both ways": (
+        (14, 5, 60), [[1, 2.5, 0], [13, 2.5, WEST]], [[13, 2.5], [1, 2.5]],
+        [(10, 0.3, 7, 3.45, 0), (10, 0.3, 7, 1.55, 0)],
+    ),
+    "maze, both ways": (
+        (12, 12, 180), [[1, 1, 0], [2.2, 1.2, 0], [3.4, 1, 0], [11, 11, WEST]],
+        [[6.5, 11], [8.7, 11.2], [11, 10.6], [1, 1]], [*LONG, (3, 0.2, 6, 6.2, 0)],
+    ),
+    "exit of a room": (
+        (14, 8, 120), [[1.2 + 1.3 * i, 2.2 + 1.8 * j, 0] for i in range(3) for j in range(3)],
+        [[12.5, 1 + 0.75 * k] for k in range(9)], [(3.4, 0.2, 6, 1.7, UP), (3.4, 0.2, 6, 6.3, UP)],
+    ),
+}  # fmt: skip
+
+
+def text_of(name: str, drive: str) -> str:
+    (width, height, limit), starts, goals, walls = SCENES[name]
+    kinematics, shape, top, threshold = DRIVES[drive]
+    boxes = "".join(
+        f"  - {{shape: {{name: rectangle, length: {length}, width: {thick}}}, state: [{x}, {y}, {theta}]}}\n"
+        for length, thick, x, y, theta in walls
+    )
+    return (
+        f"world: {{width: {width}, height: {height}, time_limit: {limit}, boundary: walls}}\nrobot:\n"
+        f"  - number: {len(starts)}\n    kinematics: {kinematics}\n    shape: {shape}\n"
+        f"    state: {json.dumps(starts)}\n    goal: {json.dumps(goals)}\n    goal_threshold: {threshold}\n"
+        f"    vel_max: {top}\n    vel_min: {[-v for v in top]}\n"
+        f"    behavior: {{name: follow, local: {{name: orca, timeHorizon: 2, timeHorizonObst: 1}}}}\nobstacle:\n{boxes}"
+    )
+
+
+def assert_all_arrive(name: str, drive: str, seeds: range, share: float) -> None:
+    arrived = robots = 0
+    for seed in seeds:
+        result = irsim.run(text=text_of(name, drive), seed=seed, perturb={"position": 0.1})
+        assert not [event for event in result.events if event.kind == "collision"], seed
+        arrived += sum(robot.time_to_goal is not None for robot in result.robots)
+        robots += len(result.robots)
+    assert arrived >= share * robots
+
+
+@pytest.mark.parametrize("drive", ["omni", "diff"])
+def test_three_robots_do_not_jam_in_a_door(drive: str) -> None:
+    result = irsim.run(text=text_of("door of 0.9 m", drive), seed=0)
+    assert result.outcome == "success", result.reason
+    assert not [event for event in result.events if event.kind == "collision"]
+
+
+def test_cars_pass_each_other_in_a_corridor_that_is_wide_enough_for_both() -> None:
+    """Their bounding circles do not fit beside each other, their bodies do."""
+    result = irsim.run(text=text_of("corridor, both ways", "acker"), seed=0)
+    assert result.outcome == "success", result.reason
+    assert not [event for event in result.events if event.kind == "collision"]
+
+
+def test_cars_that_block_each_other_at_a_door_back_up_and_go_one_by_one() -> None:
+    result = irsim.run(text=text_of("door of 0.9 m", "acker"), seed=0)
+    assert result.outcome == "success", result.reason
+    assert not [event for event in result.events if event.kind == "collision"]
+
+
+def test_who_goes_first_does_not_depend_on_the_order_of_robots() -> None:
+    text = text_of("door of 0.9 m", "omni").replace("[1.5, 2, 0]", "[1.4, 2, 0]")
+    other = text.replace("[[1.4, 2, 0], [1.5, 4, 0], [1.5, 6, 0]]", "[[1.5, 6, 0], [1.4, 2, 0], [1.5, 4, 0]]")
+    other = other.replace("[[10.7, 2], [10.7, 4], [10.7, 6]]", "[[10.7, 6], [10.7, 2], [10.7, 4]]")
+    times = [[robot.time_to_goal for robot in irsim.run(text=t, seed=0).robots] for t in (text, other)]
+    assert None not in times[0]
+    assert times[1] == [times[0][2], times[0][0], times[0][1]]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "drive"), list(itertools.product(SCENES, ["omni", "omni_angular", "diff"])))
+def test_nobody_jams_from_starts_that_are_a_little_different(name: str, drive: str) -> None:
+    assert_all_arrive(name, drive, range(20), 0.98)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["door of 0.9 m", "corridor, both ways", "maze, both ways"])
+def test_cars_do_not_jam_from_starts_that_are_a_little_different(name: str) -> None:
+    assert_all_arrive(name, "acker", range(10), 0.95)

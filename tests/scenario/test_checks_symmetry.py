@@ -1,0 +1,69 @@
+"""Starts that are too symmetric, and cars whose steps are longer than their goals are wide."""
+
+from __future__ import annotations
+
+import pytest
+
+import irsim
+
+
+def codes(text: str) -> list[str]:
+    return [finding.code for finding in irsim.validate(text=text).findings]
+
+
+def pair(behavior: str, starts: str, goals: str, tops: tuple[float, float] = (1.0, 1.0)) -> str:
+    entries = "".join(
+        f"  - {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.2}}, state: {start}, goal: {goal}, "
+        f"vel_max: [{top}, {top}], vel_min: [{-top}, {-top}], behavior: {{{behavior}}}}}\n"
+        for start, goal, top in zip(starts.split(";"), goals.split(";"), tops, strict=True)
+    )
+    return f"world: {{width: 20, height: 10}}\nrobot:\n{entries}"
+
+
+@pytest.mark.parametrize("behavior", ["name: orca", "name: rvo", "name: sfm", "name: follow, local: {name: orca}"])
+def test_head_on_is_reported_until_a_side_is_chosen(behavior: str) -> None:
+    places = "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]"
+    assert "exact-symmetry" in codes(pair(behavior, *places))
+    chosen = behavior.replace("{name: orca}", "{name: orca, sidestep: 10}")
+    chosen = chosen if chosen != behavior else f"{behavior}, sidestep: 10"
+    assert "exact-symmetry" not in codes(pair(chosen, *places))
+
+
+def test_ways_beside_each_other_are_not_reported() -> None:
+    assert "exact-symmetry" not in codes(pair("name: orca", "[1, 5, 0];[12, 5.2, 3.14]", "[12, 5];[1, 5.2]"))
+
+
+def test_behind_a_slower_one_is_reported_only_if_it_catches_up() -> None:
+    places = "[1, 5, 0];[3, 5, 0]", "[15, 5];[18, 5]"
+    assert "exact-symmetry" in codes(pair("name: orca", *places, tops=(1.0, 0.4)))
+    assert "exact-symmetry" not in codes(pair("name: orca", *places, tops=(1.0, 1.0)))
+    assert "exact-symmetry" not in codes(pair("name: orca", *places, tops=(1.0, 0.95)))
+
+
+def test_starts_that_are_drawn_are_not_reported() -> None:
+    text = "robot: {number: 6, distribution: {name: random}, kinematics: {name: omni}, behavior: {name: orca}}"
+    assert "exact-symmetry" not in codes(text)
+
+
+def car(threshold: float, reverse: bool) -> str:
+    return (
+        "world: {width: 80, height: 60, time_limit: 60}\nrobot:\n  - kinematics: {name: acker, wheelbase: 2.6}\n"
+        "    shape: {name: rectangle, length: 4.4, width: 1.8, wheelbase: 2.6}\n    state: [10, 10, 0.3]\n"
+        f"    goal: [52.3, 17.4]\n    vel_max: [4, 0.5]\n    vel_min: [{-4 if reverse else 0}, -0.5]\n"
+        f"    goal_threshold: {threshold}\n    behavior: {{name: follow, local: {{name: orca}}}}\n"
+        "obstacle: {shape: {name: rectangle, length: 1, width: 20}, state: [30, 10, 0]}\n"
+    )
+
+
+def test_a_car_on_a_route_is_warned_of_a_goal_narrower_than_its_step() -> None:
+    for reverse, words in ((True, "shunt"), (False, "never get to its goal")):
+        found = [f for f in irsim.validate(text=car(0.1, reverse)).findings if f.code == "goal-overshoot"]
+        assert [f.severity for f in found] == ["warning"]
+        assert words in found[0].message
+    assert "goal-overshoot" not in codes(car(0.3, True))
+
+
+def test_the_summary_says_how_long_a_car_shunted_at_its_goal() -> None:
+    assert "to and fro at the goal" in irsim.run(text=car(0.1, True), seed=0).summary
+    assert "no nearer than" in irsim.run(text=car(0.1, False), seed=0).summary
+    assert "to and fro" not in irsim.run(text=car(0.3, True), seed=0).summary
