@@ -122,9 +122,14 @@ Cells = tuple[tuple[float, float], tuple[float, float], int, int]
 """Origin, cell size [m], columns, rows."""
 
 class RouteOptions(_Options):
-    """How an object plans a path for its behavior to follow; 0 switches `replan` or `lookahead` off."""
+    """How an object plans a path for its behavior to follow; 0 switches `replan` or `lookahead` off.
 
-    def __init__(self, *, planner: object, replan: float, lookahead: float) -> None: ...
+    `within` are the corners x, y of an area that the path does not leave [m]; without any, it may go everywhere.
+    """
+
+    def __init__(
+        self, *, planner: object, replan: float, lookahead: float, within: Sequence[Sequence[float]]
+    ) -> None: ...
 
 class Terrain:
     """Obstacles for planning, within a rectangle that footprints must not leave.
@@ -191,6 +196,7 @@ class Lidar2dOptions(_Options):
         range_max: float,
         angle_range: float,
         number: int,
+        endpoint: bool,
         noise: bool,
         std: float,
         angle_std: float,
@@ -206,6 +212,7 @@ class FmcwLidar2dOptions(_Options):
         range_max: float,
         angle_range: float,
         number: int,
+        endpoint: bool,
         noise: bool,
         std: float,
         angle_std: float,
@@ -359,6 +366,7 @@ class ObjectSpec:
         tau: Time constant of the drive [s].
         driven: Whether the object has a drive, native or in Python. Contacts alone move an object that has none and is
             not static; its control is a world-frame velocity and a yaw rate.
+        start_step: Number of steps for which the object stands still at its start.
     """
 
     def __init__(
@@ -397,12 +405,15 @@ class ObjectSpec:
         restitution: float,
         tau: float,
         driven: bool,
+        start_step: int,
     ) -> None: ...
 
 class RandomPlacement:
     """Objects of one `random` distribution: states, then goals, are drawn for each scene (D7).
 
     Goals of wandering objects are drawn at every reset instead. The goals of static objects keep no distance.
+    Footprints keep clear of the discs `keep_points` (x, y, radius [m]), and by `keep_radii` [m] of `keep_objects` at
+    their starts and goals, as far as these are known. A goal is at least `goal_distance` [m] from its start.
     """
 
     def __init__(
@@ -412,6 +423,10 @@ class RandomPlacement:
         range_low: Sequence[float],
         range_high: Sequence[float],
         min_distance: float,
+        goal_distance: float,
+        keep_points: Sequence[Sequence[float]],
+        keep_objects: Sequence[int],
+        keep_radii: Sequence[float],
         attempts: int,
     ) -> None: ...
 
@@ -647,10 +662,12 @@ class State:
         """Kinds of the parts: "circle", "polygon", "linestring", "room", "cells" (vertices: corners of their box)."""
     def cells(self, row: int) -> OccupancyGrid | None:
         """The cells of a row that is a map; None for other rows."""
-    def trajectory(self, row: int) -> Floats:
-        """(K, 3 + E) state after each executed step since the last reset, if the state was made with history.
+    def recorded(self, row: int) -> int:
+        """Number K of states in the trajectory of a row."""
+    def trajectory(self, row: int, first: int = 0) -> Floats:
+        """(K - first, 3 + E) state after each executed step since the last reset, if the state was made with history.
 
-        Steps in which the object was static or stopped are left out.
+        Steps in which the object was static or stopped are left out, and so are the ``first`` ones of the others.
         """
     def standings(self, row: int) -> tuple[NDArray[np.int64], Floats, Flags]:
         """(K,) steps, (K, 3) goals and (K,) `stopped` of an object that can move, one entry per change.

@@ -86,7 +86,7 @@ def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
     """The planned paths as results."""
     from irsim.results.picture import RobotPlan
 
-    labels = {view.id: view.abbr for view in env.robot_list}
+    labels = {view.id: view.label for view in env.robot_list}
     return [
         RobotPlan(
             name=way.name,

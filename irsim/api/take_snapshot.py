@@ -218,7 +218,7 @@ def _poses(env: Env) -> list[RobotPose]:
         robots.append(
             RobotPose(
                 name=view.name,
-                label=view.abbr,
+                label=view.label,
                 pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
                 goal=None if goal is None else (float(goal[0, 0]), float(goal[1, 0])),
                 status=status.get(outcomes[view.name], "under way"),

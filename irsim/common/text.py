@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-__all__ = ["clean", "listed", "names_if_different", "quoted", "seconds", "shorten_pair"]
+__all__ = ["clean", "listed", "metres", "names_if_different", "quoted", "seconds", "shorten_pair"]
 
 MAX_NAME = 40
 """Number of characters of a name that a message shows."""
@@ -51,6 +51,15 @@ def seconds(time: float) -> str:
         time: Time to format [s].
     """
     return f"{round(time, 2):.10g} s"
+
+
+def metres(length: float) -> str:
+    """A length as text, to the centimetre, and with two digits below 10 cm: ``1 m``, ``2.35 m``, ``0.083 m``.
+
+    Args:
+        length: Length to format [m]; one that was computed may miss a round number by a little.
+    """
+    return f"{length:.2g} m" if abs(length) < 0.1 else f"{round(length, 2):.10g} m"
 
 
 def clean(text: object, longest: int = 80) -> str:

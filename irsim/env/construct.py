@@ -32,6 +32,34 @@ __all__ = [
 ]
 
 
+_FURTHER = (
+    "static",
+    "mass",
+    "friction",
+    "inertia",
+    "restitution",
+    "vel_min",
+    "vel_max",
+    "acce",
+    "angle_range",
+    "behavior",
+    "group_behavior",
+    "goal_threshold",
+    "sensors",
+    "arrive_mode",
+    "description",
+    "group",
+    "group_name",
+    "state_dim",
+    "vel_dim",
+    "unobstructed",
+    "fov",
+    "fov_radius",
+    "name",
+)
+"""Keys that ``ObjectBase`` also takes by position after ``color``, in the order of IR-SIM 2.12."""
+
+
 class _AnyObject(type):
     """Metaclass for which every object of an environment is an ``ObjectBase``, however it was made."""
 
@@ -52,6 +80,7 @@ class ObjectBase(ObjectView, metaclass=_AnyObject):
         goal: A goal, a list of goals, or None.
         role: ``robot`` or ``obstacle``.
         color: Colour; by default black.
+        *further: Values of ``static``, ``mass`` and the other keys of :data:`_FURTHER`, in this order.
         **keys: The other keys of a scenario entry.
 
     Raises:
@@ -67,8 +96,15 @@ class ObjectBase(ObjectView, metaclass=_AnyObject):
         goal: Any = None,
         role: Literal["robot", "obstacle"] = "obstacle",
         color: Any = "k",
+        *further: Any,
         **keys: Any,
     ) -> None:
+        if len(further) > len(_FURTHER):
+            raise TypeError(f"ObjectBase takes at most {7 + len(_FURTHER)} arguments without a name")
+        for name, value in zip(_FURTHER, further, strict=False):
+            if name in keys:
+                raise TypeError(f"ObjectBase got two values for {name!r}")
+            keys[name] = value
         env = last_used()
         given = dict(shape=shape, kinematics=kinematics, state=state, velocity=velocity, goal=goal, color=color, **keys)
         scenario = _empty() if env is None else env.simulation.scenario

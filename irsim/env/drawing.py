@@ -25,6 +25,8 @@ def start_drawing(env: EnvState) -> None:
 
 def status(env: EnvState) -> str:
     """Return the status word of the title: Arrived, Collision, Pause, Running, …."""
+    if env._written_status is not None:
+        return env._written_status
     if env.pause_flag:
         return "Pause"
     simulation = env._simulation
@@ -45,7 +47,7 @@ def status(env: EnvState) -> str:
 
 def set_status(env: EnvState, status: str) -> None:
     """Show this status word in the title until the next step."""
-    env._label = str(status)
+    env._written_status = str(status)
 
 
 def disable_all_plot(env: EnvState) -> bool:

@@ -43,14 +43,15 @@ class Env(EnvState):
 
     Args:
         world_name: YAML file or resolved scenario; None is the YAML file with the name of the running script.
-        step_mode: ``internal`` (irsim moves the objects) or ``external`` (the caller moves them).
         display: Show a window if there is a screen.
-        headless: Draw nothing at all; ``disable_all_plot`` has the same effect.
+        disable_all_plot: Draw nothing at all; ``headless`` has the same effect.
         save_ani: Keep a frame at each sampled ``render`` and write the animation in ``end``.
         ani_kwargs: Default options of the animation.
         full: Show the window full-screen.
         log_file, log_level: File to log to, and lowest level that is logged.
         seed: Seed in place of ``world.seed``; without both it is drawn from fresh entropy. ``env.seed`` returns it.
+        step_mode: ``internal`` (irsim moves the objects) or ``external`` (the caller moves them).
+        headless: Draw nothing at all.
         strict: Treat what IR-SIM would ignore (misspelt keys, unknown behaviors) as errors.
         policy: What drives the robots instead of their behaviors; see :meth:`set_policy`.
     """
@@ -58,17 +59,17 @@ class Env(EnvState):
     def __init__(
         self,
         world_name: str | Path | ResolvedScenario | None = None,
-        *,
-        step_mode: str | None = None,
         display: bool = True,
         disable_all_plot: bool = False,
-        headless: bool = False,
         save_ani: bool = False,
         ani_kwargs: Mapping[str, Any] | None = None,
         full: bool = False,
         log_file: str | Path | None = None,
         log_level: str = "INFO",
         seed: int | None = None,
+        step_mode: str | None = None,
+        headless: bool = False,
+        *,
         strict: bool = False,
         policy: PolicySource | None = None,
     ) -> None:

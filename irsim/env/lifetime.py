@@ -57,8 +57,9 @@ def open_world(env: EnvState, world_name: str | Path | ResolvedScenario | None) 
     env.env_param = EnvParam(lambda: _objects_of(here()), env.logger)
     count_ids(env)
     env._limit_warnings = set()
+    env._next_seed = None
     env._events_seen = env._events_logged = 0
-    env._label = scenario.world.status
+    env._label, env._written_status = scenario.world.status, None
 
 
 def reset(env: EnvState, random: bool = False) -> None:
@@ -72,6 +73,8 @@ def reset(env: EnvState, random: bool = False) -> None:
     """
     env._ended = False
     use(env)
+    if random and env._next_seed is not None:
+        set_random_seed(env, env._next_seed)
     if random and env._exchanged:
         restore_objects(env)
     else:
@@ -102,7 +105,7 @@ def _start_over(env: EnvState, label: str | None) -> None:
     env.debug_count = 0
     env.reload_flag = False
     env._events_logged = 0
-    env._label = label
+    env._label, env._written_status = label, None
     redraw(env)
     log_collisions(env)
 
@@ -114,6 +117,7 @@ def set_random_seed(env: Any, seed: int | None = None, reload: bool = False) -> 
         seed: Integer from 0 to 2**64 - 1; None draws it from fresh entropy.
         reload: Also read the scenario file again and start it with this seed.
     """
+    env._next_seed = None
     env._seed = fresh_seed() if seed is None else check_seed(seed)
     env._simulation.reseed([env._seed])
     env._wanted_seed = env._seed

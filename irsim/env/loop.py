@@ -64,7 +64,7 @@ def _report_limits(env: EnvState, view: SimObject, control: list[float]) -> None
 
 
 def _after_step(env: EnvState) -> None:
-    env._label = None
+    env._label = env._written_status = None
     if env._simulation.state.event_count != env._events_seen:
         log_collisions(env)
 
@@ -152,12 +152,13 @@ def refresh(env: EnvState) -> None:
 def pause(env: EnvState) -> None:
     """Pause the simulation: ``step`` has no effect until ``resume`` is called."""
     env.pause_flag = True
+    env._written_status = None
 
 
 def resume(env: EnvState) -> None:
     """Continue after ``pause`` or debugging."""
     env.pause_flag = env.debug_flag = False
-    env._label = None
+    env._label = env._written_status = None
 
 
 def log_collisions(env: EnvState) -> None:

@@ -185,8 +185,8 @@ class PathParam:
 class WorldView(_Clock):
     """The world of one environment: extent, time, sampling.
 
-    ``count`` and ``sample_time`` may be set at any time, ``step_time`` before the first step; all others are fixed by
-    the scenario.
+    ``count``, ``sample_time``, ``status`` and ``step_mode`` may be set at any time, ``step_time`` before the first
+    step; all others are fixed by the scenario.
     """
 
     name: str
@@ -205,6 +205,7 @@ class WorldView(_Clock):
             offset=[float(v) for v in world.offset],
             plot_parse=world.plot,
         )
+        self._status, self._step_mode = str(world.status), checked_step_mode(world.step_mode)
         self._sample_time: float | None = world.sample_time
         self._logger: Logger | None = None
         self._fog: FogMap | None = None
@@ -229,6 +230,34 @@ class WorldView(_Clock):
         if not (math.isfinite(value) and value > 0):
             raise ValueError(f"the period of the frames is a positive number of seconds, not {seconds!r}")
         self._sample_time = value
+
+    @property
+    def status(self) -> str:
+        """Status word of the title, as ``env.status``; a written one is shown until the next step."""
+        owner = self._simulation.owner()
+        return self._status if owner is None else str(owner.status)
+
+    @status.setter
+    def status(self, word: str) -> None:
+        owner = self._simulation.owner()
+        if owner is None:
+            self._status = str(word)
+        else:
+            owner.set_status(word)
+
+    @property
+    def step_mode(self) -> str:
+        """``internal`` (irsim moves the objects) or ``external`` (the caller moves them), as ``env.step_mode``."""
+        owner = self._simulation.owner()
+        return self._step_mode if owner is None else str(owner.step_mode)
+
+    @step_mode.setter
+    def step_mode(self, mode: str) -> None:
+        owner = self._simulation.owner()
+        if owner is None:
+            self._step_mode = checked_step_mode(mode)
+        else:
+            owner.step_mode = mode
 
     @property
     def steps_per_sample(self) -> int:

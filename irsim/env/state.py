@@ -43,9 +43,11 @@ class EnvState:
         _world: The world with the names of IR-SIM.
         _plot: The figure; None before something is drawn.
         _title: Title set by a script; None shows the status.
-        _label: Status set by a script, until the next step.
+        _label: Status of the start of an episode, until the next step.
+        _written_status: Status set by a script, until the next step, pause or reset.
         _keyboard, _mouse: Live control of the figure.
         _seed: Seed of the present scenes.
+        _next_seed: Seed with which the next random reset starts; None goes on with the present one.
         _wanted_seed, _wanted_mode, _strict: Arguments of ``make``.
         _ended: Whether ``end`` was called, without a step after it.
         _limit_warnings: Ids of the objects for which the cut of an action has been logged.
@@ -84,9 +86,11 @@ class EnvState:
     _plot: EnvPlot | None
     _title: str | None
     _label: str | None
+    _written_status: str | None
     _keyboard: KeyboardControl | None
     _mouse: MouseControl | None
     _seed: int
+    _next_seed: int | None
     _wanted_seed: int | None
     _wanted_mode: str | None
     _strict: bool

@@ -132,7 +132,7 @@ def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
 def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
     """Time limit [s] of a scenario without one: 4 times the longest straight route at top speed, at least 30 s.
 
-    The longest delay of a start, of robots that are perturbed, is added.
+    The latest start of a robot is added: its ``start_time``, and the longest delay if starts are perturbed.
     """
     longest = 0.0
     for view in env.robot_list:
@@ -140,8 +140,8 @@ def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
         way = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
         if view.max_speed > 0:
             longest = max(longest, way / view.max_speed)
-    delays = [record.spreads.delay for record in scenario.robots() if record.spreads is not None]
-    return max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(delays, default=0.0)
+    starts = [record.start_time + (record.spreads.delay if record.spreads else 0.0) for record in scenario.robots()]
+    return max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(starts, default=0.0)
 
 
 def read_document(document: Document, *, strict: bool) -> tuple[ResolvedScenario, list[Finding]]:

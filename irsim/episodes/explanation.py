@@ -59,6 +59,8 @@ def summary_message(
 ) -> str:
     """Say which robots arrived, the first collision, and what else happened to objects."""
     parts = [_arrivals_message(robots, env.sim_time, parked)]
+    if waiting := _waiting_message(env):
+        parts.append(waiting)
     if hit := _first_collision_message({robot.name for robot in robots}, hits):
         parts.append(hit + _standing_message(env, {robot.name for robot in robots}, hits))
     if out := exits_message(env.scenario, left):
@@ -103,6 +105,16 @@ def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequen
     if robots[0].outcome == "collision":
         return "the robot collided"  # the message about what it hit says when
     return f"the robot did not arrive within {seconds(sim_time)}"
+
+
+def _waiting_message(env: Env) -> str | None:
+    """Say which objects have not started yet at the end because of their ``start_time``; None if there are none."""
+    late = [view for view in env.objects if view.record.start_time and env.simulation.waits(view.row)]
+    if not late:
+        return None
+    first = min(view.record.start_time for view in late)
+    names = listed([quoted(view.name) for view in late], _MAX_NAMED)
+    return f"{names} had not started (start_time {seconds(first)}{' and later' if len(late) > 1 else ''})"
 
 
 def _departures_message(env: Env, robots: list[RobotResult]) -> str | None:
@@ -211,7 +223,8 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
         return f"stands still {place}: there is no path to it"
     if env.simulation.waits(view.row):
         start = float(env.simulation.start_step[view.row]) * env.step_time
-        return f"still waits {place} (its start is delayed to {seconds(start)})"
+        when = "it starts at" if record.start_time else "its start is delayed to"
+        return f"still waits {place} ({when} {seconds(start)})"
     if speed >= standing:
         if circle := _circling_message(env, view, events):
             return f"circles its goal: {circle}"

@@ -31,7 +31,12 @@ __all__ = [
 ]
 
 
+_INTERVAL_NUMBERS = 2
+
+
 def _flat(values: Any) -> Floats:
+    if values is None:
+        raise TypeError("None is neither a point nor a pose nor a velocity")
     return np.asarray(values, dtype=np.float64).reshape(-1)
 
 
@@ -54,14 +59,23 @@ def ClipTo2Pi(rad: float) -> float:
 
 
 def WrapToRegion(rad: float, range: list[float]) -> float:
-    """Wrap an angle to an interval whose width is one full turn.
+    """Wrap an angle to an interval whose width is one full turn; an angle that lies in it, at either end, stays.
+
+    Angles above the interval come to lie in (low, high], angles below it in [low, high).
 
     Raises:
+        ValueError: ``range`` has fewer than two numbers.
         AssertionError: The width of ``range`` is not 2 pi.
     """
-    low, high = range
+    if len(range) < _INTERVAL_NUMBERS:
+        raise ValueError(f"an interval of angles has two numbers, got {range!r}")
+    low, high = float(range[0]), float(range[1])
     assert math.isclose(high - low, FULL_TURN), f"an interval of angles must be 2 pi wide, got {high - low}"
-    return wrap(float(rad), low)
+    angle = float(rad)
+    if low <= angle <= high:
+        return angle
+    wrapped = wrap(angle, low)
+    return high if angle > high and wrapped == low else wrapped
 
 
 def relative_position(position1: Any, position2: Any, topi: bool = True) -> tuple[float, float]:
@@ -121,7 +135,12 @@ omni_to_diff = vel_world2diff
 
 
 def vel_diff2world(state_ori: float, vel_diff: Any) -> Floats:
-    """Return the (2, 1) world-frame velocity [m/s] of a forward speed at a heading [rad]."""
+    """Return the (2, 1) world-frame velocity [m/s] of a forward speed at a heading [rad].
+
+    An array without dimensions, such as ``np.array(None)``, stands for no control, and gives zero.
+    """
+    if isinstance(vel_diff, np.ndarray) and vel_diff.ndim == 0:
+        return np.zeros((2, 1))
     speed = float(_flat(vel_diff)[0])
     return np.array([[speed * math.cos(state_ori)], [speed * math.sin(state_ori)]])
 
@@ -165,8 +184,8 @@ def transform_point_with_state(point: Any, state: Any) -> Floats:
 
 
 def vertices_transform(vertices: Any, state: Any) -> Floats | None:
-    """Transform (2, N) points from the body frame at a pose to the world frame; None stays None."""
-    if vertices is None:
+    """Transform (2, N) points from the body frame at a pose to the world frame; None without points or a pose."""
+    if vertices is None or state is None:
         return None
     translation, rotation = get_transform(state)
     moved: Floats = rotation @ np.asarray(vertices, dtype=np.float64) + translation

@@ -80,7 +80,8 @@ class KeyboardControl:
     """Keyboard control of one environment.
 
     Args:
-        env_ref: The environment.
+        env_ref: The environment. Without one, the control listens to the current figure of pyplot, and the keys set
+            the command and nothing else.
         backend: ``mpl`` uses the key events of the figure. ``pynput`` listens globally; without that package or
             without a screen it falls back to ``mpl`` with a warning.
         global_hook: With ``pynput``, react even while the mouse is outside the figure.
@@ -96,7 +97,7 @@ class KeyboardControl:
 
     def __init__(
         self,
-        env_ref: Controlled,
+        env_ref: Controlled | None = None,
         *,
         backend: str = "pynput",
         global_hook: bool = False,
@@ -117,9 +118,14 @@ class KeyboardControl:
         self.in_figure = False
         self._held: set[str] = set()
         self._connections: list[tuple[Any, int]] = []
-        if env_ref.world_param.control_mode == "keyboard":
+        self._own_logger: Logger | None = None
+        if self._drives():
             for keys, what in KEY_TABLE:
-                env_ref.logger.info(f"{keys:<14} {what}")
+                self.logger.info(f"{keys:<14} {what}")
+        if env_ref is None:
+            import matplotlib.pyplot as plt
+
+            self.attach(plt.gcf().canvas)
 
     # sources of key events --------------------------------------------------------------------------------------------
     def attach(self, canvas: Any) -> None:
@@ -140,14 +146,14 @@ class KeyboardControl:
 
     def _listen(self) -> bool:
         """Start the global listener, if possible, and return whether it runs."""
-        if not self.env_ref.display:
+        if self.env_ref is not None and not self.env_ref.display:
             return False
         try:
             from pynput import keyboard
         except Exception as error:  # without a screen, pynput raises errors of several types
             reason = "not installed" if isinstance(error, ImportError) else str(error)
-            if self.env_ref.world_param.control_mode == "keyboard":
-                self.env_ref.logger.warning(
+            if self.env_ref is None or self._drives():
+                self.logger.warning(
                     f"keyboard backend pynput is unavailable ({reason}); using the key events of the figure"
                 )
             return False
@@ -190,8 +196,18 @@ class KeyboardControl:
 
     @property
     def logger(self) -> Logger:
-        """The logger of the environment."""
-        return self.env_ref.logger
+        """The logger of the environment, or one of its own."""
+        if self.env_ref is not None:
+            return self.env_ref.logger
+        if self._own_logger is None:
+            from irsim.common.log import Logger as Own
+
+            self._own_logger = Own()
+        return self._own_logger
+
+    def _drives(self) -> bool:
+        """Return whether the keys drive a robot of the environment now."""
+        return self.env_ref is not None and self.env_ref.world_param.control_mode == "keyboard"
 
     # effects of keys ------------------------------------------------------------------------------------------------
     def press(self, key: str) -> None:
@@ -202,7 +218,7 @@ class KeyboardControl:
             self._update_command()
         elif key.startswith("alt+") and plain.isdigit():
             self.key_id = int(plain)
-            self.env_ref.logger.info(f"the keyboard drives robot {self.key_id}")
+            self.logger.info(f"the keyboard drives robot {self.key_id}")
         elif plain in ("z", "c"):
             change = -_TOP_SPEED_STEP if plain == "z" else _TOP_SPEED_STEP
             self._change_top_speed(change, linear=key.startswith("shift+") or key.isupper())
@@ -232,12 +248,14 @@ class KeyboardControl:
             self.key_lv_max = max(0.0, self.key_lv_max + change)
         else:
             self.key_ang_max = max(0.0, self.key_ang_max + change)
-        self.env_ref.logger.info(f"top speed {self.key_lv_max:.1f} m/s, turn rate {self.key_ang_max:.1f} rad/s")
+        self.logger.info(f"top speed {self.key_lv_max:.1f} m/s, turn rate {self.key_ang_max:.1f} rad/s")
         self._update_command()
 
     def _act_on_environment(self, key: str) -> None:
         """Set the flag or change the setting of the environment that a key stands for."""
         env = self.env_ref
+        if env is None:
+            return
         if key == "r":
             env.reset_flag = True
         elif key == "l":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 import zlib
 from collections.abc import Sequence
@@ -135,7 +136,8 @@ def world_map(
         corner: Lower left corner [m].
         grid: (nx, ny) occupancy of the world, or None.
         resolution: Cell size [m]. Cells of the grid can be merged (a merged cell is occupied if any of its parts is)
-            but not divided. A value that is not positive stands for the resolution of the grid.
+            but not divided; the map then keeps the value, but its cells are those of the grid. A value that is not
+            positive stands for the resolution of the grid.
         obstacles: Obstacles in the world.
     """
     try:
@@ -143,19 +145,25 @@ def world_map(
     except (TypeError, ValueError):
         raise TypeError(f"the resolution of a map must be a number [m], got {resolution!r}") from None
     if grid is None:
-        if not resolution > 0:
+        if not (math.isfinite(resolution) and resolution > 0):
             raise ValueError("the map of a world without a grid must have a positive resolution")
         return Map(width, height, resolution, obstacles, None, corner)
     grid_resolution = width / grid.shape[0]
     reason = f"the grid of the world has cells of {grid_resolution:g} m"
-    if not resolution > 0:
+    if not math.isfinite(resolution):
+        warnings.warn(f"a resolution of {resolution} m means nothing: {reason}, which stay", UserWarning, stacklevel=3)
+        resolution = grid_resolution
+    elif not resolution > 0:
         resolution = grid_resolution
     elif resolution > MAX_EQUAL_RATIO * grid_resolution:
-        warnings.warn(f"{reason}: they are merged to cells of {resolution:g} m", UserWarning, stacklevel=3)
-        grid = coarsen(grid, round(width / resolution), round(height / resolution))
+        merged = coarsen(grid, round(width / resolution), round(height / resolution))
+        size = width / merged.shape[0], height / merged.shape[1]
+        even = all(math.isclose(extent, resolution, rel_tol=1e-9) for extent in size)
+        rest = "" if even else f", in fact {size[0]:.4g} m x {size[1]:.4g} m because the world is no multiple of that"
+        warnings.warn(f"{reason}: they are merged to cells of {resolution:g} m{rest}", UserWarning, stacklevel=3)
+        grid = merged
     elif resolution < MIN_EQUAL_RATIO * grid_resolution:
         warnings.warn(f"{reason}: they cannot be divided into cells of {resolution:g} m", UserWarning, stacklevel=3)
-        resolution = grid_resolution
     return Map(width, height, resolution, obstacles, grid, corner)
 
 

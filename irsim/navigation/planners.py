@@ -117,7 +117,27 @@ class _GridPlanner(PathPlanner):
     """Planner on the cells of the map.
 
     Without ``robot``, the default robot of the map is used; without that one, the footprint is one cell.
+
+    Attributes:
+        resolution: Size of a cell along x [m]: that of the grid of the map, or else the resolution of the map. A
+            resolution that does not divide the map is rounded, when planning, to the nearest one that does.
+        x_width, y_width: Number of cells along x and y.
     """
+
+    @property
+    def resolution(self) -> float:
+        """Size of a cell along x [m]."""
+        return float(self.map.resolution if self.map.grid is None else cells_of(self.map)[1][0])
+
+    @property
+    def x_width(self) -> int:
+        """Number of cells along x."""
+        return cells_of(self.map)[2]
+
+    @property
+    def y_width(self) -> int:
+        """Number of cells along y."""
+        return cells_of(self.map)[3]
 
     def _footprint(self) -> list[Any]:
         return footprint_of(self.robot if self.robot is not None else getattr(self.map, "robot", None))

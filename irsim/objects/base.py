@@ -9,6 +9,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from irsim.common.arrays import Floats
+from irsim.common.text import clean
+
+MAX_LABEL = 24
+"""Number of characters of a name that pictures show."""
 
 if TYPE_CHECKING:
     from irsim.components.kinematics._handler import KinematicsHandler
@@ -95,6 +99,11 @@ class SimObject:
     def abbr(self) -> str:
         """Short label: ``r0``, ``o3``."""
         return f"{self.role[0]}{self.id}"
+
+    @property
+    def label(self) -> str:
+        """What pictures call the object: the name that the user gave, without one ``abbr``."""
+        return self.abbr if self.name == f"{self.role}_{self.id}" else clean(self.name, MAX_LABEL)
 
     @property
     def goal_abbr(self) -> str:

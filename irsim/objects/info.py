@@ -19,9 +19,28 @@ class _Extensible:
         setattr(self, key, value)
 
 
+class _Kept:
+    """Attributes that scripts have added to a description; the object keeps them for its later descriptions."""
+
+    _added: dict[str, Any]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
+        if "_added" in self.__dict__ and name not in type(self).__dataclass_fields__:  # type: ignore[attr-defined]
+            self._added[name] = value
+
+    def _keep(self, added: dict[str, Any]) -> None:
+        """Take the attributes in ``added``, and enter further ones there."""
+        self.__dict__.update(added, _added=added)
+
+
 @dataclass
-class ObjectInfo(_Extensible):
-    """Description of an object; arrays are columns."""
+class ObjectInfo(_Kept, _Extensible):
+    """Description of an object; arrays are columns.
+
+    Attributes that a script adds, with :meth:`add_property` or by assignment, belong to every later description of the
+    object, too.
+    """
 
     id: int
     shape: str
@@ -51,7 +70,7 @@ class ObjectInfo(_Extensible):
         """Return the description of an object at the present time."""
         record = view.record
         normals, right_side, cone, convex = view.get_init_Gh()
-        return cls(
+        made = cls(
             view.id,
             view.shape,
             view.kinematics,
@@ -75,6 +94,8 @@ class ObjectInfo(_Extensible):
             view.inertia,
             record.restitution,
         )
+        made._keep(view.__dict__.setdefault("_info_properties", {}))
+        return made
 
 
 @dataclass

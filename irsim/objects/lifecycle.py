@@ -20,7 +20,7 @@ from irsim.simulation.simulation import Simulation
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
-__all__ = ["admit", "alone", "amend", "amend_all", "amend_world", "dismiss", "restore", "set_views"]
+__all__ = ["admit", "alone", "amend", "amend_all", "amend_world", "dismiss", "draw_as", "restore", "set_views"]
 
 
 def set_views(simulation: Simulation, shown: Sequence[Any]) -> None:
@@ -69,14 +69,31 @@ def amend(view: SimObject, record: ObjectRecord) -> None:
         AttributeError: The object belongs to a batch, whose worlds share their records.
     """
     simulation = view._simulation
-    if simulation.copies != 1:
-        raise AttributeError(f"{view.name!r} is an object of a batch: set it in the scenario, or for all with `make`")
+    _check_single(simulation, view)
     if record == view.record:
         return
     if record.behavior is not view.record.behavior:
         forget_behavior(simulation, view)
     shown = simulation.views()
     _exchange(simulation, shown, [record if other is view else other.record for other in shown])
+
+
+def draw_as(view: SimObject, record: ObjectRecord) -> None:
+    """Replace the record of an object by one that differs in ``plot`` only, which the engine does not read.
+
+    Raises:
+        AttributeError: The object belongs to a batch, whose worlds share their records.
+    """
+    simulation = view._simulation
+    _check_single(simulation, view)
+    records = [record if other is view.record else other for other in simulation.scenario.objects]
+    simulation.scenario = replace(simulation.scenario, objects=records)
+    view.record = record
+
+
+def _check_single(simulation: Simulation, view: SimObject) -> None:
+    if simulation.copies != 1:
+        raise AttributeError(f"{view.name!r} is an object of a batch: set it in the scenario, or for all with `make`")
 
 
 def amend_all(simulation: Simulation, records: Sequence[ObjectRecord]) -> None:

@@ -10,10 +10,11 @@ from irsim.common.arrays import Floats
 from irsim.objects.avoidance import ObjectAvoidance
 from irsim.objects.base import column
 from irsim.objects.drawing.by_hand import ObjectDrawing
+from irsim.objects.drawing.plot_keys import PLOT_KEYS, ObjectPlotKeys, with_plot_key
 from irsim.objects.dynamics import ObjectDynamics
 from irsim.objects.extensions.hooks import ObjectHooks
 from irsim.objects.info import ObjectInfo, ObstacleInfo
-from irsim.objects.lifecycle import amend, set_views
+from irsim.objects.lifecycle import amend, draw_as, set_views
 from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.lidar import Lidar2D
 from irsim.objects.sensors.sensors import attach_sensors, sensors_of
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["ObjectView"]
 
 
-class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, ObjectDrawing):
+class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, ObjectDrawing, ObjectPlotKeys):
     """One robot or obstacle.
 
     Arrays are columns (n, 1) and read-only copies, which never change. ``set_state``, ``set_velocity`` and
@@ -72,6 +73,8 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
     def __setattr__(self, name: str, value: Any) -> None:
         if name in SETTINGS:
             change(self, name, value)
+        elif name in PLOT_KEYS:
+            draw_as(self, with_plot_key(self.record, name, value))
         elif name in _FIXED:
             refuse(repr(self.name), name, HINTS.get(name, "it can only be read"))
         else:
@@ -174,9 +177,12 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
         """Return the pose [x, y, theta] of the first lidar in the body frame [m, m, rad]."""
         return self._first_lidar().get_offset()
 
-    def set_laser_color(self, laser_indices: Any, laser_color: str = "cyan", alpha: float = 0.3) -> None:
-        """Draw some beams of the first lidar in another colour."""
-        self._first_lidar().set_laser_color(laser_indices, laser_color, alpha)
+    def set_laser_color(self, laser_indices: Any, laser_color: str | None = None, alpha: float = 0.3) -> None:
+        """Draw some beams of the first lidar in another colour; an object without a lidar logs a warning."""
+        if self.lidar is not None:
+            self.lidar.set_laser_color(laser_indices, laser_color, alpha)
+        elif self.logger is not None:
+            self.logger.warning(f"{self.name}: it has no lidar whose beams could be coloured")
 
     def get_fov_detected_objects(self) -> list[ObjectView]:
         """Return the other objects of which a part lies in the field of view, ordered by id; empty without one.
@@ -195,11 +201,11 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
         return any(other.id == detected_object.id for other in self.get_fov_detected_objects())
 
     def set_text(self, text: str | None) -> None:
-        """Set the label that is drawn in place of ``abbr``; None restores ``abbr``."""
+        """Set the text that is drawn in place of ``label``; None restores ``label``."""
         self.text = text
 
     def set_goal_text(self, text: str | None) -> None:
-        """Set the label that is drawn in place of ``goal_abbr``; None restores ``goal_abbr``."""
+        """Set the text that is drawn at the goal in place of ``G-`` and ``label``; None restores that."""
         self.goal_text = text
 
     def __repr__(self) -> str:

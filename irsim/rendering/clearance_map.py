@@ -11,6 +11,7 @@ from contourpy import FillType, LineType, contour_generator
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.common.text import metres
 from irsim.graphics.scene.scene import Bounds, Label, Line, Mark, Region, Scene, Stroke
 from irsim.metrics.geodesic import inscribed_radius
 from irsim.metrics.roles import STATIC, kinds_of
@@ -147,7 +148,7 @@ def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0) -> None
             rings = [np.asarray(corners[a:b]) for a, b in itertools.pairwise(starts)]
             stroke, region = Stroke(_UNREACHABLE_COLOR, 0.8), Region(rings)
             scene.marks.append(Mark(_NO_OBJECT, "field", region, _UNREACHABLE_COLOR, stroke, _FILL_ALPHA, _ZORDER))
-        _label_line(scene, f"{radius:.2g} m", levels.lines(radius), _UNREACHABLE_COLOR)
+        _label_line(scene, metres(radius), levels.lines(radius), _UNREACHABLE_COLOR)
     shown, last = 0, radius
     for level in _LINE_DISTANCES_M:
         if last * MIN_LINE_RATIO < level < max_distance and shown < MAX_LINES:
@@ -155,7 +156,7 @@ def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0) -> None
             for line in lines:
                 stroke = Stroke(_LINE_COLOR, 0.8)
                 scene.marks.append(Mark(_NO_OBJECT, "field", Line(line), None, stroke, _LINE_ALPHA, _ZORDER))
-            _label_line(scene, f"{level:g} m", lines, _TEXT_COLOR)
+            _label_line(scene, metres(level), lines, _TEXT_COLOR)
             shown, last = shown + 1, level
 
 

@@ -24,6 +24,7 @@ from irsim.graphics.scene.scene import Scene, region_extent
 from irsim.graphics.scene.style import STYLE_KEYS
 from irsim.objects.drawing.scene_builder import MODES, SceneBuilder
 from irsim.objects.views import views
+from irsim.rendering.live_window import LiveWindow
 from irsim.rendering.plot_steps import PlotSteps
 from irsim.rendering.recording import Pictured
 from irsim.rendering.saving import Saving, saved_figure_options
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["EnvPlot"]
 
 
-class EnvPlot(PlotSteps, ScriptDrawings):
+class EnvPlot(PlotSteps, ScriptDrawings, LiveWindow):
     """Draws one environment.
 
     A picture always shows the state at the moment it is made; ``update`` only notes how to draw it. Artists are brought
@@ -220,7 +221,11 @@ class EnvPlot(PlotSteps, ScriptDrawings):
 
     def _show(self, figure: SceneFigure) -> None:
         with self.as_shown():
-            figure.show(self.scene(), self._title())
+            scene, tracks = self._builder.frame(
+                status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
+            )
+            left = [track for track in tracks if track.object not in self._hidden]
+            figure.show(self._completed(scene), self._title(), left)
             if self.env.simulation.measurements:
                 objects = views(self.env.simulation)
                 shown = [view for view in objects if self._builder.style(view, {}).show_sensor]
@@ -246,6 +251,9 @@ class EnvPlot(PlotSteps, ScriptDrawings):
         scene = self._builder.build(
             status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
         )
+        return self._completed(scene)
+
+    def _completed(self, scene: Scene) -> Scene:
         if self._region is not None:
             scene.look_at(self._region)
         if self._options.show_zones:
@@ -292,22 +300,6 @@ class EnvPlot(PlotSteps, ScriptDrawings):
             near = nearest(key, STYLE_KEYS)
             hint = f": did you mean {near!r}?" if near else ""
             self.env.logger.warning(f"render: {key!r} is not a plot option and is ignored{hint}")
-
-    def pause(self, interval: float) -> None:
-        """Show the present state in the window for ``interval`` seconds; without a window return at once."""
-        if not self._display:
-            return
-        figure = self.synced_figure()
-        if self._window is not None and self._window.open:
-            with self.as_shown():
-                figure.draw()
-            self._window.refresh(interval)
-
-    def show(self) -> None:
-        """Show the window until the user closes it; without a window return at once."""
-        self.pause(0.001)
-        if self._window is not None:
-            self._window.wait()
 
     def frame(self) -> Image.Image:
         """Return the picture as it would be saved."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from irsim.graphics.scene.bodies import Pose, arrow, bounds, picture_outline, place
+from irsim.graphics.scene.bodies import Pose, arrow, bounds, picture_outline, place, point_on
 from irsim.graphics.scene.scene import Beams, Geometry, Label, Mark, Region, Scene, Sector, Stroke
 from irsim.objects.sensors.lidar import Lidar2D
 from irsim.objects.views import views
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["make_legible"]
+__all__ = ["can_move", "make_legible"]
 
 MAX_LABELS = 60
 """If there are more labels, the less important ones are left out."""
@@ -42,6 +42,8 @@ MIN_SPEED_M_S = 1e-3
 """A slower object counts as stopped [m/s]."""
 _FULL_TURN = 2 * math.pi - 0.05
 """A sensor with a larger field of view [rad] sees all around."""
+_HOLLOW = ("linestring", "compound")
+"""Shapes whose bounding box may be mostly empty, so that their name stands at a point of them."""
 _SECTOR_ZORDER = 2.0
 _LABEL_ZORDER = 10.0
 
@@ -76,12 +78,13 @@ def make_legible(scene: Scene, simulation: Simulation, world: int) -> None:
     scene.labels = _thin_out(_arrange(scene, objects), objects)
 
 
-def _can_move(view: ObjectView) -> bool:
+def can_move(view: ObjectView) -> bool:
+    """Whether an object may move."""
     return not view.static and view.kinematics is not None
 
 
 def _is_shown(mark: Mark, objects: dict[int, ObjectView]) -> bool:
-    return mark.part != "goal" or objects[mark.object].role == "robot" or _can_move(objects[mark.object])
+    return mark.part != "goal" or objects[mark.object].role == "robot" or can_move(objects[mark.object])
 
 
 def _make_mark_legible(mark: Mark, view: ObjectView) -> Mark:
@@ -101,7 +104,7 @@ def _direction_arrows(scene: Scene, objects: dict[int, ObjectView]) -> list[Mark
     marks = []
     for view in objects.values():
         plot = view.record.plot
-        if not _can_move(view) or view.id in with_arrow or plot.show_arrow is not None:
+        if not can_move(view) or view.id in with_arrow or plot.show_arrow is not None:
             continue
         x, y = view.state[:2, 0].tolist()
         dx, dy = view.velocity_xy[:2, 0].tolist()
@@ -152,7 +155,7 @@ def _arrange(scene: Scene, objects: dict[int, ObjectView]) -> list[Label]:
     cell = _SAME_GOAL_SHARE * (x1 - x0)
     for label in scene.labels:
         view = objects[label.object]
-        if label.part == "goal" and (view.arrive or not (view.role == "robot" or _can_move(view))):
+        if label.part == "goal" and (view.arrive or not (view.role == "robot" or can_move(view))):
             continue
         shapes: list[Geometry] = [m.geometry for m in scene.of(view.id, "goal" if label.part == "goal" else "body")]
         if not shapes and view.id in pictures:
@@ -163,6 +166,12 @@ def _arrange(scene: Scene, objects: dict[int, ObjectView]) -> list[Label]:
             if left > right or bottom > top:
                 continue
             middle = (left + right) / 2, (bottom + top) / 2
+            if label.part == "name" and view.shape in _HOLLOW:
+                point = point_on(shapes[0], (x0, y0, x1, y1))
+                if point is None:
+                    continue
+                middle, (left, top) = point, point
+                left += _LABEL_GAP_SHARE * (y1 - y0)
             label = replace(label, x=left, y=top + _LABEL_GAP_SHARE * (y1 - y0), anchor=middle, zorder=_LABEL_ZORDER)
         if label.part == "goal" and view.role != "robot":
             label = replace(label, size=min(label.size, _SMALL_TEXT_PT), alpha=label.alpha * _OBSTACLE_ALPHA)

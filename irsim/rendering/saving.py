@@ -122,13 +122,14 @@ class Saving:
             format=wanted,
             default_format=self._format,
         )
-        figure = plot.synced_figure()
+        figure = plot.made_figure()
         with replacing(path) as temporary:
             if path.suffix == ".png" and _is_quick(plot.saved_figure_kwargs, figure.figure.dpi):
                 pixels, _ = self.pixels()
                 temporary.write_bytes(png_bytes(pixels, figure.figure.dpi))
                 self.size = pixels.shape[1], pixels.shape[0]
             else:
+                plot.synced_figure()
                 with plot.as_shown():
                     figure.figure.savefig(temporary, format=path.suffix[1:], **plot.saved_figure_kwargs)
         if save_gif and count != self.recording.last_count:

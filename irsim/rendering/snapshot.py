@@ -52,7 +52,7 @@ def render_scene(
         size_px: Longer side of the picture [px].
         world: Index of the world in a batch.
         labels: Draw names, paths and goals; if there are many names, those of robots only.
-        title: Text above the picture; default: the time.
+        title: Text above the picture; default: the title that the scenario sets, and the time.
         viewpoint: Point or object name to centre on; default: that of the scenario.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the whole world.
         overrides: Object plot keys.
@@ -67,13 +67,20 @@ def render_scene(
     x0, x1, y0, y1 = scene.extent
     size = fitting_size(x1 - x0, y1 - y0, size_px, _DPI)
     figure = SceneFigure(size, _DPI, pictures=pictures, halo=True)
-    figure.show(scene, f"{scene.time:.2f} s" if title is None else title)
+    figure.show(scene, default_title(simulation, scene) if title is None else title)
     pixels, _ = figure.pixels(tight=False)
     data = png_of(to_image(pixels), opaque_colors(scene))
     if out is not None:
         with replacing(Path(out)) as temporary:
             temporary.write_bytes(data)
     return data
+
+
+def default_title(simulation: Simulation, scene: Scene) -> str:
+    """Return the title that the scenario sets, if it sets one, and the time."""
+    options = simulation.scenario.world.plot
+    time = f"{scene.time:.2f} s"
+    return f"{options.title}, {time}" if options.title and options.show_title else time
 
 
 def legible_scene(

@@ -13,6 +13,7 @@ from irsim.graphics.figure.figure import SceneFigure
 from irsim.graphics.figure.layers import opaque_colors
 from irsim.graphics.scene.scene import Scene
 from irsim.objects.views import views
+from irsim.rendering.readability import can_move
 from irsim.rendering.snapshot import Extra, legible_scene, png_of
 
 if TYPE_CHECKING:
@@ -56,13 +57,17 @@ class Strip:
         self._tiles: list[tuple[str, Image.Image]] = []
         self._colors: dict[tuple[int, int, int], None] = {}
         self._columns, self._tile = 1, (1, 1)
+        self._title = ""
 
     def add(self, simulation: Simulation, extra: Extra | None = None) -> None:
         """Add a tile that shows the present moment."""
         scene, pictures = legible_scene(simulation, region=self._region, overrides=self._overrides, extra=extra)
         if not self._tiles:
             x0, x1, y0, y1 = scene.extent
-            self._columns, self._tile = tiling(self._count, x1 - x0, y1 - y0, self._size)
+            options = simulation.scenario.world.plot
+            self._title = options.title if options.title and options.show_title else ""
+            side = self._size - (_LINE_HEIGHT_PX if self._title else 0)
+            self._columns, self._tile = tiling(self._count, x1 - x0, y1 - y0, side)
         _simplify(scene, simulation, first=not self._tiles)
         dpi = min(MAX_DPI, max(MIN_DPI, max(self._tile) / _PX_PER_DPI))
         figure = SceneFigure(self._tile, dpi, axis=False, tight=False, pictures=pictures, halo=True)
@@ -77,11 +82,13 @@ class Strip:
         (width, height), columns = self._tile, self._columns
         rows = math.ceil(len(self._tiles) / columns)
         step_x, step_y = width + _GAP_PX, height + _LINE_HEIGHT_PX + _GAP_PX
-        sheet = Image.new("RGB", (columns * step_x + _GAP_PX, rows * step_y + _GAP_PX), "white")
+        head = _LINE_HEIGHT_PX if self._title else 0
+        sheet = Image.new("RGB", (columns * step_x + _GAP_PX, head + rows * step_y + _GAP_PX), "white")
         draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(_FONT_SIZE_PX)
+        draw.text((sheet.width / 2, head), self._title, fill=_TEXT_COLOR, font=font, anchor="ms")
         for number, (text, image) in enumerate(self._tiles):
             left = _GAP_PX + number % columns * step_x
-            top = _GAP_PX + number // columns * step_y + _LINE_HEIGHT_PX
+            top = head + _GAP_PX + number // columns * step_y + _LINE_HEIGHT_PX
             sheet.paste(image, (left, top))
             draw.rectangle((left - 1, top - 1, left + width, top + height), outline=_FRAME_COLOR)
             short = text if draw.textlength(text, font=font) <= width else text.partition("  ")[0]
@@ -92,13 +99,14 @@ class Strip:
 def _simplify(scene: Scene, simulation: Simulation, *, first: bool) -> None:
     """Remove what a small tile has no space for.
 
-    Obstacles have no paths, goals and goal labels; the first tile names the obstacles, if they are few, and has the
-    labels that belong to no object.
+    Goals of obstacles have no labels; the first tile names the obstacles, if they are few, and has the labels that
+    belong to no object. What does not move has neither path nor goal.
     """
+    movers = {view.id for view in views(simulation) if view.role == "robot" or can_move(view)}
     robots = {view.id for view in views(simulation) if view.role == "robot"}
     named = sum(label.object >= 0 and label.object not in robots and label.part == "name" for label in scene.labels)
     names_obstacles = first and named <= MAX_OBSTACLE_NAMES
-    scene.marks = [mark for mark in scene.marks if mark.object in robots or mark.part not in ("trajectory", "goal")]
+    scene.marks = [mark for mark in scene.marks if mark.object in movers or mark.part not in ("trajectory", "goal")]
     scene.labels = [
         label
         for label in scene.labels

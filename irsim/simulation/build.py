@@ -49,6 +49,8 @@ PLACEMENT_ATTEMPTS = 1000
 """Number of positions that are tried for a randomly placed object before the placement fails."""
 _CORE_CONTROLS = 3
 """Number of controls of an object that the core keeps."""
+_ROUNDING = 1e-9
+"""Share of a step by which a start time may exceed a multiple of the step time because it is rounded."""
 _ROLES = {"robot": 0, "obstacle": 1}
 _TARGETS = {"all": 0, "robot": 1, "obstacle": 2}
 _ARRIVE = {"position": 0, "state": 1}
@@ -114,13 +116,18 @@ def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOption
 
 
 def build_object(
-    record: ObjectRecord, group_behavior: BehaviorOptions | None = None, *, contact: bool = False
+    record: ObjectRecord,
+    group_behavior: BehaviorOptions | None = None,
+    *,
+    step_time: float,
+    contact: bool = False,
 ) -> core.ObjectSpec:
     """Build one object of the core.
 
     Args:
         record: The object.
         group_behavior: Behavior that drives its group (:func:`group_behaviors`); it replaces the object's own.
+        step_time: Period of a step [s].
         contact: Whether the core resolves contacts, which needs the centroid of compounds.
     """
     if isinstance(record.shape, (MapCells, Walls)):
@@ -183,6 +190,7 @@ def build_object(
         restitution=record.restitution,
         tau=record.drive_tau,
         driven=record.kinematics is not None,
+        start_step=math.ceil(record.start_time / step_time - _ROUNDING),
     )
 
 
@@ -193,11 +201,25 @@ def build_route(options: Follow) -> core.RouteOptions:
         planner=kernel_options(PLANNERS, options.planner, **resolved),
         replan=options.replan or 0.0,
         lookahead=options.lookahead or 0.0,
+        within=[] if options.within is None else options.within.points,
     )
 
 
-Built = dict[int, tuple["ObjectRecord", BehaviorOptions | None, core.ObjectSpec]]
-"""Cache of built objects: identity of the record -> record, behavior of its group, object of the core."""
+def _keeps(placement: Placement, row: dict[int, int]) -> dict[str, Any]:
+    """Fields of the kernel for the objects that a random placement keeps clear of.
+
+    Args:
+        placement: The placement.
+        row: Id of an object -> its index in the world.
+    """
+    if placement.distribution != "random":
+        return {}
+    kept = [(row[number], radius) for number, radius in placement.kept if number in row]
+    return {"keep_objects": [index for index, _ in kept], "keep_radii": [radius for _, radius in kept]}
+
+
+Built = dict[int, tuple["ObjectRecord", BehaviorOptions | None, core.ObjectSpec, float]]
+"""Cache of built objects: identity of the record -> record, behavior of its group, object of the core, step time."""
 
 
 def placement_kernel(placement: Placement) -> type[Any]:
@@ -217,15 +239,16 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
         built: Cache of an earlier call, whose objects are reused for records that still exist; it is updated.
     """
     groups = group_behaviors(scenario.objects)
-    contact = scenario.world.collision_mode == "contact"
+    contact, step_time = scenario.world.collision_mode == "contact", scenario.world.step_time
     row = {record.id: index for index, record in enumerate(scenario.objects)}
     before = {} if built is None else built
     now: Built = {}
     for record in scenario.objects:
         group_behavior = groups.get(record.group) if record.joined else None
         known = before.get(id(record))
-        if known is None or known[0] is not record or known[1] is not group_behavior:
-            known = record, group_behavior, build_object(record, group_behavior, contact=contact)
+        if known is None or known[0] is not record or known[1] is not group_behavior or known[3] != step_time:
+            spec = build_object(record, group_behavior, step_time=step_time, contact=contact)
+            known = record, group_behavior, spec, step_time
         now[id(record)] = known
     if built is not None:
         built.clear()
@@ -239,6 +262,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
             placement_kernel(placement)(
                 objects=[row[number] for number in placement.objects if number in row],
                 attempts=PLACEMENT_ATTEMPTS,
+                **_keeps(placement, row),
                 **placement.options,
             )
             for placement in scenario.placements

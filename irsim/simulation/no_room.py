@@ -29,16 +29,19 @@ def no_room(scenario: ResolvedScenario, index: int, seed: int) -> Diagnostic:
 
 
 def _in_its_range(scenario: ResolvedScenario, record: ObjectRecord, placement: Placement, seed: int) -> Diagnostic:
+    kept = placement.further_keys
+    lower = [f"`{key}`" for key in ("number", placement.distance_key, *kept)]
+    also = f", and must hold {' and '.join(kept)}" if kept else ""
     return Diagnostic(
         code="placement-crowded",
         severity="error",
         path=(*record.path, "distribution"),
         message=(
             f"no room for {record.name!r} with seed {seed}: {len(placement.objects)} objects of this entry "
-            f"share {placement.room}"
+            f"share {placement.room}{also}"
         ),
         given=len(placement.objects),
-        fix=f"lower `number` or `{placement.distance_key}`, make the shapes smaller, or {placement.widen}",
+        fix=f"lower {', '.join(lower[:-1])} or {lower[-1]}, make the shapes smaller, or {placement.widen}",
         file=scenario.source,
     )
 

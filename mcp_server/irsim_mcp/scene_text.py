@@ -57,8 +57,10 @@ def _row_text(row: Mapping[str, Any], labels: Mapping[str, str], seeds: int) -> 
 
 
 def _name(name: str, labels: Mapping[str, str]) -> str:
-    label = labels.get(name, name)
-    return repr(clean(name)) if label == name else f"{label} {clean(name)!r}"
+    if name not in labels:
+        return repr(clean(name))
+    label = clean(labels[name])
+    return label if labels[name] == name else f"{label} {clean(name)!r}"
 
 
 def _place(pose: Sequence[float], goal: Sequence[float] | None) -> str:

@@ -194,6 +194,7 @@ OTHER: dict[str, Any] = {
     "goal": [12, 3],
     "waypoints": [[4, 4], [5, 5]],
     "velocity": [0.1, 0.1],
+    "start_time": 3.0,
     "kinematics": {"name": "omni_angular"},
     "shape": {"name": "rectangle", "length": 1, "width": 0.4},
     "behavior": {"name": "dash", "wander": True},
@@ -225,6 +226,7 @@ NO_EFFECT = {
     ("robot", 2): {"group_behavior"},
     ("obstacle", 0): {
         "goal", "waypoints", "group_behavior", "group", "vel_min", "vel_max", "acce", "angle_range", "vel_dim",
+        "start_time",
     },
 }  # fmt: skip
 """Only the first of a group leads it; what never moves follows nobody, and has no goals or limits."""

@@ -36,7 +36,7 @@ def test_start() -> None:
     assert (result.steps, result.sim_time, result.obstacles) == (0, 0.0, 1)
     assert result.extent == (-1, 7, 0, 4)
     robot = result.robots[0]
-    assert (robot.name, robot.label, robot.pose, robot.goal) == ("rover", "r0", (1, 2, 0), (5, 2))
+    assert (robot.name, robot.label, robot.pose, robot.goal) == ("rover", "rover", (1, 2, 0), (5, 2))
     assert robot.status == "under way"
     assert max(result.size) == 600
     with Image.open(io.BytesIO(result.png)) as image:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core.test_intersects import ORIGIN, POSE, placed, shape
-from tests.core.worlds import circle, command, lidar, obstacle, polygon, rectangle, robot, scene
+from tests.core.worlds import circle, command, lidar, obstacle, polygon, random_placement, rectangle, robot, scene
 from tests.effort import examples
 
 CELLS = st.integers(1, 12)
@@ -209,7 +209,7 @@ def test_lidar_sees_the_map_and_what_stands_before_it() -> None:
 def test_random_placement_keeps_clear_of_the_cells() -> None:
     rng = np.random.default_rng(2)
     grid = core.OccupancyGrid((rng.random((40, 40)) < 0.2).astype(np.uint8), (0.0, 0.0), (0.25, 0.25))
-    placement = core.RandomPlacement(
+    placement = random_placement(
         objects=list(range(8)), range_low=[0, 0, -3], range_high=[10, 10, 3], min_distance=0.1, attempts=20_000
     )
     bodies = [robot(parts=[circle(0.2)]) for _ in range(8)]

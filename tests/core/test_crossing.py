@@ -12,7 +12,7 @@ import shapely.affinity
 
 import irsim._core as core
 from tests.core import oracle
-from tests.core.worlds import circle, obstacle, polygon, rectangle, robot, scene
+from tests.core.worlds import circle, obstacle, polygon, random_placement, rectangle, robot, scene
 
 SEEDS = (0, 1, 2, 3)
 TRIANGLE = ((-0.4, -0.3), (0.5, 0.0), (-0.4, 0.3))
@@ -110,7 +110,7 @@ def test_more_people_start_where_fewer_did() -> None:
 def test_things_placed_at_random_afterwards_stand_on_no_goal() -> None:
     blocks = [obstacle(parts=[circle(0.5)]) for _ in range(25)]
     low, high = [-4, -3, 0], [6, 7, 0]
-    block = core.RandomPlacement(objects=range(6, 31), range_low=low, range_high=high, min_distance=0.0, attempts=1000)
+    block = random_placement(objects=range(6, 31), range_low=low, range_high=high, min_distance=0.0, attempts=1000)
     for seed in SEEDS:
         _, state = scene(*people(6), *blocks, seeds=[seed], placements=[in_square(range(6)), block])
         assert state.failed_placement[0] == -1

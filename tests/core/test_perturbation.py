@@ -25,6 +25,7 @@ from tests.core.worlds import (
     lidar,
     line,
     obstacle,
+    random_placement,
     rectangle,
     robot,
     rows_of,
@@ -91,9 +92,7 @@ def test_draws_fill_the_spread_evenly() -> None:
 def crowd(given=(), seeds=(3,)) -> tuple[core.World, core.State]:
     """Robots with noise, one at random, one that wanders; an obstacle whose shape is drawn."""
     noisy = core.DiffOptions(noise=True, alpha=[0.03, 0.0, 0.0, 0.03])
-    place = core.RandomPlacement(
-        objects=[1], range_low=[2, 2, -3], range_high=[8, 8, 3], min_distance=0.0, attempts=1000
-    )
+    place = random_placement(objects=[1], range_low=[2, 2, -3], range_high=[8, 8, 3], min_distance=0.0, attempts=1000)
     return scene(
         robot(drive=noisy, behavior=orca(), goals=[[9, 9]], pose=[1, 1, 0], sensors=[lidar(8, noise=True)]),
         robot(drive=noisy, behavior=orca(), sensors=[lidar(8, noise=True)]),

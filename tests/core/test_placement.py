@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core import oracle
-from tests.core.worlds import circle, obstacle, polygon, rectangle, robot, scene
+from tests.core.worlds import circle, obstacle, polygon, random_placement, rectangle, robot, scene
 from tests.effort import examples
 
 SHAPES = [circle(0.4), rectangle(1.2, 0.4), polygon((-0.6, -0.5), (0.6, 0.0), (-0.6, 0.5), (-0.2, 0.0))]
 
 
 def placement(objects, size: float, min_distance: float = 0.0, attempts: int = 2000) -> core.RandomPlacement:
-    return core.RandomPlacement(
+    return random_placement(
         objects=objects, range_low=[0, 0, -3], range_high=[size, size, 3], min_distance=min_distance, attempts=attempts
     )
 
@@ -78,7 +78,7 @@ def test_distance_without_room_is_reported() -> None:
 
 
 def test_transparent_things_may_stand_and_end_in_one_place() -> None:
-    point = core.RandomPlacement(objects=[0, 1], range_low=[0] * 3, range_high=[0] * 3, min_distance=0, attempts=10)
+    point = random_placement(objects=[0, 1], range_low=[0] * 3, range_high=[0] * 3, min_distance=0, attempts=10)
     _, state = scene(robot(unobstructed=True), robot(unobstructed=True), placements=[point])
     assert state.failed_placement[0] == -1
     _, state = scene(robot(), robot(), placements=[point])

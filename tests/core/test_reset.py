@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 import irsim._core as core
-from tests.core.worlds import assert_identical, circle, everything, lidar, obstacle, robot, rows_of, scene
+from tests.core.worlds import (
+    assert_identical,
+    circle,
+    everything,
+    lidar,
+    obstacle,
+    random_placement,
+    robot,
+    rows_of,
+    scene,
+)
 
 ALL = np.ones(1, np.uint8)
 NOISY = core.DiffOptions(noise=True, alpha=[0.03, 0.01, 0.01, 0.03])
@@ -28,7 +38,7 @@ def crowd(seeds=(3,), **options) -> tuple[core.World, core.State]:
         *(obstacle(parts=[part]) for _ in range(4)),
         robot(drive=NOISY),
     ]
-    placement = core.RandomPlacement(
+    placement = random_placement(
         objects=[0, 2, 3, 4, 5, 6], range_low=[0, 0, -3], range_high=[8, 8, 3], min_distance=0.8, attempts=1000
     )
     return scene(*objects, seeds=seeds, placements=[placement], **options)

@@ -46,6 +46,7 @@ def lidar(number: int = 60, **overrides: Any) -> core.Lidar2dOptions:
         "range_max": 10.0,
         "angle_range": 2 * PI,
         "number": number,
+        "endpoint": True,
         "noise": False,
         "std": 0.2,
         "angle_std": 0.02,
@@ -61,6 +62,7 @@ def fmcw(number: int = 60, **overrides: Any) -> core.FmcwLidar2dOptions:
         "range_max": 10.0,
         "angle_range": 2 * PI,
         "number": number,
+        "endpoint": True,
         "noise": False,
         "std": 0.2,
         "angle_std": 0.0,
@@ -69,6 +71,11 @@ def fmcw(number: int = 60, **overrides: Any) -> core.FmcwLidar2dOptions:
         "velocity_noise_std": 0.0,
     }
     return core.FmcwLidar2dOptions(**{**options, **overrides})
+
+
+def random_placement(**overrides: Any) -> core.RandomPlacement:
+    options: dict[str, Any] = {"goal_distance": 0.0, "keep_points": [], "keep_objects": [], "keep_radii": []}
+    return core.RandomPlacement(**{**options, **overrides})
 
 
 def robot(**overrides: Any) -> core.ObjectSpec:
@@ -101,6 +108,7 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "restitution": 0.0,
         "tau": 0.0,
         "driven": overrides.get("drive", True) is not None,
+        "start_step": 0,
         "target_roles": 0,
         "behavior": DASH,
         "grouped": False,

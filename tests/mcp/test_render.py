@@ -20,7 +20,7 @@ async def test_line_and_picture(workspace: Path) -> None:
     text = text_of(result)
     line = text.splitlines()[0]
     assert "t=0 s (step 0, nothing is random); world x 0..8 m, y 0..6 m" in line
-    assert ": r0 'rover' at (1.00, 1.00) heading 0.00 goal (7.00, 1.00)" in text
+    assert ": rover at (1.00, 1.00) heading 0.00 goal (7.00, 1.00)" in text
     assert "- diff, circle r 0.3, dash, vel_max [" in text
     assert "- static obstacle, circle r 0.5: 'crate' at (4.00, 1.00)" in text
     assert "dash-into-obstacle" in text
@@ -39,7 +39,7 @@ async def test_line_and_picture(workspace: Path) -> None:
 
 async def test_later_moments_and_no_picture(empty: Path) -> None:
     async with connected(empty) as client:
-        for step, said in ((10, "(step 10,"), (-1, "'rover' arrived")):
+        for step, said in ((10, "(step 10,"), (-1, "rover arrived")):
             arguments = {"scenario_yaml": ROOM, "step": step, "return_image": False}
             result = await client.call_tool("render_snapshot", arguments)
             assert said in text_of(result)
@@ -78,7 +78,7 @@ async def test_plans_in_words(empty: Path) -> None:
         given = {"scenario_yaml": ROOM, "overlays": ["plan", "clearance"], "size_px": 300}
         result = await client.call_tool("render_snapshot", given)
         refused = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "strip": 13})
-    assert "a path for r0: " in text_of(result)
+    assert "a path for rover: " in text_of(result)
     assert "(strip)" in error_of(refused)
     assert "2 to 12" in error_of(refused)
 

@@ -16,6 +16,8 @@ Make = Callable[..., Any]
 Picture = Callable[[Any], np.ndarray]
 
 GREEN, BLACK, WHITE = (0, 158, 115), (0, 0, 0), (255, 255, 255)
+MAX_ROUNDING_LEVELS = 3
+"""Levels (of 256) by which sheets that are laid over one another may differ from a drawing in one go."""
 PLAIN = """
 robot: {kinematics: {name: omni}, shape: {name: circle, radius: 0.5}, state: [2, 3, 0], goal: [8, 3, 0],
         behavior: {name: dash}, plot: {show_goal: true}, name: anna}
@@ -221,9 +223,10 @@ obstacle:
         for _ in range(3):
             env.step()
         plot.frame()
-        quick = np.asarray(plot.fig.canvas.buffer_rgba()).copy()
+        quick = np.asarray(plot.fig.canvas.buffer_rgba()).astype(int)
         FigureCanvasAgg.draw(plot.fig.canvas)
-        assert (quick == np.asarray(plot.fig.canvas.buffer_rgba())).all()
+        slow = np.asarray(plot.fig.canvas.buffer_rgba()).astype(int)
+        assert np.abs(quick - slow).max() <= MAX_ROUNDING_LEVELS
 
 
 def test_drawings_of_scripts_stay_or_last_one_frame(make: Make, color_at: Look) -> None:

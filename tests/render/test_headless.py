@@ -73,6 +73,7 @@ def test_a_window_shows_each_frame(make: Any, monkeypatch: pytest.MonkeyPatch) -
         return opened[-1]
 
     monkeypatch.setattr(window, "open_window", open_window)
+    monkeypatch.setattr(window, "has_screen", lambda: True)
     env = make(SCENARIO, display=True)
     for _ in range(3):
         env.step()
@@ -101,3 +102,13 @@ def test_windows_need_a_screen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "darwin")
     monkeypatch.delenv("DISPLAY")
     assert window.has_screen()
+
+
+def test_without_a_screen_nothing_is_drawn_before_someone_looks(make: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(window, "has_screen", lambda: False)
+    env = make(SCENARIO, display=True)
+    for _ in range(3):
+        env.step()
+        env.render()
+    assert not env._env_plot.made
+    assert np.asarray(env._env_plot.fig.canvas.buffer_rgba()).min() == 0

@@ -110,4 +110,4 @@ def test_the_first_tile_alone_names_obstacles(monkeypatch: pytest.MonkeyPatch) -
     original = strip._simplify
     monkeypatch.setattr(strip, "_simplify", simplify)
     snapshot(text=SCENE, strip=2, steps=20, size=600)
-    assert named == [["o1", "r0"], ["r0"]]
+    assert named == [["crate", "rover"], ["rover"]]

@@ -31,7 +31,7 @@ def at(data: object, path: str) -> object:
 
 
 def test_there_is_one_of_each_kind() -> None:
-    assert {folder.name for folder in EXAMPLES} == {"loading-dock", "hallway", "patrol-edit", "cafe"}
+    assert {folder.name for folder in EXAMPLES} == {"loading-dock", "hallway", "patrol-edit", "cafe", "corridor-shift"}
 
 
 @each

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.simulation.active_env import current_rng, set_current_rng
+from irsim.simulation.active_env import current_rng, last_used, set_current_rng
+from irsim.simulation.random_streams import check_seed
 
 __all__ = ["random_uniform", "rng", "set_seed"]
 
-MAX_ATTEMPTS = 100
+MAX_ATTEMPTS = 1000
 """Number of draws per point after which the distance to other points is ignored."""
 
 
@@ -27,12 +28,26 @@ rng: Any = _Follower()
 
 
 def set_seed(seed: int | None = None) -> None:
-    """Restart ``rng`` with a seed; the draws of the environment itself do not change (see ``env.set_random_seed``).
+    """Restart ``rng`` with a seed, and let the next ``env.reset(random=True)`` start the first scene of this seed.
+
+    This concerns the environment used last. Its present scene stays until then; ``env.set_random_seed`` replaces it at
+    any next reset.
 
     Args:
         seed: A seed for NumPy; None takes fresh entropy.
     """
     set_current_rng(np.random.default_rng(seed))
+    env = last_used()
+    if env is not None:
+        env._next_seed = _seed_of(seed)
+
+
+def _seed_of(seed: Any) -> int:
+    """Return the seed of an environment for a seed of NumPy: the same number if that is possible."""
+    try:
+        return check_seed(seed)
+    except (TypeError, ValueError):
+        return int(np.random.default_rng(seed).integers(2**32))
 
 
 def random_uniform(
@@ -41,23 +56,23 @@ def random_uniform(
     """Draw points uniformly from a box, if possible with a minimum distance.
 
     Args:
-        low: Lower bounds, one per row; default [0, 0, -pi].
-        high: Upper bounds; default [10, 10, pi].
-        size: Number of rows and of points.
-        min_distance: Smallest distance of two points in their first two coordinates [m]. After 100 draws for a point,
+        low: Lower bounds, one per row; default [0.5, 0.5, 0].
+        high: Upper bounds; default [9.5, 9.5, 6.28].
+        size: Number of rows that are drawn, 2 or 3, and number of points.
+        min_distance: Smallest distance of two points in their first two coordinates [m]. After 1000 draws for a point,
             the last one is taken whatever its distance.
 
     Returns:
-        (rows, points) array.
+        (3, points) array; rows that are not drawn are 0.
     """
     rows, number = size
-    lower = np.array([0.0, 0.0, -np.pi][:rows] if low is None else low, dtype=np.float64).reshape(-1)
-    upper = np.array([10.0, 10.0, np.pi][:rows] if high is None else high, dtype=np.float64).reshape(-1)
-    points: list[NDArray[np.float64]] = []
-    for _ in range(number):
+    lower = np.array([0.5, 0.5, 0.0] if low is None else low, dtype=np.float64).reshape(-1)[:rows]
+    upper = np.array([9.5, 9.5, 6.28] if high is None else high, dtype=np.float64).reshape(-1)[:rows]
+    points: NDArray[np.float64] = np.zeros((3, number))
+    for index in range(number):
         for _ in range(MAX_ATTEMPTS):
             point = rng.uniform(lower, upper)
-            if all(np.hypot(*(point[:2] - other[:2])) >= min_distance for other in points):
+            if (np.hypot(*(points[:2, :index] - point[:2, None])) >= min_distance).all():
                 break
-        points.append(point)
-    return np.array(points).T.reshape(rows, number)
+        points[:rows, index] = point
+    return points

@@ -29,14 +29,18 @@ def cross_product(o: Any, a: Any, b: Any) -> float:
 
 
 def is_convex_and_ordered(points: Any) -> tuple[bool, str | None]:
-    """Return whether (2, N) points are the corners of a convex polygon, and their order: ``CW``, ``CCW`` or None."""
+    """Return whether (2, N) points are the corners of a convex polygon, and their order: ``CW``, ``CCW`` or None.
+
+    Corners on the line between their neighbours change nothing.
+    """
     corners = np.asarray(points, dtype=np.float64).T
     if len(corners) < _MIN_CORNERS:
         return False, None
     turns = [cross_product(corners[k - 2], corners[k - 1], corners[k]) for k in range(len(corners))]
-    if all(turn > 0 for turn in turns):
-        return True, "CCW"
-    return (True, "CW") if all(turn < 0 for turn in turns) else (False, None)
+    left, right = any(turn > 0 for turn in turns), any(turn < 0 for turn in turns)
+    if left == right:
+        return False, None
+    return True, "CCW" if left else "CW"
 
 
 def gen_inequal_from_vertex(vertex: Any) -> tuple[Floats | None, Floats | None]:
@@ -60,7 +64,9 @@ def gen_inequal_from_vertex(vertex: Any) -> tuple[Floats | None, Floats | None]:
 
 
 def geometry_transform(geometry: Any, state: Any) -> Any:
-    """Transform a shapely geometry from the body frame to a pose."""
+    """Transform a shapely geometry from the body frame to a pose; without a geometry, return None."""
+    if geometry is None:
+        return None
     from shapely.affinity import affine_transform
 
     return affine_transform(geometry, get_affine_transform(state))

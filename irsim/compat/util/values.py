@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import functools
-import inspect
 import math
 import os
 import time
@@ -15,17 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.log import Logger
-from irsim.simulation.active_env import last_used, use
+from irsim.simulation.active_env import last_used
 
 __all__ = [
-    "bind_env",
     "check_choice",
     "check_number",
     "check_unknown_kwargs",
     "convert_list_length",
     "convert_list_length_dict",
-    "ensure_column_vector",
-    "ensure_numpy",
     "file_check",
     "find_duplicates",
     "find_file",
@@ -39,15 +35,11 @@ __all__ = [
     "log_error",
     "log_warning",
     "log_warning_once",
-    "normalize_actions",
-    "plot_only",
     "points_to_xy_list",
     "time_it",
     "time_it2",
     "to_numpy",
     "traj_to_xy_list",
-    "validate_length",
-    "validate_shape",
 ]
 
 Function = Callable[..., Any]
@@ -75,8 +67,10 @@ def is_list_not_list_of_lists(lst: Any) -> bool:
 
 
 def is_2d_list(data: Any) -> bool:
-    """Whether the first item of a sequence is a list, tuple or array."""
-    return not isinstance(data, str) and len(data) > 0 and isinstance(data[0], (list, tuple, np.ndarray))
+    """Whether the first item of a sequence is a list or tuple; False for arrays, which are no lists, and for None."""
+    if data is None or isinstance(data, np.ndarray):
+        return False
+    return len(data) > 0 and isinstance(data[0], (list, tuple))
 
 
 def convert_list_length(input_data: Any, number: int = 0, per_object: bool = False) -> list[Any]:
@@ -131,13 +125,13 @@ def find_object_by_identity(objects: Iterable[Any], name: str | None = None, obj
 def to_numpy(
     data: Any, default: NDArray[Any] | None = None, expected_shape: tuple[int, ...] | None = None
 ) -> NDArray[Any] | None:
-    """Convert a list to a column (or to ``expected_shape``); None becomes ``default``.
+    """Convert a list to a column (or to ``expected_shape``); None becomes ``default``, in that shape.
 
     Raises:
         ValueError: The number of values does not match ``expected_shape``.
     """
     if data is None:
-        return default
+        return default if default is None or expected_shape is None else np.asarray(default).reshape(expected_shape)
     array = np.asarray(data)
     if expected_shape is not None:
         return array.reshape(expected_shape)
@@ -151,7 +145,12 @@ def traj_to_xy_list(traj: Any, three_d: bool = False) -> Any:
 
 
 def points_to_xy_list(points: Any, three_d: bool = False) -> Any:
-    """Return lists x, y and, with ``three_d``, z of points, given as a list of points or an array (2 or more, N)."""
+    """Return lists x, y and, with ``three_d``, z of points, given as a list of points or an array (2 or more, N).
+
+    None stands for no points.
+    """
+    if points is None:
+        return ([],) * (3 if three_d else 2)
     if isinstance(points, np.ndarray):
         return traj_to_xy_list(points, three_d)
     return tuple([point[row] for point in points] for row in range(3 if three_d else 2))
@@ -217,113 +216,6 @@ def check_unknown_kwargs(
     for message in messages:
         (logger or _logger()).warning(message)
     return messages
-
-
-def _arguments(function: Function, args: Any, kwargs: Any) -> inspect.BoundArguments:
-    bound = inspect.signature(function).bind(*args, **kwargs)
-    bound.apply_defaults()
-    return bound
-
-
-def validate_shape(**shape_requirements: Any) -> Callable[[Function], Function]:
-    """Return a decorator that checks the shapes of array arguments: a minimum number of rows, or the whole shape."""
-
-    def decorate(function: Function) -> Function:
-        @functools.wraps(function)
-        def checked(*args: Any, **kwargs: Any) -> Any:
-            given = _arguments(function, args, kwargs).arguments
-            for name, wanted in shape_requirements.items():
-                value = given.get(name)
-                if not isinstance(value, np.ndarray):
-                    raise TypeError(f"Parameter {name!r} must be a numpy array, got {type(value).__name__}")
-                fits = value.shape == wanted if isinstance(wanted, tuple) else value.shape[0] >= wanted
-                if not fits:
-                    raise ValueError(f"Parameter {name!r} must have shape {wanted}, got {value.shape}")
-            return function(*args, **kwargs)
-
-        return checked
-
-    return decorate
-
-
-def validate_length(**length_requirements: int) -> Callable[[Function], Function]:
-    """Return a decorator that checks the minimum length of arguments."""
-
-    def decorate(function: Function) -> Function:
-        @functools.wraps(function)
-        def checked(*args: Any, **kwargs: Any) -> Any:
-            given = _arguments(function, args, kwargs).arguments
-            for name, min_length in length_requirements.items():
-                if len(given[name]) < min_length:
-                    raise ValueError(f"Parameter {name!r} must have length >= {min_length}, got {len(given[name])}")
-            return function(*args, **kwargs)
-
-        return checked
-
-    return decorate
-
-
-def _convert_arguments(names: tuple[str, ...], convert: Callable[[Any], Any]) -> Callable[[Function], Function]:
-    def decorate(function: Function) -> Function:
-        @functools.wraps(function)
-        def called(*args: Any, **kwargs: Any) -> Any:
-            bound = _arguments(function, args, kwargs)
-            for name in names:
-                if bound.arguments.get(name) is not None:
-                    bound.arguments[name] = convert(bound.arguments[name])
-            return function(*bound.args, **bound.kwargs)
-
-        return called
-
-    return decorate
-
-
-def ensure_numpy(*param_names: str) -> Callable[[Function], Function]:
-    """Return a decorator that converts these arguments to arrays."""
-    return _convert_arguments(param_names, np.asarray)
-
-
-def ensure_column_vector(*param_names: str) -> Callable[[Function], Function]:
-    """Return a decorator that converts these arguments to arrays, and flat ones to columns."""
-    return _convert_arguments(param_names, to_numpy)
-
-
-def normalize_actions(func: Function) -> Function:
-    """Decorate ``step(self, actions)``, which gets an action or None per object, to accept ``(action, action_id)``."""
-
-    @functools.wraps(func)
-    def step(self: Any, action: Any = None, action_id: Any = 0) -> Any:
-        slots: list[Any] = [None] * len(self.objects)
-        if action is not None:
-            many = isinstance(action, (list, tuple)) and not is_list_of_numbers(list(action))
-            several_ids = isinstance(action_id, (list, tuple))
-            ids = list(action_id) if several_ids else [action_id + k for k in range(len(action) if many else 1)]
-            for number, one in zip(ids, action if many else [action] * len(ids), strict=False):
-                slots[number] = one
-        return func(self, slots)
-
-    return step
-
-
-def bind_env(method: Function) -> Function:
-    """Decorate a method of an environment, so that a call makes the environment the one used last."""
-
-    @functools.wraps(method)
-    def bound(self: Any, *args: Any, **kwargs: Any) -> Any:
-        use(self)
-        return method(self, *args, **kwargs)
-
-    return bound
-
-
-def plot_only(method: Function) -> Function:
-    """Decorate a method of an environment, so that it does nothing in headless mode."""
-
-    @functools.wraps(method)
-    def draw(self: Any, *args: Any, **kwargs: Any) -> Any:
-        return None if self.headless else method(self, *args, **kwargs)
-
-    return draw
 
 
 # files, time, log ----------------------------------------------------------------------------------------------------

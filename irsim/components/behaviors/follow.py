@@ -8,6 +8,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
+from irsim.options.regions import Region
 from irsim.options.registry import BEHAVIORS, PLANNERS
 from irsim.options.selection import Select
 from irsim.options.units import Meters, Seconds
@@ -27,7 +28,19 @@ class Follow(BehaviorOptions):
     with the turning circle of a car, and wait for objects in the way.
     """
 
-    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "follow", "planner": "astar", "local": "dash"}]}
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [
+            {"name": "follow", "planner": "astar", "local": "dash"},
+            {"name": "follow", "within": {"rectangle": [0, 4, 20, 6]}},
+        ]
+    }
+    also_called: ClassVar[dict[str, str]] = {
+        "region": "within",
+        "area": "within",
+        "inside": "within",
+        "bounds": "within",
+        "corridor": "within",
+    }
 
     name: Literal["follow"] = "follow"
     planner: Annotated[Any, Select(PLANNERS, short=(None, "name")), Field(validate_default=True)] = "astar"
@@ -41,6 +54,9 @@ class Follow(BehaviorOptions):
     """Plan again after this time; null plans once per goal, and when the path is lost."""
     lookahead: Annotated[Meters, Field(gt=0)] | None = None
     """Distance along the path to the point that the object heads for; null is the farthest corner in sight."""
+    within: Region | None = None
+    """Area that the path stays in, so that it does not go around through the open ends of a corridor or outside a
+    building. It holds for the middle of the object; one that is pushed out comes back. Null is no such area."""
 
 
 BEHAVIORS.register(Follow, kernel=core.RouteOptions)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -50,9 +50,11 @@ class Drawn:
         high: Greatest x, y and heading.
         min_distance: Smallest distance between the positions of its objects that the options ask for [m].
         kernel: Fields of the kernel, without the objects and the number of attempts.
+        clear_of: Names of the objects and groups that its objects keep clear of, and how far from each [m].
     """
 
     low: list[float]
     high: list[float]
     min_distance: float
     kernel: Mapping[str, Any]
+    clear_of: Sequence[tuple[str, float]] = ()

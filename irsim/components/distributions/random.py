@@ -9,9 +9,42 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.components.distributions._options import MARGIN, DistributionOptions, Drawn, WorldExtent
+from irsim.options.base import Options
 from irsim.options.registry import DISTRIBUTIONS
 from irsim.options.units import Meters
-from irsim.options.vectors import Offset
+from irsim.options.vectors import Offset, Point
+
+
+class KeepClear(Options):
+    """What random places keep clear of: a point, or an object at its start and at its goals.
+
+    Give either `point` or `object`.
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "oneOf": [
+            {"required": [key], "properties": {key: {"not": {"type": "null"}}}, "title": key}
+            for key in ("point", "object")
+        ],
+        "examples": [{"point": [5, 5], "radius": 1.5}, {"object": "robot_0", "radius": 1.0}],
+    }
+    also_called: ClassVar[dict[str, str]] = {
+        "center": "point",
+        "position": "point",
+        "at": "point",
+        "name": "object",
+        "of": "object",
+        "distance": "radius",
+        "clearance": "radius",
+    }
+
+    point: Point | None = None
+    """A place of the world: [x, y]."""
+    object: Annotated[str, Field(strict=True, min_length=1)] | None = None
+    """Name of an object, or of a group for all its members. Objects that are random themselves must be of an entry
+    before this one."""
+    radius: Annotated[Meters, Field(gt=0)]
+    """Smallest distance from the footprint to the point, or to the footprint of the object."""
 
 
 class RandomDistribution(DistributionOptions):
@@ -24,7 +57,17 @@ class RandomDistribution(DistributionOptions):
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
-        "examples": [{"name": "random", "range_low": [1, 1, -3.14159], "range_high": [9, 9, 3.14159]}]
+        "examples": [
+            {"name": "random", "range_low": [1, 1, -3.14159], "range_high": [9, 9, 3.14159]},
+            {"name": "random", "keep_clear": [{"object": "robot_0", "radius": 1.0}], "goal_distance": 4.0},
+        ]
+    }
+    also_called: ClassVar[dict[str, str]] = {
+        "avoid": "keep_clear",
+        "keep_away": "keep_clear",
+        "exclude": "keep_clear",
+        "min_goal_distance": "goal_distance",
+        "travel_distance": "goal_distance",
     }
 
     name: Literal["random"] = "random"
@@ -35,15 +78,26 @@ class RandomDistribution(DistributionOptions):
     """Upper bounds [x, y, theta], as `range_low`; null is half a metre inside the world, heading π."""
     min_distance: Annotated[Meters, Field(ge=0)] = 1.0
     """Smallest distance between the positions of this entry's objects, and between their goals."""
+    keep_clear: list[KeepClear] = []
+    """Points and objects that the footprints keep clear of, at starts and at goals: around the start and the goal of a
+    robot, say, so that random obstacles leave them free."""
+    goal_distance: Annotated[Meters, Field(ge=0)] = 0.0
+    """Smallest distance from the start of an object to its goal, in a straight line."""
 
     def drawn_in(self, world: WorldExtent) -> Drawn:
         """The range of the options, by default half a metre inside the world."""
         x0, y0, x1, y1 = world.bounds
         low = self.range_low or [x0 + MARGIN, y0 + MARGIN, -math.pi]
         high = self.range_high or [x1 - MARGIN, y1 - MARGIN, math.pi]
-        return Drawn(
-            low, high, self.min_distance, {"range_low": low, "range_high": high, "min_distance": self.min_distance}
-        )
+        kernel = {
+            "range_low": low,
+            "range_high": high,
+            "min_distance": self.min_distance,
+            "goal_distance": self.goal_distance,
+            "keep_points": [[*item.point, item.radius] for item in self.keep_clear if item.point is not None],
+        }
+        clear_of = [(item.object, item.radius) for item in self.keep_clear if item.object is not None]
+        return Drawn(low, high, self.min_distance, kernel, clear_of)
 
 
 DISTRIBUTIONS.register(RandomDistribution, kernel=core.RandomPlacement)

@@ -26,7 +26,10 @@ class BeamPlot(Options):
 
 
 class Lidar2d(SensorOptions):
-    """Planar lidar: `number` beams spread over `angle_range`, with a beam at both ends; index 0 is the rightmost."""
+    """Planar lidar: `number` beams spread over `angle_range`, with a beam at both ends unless `endpoint` is false.
+
+    Index 0 is the rightmost.
+    """
 
     is_lidar: ClassVar[bool] = True
 
@@ -50,7 +53,10 @@ class Lidar2d(SensorOptions):
         "sigma": "std",
     }
     schema_extra: ClassVar[dict[str, Any]] = {
-        "examples": [{"name": "lidar2d", "number": 180, "range_max": 8.0, "angle_range": 6.28318}]
+        "examples": [
+            {"name": "lidar2d", "number": 181, "range_max": 8.0},
+            {"name": "lidar2d", "number": 360, "range_max": 8.0, "angle_range": 6.28318, "endpoint": False},
+        ]
     }
 
     name: Literal["lidar2d"] = "lidar2d"
@@ -62,7 +68,10 @@ class Lidar2d(SensorOptions):
     """Total opening angle, symmetric about the sensor's x axis; 6.28318 is a full turn."""
     number: Annotated[Integer, Field(ge=1, le=1_000_000)] = 100
     """Number of beams. Over a full turn the first and the last point the same way, so 361 beams are 360 directions; for
-    exactly 360 beams in 360 directions use `angle_range` 6.26573."""
+    exactly 360 beams in 360 directions set `endpoint: false`."""
+    endpoint: Bool = True
+    """Spread the beams over both ends of `angle_range`. With false the last end has no beam, as in NumPy's `linspace`:
+    n beams over a full turn are then n directions."""
     scan_time: Annotated[Seconds, Field(ge=0)] = 0.1
     """Duration of one scan, only reported in messages."""
     noise: Bool = False

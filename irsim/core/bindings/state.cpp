@@ -1,4 +1,6 @@
 // The class `State`: its arrays, resets and what is read of rows and worlds.
+#include <algorithm>
+
 #include "bindings/bound_state.hpp"
 #include "phases.hpp"
 #include "sensing/view.hpp"
@@ -59,12 +61,23 @@ nb::object initial_state(const BoundState& self, int row) {
   return own(std::move(out), {size});
 }
 
-nb::object trajectory(const BoundState& self, int row) {
+const std::vector<double>& history_of(const BoundState& self, int row) {
   self.check_row(row);
   if (!self.state.keep_history) throw nb::value_error("this state does not keep a history");
-  const std::vector<double>& track = self.state.history[row];
+  return self.state.history[row];
+}
+
+std::size_t recorded(const BoundState& self, int row) {
+  return history_of(self, row).size() / (3 + static_cast<std::size_t>(self.state.extra_rows));
+}
+
+nb::object trajectory(const BoundState& self, int row, std::size_t first) {
+  const std::vector<double>& track = history_of(self, row);
   const std::size_t columns = 3 + static_cast<std::size_t>(self.state.extra_rows);
-  return own(track, {track.size() / columns, columns});
+  const std::size_t count = recorded(self, row);
+  const std::size_t start = std::min(first, count);
+  std::vector<double> states(track.begin() + static_cast<std::ptrdiff_t>(start * columns), track.end());
+  return own(std::move(states), {count - start, columns});
 }
 
 nb::object standings(const BoundState& self, int row) {
@@ -276,7 +289,8 @@ void bind_state(nb::module_& m) {
                sense(*self.world, self.state, w, self.state.workspaces.front());
              }
            })
-      .def("trajectory", &trajectory, nb::arg("row"))
+      .def("recorded", &recorded, nb::arg("row"))
+      .def("trajectory", &trajectory, nb::arg("row"), nb::arg("first") = 0)
       .def("standings", &standings, nb::arg("row"));
   bind_row_geometry(state);
 }

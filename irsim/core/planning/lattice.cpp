@@ -54,7 +54,7 @@ void OpenCells::find(int i, int j) {
   std::uint8_t& known = known_[lattice_.node(i, j)];
   known |= kOpenKnown;
   if (!free(i, j)) return;
-  if (!clear_around(i, j)) {
+  if (space_.region != nullptr || !clear_around(i, j)) {
     const Vec2 here = lattice_.at(i, j);
     for (int dj = -1; dj <= 1; ++dj) {
       for (int di = -1; di <= 1; ++di) {

@@ -65,7 +65,7 @@ class PoseSearch {
     lattice_ = Lattice::over(p_.bounds, std::max(kFieldCell, std::sqrt(area / kMaxFieldCells)));
     distance_.assign(static_cast<std::size_t>(lattice_.nodes()), kInfinity);
     Body disc = Body::disc(std::max(0.0, 0.9 * p_.room - 0.5 * norm(lattice_.cell)));
-    const Space space{p_.blockers, disc, p_.bounds, false};
+    const Space space{p_.blockers, disc, p_.bounds, false, p_.region};
     using Item = std::pair<double, int>;
     std::priority_queue<Item, std::vector<Item>, std::greater<Item>> queue;
     const int goal = lattice_.nearest(p_.goal);
@@ -100,7 +100,7 @@ class PoseSearch {
   }
   bool clear(double heading, Vec2 a, Vec2 b) {
     Body& at = body(heading);
-    const Space space{p_.blockers, at, p_.bounds, false};
+    const Space space{p_.blockers, at, p_.bounds, false, p_.region};
     return space.clear(a, b) && !p_.blockers.meet(at.at(b));
   }
 

@@ -21,11 +21,12 @@ struct PoseProblem {
   Box bounds;  // limits of positions
   Pose start;
   Vec2 goal;
-  double near;    // distance from the goal at which a path may end [m]
-  bool backs;     // whether it may go backward
-  double radius;  // radius of the turning circle [m]; 0 if it turns on the spot
-  double reach;   // farthest point of the footprint from its origin [m]
-  double room;    // radius of a disc about the origin within the footprint [m]
+  double near;           // distance from the goal at which a path may end [m]
+  bool backs;            // whether it may go backward
+  double radius;         // radius of the turning circle [m]; 0 if it turns on the spot
+  double reach;          // farthest point of the footprint from its origin [m]
+  double room;           // radius of a disc about the origin within the footprint [m]
+  const Region* region;  // area that positions must not leave, or null
 };
 
 /// Legs from start to goal, starting with the start; empty if none are found. Hybrid A* (Dolgov, Thrun, Montemerlo,

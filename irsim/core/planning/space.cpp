@@ -1,6 +1,7 @@
 #include "planning/space.hpp"
 
 #include "collision/touch.hpp"
+#include "geometry/predicates.hpp"
 
 namespace irsim {
 
@@ -37,7 +38,27 @@ bool Space::inside(Vec2 p) const {
   const double slack = 1e-9 * (1.0 + std::fabs(p.x) + std::fabs(p.y));
   const Box own = enclosed ? body.box() : Box{0.0, 0.0, 0.0, 0.0};
   return p.x + own.x0 >= bounds.x0 - slack && p.x + own.x1 <= bounds.x1 + slack && p.y + own.y0 >= bounds.y0 - slack &&
-         p.y + own.y1 <= bounds.y1 + slack;
+         p.y + own.y1 <= bounds.y1 + slack && (region == nullptr || region->holds(p));
+}
+
+Region::Region(const std::vector<std::vector<double>>& corners) {
+  for (const std::vector<double>& corner : corners) ring_.push_back({corner[0], corner[1]});
+  ring_.push_back(ring_.front());
+}
+
+bool Region::holds(Vec2 p) const { return inside_ring(ring_.data(), static_cast<int>(ring_.size()) - 1, p); }
+
+Box Region::box() const {
+  Box box;
+  for (const Vec2 corner : ring_) box.include(corner);
+  return box;
+}
+
+bool Region::keeps(Vec2 a, Vec2 b) const {
+  int crossed = 0;
+  Vec2 where;
+  for (std::size_t k = 0; k + 1 < ring_.size(); ++k) crossed += segments_meet(a, b, ring_[k], ring_[k + 1], where);
+  return crossed == 0 || (crossed == 1 && !holds(a) && holds(b));
 }
 
 }  // namespace irsim

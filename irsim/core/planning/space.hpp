@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "collision/grid.hpp"
 #include "planning/body.hpp"
@@ -39,18 +40,36 @@ class Terrain {
   Grid grid_;
 };
 
+/// An area that positions must not leave.
+class Region {
+ public:
+  /// `corners`: x and y of at least three corners, in order [m].
+  explicit Region(const std::vector<std::vector<double>>& corners);
+  bool holds(Vec2 p) const;
+  /// Whether a straight line stays within; one that starts outside may come in once.
+  bool keeps(Vec2 a, Vec2 b) const;
+  /// The box around it.
+  Box box() const;
+
+ private:
+  std::vector<Vec2> ring_;  // the last corner is the first again
+};
+
 /// One body among obstacles.
 struct Space {
   const Blockers& blockers;
   Body& body;
   Box bounds;  // positions (footprints if `enclosed`) outside are not free
   bool enclosed;
+  const Region* region = nullptr;  // area that positions must not leave, or null
 
   bool inside(Vec2 p) const;
   /// Whether the body may be at p.
   bool free(Vec2 p) const { return inside(p) && !blockers.meet(body.at(p)); }
   /// Whether the body may move from a, where it may be, straight to b.
-  bool clear(Vec2 a, Vec2 b) const { return inside(b) && !blockers.meet(body.swept(a, b)); }
+  bool clear(Vec2 a, Vec2 b) const {
+    return inside(b) && (region == nullptr || region->keeps(a, b)) && !blockers.meet(body.swept(a, b));
+  }
 };
 
 }  // namespace irsim

@@ -21,7 +21,9 @@ class Follower {
         route_(state.routes[row_]),
         fixed_(*state.scenes[w].fixed),
         shapes_(*state.scenes[w].shapes),
-        blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data()} {}
+        blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data()} {
+    if (!options_.within.empty()) within_.emplace(options_.within);
+  }
 
   /// Plan where that is due, and set `State::target` to the point that the behavior heads for.
   void update_target();
@@ -33,6 +35,7 @@ class Follower {
 
   Vec2 position() const;
   Box bounds() const;
+  const Region* region() const { return within_ ? &*within_ : nullptr; }
   /// Whether one of the bodies of the route can move straight between two points.
   bool sees(std::size_t body, Vec2 from, Vec2 to);
   /// Go on to the next corner where it is reached or the one after it is in sight.
@@ -84,6 +87,7 @@ class Follower {
   const Fixed& fixed_;
   const Shapes& shapes_;
   Blockers blockers_;
+  std::optional<Region> within_;  // area that the path must not leave
 };
 
 }  // namespace irsim

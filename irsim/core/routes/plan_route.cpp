@@ -13,6 +13,7 @@ constexpr int kMaxTries = 10;                              // plans attempted wi
 constexpr double kSteeringShare = 0.9;    // share of the largest steering angle with which poses are planned
 constexpr double kRestingDistance = 0.1;  // an object that moves less than this counts as resting [m]
 constexpr double kStuckTime = 5.0;        // resting this long on a path that may be too narrow counts as stuck [s]
+constexpr int kEntries = 40;              // places along x and along y at which an object may come back into its region
 constexpr std::uint64_t kDrawsPerPlan = std::uint64_t{1} << 40;  // blocks of draws reserved for each plan
 
 bool draws_samples(const Planner& planner) {
@@ -33,6 +34,23 @@ std::optional<Lattice> lattice_of_map(const World& world, const Shapes& shapes, 
     }
   }
   return std::nullopt;
+}
+
+/// The nearest of many places in the region of a space to which the body can move straight from a point outside;
+/// without one, the point itself.
+Vec2 way_in(const Space& space, Vec2 from) {
+  const Box box = space.region->box();
+  Vec2 best = from;
+  double nearest = kInfinity;
+  for (int i = 0; i < kEntries; ++i) {
+    for (int j = 0; j < kEntries; ++j) {
+      const Vec2 p{box.x0 + (box.x1 - box.x0) * (i + 0.5) / kEntries,
+                   box.y0 + (box.y1 - box.y0) * (j + 0.5) / kEntries};
+      const double away = norm(p - from);
+      if (away < nearest && space.free(p) && space.clear(from, p)) best = p, nearest = away;
+    }
+  }
+  return best;
 }
 
 }  // namespace
@@ -134,7 +152,7 @@ bool Follower::find_legs(double reach) {
   const bool backs = state_.vel_min[row_][0] < 0.0;
   const PoseProblem problem{
       blockers_, shapes_, object_, bounds(), state_.pose[row_], route_.goal, world_.goal_threshold[object_],
-      backs,     radius,  reach,   room};
+      backs,     radius,  reach,   room,     region()};
   route_.legs = search_poses(problem);
   route_.leg = 1;
   if (route_.legs.size() < 2) {
@@ -151,21 +169,25 @@ bool Follower::attempt(const Body& wide, const Body& tight, bool search) {
   route_.bodies.assign({wide, tight});
   const Vec2 start = position(), goal = route_.goal;
   const Box box = bounds();
-  const Space space{blockers_, route_.bodies[0], box, false}, close{blockers_, route_.bodies[1], box, false};
+  const Space space{blockers_, route_.bodies[0], box, false, region()};
+  const Space close{blockers_, route_.bodies[1], box, false, region()};
   if (space.clear(start, goal) || (norm(goal - start) <= world_.goal_threshold[object_])) {
     route_.path = {start, goal};
     return true;
   }
   if (!search) return false;
+  const bool outside = within_ && !within_->holds(start);
+  const Vec2 from = outside ? way_in(space, start) : start;
   const std::optional<Lattice> own = lattice_of_map(world_, shapes_, box);
   const int tries = draws_samples(options_.planner) ? kMaxTries : 1;
   for (int k = 0; k < tries && route_.path.empty(); ++k) {
     const Draws draws(state_.key(w_), Stream::planner, world_.number[object_]);
     const Problem problem{
-        space, start, goal, &close, own ? &*own : nullptr, false, draws, kDrawsPerPlan * route_.plans++, work_.search};
+        space, from, goal, &close, own ? &*own : nullptr, false, draws, kDrawsPerPlan * route_.plans++, work_.search};
     route_.path = find_path(options_.planner, problem).path;
   }
   if (route_.path.empty()) return false;
+  if (outside) route_.path.insert(route_.path.begin(), start);
   shorten(space, route_.path);
   return true;
 }

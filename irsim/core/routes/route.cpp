@@ -57,7 +57,7 @@ void Follower::adjust_command() {
 Vec2 Follower::position() const { return state_.pose[row_].position(); }
 
 bool Follower::sees(std::size_t body, Vec2 from, Vec2 to) {
-  return Space{blockers_, route_.bodies[body], bounds(), false}.clear(from, to);
+  return Space{blockers_, route_.bodies[body], bounds(), false, region()}.clear(from, to);
 }
 
 void Follower::advance() {

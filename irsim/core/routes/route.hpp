@@ -22,9 +22,10 @@ struct RouteOptions {
   Planner planner;
   double replan;     // time after which a new plan is made [s]; 0: only for a new goal, or when the path is lost
   double lookahead;  // distance along the path of the point to head for [m]; 0: the next corner in sight
+  std::vector<std::vector<double>> within;  // corners x, y of the area that the path must not leave [m]; empty: none
   static constexpr auto fields() {
     return std::make_tuple(field("planner", &RouteOptions::planner), field("replan", &RouteOptions::replan),
-                           field("lookahead", &RouteOptions::lookahead));
+                           field("lookahead", &RouteOptions::lookahead), field("within", &RouteOptions::within));
   }
 };
 

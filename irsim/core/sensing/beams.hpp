@@ -6,15 +6,15 @@
 
 namespace irsim {
 
-/// Angles evenly spaced from -angle_range / 2 to angle_range / 2, both ends included; a single beam points straight
-/// ahead.
-inline std::vector<double> spread_beams(double angle_range, int number) {
+/// Angles evenly spaced from -angle_range / 2 to angle_range / 2, the first one included and the last one if
+/// `endpoint`; a single beam points straight ahead.
+inline std::vector<double> spread_beams(double angle_range, int number, bool endpoint) {
   const int n = std::max(0, number);
   std::vector<double> angles(n, 0.0);
   if (n < 2) return angles;
-  const double first = -angle_range / 2.0, last = angle_range / 2.0, step = (last - first) / (n - 1);
+  const double first = -angle_range / 2.0, last = angle_range / 2.0, step = (last - first) / (endpoint ? n - 1 : n);
   for (int i = 0; i < n; ++i) angles[i] = first + i * step;
-  angles[n - 1] = last;
+  if (endpoint) angles[n - 1] = last;
   return angles;
 }
 

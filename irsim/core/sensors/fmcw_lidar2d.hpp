@@ -10,6 +10,7 @@ struct FmcwLidar2dOptions {
   double range_min, range_max;   // [m]
   double angle_range;            // [rad]
   int number;                    // number of beams
+  bool endpoint;                 // whether the last beam points to the end of the range
   bool noise;                    // whether ranges and directions are noisy
   double std;                    // standard deviation of ranges [m]
   double angle_std;              // standard deviation of beam directions [rad]
@@ -18,16 +19,16 @@ struct FmcwLidar2dOptions {
   double velocity_noise_std;     // standard deviation of radial velocities, also without `noise` [m/s]
   static constexpr auto fields() {
     using F = FmcwLidar2dOptions;
-    return std::make_tuple(field("range_min", &F::range_min), field("range_max", &F::range_max),
-                           field("angle_range", &F::angle_range), field("number", &F::number),
-                           field("noise", &F::noise), field("std", &F::std), field("angle_std", &F::angle_std),
-                           field("offset", &F::offset), field("motion_compensate", &F::motion_compensate),
-                           field("velocity_noise_std", &F::velocity_noise_std));
+    return std::make_tuple(
+        field("range_min", &F::range_min), field("range_max", &F::range_max), field("angle_range", &F::angle_range),
+        field("number", &F::number), field("endpoint", &F::endpoint), field("noise", &F::noise), field("std", &F::std),
+        field("angle_std", &F::angle_std), field("offset", &F::offset),
+        field("motion_compensate", &F::motion_compensate), field("velocity_noise_std", &F::velocity_noise_std));
   }
 };
 
 inline std::vector<double> beams(const FmcwLidar2dOptions& options) {
-  return spread_beams(options.angle_range, options.number);
+  return spread_beams(options.angle_range, options.number, options.endpoint);
 }
 
 inline int velocity_rows(const FmcwLidar2dOptions&) { return 1; }

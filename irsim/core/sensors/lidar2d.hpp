@@ -10,6 +10,7 @@ struct Lidar2dOptions {
   double range_min, range_max;   // [m]
   double angle_range;            // [rad]
   int number;                    // number of beams
+  bool endpoint;                 // whether the last beam points to the end of the range
   bool noise;                    // whether ranges and directions are noisy
   double std;                    // standard deviation of ranges [m]
   double angle_std;              // standard deviation of beam directions [rad]
@@ -17,15 +18,15 @@ struct Lidar2dOptions {
   bool has_velocity;             // whether the world-frame velocity of the object hit by each beam is recorded
   static constexpr auto fields() {
     using L = Lidar2dOptions;
-    return std::make_tuple(field("range_min", &L::range_min), field("range_max", &L::range_max),
-                           field("angle_range", &L::angle_range), field("number", &L::number),
-                           field("noise", &L::noise), field("std", &L::std), field("angle_std", &L::angle_std),
-                           field("offset", &L::offset), field("has_velocity", &L::has_velocity));
+    return std::make_tuple(
+        field("range_min", &L::range_min), field("range_max", &L::range_max), field("angle_range", &L::angle_range),
+        field("number", &L::number), field("endpoint", &L::endpoint), field("noise", &L::noise), field("std", &L::std),
+        field("angle_std", &L::angle_std), field("offset", &L::offset), field("has_velocity", &L::has_velocity));
   }
 };
 
 inline std::vector<double> beams(const Lidar2dOptions& options) {
-  return spread_beams(options.angle_range, options.number);
+  return spread_beams(options.angle_range, options.number, options.endpoint);
 }
 
 inline int velocity_rows(const Lidar2dOptions& options) { return options.has_velocity ? 2 : 0; }

@@ -108,7 +108,7 @@ void perturb(const World& world, State& state, int w) {
     const int row = w * world.objects + spread.object;
     const auto u = Draws(key, Stream::perturbation, world.number[spread.object]).uniforms(0);
     state.pace[row] = 1.0 + symmetric(u[0], spread.speed);
-    state.start_step[row] = static_cast<std::int64_t>(std::ceil(u[1] * spread.delay / world.step_time));
+    state.start_step[row] += static_cast<std::int64_t>(std::ceil(u[1] * spread.delay / world.step_time));
   }
   const auto moves = [](const Perturbation& spread) { return spread.moves(); };
   if (std::none_of(world.perturbations.begin(), world.perturbations.end(), moves)) return;

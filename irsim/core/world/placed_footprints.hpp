@@ -74,6 +74,12 @@ class PlacedFootprints {
       return touch(body, there) || distance(body, there) < clearance;
     });
   }
+  /// Whether the object, at a pose, meets an area that nothing may enter.
+  bool meets(int object, const Pose& pose, const Footprint& area) {
+    place(object, pose);
+    const Footprint body = footprint(object);
+    return body.box.meets(area.box) && touch(body, area);
+  }
   void add(int object, const Pose& pose) {
     if (world_.unobstructed[object]) return;
     place(object, pose);

@@ -1,4 +1,7 @@
 // Random placement. Footprints must not overlap those placed before: fixed objects first, then entries in file order.
+#include <algorithm>
+
+#include "planning/body.hpp"
 #include "world/crossing.hpp"
 #include "world/placed_footprints.hpp"
 #include "world/spec.hpp"
@@ -27,6 +30,69 @@ class Spread {
   double distance_;
   GrowingGrid grid_;
   std::vector<Vec2> points_;
+};
+
+/// Areas that the footprints of one entry keep clear of.
+class KeptClear {
+ public:
+  /// `known`: whether the start of an object is known.
+  template <class Known>
+  KeptClear(const RandomPlacement& entry, const State& state, const Shapes& shapes, int first, Known&& known) {
+    for (const std::vector<double>& point : entry.keep_points)
+      areas_.emplace_back(Body::disc(point[2]), Vec2{point[0], point[1]});
+    for (std::size_t k = 0; k < entry.keep_objects.size(); ++k) {
+      const int object = entry.keep_objects[k];
+      if (!known(object)) continue;
+      const Pose& start = state.initial_pose[first + object];
+      add(shapes, object, start, entry.keep_radii[k]);
+      for (const Goal& goal : state.goals[first + object].initial) {
+        add(shapes, object, {goal.x, goal.y, std::isnan(goal.theta) ? start.theta : goal.theta}, entry.keep_radii[k]);
+      }
+    }
+  }
+  /// Whether the object may be at a pose. `places` is where its footprint is put.
+  bool allow(int object, const Pose& pose, PlacedFootprints& places) {
+    return std::none_of(areas_.begin(), areas_.end(),
+                        [&](auto& area) { return places.meets(object, pose, area.first.at(area.second)); });
+  }
+
+ private:
+  void add(const Shapes& shapes, int object, const Pose& pose, double radius) {
+    areas_.emplace_back(Body::of(shapes, object, pose.theta, radius), pose.position());
+  }
+  std::vector<std::pair<Body, Vec2>> areas_;
+};
+
+/// From which starts of one entry goals can be found that are far enough.
+class FarGoals {
+ public:
+  explicit FarGoals(const RandomPlacement& entry) : entry_(entry) {
+    if (entry.goal_distance > 0.0)
+      enough_ = std::clamp(places({entry.range_low[0], entry.range_low[1]}) / 4, 1, kEnough);
+  }
+  bool exist(Vec2 start) const { return !(entry_.goal_distance > 0.0) || places(start) >= enough_; }
+  bool fits(Vec2 start, Vec2 goal) const {
+    return !(entry_.goal_distance > 0.0) || norm(goal - start) >= entry_.goal_distance;
+  }
+
+ private:
+  /// Number of places of a grid over the range, up to its corners, that are far enough.
+  int places(Vec2 start) const {
+    const auto &low = entry_.range_low, &high = entry_.range_high;
+    int count = 0;
+    for (int i = 0; i <= kGrid; ++i) {
+      for (int j = 0; j <= kGrid; ++j) {
+        const Vec2 p{low[0] + (high[0] - low[0]) * i / kGrid, low[1] + (high[1] - low[1]) * j / kGrid};
+        count += norm(p - start) >= entry_.goal_distance;
+      }
+    }
+    return count;
+  }
+
+  static constexpr int kGrid = 20;
+  static constexpr int kEnough = 9;  // two percent of the places: a thousand draws nearly always find one
+  const RandomPlacement& entry_;
+  int enough_ = 0;
 };
 
 /// Draw poses until `fits()` holds for one. Returns false if none does; `pose` is then the last draw.
@@ -83,13 +149,20 @@ void place_randomly(const World& world, State& state, int w) {
     if (std::isnan(last.theta)) last.theta = state.initial_pose[first + i].theta;
     placed.ends->add(i, last);
   }
+  std::vector<std::uint8_t> known(world.objects, 0);
+  for (int i = 0; i < world.objects; ++i) known[i] = !random[i];
+  const auto is_known = [&](int object) { return known[object] != 0; };
+  PlacedFootprints anywhere(world, shapes);  // in which footprints are compared with areas to keep clear of
   const auto place_starts = [&](const RandomPlacement& entry) {
     Spread spread(entry.min_distance);
+    KeptClear kept(entry, state, shapes, first, is_known);
+    const FarGoals far(entry);
     for (const int i : entry.objects) {
       Pose& pose = state.initial_pose[first + i];
       // what stands still must not stand on goals that are known already
       const auto fits = [&] {
-        return placed.starts.fits(i, pose) && (!placed.goals || !world.is_static[i] || placed.goals->fits(i, pose));
+        return kept.allow(i, pose, anywhere) && (!travels(i) || far.exist(pose.position())) &&
+               placed.starts.fits(i, pose) && (!placed.goals || !world.is_static[i] || placed.goals->fits(i, pose));
       };
       if (!draw_pose(entry, attempts(entry), draws(i), 0, spread, pose, fits)) failed(i);
       spread.add(pose.position());
@@ -119,6 +192,7 @@ void place_randomly(const World& world, State& state, int w) {
             place_crossing(entry);
         },
         placement);
+    for (const int i : placed_objects(placement)) known[i] = 1;
   }
 
   PlacedFootprints still(world, shapes);
@@ -128,6 +202,8 @@ void place_randomly(const World& world, State& state, int w) {
     if (entry == nullptr) continue;
     Spread spread(entry->min_distance);
     PlacedFootprints goals = still;  // objects of different entries may have the same goal
+    KeptClear kept(*entry, state, shapes, first, is_known);
+    const FarGoals far(*entry);
     for (const int i : entry->objects) {
       if (world.wander[i]) continue;  // their goals are drawn at every reset
       Goal goal;
@@ -138,8 +214,11 @@ void place_randomly(const World& world, State& state, int w) {
                                            low[2] + (high[2] - low[2]) * u[2]}};
         continue;
       }
-      if (!draw_pose(*entry, attempts(*entry), draws(i), kGoalDraws, spread, goal, [&] { return goals.fits(i, goal); }))
-        failed(i);
+      const Vec2 start = state.initial_pose[first + i].position();
+      const auto fits = [&] {
+        return far.fits(start, goal.position()) && kept.allow(i, goal, anywhere) && goals.fits(i, goal);
+      };
+      if (!draw_pose(*entry, attempts(*entry), draws(i), kGoalDraws, spread, goal, fits)) failed(i);
       spread.add(goal.position());
       goals.add(i, goal);
       state.goals[first + i].initial = {goal};

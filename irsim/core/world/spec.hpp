@@ -43,6 +43,7 @@ struct ObjectSpec {
   std::vector<double> centroid;  // x, y in the body frame [m], then squared radius of gyration [m^2]; both optional
   double mass, friction, inertia, restitution, tau;  // for contacts; an inertia of NaN follows from shape and mass
   bool driven;                                       // whether the object has a drive, native or in Python
+  std::int64_t start_step;                           // steps for which the object stands still at its start
 
   static constexpr auto fields() {
     using S = ObjectSpec;
@@ -57,7 +58,7 @@ struct ObjectSpec {
         field("behavior", &S::behavior), field("grouped", &S::grouped), field("route", &S::route),
         field("sensors", &S::sensors), field("centroid", &S::centroid), field("mass", &S::mass),
         field("friction", &S::friction), field("inertia", &S::inertia), field("restitution", &S::restitution),
-        field("tau", &S::tau), field("driven", &S::driven));
+        field("tau", &S::tau), field("driven", &S::driven), field("start_step", &S::start_step));
   }
 };
 
@@ -65,12 +66,18 @@ struct ObjectSpec {
 struct RandomPlacement {
   std::vector<int> objects;
   std::array<double, 3> range_low, range_high;
-  double min_distance;  // between objects, and between goals, of this placement [m]
-  int attempts;         // maximum number of draws for an object
+  double min_distance;                           // between objects, and between goals, of this placement [m]
+  double goal_distance;                          // smallest distance from a start to its goal [m]
+  std::vector<std::vector<double>> keep_points;  // x, y and radius of the points that footprints keep clear of [m]
+  std::vector<int> keep_objects;                 // objects that they keep clear of, at starts and goals,
+  std::vector<double> keep_radii;                // and how far from each of them [m]
+  int attempts;                                  // maximum number of draws for an object
   static constexpr auto fields() {
     using P = RandomPlacement;
     return std::make_tuple(field("objects", &P::objects), field("range_low", &P::range_low),
                            field("range_high", &P::range_high), field("min_distance", &P::min_distance),
+                           field("goal_distance", &P::goal_distance), field("keep_points", &P::keep_points),
+                           field("keep_objects", &P::keep_objects), field("keep_radii", &P::keep_radii),
                            field("attempts", &P::attempts));
   }
 };

@@ -24,7 +24,7 @@ void set_initial_values(const World& world, State& state, int w) {
     const int row = w * world.objects + i;
     const auto at = [](const std::vector<double>& v, std::size_t k) { return k < v.size() ? v[k] : 0.0; };
     state.pace[row] = 1.0;
-    state.start_step[row] = 0;
+    state.start_step[row] = spec.start_step;
     state.initial_pose[row] = {at(spec.pose, 0), at(spec.pose, 1), at(spec.pose, 2)};
     state.initial_control[row] = {{at(spec.control, 0), at(spec.control, 1), at(spec.control, 2)}};
     for (int e = 0; e < state.extra_rows; ++e) {

@@ -91,7 +91,7 @@ void add_fog_beams(World& world) {
     Mount mount = mount_of(view.object, 0);
     if (view.occlusion) {
       const double wanted = std::ceil(2.0 * view.angle * view.reach / cell);
-      set_beams(mount, spread_beams(view.angle, 1 + static_cast<int>(clip(wanted, 1.0, kMaxFogBeams))));
+      set_beams(mount, spread_beams(view.angle, 1 + static_cast<int>(clip(wanted, 1.0, kMaxFogBeams)), true));
     }
     world.fog_beams.push_back(std::move(mount));
   }

@@ -216,6 +216,16 @@ OBJECTS: dict[str, Code] = {
         " thick together can pass to the other side without a collision. Example: 20 m/s × 0.1 s = 2 m against a "
         "wall of 0.1 m; lower step_time, or the speed: limits are in m/s.",
     ),
+    "region-left": Code(
+        "start or goal outside the region of follow",
+        "Under `within` the path of `follow` stays in a region. To a goal outside it there is no path, and the object "
+        "stays where it is.",
+    ),
+    "keep-clear": Code(
+        "keep_clear that cannot be kept",
+        "A random place can keep clear of points, and of objects whose place is known before: those with a fixed "
+        "place, and those of random entries before this one. Robots are placed before obstacles.",
+    ),
     "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),
     "outside-world": Code(
         "start or goal outside the world",
@@ -279,7 +289,7 @@ OBJECTS: dict[str, Code] = {
         "first and last beam have the same direction",
         "Beams are spread over angle_range with both ends included. Over a full turn the ends are one direction, so"
         " n beams have n - 1 directions: 361 beams are 1 degree apart, 360 beams 1.003. For exactly n directions "
-        "use an angle_range of 2π (n - 1) / n, 6.26573 for 360.",
+        "set endpoint: false.",
     ),
     "lidar-beams": Code(
         "beams that do not spread",

@@ -1,8 +1,9 @@
 """Draws a figure into pixels, fast.
 
 The axes and the layers that no longer change are drawn once and kept as a background; the other layers are drawn over a
-copy of it. The drawing order is Matplotlib's (by zorder), so a frame looks as ``figure.canvas.draw()`` would draw it.
-For that reason only layers below the lowest changing one can be part of the background.
+copy of it. Tracks, which only grow, are part of the background too: where they have grown, it is put together again
+from its sheets. The drawing order is Matplotlib's (by zorder), so a frame looks as ``figure.canvas.draw()`` would draw
+it. For that reason only layers below the lowest changing one can be part of the background.
 
 "Furniture" is what surrounds the scene: the paper, both axes with ticks and labels.
 """
@@ -13,6 +14,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import matplotlib
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -21,7 +23,9 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from irsim.graphics.encoding.pixels import Pixels
+from irsim.graphics.figure.background import Background, Resting, Sheet, TrackLayer
 from irsim.graphics.figure.glyphs import QuickText
+from irsim.graphics.figure.tracks import Canvas
 
 __all__ = ["Compositor"]
 
@@ -40,22 +44,40 @@ class Compositor:
     def __init__(self, figure: Figure, ax: Axes) -> None:
         self.figure = figure
         self.ax = ax
+        self._new: tuple[Any, tuple[Any, ...], Bbox | None] | None = None
+        self._options: dict[str, Any] = {}
         self.forget()
+
+    def settle(self) -> None:
+        """Note that the axes are as a new figure has them; the first furniture of such axes serves again."""
+        options: dict[str, Any] = {str(name): value for name, value in dict.items(matplotlib.rcParams)}
+        if options != self._options:
+            self._new, self._options = None, options
+        if self._new is not None:
+            self._keep(*self._new)
+        for part in self._parts():
+            part.stale = False
+
+    def _keep(self, furniture: Any, key: tuple[Any, ...] | None, box: Bbox | None) -> None:
+        self._furniture, self._furniture_key, self._furniture_box = furniture, key, box
+
+    def _parts(self) -> tuple[Artist, ...]:
+        """Return the artists that make up the furniture; a change by a script makes one of them stale."""
+        ax = self.ax
+        return (ax.xaxis.label, ax.yaxis.label, ax.xaxis, ax.yaxis, ax.patch, self.figure.patch)
 
     def forget(self) -> None:
         """Drop the kept background: the next frame is drawn from scratch."""
-        self._furniture: Any = None
-        self._furniture_key: tuple[Any, ...] | None = None
-        self._furniture_box: Bbox | None = None
-        self._base: Any = None
-        self._base_key: tuple[Any, ...] | None = None
+        self._keep(None, None, None)
+        self._background = Background()
 
-    def draw(self, versions: Mapping[Artist, tuple[int, int]]) -> None:
+    def draw(self, versions: Mapping[Artist, tuple[int, int]], tracks: Mapping[Artist, TrackLayer]) -> None:
         """Draw everything into the canvas.
 
         Args:
             versions: Artist -> (version, number of scenes without a change). Artists that are not listed are drawn in
                 every frame.
+            tracks: Artist -> layer of the artists that only grow.
         """
         canvas = self._canvas()
         if len(self.figure.axes) != 1 or self.figure.texts or self.figure.artists or self.figure.legends:
@@ -67,25 +89,25 @@ class Compositor:
         artists = [a for a in self.ax.get_children() if a not in furniture and a.get_visible()]
         artists.sort(key=lambda artist: artist.get_zorder())
         self._draw_furniture(canvas)
-        resting = []
+        renderer = canvas.get_renderer()
+        sheets: list[Sheet] = []
+        drawn = 0
         for artist in artists:
             version, resting_scenes = versions.get(artist, (0, 0))
-            if resting_scenes < MIN_RESTING_SCENES:
+            if (layer := tracks.get(artist)) is not None and layer.growing:
+                sheets.append(layer)
+            elif resting_scenes >= MIN_RESTING_SCENES:
+                below = sheets[-1] if sheets else None
+                sheet = below if isinstance(below, Resting) else Resting()
+                sheet.add(artist, version)
+                sheets += [] if sheet is below else [sheet]
+            else:
                 break
-            resting.append((artist, version))
-        key = tuple((id(artist), version) for artist, version in resting)
-        renderer = canvas.get_renderer()
-        if not resting:
-            self._base = None
-            canvas.restore_region(self._furniture)
-        elif self._base is None or key != self._base_key:
-            canvas.restore_region(self._furniture)
-            for artist, _ in resting:
-                artist.draw(renderer)
-            self._base, self._base_key = canvas.copy_from_bbox(self.figure.bbox), key
-        else:
-            canvas.restore_region(self._base)
-        for artist in artists[len(resting) :]:
+            drawn += 1
+        np.asarray(renderer.buffer_rgba())[...] = self._background.update(
+            self._furniture, sheets, Canvas(self.ax, self.size)
+        )
+        for artist in artists[drawn:]:
             artist.draw(renderer)
 
     def draw_without_cache(self) -> None:
@@ -111,20 +133,21 @@ class Compositor:
             ax.axison,
         )
         parts = (ax.patch, ax.xaxis, ax.yaxis) if ax.axison else ()
-        labels = (ax.xaxis.label, ax.yaxis.label, ax.xaxis, ax.yaxis, ax.patch, figure.patch)
-        if self._furniture is not None and key == self._furniture_key and not any(a.stale for a in labels):
+        is_changed = any(part.stale for part in self._parts())
+        if self._furniture is not None and key == self._furniture_key and not is_changed:
             return
         renderer = canvas.get_renderer()
         renderer.clear()
         figure.patch.draw(renderer)
         for part in parts:
             part.draw(renderer)
-        self._furniture, self._furniture_key = canvas.copy_from_bbox(figure.bbox), key
+        self._furniture, self._furniture_key = np.array(renderer.buffer_rgba()), key
         boxes = [part.get_tightbbox(renderer) for part in parts[1:]]
         self._furniture_box = Bbox.union([ax.bbox, *[box for box in boxes if box is not None]])
-        self._base = None
-        for label in labels:
-            label.stale = False
+        if not is_changed and self._new is None:
+            self._new = self._furniture, key, self._furniture_box
+        for changed in self._parts():
+            changed.stale = False
 
     def tight_box(self, pad_inches: float) -> tuple[int, int, int, int]:
         """Return the padded bounding box (left, top, right, bottom) [px] of the drawing, clipped to the figure.

@@ -18,13 +18,16 @@ from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.graphics.encoding.pixels import Pixels
+from irsim.graphics.figure.background import TrackLayer
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.glyphs import Glyphs, QuickText
 from irsim.graphics.figure.grids import GridLayer
 from irsim.graphics.figure.layers import BeamLayer, FogLayer, MarkLayer, layer_key, rgba
 from irsim.graphics.figure.pictures import Pictures
+from irsim.graphics.figure.tracks import track_layers
 from irsim.graphics.scene.labels import free_places, small_bodies
 from irsim.graphics.scene.scene import Bounds, GridImage, Label, Picture, Scene
+from irsim.graphics.scene.tracks import Track
 
 __all__ = ["SceneFigure", "fitting_size", "inches"]
 
@@ -96,6 +99,7 @@ class SceneFigure:
 
     def _start(self) -> None:
         self._marks: dict[tuple[Any, ...], MarkLayer] = {}
+        self._tracks: dict[tuple[Any, ...], TrackLayer] = {}
         self._beams: dict[tuple[int, int], BeamLayer] = {}
         self._fog: FogLayer | None = None
         self._grids: dict[int, GridLayer] = {}
@@ -112,6 +116,7 @@ class SceneFigure:
             ax.set_axis_off()
         self._title_artist = self._quick_title()
         self.compositor.forget()
+        self._settled = False
 
     def _quick_title(self) -> Text:
         """Replace the title of the axes by a QuickText at the same place."""
@@ -129,12 +134,13 @@ class SceneFigure:
         self.ax.clear()
         self._start()
 
-    def show(self, scene: Scene, title: str | None) -> None:
+    def show(self, scene: Scene, title: str | None, tracks: Sequence[Track] = ()) -> None:
         """Bring the artists up to date.
 
         Args:
             scene: Scene to show.
             title: Text above the axes, or None.
+            tracks: Tracks that belong to the scene but are not among its marks.
         """
         first = self._extent is None
         self._look_at(scene)
@@ -145,13 +151,13 @@ class SceneFigure:
         if fit_title:
             self._fit_title()
         scale = self._points_per_metre()
+        track_layers(self.ax, self._tracks, tracks, scale)
         groups: dict[tuple[Any, ...], list[Any]] = {key: [] for key in self._marks}
         for mark in scene.marks:
             groups.setdefault(layer_key(mark.part, mark.zorder, mark.stroke.round_caps), []).append(mark)
         for key, marks in groups.items():
             if key not in self._marks:
                 self._marks[key] = MarkLayer(self.ax, key)
-                self.compositor.forget()
             self._marks[key].show(marks, scale)
         for shown, beam_layer in self._beams.items():
             if not any(shown == (beams.object, beams.sensor) for beams in scene.beams):
@@ -167,11 +173,17 @@ class SceneFigure:
         self._show_grids(scene.grids)
         self._show_pictures(scene.pictures)
         self._show_labels(scene)
+        if not self._settled:
+            self._settled = True
+            self.compositor.settle()
 
     def draw(self) -> None:
         """Draw the artists into the canvas."""
         layers: list[GridLayer | MarkLayer] = [*self._grids.values(), *self._marks.values()]
-        self.compositor.draw({layer.artist: (layer.version, layer.resting_scenes) for layer in layers})
+        self.compositor.draw(
+            {layer.artist: (layer.version, layer.resting_scenes) for layer in layers},
+            {layer.artist: layer for layer in self._tracks.values()},
+        )
 
     def pixels(self, *, tight: bool, pad_inches: float = 0.1) -> tuple[Pixels, tuple[int, int, int, int]]:
         """Draw the figure and return its pixels.
@@ -244,7 +256,6 @@ class SceneFigure:
         for grid in grids:
             if grid.object not in self._grids:
                 self._grids[grid.object] = GridLayer(self.ax, grid.zorder)
-                self.compositor.forget()
             self._grids[grid.object].show(grid)
 
     def _show_pictures(self, pictures: Sequence[Picture]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.figure import inches
 from irsim.graphics.scene.scene import Beams, Circle, Label, Line, Mark, Region, Scene, Sector
+from irsim.graphics.scene.tracks import Track
 
 __all__ = ["SceneFigure3D"]
 
@@ -57,14 +59,15 @@ class SceneFigure3D:
         if not self.axis:
             self.ax.set_axis_off()
 
-    def show(self, scene: Scene, title: str | None) -> None:
-        """Show a scene; the angle and zoom of the view stay."""
+    def show(self, scene: Scene, title: str | None, tracks: Sequence[Track] = ()) -> None:
+        """Show a scene with its tracks; the angle and zoom of the view stay."""
         if scene.extent != self._extent:
             self._look_at(scene.extent)
         for artist in self._artists:
             if artist.axes is not None:  # None: a script has cleared the axes
                 artist.remove()
-        self._artists = [self._mark(mark) for mark in scene.marks]
+        marks = [*scene.marks, *(mark for track in tracks for mark in track.marks())]
+        self._artists = [self._mark(mark) for mark in marks]
         self._artists += [self._beams(beams) for beams in scene.beams if len(beams.ends)]
         self._artists += [self._label(label) for label in scene.labels]
         self.ax.set_title(title or "")

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.collections import Collection, PathCollection
 from matplotlib.colors import to_rgba
 from matplotlib.image import AxesImage
@@ -18,13 +19,13 @@ from irsim.common.arrays import Floats
 from irsim.graphics.scene.palette import Color
 from irsim.graphics.scene.scene import Beams, Circle, Dots, Fog, Geometry, Line, Mark, Scene, Sector
 
-__all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "rgba"]
+__all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "paint", "rgba"]
 
-_PARTS = ("field", "zone", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
+PARTS = ("field", "zone", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
 """Drawing order of the parts that have the same zorder."""
 
-_ZORDER_STEP = 1e-3
-"""Added to the zorder per rank in `_PARTS`.
+ZORDER_STEP = 1e-3
+"""Added to the zorder per rank in `PARTS`.
 
 Matplotlib draws artists of equal zorder in the order in which they were added, which is not the order of the parts.
 """
@@ -32,11 +33,69 @@ Matplotlib draws artists of equal zorder in the order in which they were added, 
 _UNIT_CIRCLE = Path.unit_circle()
 _BEAM_WIDTH_PT = 1.0
 _TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
+_SOLID = ("-", "solid")
+MAX_PAINTED = 64
+"""Number of marks up to which painting one by one is faster than a collection."""
 
 
 def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, ...]:
     """Return the key of the layer that a mark belongs to; keys sort in drawing order."""
-    return float(zorder), _PARTS.index(part), round_caps
+    return float(zorder), PARTS.index(part), round_caps
+
+
+class MarkArtist(PathCollection):
+    """Shows marks; few of them are painted one by one, which is faster than to set up a collection.
+
+    Attributes:
+        before: Called before the marks are drawn; it may bring them up to date.
+        fill: Makes the paths of the collection from the marks.
+        marks: The marks.
+        scale: Points per metre, for line widths given in metres.
+    """
+
+    before: Callable[[], None] | None = None
+    fill: Callable[[], None]
+    marks: Sequence[Mark] = ()
+    scale = 0.0
+
+    def draw(self, renderer: Any) -> None:
+        """Draw the marks."""
+        if not self.get_visible():
+            return
+        if self.before is not None:
+            self.before()
+        plain = len(self.marks) <= MAX_PAINTED and all(mark.stroke.style in _SOLID for mark in self.marks)
+        if plain and isinstance(renderer, RendererAgg):
+            ends = str(self.get_capstyle()), str(self.get_joinstyle())
+            paint(renderer, self.axes, self.marks, self.scale, ends)
+            return
+        self.fill()
+        super().draw(renderer)
+
+
+def paint(renderer: Any, ax: Any, marks: Sequence[Mark], points_per_metre: float, ends: tuple[str, str]) -> None:
+    """Paint marks with solid strokes into a pixel canvas.
+
+    Args:
+        renderer: The canvas.
+        ax: Axes in world coordinates, which cut the marks.
+        marks: The marks.
+        points_per_metre: Scale of the view, for line widths given in metres.
+        ends: Styles of caps and joins of strokes.
+    """
+    context = renderer.new_gc()
+    context.set_clip_rectangle(ax.bbox)
+    context.set_capstyle(ends[0])
+    context.set_joinstyle(ends[1])
+    transform = ax.transData.frozen()
+    for mark in marks:
+        stroke, fill = mark.stroke, mark.fill
+        width = stroke.width * (points_per_metre if stroke.metric else 1.0) if stroke.color is not None else 0.0
+        context.set_foreground(_TRANSPARENT if stroke.color is None else rgba(stroke.color, mark.alpha), isRGBA=True)
+        context.set_linewidth(width)
+        face = None if fill is None else rgba(fill, mark.alpha)
+        renderer.draw_path(context, geometry_path(mark.geometry), transform, face)
+    context.restore()
 
 
 class MarkLayer:
@@ -49,13 +108,14 @@ class MarkLayer:
     """
 
     def __init__(self, ax: Axes, key: tuple[Any, ...]) -> None:
+        self.key = key
         caps, joins = ("round", "round") if key[2] else ("butt", "miter")
-        joins = "round" if key[1] == _PARTS.index("trajectory") else joins
-        self.artist = PathCollection([], capstyle=caps, joinstyle=joins, zorder=key[0] + _ZORDER_STEP * key[1])
+        joins = "round" if key[1] == PARTS.index("trajectory") else joins
+        self.artist = MarkArtist([], capstyle=caps, joinstyle=joins, zorder=key[0] + ZORDER_STEP * key[1])
+        self.artist.fill = self._fill
         ax.add_collection(self.artist, autolim=False)
         self.version = self.resting_scenes = 0
-        self._marks: list[Mark] = []
-        self._scale = 0.0
+        self._filled: list[Mark] = []
 
     def show(self, marks: Sequence[Mark], points_per_metre: float) -> None:
         """Show exactly these marks.
@@ -64,25 +124,32 @@ class MarkLayer:
             marks: The marks; those that are the same Python objects as last time count as unchanged.
             points_per_metre: Scale of the view, for line widths given in metres.
         """
-        old = self._marks
-        same = next(
-            (i for i, (a, b) in enumerate(zip(old, marks, strict=False)) if a is not b), min(len(old), len(marks))
-        )
-        rescaled = points_per_metre != self._scale and any(mark.stroke.metric for mark in marks)
-        if same == len(old) == len(marks) and not rescaled:
+        old, artist = self.artist.marks, self.artist
+        rescaled = points_per_metre != artist.scale and any(mark.stroke.metric for mark in marks)
+        if _same_at_start(old, marks) == len(old) == len(marks) and not rescaled:
             self.resting_scenes += 1
             return
         self.version += 1
         self.resting_scenes = 0
-        self._marks, self._scale = list(marks), points_per_metre
-        self.artist.set_paths(
-            [*self.artist.get_paths()[:same], *(geometry_path(mark.geometry) for mark in marks[same:])]
-        )
-        self.artist.set_facecolor(_colors([mark.fill for mark in marks], [mark.alpha for mark in marks]))
-        self.artist.set_edgecolor(_colors([mark.stroke.color for mark in marks], [mark.alpha for mark in marks]))
-        widths = [mark.stroke.width * (points_per_metre if mark.stroke.metric else 1.0) for mark in marks]
-        self.artist.set_linewidth(_shorten(widths) or [0.0])
-        self.artist.set_linestyle(_shorten([mark.stroke.style for mark in marks]) or ["-"])
+        artist.marks, artist.scale, artist.stale = list(marks), points_per_metre, True
+
+    def _fill(self) -> None:
+        """Make paths, colours and lines of the collection."""
+        marks, scale, artist = list(self.artist.marks), self.artist.scale, self.artist
+        same = _same_at_start(self._filled, marks)
+        self._filled = marks
+        artist.set_paths([*artist.get_paths()[:same], *(geometry_path(mark.geometry) for mark in marks[same:])])
+        artist.set_facecolor(_colors([mark.fill for mark in marks], [mark.alpha for mark in marks]))
+        artist.set_edgecolor(_colors([mark.stroke.color for mark in marks], [mark.alpha for mark in marks]))
+        widths = [mark.stroke.width * (scale if mark.stroke.metric else 1.0) for mark in marks]
+        artist.set_linewidth(_shorten(widths) or [0.0])
+        artist.set_linestyle(_shorten([mark.stroke.style for mark in marks]) or ["-"])
+
+
+def _same_at_start(old: Sequence[Mark], new: Sequence[Mark]) -> int:
+    """Return the number of marks at the start of two lists that are the same Python objects."""
+    pairs = enumerate(zip(old, new, strict=False))
+    return next((i for i, (a, b) in pairs if a is not b), min(len(old), len(new)))
 
 
 class BeamLayer:
@@ -90,7 +157,7 @@ class BeamLayer:
 
     def __init__(self, ax: Axes, zorder: float) -> None:
         self._ax = ax
-        self.artist = _Spokes(zorder + _ZORDER_STEP * _PARTS.index("beams"))
+        self.artist = _Spokes(zorder + ZORDER_STEP * PARTS.index("beams"))
         ax.add_collection(self.artist, autolim=False)
         self._dots: PathCollection | None = None
 

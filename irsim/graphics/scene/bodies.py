@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from irsim.graphics.scene.scene import Circle, Geometry, Line, Picture, Region, 
 if TYPE_CHECKING:
     from irsim._core import State
 
-__all__ = ["Body", "Pose", "arrow", "bounds", "box", "ellipse", "picture_outline", "place", "read_body"]
+__all__ = ["Body", "Pose", "arrow", "bounds", "box", "ellipse", "picture_outline", "place", "point_on", "read_body"]
 
 Pose = tuple[float, float, float]
 """x, y [m] and heading [rad]."""
@@ -138,6 +138,50 @@ def bounds(geometry: Geometry) -> tuple[float, float, float, float]:
     points = geometry.points if isinstance(geometry, Line) else np.concatenate(geometry.rings)
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     return float(x0), float(y0), float(x1), float(y1)
+
+
+def point_on(geometry: Geometry, view: tuple[float, float, float, float] | None = None) -> tuple[float, float] | None:
+    """Return a point of a geometry that a label can stand at.
+
+    Args:
+        geometry: The geometry; a line has its point in the middle of its longest segment, other shapes on their upper
+            edge.
+        view: Left, bottom, right and top of the part of the world that is seen [m]; default: everything.
+
+    Returns:
+        The point; None if nothing of the geometry is seen.
+    """
+    import shapely
+
+    shape: Any
+    if isinstance(geometry, Circle | Sector):
+        shape = shapely.Point(geometry.x, geometry.y).buffer(geometry.radius)
+    elif isinstance(geometry, Line):
+        shape = shapely.MultiLineString(list(zip(geometry.points[:-1], geometry.points[1:], strict=True)))
+    else:
+        shape = _polygon_of(geometry)
+    seen = shape if view is None else shape.intersection(shapely.box(*view))
+    pieces = [piece for piece in getattr(seen, "geoms", [seen]) if not piece.is_empty]
+    if not pieces:
+        return None
+    if isinstance(geometry, Line):
+        middle = max(pieces, key=lambda piece: piece.length).interpolate(0.5, normalized=True)
+        return float(middle.x), float(middle.y)
+    piece = max(pieces, key=lambda piece: piece.area)
+    inside = piece.representative_point()
+    column = piece.intersection(shapely.LineString([(inside.x, inside.y), (inside.x, piece.bounds[3])]))
+    lowest = min(getattr(column, "geoms", [column]), key=lambda part: part.bounds[1])
+    return float(inside.x), float(lowest.bounds[3])
+
+
+def _polygon_of(region: Region) -> Any:
+    """Return a region as a shapely geometry; its outlines run counter-clockwise, its holes clockwise."""
+    import shapely
+
+    rings = [shapely.LinearRing(ring) for ring in region.rings]
+    outlines = [shapely.Polygon(ring) for ring in rings if ring.is_ccw or len(rings) == 1]
+    holes = [shapely.Polygon(ring) for ring in rings if not ring.is_ccw and len(rings) > 1]
+    return shapely.difference(shapely.union_all(outlines), shapely.union_all(holes))
 
 
 def _union(geometries: list[Geometry]) -> Geometry:

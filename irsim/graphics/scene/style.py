@@ -12,7 +12,7 @@ from irsim.options.colors import ACKER_COLOR, OBSTACLE_COLOR
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
 
-__all__ = ["STYLE_KEYS", "ObjectStyle", "resolve_style", "tint_of"]
+__all__ = ["STYLE_KEYS", "TEXT_GAP_M", "ObjectStyle", "default_text_position", "resolve_style", "tint_of"]
 
 
 @dataclass(slots=True)
@@ -74,7 +74,7 @@ class ObjectStyle:
 STYLE_KEYS = frozenset(entry.name for entry in fields(ObjectStyle)) - {"image_zorder"}
 """Keys that the section `plot` of an object and ``env.render(...)`` accept."""
 
-_TEXT_GAP_M = 0.1
+TEXT_GAP_M = 0.1
 """Default distance between a label and the bounding circle of its object [m]."""
 
 
@@ -116,7 +116,7 @@ def resolve_style(
         "trail_color": color,
         "trail_edgecolor": color,
         "traj_width": width,
-        "text_position": (-radius - _TEXT_GAP_M, radius + _TEXT_GAP_M),
+        "text_position": default_text_position(radius),
         "trail_type": shape,
         "show_arrow": getattr(record.kinematics, "arrow", False) and not record.static,
         "image_zorder": 2.0 if values["obj_zorder"] is None else values["obj_zorder"],
@@ -124,6 +124,11 @@ def resolve_style(
     }
     values.update((key, value) for key, value in defaults.items() if values.get(key) is None)
     return ObjectStyle(**values)
+
+
+def default_text_position(radius: float) -> tuple[float, float]:
+    """Return where the name of an object of this radius [m] starts, relative to its pose."""
+    return -radius - TEXT_GAP_M, radius + TEXT_GAP_M
 
 
 def tint_of(record: ObjectRecord, image: str, color: Color) -> Color | None:

@@ -8,11 +8,20 @@ from typing import Any
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.bodies import Body, Pose, box, ellipse, place
+from irsim.graphics.scene.bodies import Body, Pose, box, ellipse, place, point_on
 from irsim.graphics.scene.scene import Circle, Geometry, Label, Line, Mark, Sector, Stroke
-from irsim.graphics.scene.style import ObjectStyle
+from irsim.graphics.scene.style import TEXT_GAP_M, ObjectStyle, default_text_position
 
-__all__ = ["shape_mark", "text_label", "trail_mark", "trajectory_line", "view_sector"]
+__all__ = [
+    "name_label",
+    "shape_mark",
+    "text_label",
+    "trail_mark",
+    "trajectory_line",
+    "trajectory_points",
+    "trajectory_stroke",
+    "view_sector",
+]
 
 MAX_SECTOR_ANGLE = 2 * math.pi - 0.01
 """Angle [rad] of the field of view from which on it is drawn as a circle."""
@@ -32,6 +41,16 @@ def text_label(number: int, part: str, x: float, y: float, text: str, style: Obj
     return Label(number, part, x + dx, y + dy, (x, y), str(text), style.text_color, size, alpha, style.text_zorder)
 
 
+def name_label(number: int, text: str, body: Body, style: ObjectStyle, pose: Pose) -> Label:
+    """The name of an object, beside its body; the pose of a line or a compound may lie anywhere else."""
+    if body.kind not in ("linestring", "compound") or style.text_position != default_text_position(body.radius):
+        return text_label(number, "name", pose[0], pose[1], text, style)
+    x, y = point_on(place(body.geometry, pose)) or pose[:2]
+    label = text_label(number, "name", x, y, text, style)
+    label.x, label.y = x + TEXT_GAP_M, y + TEXT_GAP_M
+    return label
+
+
 def view_sector(number: int, angle: float, radius: float, style: ObjectStyle, pose: Pose) -> Mark:
     """The field of view of an opening angle [rad] and a radius [m]."""
     x, y, theta = pose
@@ -44,18 +63,27 @@ def view_sector(number: int, angle: float, radius: float, style: ObjectStyle, po
 def trajectory_line(number: int, body: Body, style: ObjectStyle, states: Floats) -> Mark:
     """The line through the latest of (T, 3 or more) states."""
     kept = states[-int(style.keep_traj_length) :] if style.keep_traj_length else states
-    points = np.array(kept[:, :2])
+    stroke, line = trajectory_stroke(body, style), Line(trajectory_points(body, kept))
+    return Mark(number, "trajectory", line, None, stroke, style.traj_alpha, style.traj_zorder)
+
+
+def trajectory_points(body: Body, states: Floats) -> Floats:
+    """The (T, 2) points of a trajectory, which runs along the middle of the body."""
+    points = np.array(states[:, :2])
     if body.kind == "compound" and body.middle[1]:
-        shift = body.middle[1]
-        points += np.stack([-np.sin(kept[:, 2]), np.cos(kept[:, 2])], axis=1) * shift
-    stroke = Stroke(
+        points += np.stack([-np.sin(states[:, 2]), np.cos(states[:, 2])], axis=1) * body.middle[1]
+    return points
+
+
+def trajectory_stroke(body: Body, style: ObjectStyle) -> Stroke:
+    """The stroke of a trajectory, which is as wide as the body unless the style says otherwise."""
+    return Stroke(
         style.traj_color,
         float(style.traj_width),
         metric=True,
         style=style.traj_style,
         round_caps=body.kind == "circle",
     )
-    return Mark(number, "trajectory", Line(points), None, stroke, style.traj_alpha, style.traj_zorder)
 
 
 def trail_mark(number: int, body: Body, style: ObjectStyle, pose: Pose) -> Mark:

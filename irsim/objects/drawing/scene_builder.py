@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,8 +22,17 @@ from irsim.graphics.scene.scene import (
     Stroke,
 )
 from irsim.graphics.scene.style import ObjectStyle, resolve_style, tint_of
+from irsim.graphics.scene.tracks import Track
 from irsim.graphics.scene.zones import DrawnZones, draw_zones
-from irsim.objects.drawing.object_marks import shape_mark, text_label, trail_mark, trajectory_line, view_sector
+from irsim.objects.drawing.object_marks import (
+    name_label,
+    shape_mark,
+    text_label,
+    trail_mark,
+    trajectory_line,
+    view_sector,
+)
+from irsim.objects.drawing.tracks import Tracks
 from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.contact_drawing import draw_forces
 from irsim.objects.sensors.lidar import Lidar2D
@@ -41,18 +50,10 @@ MODES = ("dynamic", "static", "all")
 
 _FOG_ZORDER = 2
 _GRID_ZORDER = 0.0
+WAITING_ALPHA = 0.4
+"""Factor of the opacity of an object until its ``start_time``."""
 MIN_ARROW_SPEED = 1e-9
 """Speed [m/s] up to which the arrow of an ``omni`` drive shows the heading of the body."""
-
-
-@dataclass(slots=True)
-class _Trail:
-    """Snapshots of an object, with their style, their body, and the number of states that they cover."""
-
-    style: ObjectStyle
-    body: Body
-    states: int = 0
-    marks: list[Mark] = field(default_factory=list)
 
 
 @dataclass(slots=True)
@@ -97,7 +98,7 @@ class SceneBuilder:
         self._bodies: dict[int, Body] = {}
         self._styles: dict[int, tuple[Any, ObjectStyle]] = {}
         self._drawn: dict[int, _Drawn] = {}
-        self._trails: dict[int, _Trail] = {}
+        self._tracks = Tracks(self.simulation.state)
         self._known: tuple[int, int] | None = None  # scene and revision
         self._grids: dict[int, GridImage] = {}
         self._zones: DrawnZones | None = None
@@ -110,13 +111,30 @@ class SceneBuilder:
         mode: str = "all",
         overrides: Mapping[str, Any] | None = None,
     ) -> Scene:
-        """Build the scene of the present state.
+        """Build the scene of the present state, with everything in it.
 
         Args:
             status: Status word for the title.
             viewpoint: Point x, y [m], or name of an object, on which the scene is centred.
             mode: Objects to which ``overrides`` apply: ``dynamic``, ``static`` or ``all``.
             overrides: Plot keys that hold for this scene only.
+        """
+        scene, tracks = self.frame(status=status, viewpoint=viewpoint, mode=mode, overrides=overrides)
+        for track in tracks:
+            scene.marks += track.marks()
+        return scene
+
+    def frame(
+        self,
+        *,
+        status: str = "",
+        viewpoint: str | Sequence[float] | None = None,
+        mode: str = "all",
+        overrides: Mapping[str, Any] | None = None,
+    ) -> tuple[Scene, list[Track]]:
+        """Build the scene of the present state without the tracks that only grow, which are returned beside it.
+
+        See :meth:`build` for the arguments.
         """
         simulation = self.simulation
         known = int(simulation.state.scene[self.world]), simulation.revision
@@ -137,12 +155,13 @@ class SceneBuilder:
             fog=self._fog(),
         )
         overrides = overrides or {}
+        tracks: list[Track] = []
         objects = simulation.views(self.world)
         poses = simulation.pose[objects[0].row : objects[-1].row + 1].tolist() if objects else []
         goals = simulation.goal[objects[0].row : objects[-1].row + 1].tolist() if objects else []
         for view, pose, goal in zip(objects, poses, goals, strict=True):
             chosen = mode == "all" or (mode == "static") == view.static
-            self._add(scene, view, tuple(pose), goal, overrides if chosen else {})
+            self._add(scene, view, tuple(pose), goal, overrides if chosen else {}, tracks)
         self._add_beams(scene, objects, overrides, mode)
         if isinstance(viewpoint, str):
             scene.center = next(
@@ -150,7 +169,7 @@ class SceneBuilder:
             )
         elif viewpoint is not None:
             scene.center = float(viewpoint[0]), float(viewpoint[1])
-        return scene
+        return scene, tracks
 
     def add_zones(self, scene: Scene) -> None:
         """Add the zones of the world to a scene."""
@@ -185,11 +204,21 @@ class SceneBuilder:
         self._styles[view.id] = (view.record.plot, view.color, dict(overrides)), style
         return style
 
-    def _add(self, scene: Scene, view: SimObject, pose: Pose, goal: list[float], overrides: Mapping[str, Any]) -> None:
+    def _add(
+        self,
+        scene: Scene,
+        view: SimObject,
+        pose: Pose,
+        goal: list[float],
+        overrides: Mapping[str, Any],
+        tracks: list[Track],
+    ) -> None:
         if view.shape == "map":
             scene.grids.append(self._grid(view))
             return
         style = self.style(view, overrides)
+        if self.simulation.waits(view.row):
+            style = replace(style, obj_alpha=WAITING_ALPHA * style.obj_alpha)
         heading = self._heading(view, pose) if style.show_arrow else pose[2]
         body = self.body(view)
         key = (style, body, pose, str(goal), heading, view.text, view.goal_text, view.description)
@@ -201,12 +230,7 @@ class SceneBuilder:
         if drawn.picture is not None:
             scene.pictures.append(drawn.picture)
         if style.show_trajectory or style.show_trail:
-            states = self.simulation.state.trajectory(view.row)
-            if style.show_trajectory and len(states) > 1:
-                scene.marks.append(trajectory_line(view.id, body, style, states))
-            if style.show_trail:
-                start = self.simulation.state.initial_state(view.row)[None, :3]
-                scene.marks += self._trail(view.id, body, style, np.concatenate([start, states[:, :3]]))
+            self._tracks.add(scene, tracks, view.id, view.row, body, style)
 
     def _grid(self, view: SimObject) -> GridImage:
         """Return the image of a map, which is made once per scene."""
@@ -226,17 +250,6 @@ class SceneBuilder:
             return pose[2]
         vx, vy = self.simulation.twist[view.row, :2].tolist()
         return math.atan2(vy, vx) if math.hypot(vx, vy) > MIN_ARROW_SPEED else pose[2]
-
-    def _trail(self, object_id: int, body: Body, style: ObjectStyle, states: Floats) -> list[Mark]:
-        trail = self._trails.get(object_id)
-        if trail is None or trail.style is not style or trail.body is not body or trail.states > len(states):
-            trail = self._trails[object_id] = _Trail(style, body)
-        every = max(1, int(style.trail_freq))
-        for index in range(-(-trail.states // every) * every, len(states), every):
-            x, y, theta = states[index].tolist()
-            trail.marks.append(trail_mark(object_id, body, style, (x, y, theta)))
-        trail.states = len(states)
-        return trail.marks[-style.keep_trail_length :]
 
     def drawn_alone(
         self,
@@ -338,9 +351,9 @@ def _draw(
         color = style.arrow_color
         marks.append(Mark(number, "arrow", pointer, color, Stroke(color), style.arrow_alpha, style.arrow_zorder))
     if style.show_text and view.shape != "walls":  # the walls round the world need no label
-        text = view.abbr if view.text is None else view.text
-        drawn.labels.append(text_label(number, "name", pose[0], pose[1], text, style))
+        text = view.label if view.text is None else view.text
+        drawn.labels.append(name_label(number, text, body, style, pose))
         if style.show_goal and style.show_goal_text and has_goal:
-            text = view.goal_abbr if view.goal_text is None else view.goal_text
+            text = f"G-{view.label}" if view.goal_text is None else view.goal_text
             drawn.labels.append(text_label(number, "goal", goal[0], goal[1], text, style))
     return drawn

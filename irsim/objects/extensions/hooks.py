@@ -81,7 +81,8 @@ class ObjectHooks(SimObject):
             velocity: Desired control; None lets the behavior choose.
 
         Returns:
-            Control (vel_dim, 1) within the limits of speed and acceleration.
+            Control (vel_dim, 1) within the limits of speed and acceleration. An object without a behavior stops at
+            once, whatever its limits; for a robot this is logged once.
         """
         simulation, row = self._simulation, self.row
         hooks = simulation.hooks
@@ -92,6 +93,9 @@ class ObjectHooks(SimObject):
                 raise ValueError(f"a control of this object is {self.vel_dim} numbers, not {velocity!r}")
         elif hooks is not None and row in hooks.decided:
             wanted = hooks.decided[row]
+        elif self._without_behavior():
+            self._warn_of_standing()
+            return simulation.decide_alone(self)[:, None]  # a drive stops at once, a passive body coasts
         else:
             wanted = simulation.decide_alone(self)
         now, (least, most) = simulation.control_of(row, self.vel_dim), simulation.limits(row)
@@ -99,6 +103,22 @@ class ObjectHooks(SimObject):
         low, high = np.maximum(least, now - change), np.minimum(most, now + change)
         control: Floats = np.minimum(np.maximum(wanted, low), high)[:, None]
         return control
+
+    def _without_behavior(self) -> bool:
+        """Return whether neither a behavior nor a group behavior drives the object."""
+        own = self.record
+        if own.behavior is not None:
+            return False
+        records = self._simulation.scenario.objects
+        return not any(r.joined and r.group == own.group and r.group_behavior is not None for r in records)
+
+    def _warn_of_standing(self) -> None:
+        if self.role == "robot" and self.logger is not None and self._control_mode() == "auto":
+            self.logger.warning_once(f"{self.name}: it has no behavior and got no action, so it stands still")
+
+    def _control_mode(self) -> str:
+        owner = self._simulation.owner()
+        return "auto" if owner is None else str(owner.world_param.control_mode)
 
     @overridable
     def mid_process(self, state: Any) -> Floats:

@@ -25,7 +25,10 @@ MISS_MARGIN = 0.02
 _HIGHLIGHT = "#56B4E9"
 """Colour of beams picked out by ``set_laser_color``."""
 
-
+_VELOCITY_COLORS = frozenset(
+    {"zero_velocity_color", "positive_velocity_color", "negative_velocity_color", "no_hit_color"}
+)
+"""Drawing options of an FMCW lidar that are read as arrays."""
 _FIXED = frozenset(
     {
         "parent",
@@ -74,6 +77,7 @@ class Lidar2D:
     obj_id: int
     sensor_type: str
     number: int
+    endpoint: bool
     range_min: float
     range_max: float
     angle_range: float
@@ -98,6 +102,7 @@ class Lidar2D:
     _no_velocities: Floats
     _settings: ClassVar[tuple[str, ...]] = (
         "number",
+        "endpoint",
         "range_min",
         "range_max",
         "angle_range",
@@ -144,7 +149,8 @@ class Lidar2D:
         own["offset"] = column(options.offset)
         own["has_velocity"] = bool(options.has_velocity) and len(self._velocities) == 2
         own["angle_min"], own["angle_max"] = float(angles[0]), float(angles[-1])
-        own["angle_inc"] = self.angle_range / (number - 1) if number > 1 else 0.0
+        spaces = number - 1 if self.endpoint else number
+        own["angle_inc"] = self.angle_range / spaces if number > 1 else 0.0
         own["time_inc"] = 0.0
         own["_no_velocities"] = np.zeros((2, self.number))
         self._fixed = {
@@ -311,7 +317,9 @@ class Lidar2D:
 class FMCWLidar2D(Lidar2D):
     """A lidar that also measures the radial velocity of each hit.
 
-    The drawing options of the scenario (``velocity_color``, ``velocity_color_max``, …) are attributes, too.
+    The drawing options of the scenario (``velocity_color``, ``velocity_linewidth``, …) are attributes, too; a write
+    shows in the next frame. Colours are read as arrays of red, green and blue, (3,) from 0 to 1, and may be set in any
+    form that Matplotlib knows; ``velocity_marker_edge_color`` stays as it is written.
 
     Attributes:
         motion_compensate: Whether the motion of the carrier is subtracted from the radial velocities.
@@ -330,6 +338,10 @@ class FMCWLidar2D(Lidar2D):
 
     def __getattr__(self, name: str) -> Any:
         drawing = self.__dict__.get("drawing", {})
+        if name in _VELOCITY_COLORS and name in drawing:
+            from matplotlib.colors import to_rgb
+
+            return np.array(to_rgb(drawing[name]))
         if name in drawing:
             return drawing[name]
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
@@ -337,9 +349,19 @@ class FMCWLidar2D(Lidar2D):
     def __setattr__(self, name: str, value: Any) -> None:
         drawing = self.__dict__.get("drawing", {})
         if name in drawing:
-            drawing[name] = value
+            drawing[name] = self._drawable(name, value)
         else:
             super().__setattr__(name, value)
+
+    def _drawable(self, name: str, value: Any) -> Any:
+        """Return a drawing option that is to be written, after a check.
+
+        Raises:
+            ValueError: The value is not valid.
+        """
+        plain = tuple(value.tolist()) if isinstance(value, np.ndarray) else value
+        sensor_options(self.options, f"the {self.sensor_type} of {self.parent.name!r}", **{name: plain})
+        return plain
 
     @property
     def radial_velocity(self) -> Floats:

@@ -7,13 +7,18 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.diagnostics.diagnostic import Path
+from irsim.diagnostics.diagnostic import Edit, Path, nearest
 from irsim.options.vectors import is_vector
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.scenario import Entry
+from irsim.scenario.resolve.expand import named
 from irsim.scenario.resolve.resolved import ObjectRecord
 
+_PLANE = 2
+"""Number of coordinates of a point."""
+_MAX_NAMES = 12
+"""Largest number of names that a message lists."""
 _MAX_ALIKE = 50
 """Largest number of obstacles at one place with which a further obstacle is compared."""
 
@@ -24,8 +29,11 @@ def check(context: Context) -> Iterator[Finding]:
         name = entry.distribution.name if entry.distribution is not None else "manual"
         if name == "random":
             yield from _empty_ranges(context, path)
-        elif name == "circle" and len(records) > 1:
-            yield from _overlap_on_circle(path, records)
+            yield from _keep_clear(context, path, entry.distribution)
+        elif name == "circle":
+            yield from _third_number(path, entry.distribution)
+            if len(records) > 1:
+                yield from _overlap_on_circle(path, records)
         elif name == "manual" and len(records) > 1:
             yield from _stacked_objects(path, entry, records)
     yield from _duplicate_obstacles(context)
@@ -49,6 +57,58 @@ def _empty_ranges(context: Context, path: Path) -> Iterator[Finding]:
                 fix="lower range_low or raise range_high; the defaults end half a metre inside the world",
             )
             return
+
+
+def _keep_clear(context: Context, path: Path, options: Any) -> Iterator[Finding]:
+    """Items of `keep_clear` with nothing, or two things, to keep clear of, or with an object that is placed later."""
+    placements = context.resolved.placements
+    own = next((index for index, placement in enumerate(placements) if placement.path == path), None)
+    later = set() if own is None else {number for placement in placements[own:] for number in placement.objects}
+    for index, item in enumerate(options.keep_clear):
+        where = (*path, "distribution", "keep_clear", index)
+        if (item.point is None) == (item.object is None):
+            both = item.point is not None
+            message = "'point' and 'object' exclude each other" if both else "there is nothing to keep clear of"
+            yield error("keep-clear", where, message, fix="give either 'point: [x, y]' or 'object: NAME'")
+        elif item.object is not None:
+            yield from _kept_object(context, (*where, "object"), item.object, later)
+
+
+def _kept_object(context: Context, path: Path, name: str, later: set[int]) -> Iterator[Finding]:
+    records = named(context.entry_objects, name)
+    if not records:
+        known = {word: None for record in context.entry_objects for word in (record.name, record.group_name)}
+        near = nearest(name, known)
+        yield error(
+            "unknown-object",
+            path,
+            f"no object or group is called '{name}'",
+            given=name,
+            allowed=list(known)[:_MAX_NAMES],
+            fix=f"object: {near}" if near else None,
+            edit=Edit("replace", path, near) if near else None,
+        )
+    elif any(record.id in later for record in records):
+        yield error(
+            "keep-clear",
+            path,
+            f"'{name}' is placed at random together with this entry or after it, so its place is not known yet",
+            given=name,
+            fix=f"give '{name}' a 'state', or write its entry before this one",
+        )
+
+
+def _third_number(path: Path, options: Any) -> Iterator[Finding]:
+    """A third number of `center`, which looks like an angle."""
+    if options.center is not None and len(options.center) > _PLANE and options.center[_PLANE] != 0:
+        where = (*path, "distribution", "center", _PLANE)
+        yield hint(
+            "ignored-key",
+            where,
+            "the third number of 'center' has no effect",
+            given=options.center[_PLANE],
+            fix=f"start_angle: {options.center[_PLANE]:g} turns the objects around the circle",
+        )
 
 
 def _overlap_on_circle(path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:

@@ -14,6 +14,8 @@ _MAX_POINTS = 1e15
 """Number of points that the bound is cut to, so that it stays an exact integer."""
 _MAX_DENSITY = 0.5
 """Share of the area above which random placement of discs mostly fails; its limit is 0.547."""
+_MAX_DISTANCE_SHARE = 0.85
+"""Share of the diagonal of the range above which a `goal_distance` leaves little room."""
 _MAX_BAND_DENSITY = 0.4
 """The same for a band around a circle; measured, with 1000 draws for each object: from here on some seeds fail."""
 
@@ -22,6 +24,8 @@ def check(context: Context) -> Iterator[Finding]:
     """Check each random placement."""
     for placement in context.resolved.placements:
         records = [context.resolved.objects[index] for index in placement.objects]
+        if placement.distribution == "random":
+            yield from _check_goal_distance(placement)
         if len(records) > 1 and placement.distribution == "random":
             yield from _check_density(placement, records)
         elif records and placement.distribution != "random":
@@ -57,6 +61,23 @@ def _check_density(placement: Placement, records: list[ObjectRecord]) -> Iterato
             given=count,
             fix=fix,
         )
+
+
+def _check_goal_distance(placement: Placement) -> Iterator[Finding]:
+    wanted = float(placement.options["goal_distance"])
+    width, height = (placement.range_high[i] - placement.range_low[i] for i in range(2))
+    longest = math.hypot(width, height)
+    if wanted <= _MAX_DISTANCE_SHARE * longest or width < 0 or height < 0:
+        return
+    impossible = wanted > longest
+    yield (error if impossible else warning)(
+        "placement-impossible" if impossible else "placement-tight",
+        (*placement.path, "distribution", "goal_distance"),
+        f"goals must be {wanted:g} m from their starts, and the range is {longest:.4g} m from corner to corner"
+        + ("" if impossible else ": starts and goals all lie near opposite corners"),
+        given=wanted,
+        fix=f"goal_distance: {0.7 * longest:.2g} or less, or a larger range (range_low to range_high)",
+    )
 
 
 def _check_crossing(placement: Placement, records: list[ObjectRecord]) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from irsim.common.angles import FULL_TURN
-from irsim.diagnostics.diagnostic import Path
+from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.options.angles import is_span
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.overlap import reach_of
@@ -114,14 +114,16 @@ def _beams(path: Path, sensor: Any) -> Iterator[Finding]:
         )
         return
     spacing = span / (count - 1)
-    if FULL_TURN - span < spacing / 2 and "number" in written and not _whole_degrees(count - 1):
+    meet = sensor.endpoint and FULL_TURN - span < spacing / 2
+    if meet and "number" in written and not _whole_degrees(count - 1):
         yield hint(
             "lidar-ends-meet",
             (*path, "number"),
             f"over a full turn the first and the last of {count} beams point the same way: {count - 1} directions, "
             f"{math.degrees(spacing):.4g} degrees apart",
             given=count,
-            fix=f"number: {count + 1}, or angle_range: {FULL_TURN * (count - 1) / count:.6g}, for {count} directions",
+            fix=f"endpoint: false, for {count} directions",
+            edit=Edit("replace", (*path, "endpoint"), False),
         )
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-from irsim.diagnostics.diagnostic import Edit, Path
+from irsim.diagnostics.diagnostic import Path
+from irsim.scenario.checks._areas import check_polygon, check_rectangle
 from irsim.scenario.checks._context import Context
-from irsim.scenario.checks._outline import crosses_itself, distinct_corners, repair_outline
 from irsim.scenario.messages.findings import Finding, error, warning
 from irsim.scenario.model.zones import OUTLINES, Zone
-from irsim.scenario.yaml.formatting import flow
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -53,44 +52,9 @@ def _outline(path: Path, zone: Zone) -> Iterator[Finding]:
         message = "a line must have two different points"
         yield error("too-few-vertices", (*path, "line"), message, given=zone.line)
     if zone.rectangle is not None:
-        x0, y0, x1, y1 = zone.rectangle
-        if not (x0 < x1 and y0 < y1):
-            ordered = [min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)]
-            turned = ordered[0] < ordered[2] and ordered[1] < ordered[3]
-            yield error(
-                "range-order",
-                (*path, "rectangle"),
-                "a rectangle is [x_min, y_min, x_max, y_max], with each minimum below its maximum",
-                given=zone.rectangle,
-                fix=f"rectangle: {flow(ordered)}" if turned else None,
-                edit=Edit("replace", (*path, "rectangle"), ordered) if turned else None,
-            )
+        yield from check_rectangle((*path, "rectangle"), zone.rectangle)
     if zone.polygon is not None:
-        yield from _polygon((*path, "polygon"), zone.polygon)
-
-
-def _polygon(path: Path, vertices: Sequence[Sequence[float]]) -> Iterator[Finding]:
-    corners = distinct_corners(vertices)
-    if len(corners) < 3:
-        message = f"a polygon must have at least 3 different corners, got {len(corners)}"
-        yield error("too-few-vertices", path, message, given=vertices)
-        return
-    if not crosses_itself(corners):
-        return
-    areas = repair_outline(vertices)
-    if areas is None:
-        yield error("invalid-polygon", path, "this outline encloses no area", given=vertices)
-        return
-    single = len(areas) == 1
-    yield error(
-        "invalid-polygon",
-        path,
-        "this outline crosses or touches itself",
-        given=vertices,
-        allowed="corners in order around the polygon",
-        fix=f"polygon: {flow(areas[0])}" if single else "write one zone for each area that it encloses",
-        edit=Edit("replace", path, areas[0]) if single else None,
-    )
+        yield from check_polygon((*path, "polygon"), zone.polygon)
 
 
 def _outside(context: Context, path: Path, zone: Zone) -> Iterator[Finding]:

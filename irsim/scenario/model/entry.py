@@ -20,7 +20,7 @@ from irsim.options.registry import (
     SHAPES,
 )
 from irsim.options.selection import Select
-from irsim.options.units import Bool, Fraction, Integer, Meters, Number
+from irsim.options.units import Bool, Fraction, Integer, Meters, Number, Seconds
 from irsim.options.vectors import Component, OrNull, PerObject, Pose, Range
 from irsim.scenario.model.plot import ObjectPlot
 
@@ -33,6 +33,7 @@ Control = Annotated[list[Component], Field(min_length=1, json_schema_extra={"x-u
 Rates = Annotated[list[Unbounded], Field(min_length=1, json_schema_extra={"x-unit": "control units / s"})]
 Mass = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg"})]
 Inertia = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg m^2"})]
+Delay = Annotated[Seconds, Field(ge=0)]
 Grip = Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "1"})]
 KinematicsField = Annotated[Any, Select(KINEMATICS, default="static", folded=True, null=True, empty=True)]
 ShapeField = Annotated[Any, Select(SHAPES, default="circle", folded=True, null=True)]
@@ -70,6 +71,12 @@ class Entry(Options):
         "max_velocity": "vel_max",
         "acceleration": "acce",
         "tolerance": "goal_threshold",
+        "delay": "start_time",
+        "start_delay": "start_time",
+        "departure": "start_time",
+        "departure_time": "start_time",
+        "depart": "start_time",
+        "t_start": "start_time",
     }
     schema_extra: ClassVar[dict[str, Any]] = {
         "not": {
@@ -95,6 +102,9 @@ class Entry(Options):
     each object go under `waypoints`, or need three levels of brackets."""
     waypoints: Annotated[Any, PerObject(Annotated[list[Pose], Field(min_length=1)] | None, "path")] = None
     """Goals to visit one after the other: [[x, y], [x, y, theta], ...]."""
+    start_time: Annotated[Any, PerObject(Delay, "number")] = 0.0
+    """Time from which the object moves. Until then it stands at its start, where others see it and collide with it,
+    and follows neither its behavior nor commands. A list of numbers is one time per object."""
     velocity: Annotated[Any, PerObject(Control | None, "vector")] = None
     """Initial control; null is zero."""
     kinematics: Annotated[Any, PerObject(KinematicsField)] = None

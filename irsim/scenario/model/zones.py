@@ -4,34 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from irsim.options.base import Options, problem
+from irsim.options.base import Options
 from irsim.options.colors import Color
+from irsim.options.regions import Corners, Points, Rectangle, rectangle_corners
 from irsim.options.units import Meters
-from irsim.options.vectors import Component, Point, is_vector, vector
+from irsim.options.vectors import Point
 
 __all__ = ["OUTLINES", "Disc", "Zone"]
 
 OUTLINES = ("line", "polygon", "rectangle", "circle")
 """Keys that say where a zone is; each zone has exactly one of them."""
-
-
-def _check_points(value: Any) -> Any:
-    """Refuse flat coordinates, which would give one error per number."""
-    if not (is_vector(value) and value):
-        return value
-    pairs = [list(value[start : start + 2]) for start in range(0, len(value), 2)] if len(value) % 2 == 0 else None
-    raise problem(
-        "wrong-type",
-        "points must be written as [[x, y], [x, y], ...]",
-        allowed="a list of points [x, y]",
-        fix="put brackets around each point",
-        replace=pairs,
-    )
-
-
-Points = Annotated[list[Point], BeforeValidator(_check_points)]
 
 
 class Disc(Options):
@@ -76,10 +60,10 @@ class Zone(Options):
     line: Annotated[Points, Field(min_length=2, max_length=2)] | None = None
     """A line from one point to another: [[x, y], [x, y]]. An object crosses it when its centre does; left and right
     are as seen from the first point towards the second."""
-    polygon: Annotated[Points, Field(min_length=3)] | None = None
+    polygon: Corners | None = None
     """An area: its corners in order, [[x, y], [x, y], ...]. An object is inside as long as its body touches the
     area."""
-    rectangle: Annotated[list[Component], vector(("m", "m", "m", "m"), 4)] | None = None
+    rectangle: Rectangle | None = None
     """An area: [x_min, y_min, x_max, y_max]."""
     circle: Disc | None = None
     """An area: a disc with `center` and `radius`."""
@@ -95,8 +79,7 @@ class Zone(Options):
     def points(self) -> list[list[float]]:
         """The two ends of a line, or the corners of a polygon or rectangle [m]; empty for a disc."""
         if self.rectangle is not None:
-            x0, y0, x1, y1 = self.rectangle
-            return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+            return rectangle_corners(self.rectangle)
         return self.line or self.polygon or []
 
     @property

@@ -19,7 +19,7 @@ from irsim.scenario.model.scenario import Entry, Scenario, WorldModel
 from irsim.scenario.resolve.per_object import kind_of, spread
 from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario
 
-__all__ = ["SPREAD_KEYS", "resolve"]
+__all__ = ["SPREAD_KEYS", "named", "resolve"]
 
 Role = Literal["robot", "obstacle"]
 DEFAULT_STATE = [1.0, 1.0, 0.0]
@@ -67,6 +67,9 @@ def resolve(
                 placements.append(placement)
         if objects:
             first_group = max(record.group for record in objects) + 1
+    for placement in placements:
+        for name, radius in placement.clear_of:
+            placement.kept += [(record.id, radius) for record in named(objects, name)]
     if grid is not None and grid.occupied != 0:
         objects.append(_scenery(scenario.world, len(objects), MapCells(grid), f"obstacle_{len(objects)}"))
     if scenario.world.boundary == "walls":
@@ -83,6 +86,12 @@ def resolve(
         text=text,
         grid=grid,
     )
+
+
+def named(objects: Sequence[ObjectRecord], name: str) -> list[ObjectRecord]:
+    """The object of that name or, if there is none, the members of the group of that name."""
+    own = [record for record in objects if record.name == name]
+    return own or [record for record in objects if record.group_name == name]
 
 
 def _scenery(world: WorldModel, object_id: int, shape: MapCells | Walls, name: str) -> ObjectRecord:
@@ -163,6 +172,7 @@ class _Maker:
             path=self.path,
             distribution=options.name,
             options=drawn.kernel,
+            clear_of=drawn.clear_of,
         )
 
     def _is_random(self) -> bool:
@@ -235,6 +245,7 @@ class _Maker:
             drive_tau=self._tau(kinematics),
             tags=tuple(value["tags"]),
             watches=entry.fov is not None,
+            start_time=value["start_time"],
         )
 
     def _tau(self, kinematics: KinematicsOptions | None) -> float:
@@ -274,6 +285,7 @@ SPREAD_KEYS = (
     "state",
     "goal",
     "waypoints",
+    "start_time",
     "velocity",
     "kinematics",
     "shape",

@@ -15,6 +15,7 @@ _EXCEPTIONS: dict[str, Kind] = {
     "sensors": "list",
     "tags": "list",
     "waypoints": "path",
+    "start_time": "number",
     "mass": "number",
     "friction": "number",
     "inertia": "number",

@@ -87,6 +87,7 @@ class ObjectRecord:
     tags: tuple[str, ...] = ()
     watches: bool = False  # whether `fov` is written, and the field of view is not just that of its lidar
     joined: bool = True  # whether it follows the behavior of its group
+    start_time: float = 0.0  # until then it stands still [s]
     spreads: Spreads | None = None  # None: it starts as written
 
 
@@ -94,8 +95,8 @@ class ObjectRecord:
 class Placement:
     """The objects of one entry that are placed anew for each scene, such as ``distribution: random``.
 
-    ``range_low``, ``range_high`` and ``min_distance`` are those of :class:`Drawn`, ``options`` its ``kernel``, where
-    ``Drawn`` is that of :mod:`irsim.components.distributions._options`.
+    ``range_low``, ``range_high``, ``min_distance`` and ``clear_of`` are those of :class:`Drawn`, ``options`` its
+    ``kernel``, where ``Drawn`` is that of :mod:`irsim.components.distributions._options`.
     """
 
     objects: list[int]  # ids
@@ -105,11 +106,22 @@ class Placement:
     path: Path
     distribution: str
     options: Mapping[str, Any]
+    clear_of: Sequence[tuple[str, float]] = ()
+    kept: list[tuple[int, float]] = field(default_factory=list)  # ids of the objects of `clear_of`, and how far [m]
 
     @property
     def distance_key(self) -> str:
         """Key of the distance that its objects keep."""
         return "min_distance" if self.distribution == "random" else "clearance"
+
+    @property
+    def further_keys(self) -> list[str]:
+        """Other keys in use that leave less room."""
+        used = {
+            "keep_clear": bool(self.kept or self.options.get("keep_points")),
+            "goal_distance": bool(self.options.get("goal_distance")),
+        }
+        return [key for key, is_used in used.items() if is_used]
 
     @property
     def room(self) -> str:

@@ -103,6 +103,8 @@ def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact:
     if not record.static:
         found |= {key: _plain(getattr(view, key)[:, 0]) for key in ("vel_min", "vel_max", "acce")}
         found["angle_range"] = _plain(list(record.angle_range))
+        if record.start_time:
+            found["start_time"] = _plain(record.start_time)
         found |= {"behavior": _options(record.behavior), "group_behavior": _options(group_behavior)}
         found["group_members"] = members
         if record.wander:

@@ -53,7 +53,9 @@ def _words(placement: Placement) -> tuple[str, str]:
         )
     width, height = (placement.range_high[i] - placement.range_low[i] for i in range(2))
     place = f"this entry puts {count} objects into {width:g} m × {height:g} m, clear of all others"
+    kept = placement.further_keys
+    also = f" or {' or '.join(kept)}" if kept else ""
     return (
-        place,
-        f"fewer or smaller objects, a smaller min_distance (now {placement.min_distance:g} m), or a larger range",
+        place + (f", under {' and '.join(kept)}" if kept else ""),
+        f"fewer or smaller objects, a smaller min_distance (now {placement.min_distance:g} m){also}, or a larger range",
     )

@@ -77,6 +77,7 @@ def _time_limit(context: Context, going: list[Mover], straight: dict[int, float]
     if limit is not None:
         return limit, f"time_limit is {limit:g} s"
     usual = max([MIN_HORIZON, *(HORIZON_FACTOR * _time(m, straight[m.record.id]) for m in going)])
+    usual += max((m.record.start_time for m in going), default=0.0)
     return usual, f"without a time_limit a run ends after {usual:.3g} s"
 
 
@@ -93,17 +94,19 @@ def _path_length(grid: ClearanceGrid, leg: Leg) -> float:
 def _check_time(mover: Mover, length: float, limit: float, limit_reason: str, scene: Scene, tally: Tally) -> None:
     """Report a robot that needs more time than the limit, or nearly as much."""
     rate = _max_acceleration(mover)
-    needed = _least_time(mover, length, rate)
+    needed = _least_time(mover, length, rate) + mover.record.start_time
     if needed <= _TIGHT_TIME_SHARE * limit:
         return
     late = needed > limit
-    slowly = f", accelerating with {rate:.3g} m/s²," if needed > 1.01 * _time(mover, length) else ""
+    wait = f" after its start_time of {mover.record.start_time:g} s" if mover.record.start_time else ""
+    moving = needed - mover.record.start_time
+    slowly = f", accelerating with {rate:.3g} m/s²," if moving > 1.01 * _time(mover, length) else ""
     tally.add(
         "time-too-short",
         ("world", "time_limit") if limit_reason.startswith("time_limit") else mover.path,
         mover.record,
         f"'{mover.record.name}' needs at least {needed:.3g} s for the {length:.3g} m to its goal "
-        f"at {mover.speed:.3g} m/s{slowly}{'' if slowly else ','} and "
+        f"at {mover.speed:.3g} m/s{wait}{slowly}{'' if slowly else ','} and "
         + (limit_reason if late else f"{limit_reason}, which leaves no time for turning and giving way"),
         f"time_limit: {math.ceil(2 * needed):g}, or {'a larger acce' if slowly else 'a faster robot'}",
         scene.seed,

@@ -9,7 +9,7 @@ from mcp.types import ImageContent, TextContent
 from pydantic import Field
 
 from irsim.api.film_strip import MAX_MOMENTS, MIN_MOMENTS
-from irsim.common.text import clean
+from irsim.common.text import clean, metres
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import MAX_STEPS
 from irsim_mcp.progress import reporter
@@ -157,8 +157,8 @@ def _plan(plan: dict[str, Any]) -> str:
     lost, margin = plan["lost"], plan["margin"]
     if lost is not None:
         return f"no path for {plan['label']} to ({lost[0]:.2f}, {lost[1]:.2f})"
-    tight = "" if margin is None else ", least margin {:.2g} m at ({:.2f}, {:.2f})".format(margin, *plan["tightest"])
-    return f"{'its own plan' if plan['own'] else 'a path'} for {plan['label']}: {plan['length']:.3g} m{tight}"
+    tight = "" if margin is None else ", least margin {} at ({:.2f}, {:.2f})".format(metres(margin), *plan["tightest"])
+    return f"{'its own plan' if plan['own'] else 'a path'} for {plan['label']}: {metres(plan['length'])}{tight}"
 
 
 def _robot(robot: dict[str, Any]) -> str:

@@ -1,0 +1,340 @@
+"""What IR-SIM 2.12.0 answers to calls at the edge of its interface; every answer was compared with the original."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+import irsim
+from irsim import util
+from irsim.gui import KeyboardControl
+from irsim.lib.path_planners import AStarPlanner, JPSPlanner
+from irsim.util import random as random_numbers
+from irsim.util import util as more
+from irsim.world import World
+from irsim.world.object_base import ObjectBase
+
+TEXT = """
+world: {width: 10, height: 10}
+robot:
+  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [2, 2, 0], goal: [8, 8, 0], acce: [0.5, 0.5]}
+  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [2, 5, 0], goal: [8, 5, 0],
+     behavior: {name: dash}, sensors: [{name: fmcw_lidar2d, number: 5}], plot: {show_text: true}}
+obstacle:
+  - {number: 3, distribution: {name: random, range_low: [3, 3, 0], range_high: [7, 7, 0]},
+     shape: {name: circle, radius: 0.3}}
+"""
+POSE = np.array([[1.0], [2.0], [0.5]])
+Make = Callable[..., irsim.Env]
+
+
+@pytest.fixture
+def make(tmp_path: Path) -> Make:
+    def made(text: str = TEXT, **keys: Any) -> irsim.Env:
+        (tmp_path / "world.yaml").write_text(text)
+        return irsim.make(tmp_path / "world.yaml", **{"headless": True, "log_level": "WARNING", **keys})
+
+    return made
+
+
+# arguments ------------------------------------------------------------------------------------------------------------
+def test_env_base_takes_its_arguments_by_position(make: Make, tmp_path: Path) -> None:
+    names = list(inspect.signature(irsim.EnvBase.__init__).parameters)[1:12]
+    assert names == [
+        *("world_name", "display", "disable_all_plot", "save_ani", "ani_kwargs", "full"),
+        *("log_file", "log_level", "seed", "step_mode", "headless"),
+    ]
+    make()
+    path = tmp_path / "world.yaml"
+    env = irsim.EnvBase(path, False, False, True, {"suffix": ".gif"}, False, None, "ERROR", 5, "external", True)
+    assert (env.display, env.save_ani, env.ani_kwargs, env.seed) == (False, True, {"suffix": ".gif"}, 5)
+    assert (env.step_mode, env.headless) == ("external", True)
+
+
+def test_object_base_takes_its_arguments_by_position(make: Make) -> None:
+    env = make()
+    circle, acce = {"name": "circle", "radius": 0.3}, [0.7, 0.8]
+    made = ObjectBase(
+        *(circle, {"name": "diff"}, [1, 2, 0], [0, 0], [5, 5, 0], "robot", "r"),
+        *(False, 3.0, 0.4, None, 0.1, [-1, -2], [1, 2], acce, [-math.pi, math.pi], {"name": "dash"}, None, 0.2),
+        *([{"name": "lidar2d", "number": 7}], "position", None, 4, "guards", 3, 2, True, 1.0, 2.0, "guard"),
+    )
+    env.add_object(made)
+    assert (made.role, made.color, made.name, made.group, made.group_name) == ("robot", "r", "guard", 4, "guards")
+    assert (made.mass, made.friction, made.goal_threshold, made.lidar.number) == (3.0, 0.4, 0.2, 7)
+    assert (made.fov, made.fov_radius, made.unobstructed) == (1.0, 2.0, True)
+    assert made.info.acce[:, 0].tolist() == acce
+    with pytest.raises(TypeError, match="two values for 'static'"):
+        ObjectBase(circle, None, None, None, None, "obstacle", "k", True, static=False)
+
+
+# descriptions ---------------------------------------------------------------------------------------------------------
+def test_properties_added_to_info_stay(make: Make) -> None:
+    env = make()
+    first, second = env.robot_list
+    first.info.add_property("x", 3)
+    first.info.y = 4
+    env.step()
+    assert (first.info.x, first.info.y, env.get_robot_info(0).x) == (3, 4, 3)
+    assert not hasattr(second.info, "x")
+    first.get_obstacle_info().add_property("x", 3)
+    assert not hasattr(first.get_obstacle_info(), "x")
+
+
+# helpers --------------------------------------------------------------------------------------------------------------
+def test_wrap_to_region_keeps_both_ends() -> None:
+    around = [-math.pi, math.pi]
+    wrapped = [util.WrapToRegion(angle, around) for angle in (math.pi, 3 * math.pi, -math.pi, -3 * math.pi)]
+    assert wrapped == [math.pi, math.pi, -math.pi, -math.pi]
+    assert util.WrapToRegion(2 * math.pi, [0, 2 * math.pi]) == 2 * math.pi
+    with pytest.raises(ValueError, match="two numbers"):
+        util.WrapToRegion(1, [0])
+
+
+def test_an_array_is_no_2d_list() -> None:
+    none = (np.zeros((2, 2)), [np.zeros(2)], [], None, (1, 2), "ab")
+    assert [util.is_2d_list(data) for data in none] == [False] * len(none)
+    assert util.is_2d_list([[1]])
+    assert util.is_2d_list(((1, 2),))
+
+
+def test_transforms_of_nothing_are_none() -> None:
+    assert util.vertices_transform(None, POSE) is None
+    assert util.vertices_transform(np.zeros((2, 3)), None) is None
+    assert util.geometry_transform(None, POSE) is None
+    assert util.to_numpy(None) is None
+    assert more.to_numpy(None, np.zeros(2), (2, 1)).shape == (2, 1)
+    assert more.points_to_xy_list(None) == ([], [])
+    assert util.diff_to_omni(0.0, np.array(None)).tolist() == [[0], [0]]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: util.transform_point_with_state(None, POSE),
+        lambda: util.transform_point_with_state(POSE, None),
+        lambda: util.geometry_transform(shapely.Point(1, 1), None),
+        lambda: more.get_transform(None),
+        lambda: more.get_affine_transform(None),
+        lambda: util.relative_position(None, POSE),
+        lambda: util.distance(POSE, None),
+        lambda: util.omni_to_diff(0.0, None),
+        lambda: util.vel_world2omni(0.0, None),
+    ],
+)
+def test_points_that_are_none_are_errors(call: Callable[[], Any]) -> None:
+    with pytest.raises(TypeError, match="None"):
+        call()
+
+
+def test_checks_of_arguments_pass_over_none() -> None:
+    @more.validate_shape(state=3)
+    def by_shape(state: Any = None) -> Any:
+        return state
+
+    @more.validate_length(state=3)
+    def by_length(state: Any = None) -> Any:
+        return state
+
+    assert (by_shape(), by_length(None)) == (None, None)
+    with pytest.raises(TypeError, match="sequence"):
+        by_length(3)
+
+
+def test_corners_on_a_straight_line_leave_a_polygon_convex() -> None:
+    points = np.array([[0, 1, 2, 2, 0.0], [0, 0, 0, 1, 1]])
+    assert util.is_convex_and_ordered(points) == (True, "CCW")
+    assert util.is_convex_and_ordered(points[:, ::-1]) == (True, "CW")
+
+
+def test_random_uniform_has_three_rows() -> None:
+    points = util.random_uniform(size=(2, 4))
+    assert points.shape == (3, 4)
+    assert (points[2] == 0).all()
+    assert (points[:2] >= 0.5).all()
+    assert (points[:2] <= 9.5).all()
+
+
+# objects --------------------------------------------------------------------------------------------------------------
+def test_set_laser_color_without_lidar_warns(make: Make, capsys: pytest.CaptureFixture[str]) -> None:
+    env = make()
+    first, second = env.robot_list
+    first.set_laser_color([0])
+    assert "robot_0: it has no lidar" in capsys.readouterr().out
+    second.set_laser_color([0, 2])
+    assert sorted(second.lidar.colors) == [0, 2]
+    with pytest.raises(AttributeError, match="lidar"):
+        first.get_lidar_scan()
+
+
+def test_gen_behavior_vel_without_behavior_is_zero_and_warns_once(
+    make: Make, capsys: pytest.CaptureFixture[str]
+) -> None:
+    env = make()
+    robot = env.robot
+    for _ in range(10):
+        env.step([0.4, 0.4])
+    capsys.readouterr()
+    assert robot.velocity[:, 0].tolist() == pytest.approx([0.4, 0.4])
+    for _ in range(2):
+        assert robot.gen_behavior_vel().tolist() == [[0], [0]], "the limits of acceleration do not matter"
+    assert capsys.readouterr().out.count("it has no behavior") == 1
+    assert robot.gen_behavior_vel([1, 0])[:, 0].tolist() == pytest.approx([0.45, 0.35])
+    assert env.obstacle_list[0].gen_behavior_vel().tolist() == [[0]] * 3
+
+
+def test_keyboard_control_without_environment_reads_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    import matplotlib.pyplot as plt
+    from matplotlib.backend_bases import KeyEvent
+
+    plt.switch_backend("Agg")
+    keyboard = KeyboardControl(backend="mpl", key_lv_max=2.0)
+    canvas = plt.gcf().canvas
+    canvas.callbacks.process("key_press_event", KeyEvent("key_press_event", canvas, "w"))
+    assert keyboard.key_vel[:, 0].tolist() == [2, 0, 0]
+    for key in ("r", "escape", " ", "x", "y", "c", "alt+1"):
+        keyboard.press(key)  # these act on an environment, of which there is none
+    assert (keyboard.key_id, keyboard.key_ang_max) == (1, 1.2)
+    keyboard.stop()
+    plt.close()
+
+
+# randomness -----------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("seed", [None, 3])
+def test_the_same_seed_draws_the_same_scene_at_a_random_reset(make: Make, seed: int | None) -> None:
+    env = make(seed=seed)
+
+    def scene(drawn: Any) -> list[Any]:
+        random_numbers.set_seed(drawn)
+        env.reset(random=True)
+        return [view.state[:, 0].tolist() for view in env.obstacle_list]
+
+    first = scene(7)
+    assert scene(7) == first
+    assert scene(8) != first
+    env.reset(random=True)
+    assert [view.state[:, 0].tolist() for view in env.obstacle_list] != scene(8)
+    random_numbers.set_seed(7)
+    env.reset()
+    assert [view.state[:, 0].tolist() for view in env.obstacle_list] == scene(8), "only a random reset draws a scene"
+    assert scene(2**70) == scene(2**70)
+
+
+# writing through the environment --------------------------------------------------------------------------------------
+def test_a_status_that_is_written_is_shown_until_the_next_step(make: Make) -> None:
+    env = make(headless=False, display=False)
+    env._world.status = "Mine"
+    env.render()
+    assert env.status == env._world.status == "Mine"
+    assert "Mine" in env._env_plot.ax.get_title()
+    env.step()
+    assert env._world.status == "Running"
+    env.end(ending_time=0)
+    assert World(status="Ready").status == "Ready"
+
+
+def test_the_step_mode_of_the_world_may_be_written(make: Make) -> None:
+    env = make()
+    assert env._world.step_mode == "internal"
+    env._world.step_mode = "external"
+    assert env.step_mode == env.world_param.step_mode == "external"
+    before = env.robot_list[1].state
+    env.step()
+    assert (env.robot_list[1].state == before).all()
+    with pytest.raises(ValueError, match="sideways"):
+        env._world.step_mode = "sideways"
+
+
+def test_what_is_drawn_of_an_object_may_be_written(make: Make) -> None:
+    from irsim.objects.drawing.scene_builder import SceneBuilder
+
+    env = make(seed=1)
+    robot = env.robot_list[1]
+    assert (robot.show_goal, robot.show_goal_text, robot.show_sensor) == (False, False, True)
+    assert (robot.show_trail, robot.trail_freq) == (False, 2)
+    for _ in range(12):
+        env.step()
+    builder = SceneBuilder(env.simulation)
+
+    def drawn() -> dict[str, int]:
+        scene = builder.build()
+        parts = [mark.part for mark in scene.marks if mark.object == robot.id]
+        labels = [label.part for label in scene.labels if label.object == robot.id]
+        return {
+            "goal": parts.count("goal"),
+            "goal text": labels.count("goal"),
+            "trail": parts.count("trail"),
+            "beams": len(scene.beams),
+        }
+
+    assert drawn() == {"goal": 0, "goal text": 0, "trail": 0, "beams": 1}
+    robot.show_goal = robot.show_goal_text = robot.show_trail = True
+    robot.show_sensor = False
+    assert drawn() == {"goal": 1, "goal text": 1, "trail": 7, "beams": 0}
+    robot.trail_freq = 4
+    assert drawn()["trail"] == 4
+    env.reset()
+    assert (robot.show_goal, robot.trail_freq) == (True, 4)
+    with pytest.raises(ValueError, match="trail_freq"):
+        robot.trail_freq = 0
+    with pytest.raises(ValueError, match="show_goal"):
+        robot.show_goal = "often"
+
+
+def test_colours_and_widths_of_an_fmcw_lidar(make: Make) -> None:
+    from irsim.objects.sensors.lidar_drawing import draw_scan
+
+    env = make()
+    lidar = env.robot_list[1].lidar
+    assert lidar.no_hit_color.tolist() == pytest.approx([0.82745098] * 3)
+    assert lidar.zero_velocity_color.shape == (3,)
+    lidar.no_hit_color, lidar.no_hit_alpha = np.array([1.0, 0.0, 0.0]), 0.5
+    lidar.no_hit_linewidth = 3.0
+    beams = draw_scan(lidar)
+    assert not lidar.valid[4]
+    assert beams.widths[4] == 3.0
+    assert beams.colors[4].tolist() == [1, 0, 0, 0.5]
+    lidar.positive_velocity_color = "g"
+    assert lidar.positive_velocity_color.tolist() == [0, 0.5, 0]
+    with pytest.raises(ValueError, match="velocity_color_max"):
+        lidar.velocity_color_max = 0.0
+    with pytest.raises(ValueError, match="no_hit_color"):
+        lidar.no_hit_color = "no such colour"
+
+
+# maps -----------------------------------------------------------------------------------------------------------------
+GRID = "world: {width: 10, height: 8, obstacle_map: {name: perlin, resolution: 0.1, seed: 3}}"
+
+
+@pytest.mark.parametrize(
+    ("resolution", "kept", "cells", "warning"),
+    [
+        (0.3, 0.3, (33, 27), "0.303 m x 0.2963 m"),
+        (3, 3, (3, 3), "3.333 m x 2.667 m"),
+        (0.2, 0.2, (50, 40), "0.2 m$"),
+        (0.05, 0.05, (100, 80), "cannot be divided"),
+        (math.inf, 0.1, (100, 80), "means nothing"),
+    ],
+)
+def test_maps_whose_resolution_does_not_divide_warn(
+    make: Make, resolution: float, kept: float, cells: tuple[int, int], warning: str
+) -> None:
+    env = make(GRID)
+    with pytest.warns(UserWarning, match=warning):
+        made = env.get_map(resolution)
+    assert (made.resolution, made.grid.shape) == (kept, cells)
+    for planner in (AStarPlanner(made), JPSPlanner(made)):
+        assert planner.resolution == pytest.approx(10 / cells[0])
+        assert (planner.x_width, planner.y_width) == cells
+
+
+def test_planners_have_the_resolution_of_a_map_without_grid(make: Make) -> None:
+    planner = AStarPlanner(make().get_map(0.3))
+    assert (planner.resolution, planner.x_width, planner.y_width) == (0.3, 33, 33)

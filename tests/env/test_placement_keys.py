@@ -1,0 +1,167 @@
+"""Keys of distributions: where a circle begins, what random places keep clear of, how far goals are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.diagnostics.errors import ScenarioError
+
+Make = Callable[..., Any]
+SEEDS = range(25)
+
+CIRCLE = """
+world: {{width: 10, height: 10}}
+robot: {{number: 4, distribution: {{name: circle, radius: 3, {keys}}}, kinematics: {{name: omni}},
+  shape: {{name: circle, radius: 0.2}}, behavior: {{name: dash}}}}
+"""
+
+
+def places(env: Any) -> Any:
+    return np.array([view.state[:, 0] for view in env.robot_list])
+
+
+def test_a_circle_begins_at_its_start_angle(make: Make) -> None:
+    plain, turned = places(make(CIRCLE.format(keys=""))), make(CIRCLE.format(keys="start_angle: 1.5708"))
+    np.testing.assert_allclose(plain[:, :2], [[8, 5], [5, 8], [2, 5], [5, 2]], atol=1e-9)
+    np.testing.assert_allclose(places(turned)[:, :2], [[5, 8], [2, 5], [5, 2], [8, 5]], atol=1e-4)
+    top = turned.robot_list[0]
+    assert top.heading == pytest.approx(-math.pi / 2, abs=1e-4), "objects face the middle"
+    np.testing.assert_allclose(top.goal[:2, 0], [5, 2], atol=1e-4)
+    assert (places(make(CIRCLE.format(keys="start_angle: 0.0"))) == plain).all()
+
+
+def test_the_third_number_of_a_centre_is_reported() -> None:
+    found = irsim.validate(text=CIRCLE.format(keys="center: [5, 5, 1.5708]")).findings
+    assert ("ignored-key", "start_angle: 1.5708 turns the objects around the circle") in {
+        (f.code, f.fix) for f in found
+    }
+    assert "ignored-key" not in {f.code for f in irsim.validate(text=CIRCLE.format(keys="center: [5, 5, 0]")).findings}
+
+
+CLUTTER = """
+world: {width: 10, height: 10}
+robot: {kinematics: {name: diff}, shape: {name: rectangle, length: 1, width: 0.4}, state: [1, 1, 0], goal: [9, 9],
+  behavior: {name: dash}, name: scout}
+obstacle: {number: 12, shape: {name: circle, radius: 0.4}, group_name: clutter,
+  distribution: {name: random, range_low: [0.5, 0.5, 0], range_high: [9.5, 9.5, 0],
+    keep_clear: [{object: scout, radius: 1.0}, {point: [5, 5], radius: 1.5}]}}
+"""
+
+
+def test_random_obstacles_keep_clear_of_points_and_of_starts_and_goals(make: Make) -> None:
+    import shapely
+
+    env, near = make(CLUTTER, seed=0), []
+    body = env.robot.original_geometry
+    at_goal = shapely.affinity.translate(shapely.affinity.rotate(body, 0), 9, 9)
+    for _ in SEEDS:
+        env.reset(random=True)
+        for view in env.obstacle_list:
+            centre = shapely.Point(*view.state[:2, 0])
+            assert centre.distance(env.robot.geometry) - 0.4 >= 1.0 - 1e-9
+            assert centre.distance(at_goal) - 0.4 >= 1.0 - 1e-9
+            assert centre.distance(shapely.Point(5, 5)) - 0.4 >= 1.5 - 1e-9
+            near.append(centre.distance(shapely.Point(5, 5)))
+    assert min(near) < 2.2, "places right outside the radius are drawn"
+
+
+def test_without_the_key_obstacles_come_near(make: Make) -> None:
+    text = CLUTTER.replace("keep_clear: [{object: scout, radius: 1.0}, {point: [5, 5], radius: 1.5}]", "keep_clear: []")
+    env, nearest = make(text, seed=0), []
+    for _ in SEEDS:
+        env.reset(random=True)
+        nearest += [math.dist(view.state[:2, 0], (5, 5)) for view in env.obstacle_list]
+    assert min(nearest) < 1.0
+
+
+CROWD = """
+world: {width: 12, height: 12}
+robot:
+  - {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, behavior: {name: dash}, name: [a, b],
+     group_name: team, distribution: {name: random, goal_distance: 8}}
+  - {number: 4, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: dash},
+     distribution: {name: random, keep_clear: [{object: team, radius: 1.5}], goal_distance: 5}}
+"""
+
+
+def test_goals_are_far_from_starts_and_clear_of_a_group(make: Make) -> None:
+    env = make(CROWD, seed=3)
+    for _ in SEEDS:
+        env.reset(random=True)
+        team, others = env.robot_list[:2], env.robot_list[2:]
+        assert all(math.dist(view.state[:2, 0], view.goal[:2, 0]) >= 8 for view in team)
+        for view in others:
+            assert math.dist(view.state[:2, 0], view.goal[:2, 0]) >= 5
+            for mate in team:
+                assert math.dist(view.state[:2, 0], mate.state[:2, 0]) >= 1.9 - 1e-9
+                for place in (mate.state, mate.goal):
+                    assert math.dist(view.goal[:2, 0], place[:2, 0]) >= 1.9 - 1e-9
+
+
+def test_batches_draw_what_single_worlds_draw(make: Make, tmp_path: Any) -> None:
+    path = tmp_path / "crowd.yaml"
+    path.write_text(CROWD)
+    batch = irsim.batch(path, 3, seeds=[3, 4, 5])
+    for world, seed in enumerate((3, 4, 5)):
+        single = make(CROWD, seed=seed)
+        assert (np.array(batch.pose[world]) == single.simulation.pose).all()
+
+
+def problems(distribution: str, first: str = "") -> list[tuple[str, str, Any]]:
+    text = f"""
+world: {{width: 10, height: 10}}
+robot:
+  - {{kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.2}}, name: scout,
+     behavior: {{name: dash}}{first}}}
+  - {{number: 2, kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.2}}, behavior: {{name: dash}},
+     distribution: {distribution}}}
+"""
+    return [(f.severity, f.code, f.fix) for f in irsim.validate(text=text).findings if f.severity != "hint"]
+
+
+def test_mistakes_in_keep_clear_are_reported() -> None:
+    assert problems("{name: random, keep_clear: [{object: scuot, radius: 1}]}") == [
+        ("error", "unknown-object", "object: scout")
+    ]
+    for item in ("{radius: 1}", "{object: scout, point: [1, 1], radius: 1}"):
+        ((severity, code, _),) = problems(f"{{name: random, keep_clear: [{item}]}}")
+        assert (severity, code) == ("error", "keep-clear")
+    ((_, code, fix),) = problems("{name: random, keep_clear: [{object: robot_1, radius: 1}]}")
+    assert (code, "write its entry before this one" in fix) == ("keep-clear", True)
+    ((_, code, fix),) = problems("{name: random, keep_clear: [{point: [1, 1]}]}")
+    assert code == "missing-key"
+    assert problems("{name: random, keep_clear: [{object: scout, radius: 1}]}", ", distribution: {name: random}") == []
+
+
+def test_a_goal_distance_that_nothing_can_keep_is_an_error() -> None:
+    assert [(s, c) for s, c, _ in problems("{name: random, goal_distance: 20}")] == [("error", "placement-impossible")]
+    assert {(s, c) for s, c, _ in problems("{name: random, goal_distance: 12}")} == {("warning", "placement-tight")}
+    assert problems("{name: random, goal_distance: 9}") == []
+
+
+def test_a_scene_without_room_says_which_keys_to_lower(make: Make) -> None:
+    text = CLUTTER.replace("{point: [5, 5], radius: 1.5}", "{point: [5, 5], radius: 12}")
+    with pytest.raises(ScenarioError, match="must hold keep_clear"):
+        make(text, seed=1)
+
+
+def test_a_name_means_the_object_and_not_the_group_of_the_same_name(make: Make) -> None:
+    env = make(
+        """
+world: {width: 10, height: 10}
+robot: {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [[1, 1], [5, 5]],
+  goal: [[2, 1], [6, 5]], behavior: {name: dash}}
+obstacle: {number: 30, shape: {name: circle, radius: 0.2},
+  distribution: {name: random, min_distance: 0.5, keep_clear: [{object: robot_0, radius: 2}]}}
+""",
+        seed=2,
+    )
+    places = np.array([view.state[:2, 0] for view in env.obstacle_list])
+    assert np.linalg.norm(places - [1, 1], axis=1).min() >= 2.4 - 1e-9
+    assert np.linalg.norm(places - [5, 5], axis=1).min() < 2.0, "robot_1 is of the group robot_0"
