@@ -8,12 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
-<<<<<<< HEAD
-from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
-=======
 from irsim.episodes.detours import closeness_message, shunting_message
-from irsim.episodes.incidents import Incidents, contacts_message, jumps_message
->>>>>>> follow
+from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
 from irsim.episodes.out_of_bounds import exits_message
 from irsim.episodes.stuck import (
     find_circling,

@@ -36,6 +36,10 @@ _VALUES: dict[str, Any] = {
     "group_repulsion_threshold": 0.6,
     "irregularity_range": [0, 0.5],
     "keep_traj_length": 100,
+    "keep_clear": [{"point": [5, 5], "radius": 1}],
+    "keep_clear.object": "crate",
+    "keep_clear.point": [5, 5],
+    "keep_clear.radius": 1,
     "keep_trail_length": 10,
     "kinematics.acker.alpha": [0.03, 0, 0, 0.03],
     "kinematics.diff.alpha": [0.03, 0, 0, 0.03],
@@ -92,6 +96,9 @@ _TOGETHER: dict[str, dict[str, Any]] = {
     "shape.linestring.number": {"vertices": [[0, 0], [3, 0], [3, 2]]},
     "show_goal_text": {"show_text": True, "show_goal": True},
     "trail_freq": {"show_trail": True},
+    "keep_clear.object": {"radius": 1},
+    "keep_clear.point": {"radius": 1},
+    "keep_clear.radius": {"point": [5, 5]},
     "zones.color": {"name": "court", "rectangle": [6, 1, 9, 4]},
     "zones.polygon": {"name": "court"},
     "perlin.complexity": {"resolution": 0.2},
@@ -99,7 +106,7 @@ _TOGETHER: dict[str, dict[str, Any]] = {
     "perlin.attenuation": {"resolution": 0.2, "fractal": 2},
 }
 """Keys without which another has no effect, by the last words of its path."""
-_LISTS = ("parts", "sensors", "zones")
+_LISTS = ("keep_clear", "parts", "sensors", "zones")
 """Keys whose components stand in a list."""
 
 

@@ -23,7 +23,7 @@ SEEDS = 20
 """Number of seeds that are tried if places are random."""
 _MAX_OBJECTS = 6_000
 """Number of objects in all these worlds together; larger scenarios are tried with fewer seeds, at least two."""
-MAX_SHOWN = 3
+MAX_SHOWN = 6
 """Number of objects of an entry that are described one by one."""
 
 

@@ -38,25 +38,29 @@ def scene_lines(table: Mapping[str, Any], labels: Mapping[str, str], seed: int) 
 
 
 def _row_text(row: Mapping[str, Any], labels: Mapping[str, str], seeds: int) -> str:
-    names = [_name(name, labels) for name in row["names"]]
-    more = row["count"] - len(names)
-    facts = [f"{', '.join(names)}{f' and {more} more' if more > 0 else ''}: {row['drive'] or 'static'}"]
-    facts[0] += "" if row["role"] == "robot" else " obstacle" if row["count"] == 1 else " obstacles"
+    """What the objects of an entry have in common, then each of the first ones with its place."""
+    count, drive = row["count"], row["drive"] or "static"
+    facts = [f"{'' if count == 1 else f'{count} x '}{drive}{'' if row['role'] == 'robot' else ' obstacle'}"]
     facts.append(row["footprint"])
-    goals = row["goals"] if any(row["goals"]) else [None] * len(names)
-    facts.append("; ".join(_place(pose, goal) for pose, goal in zip(row["poses"], goals, strict=True)))
-    if row["starts"]:
-        ends = f", goals {_box(row['ends'])}" if row["ends"] else ""
-        facts.append(f"over {seeds} seeds starts {_box(row['starts'])}{ends}")
     if row["drive"]:
         facts.append(row["behavior"] or "no behavior")
         facts.append("vel_max [{}]".format(", ".join(f"{value:g}" for value in row["vel_max"])))
-    return ", ".join(facts)
+    if row["starts"]:
+        ends = f", goals {_box(row['ends'])}" if row["ends"] else ""
+        facts.append(f"over {seeds} seeds starts {_box(row['starts'])}{ends}")
+    places = [
+        f"{_name(name, labels)} {_place(pose, goal)}"
+        for name, pose, goal in zip(row["names"], row["poses"], row["goals"], strict=True)
+    ]
+    more = count - len(places)
+    return f"{', '.join(facts)}: {'; '.join(places)}{f'; {more} more' if more > 0 else ''}"
 
 
 def _name(name: str, labels: Mapping[str, str]) -> str:
-    label = labels.get(name, name)
-    return repr(clean(name)) if label == name else f"{label} {clean(name)!r}"
+    if name not in labels:
+        return repr(clean(name))
+    label = clean(labels[name])
+    return label if labels[name] == name else f"{label} {clean(name)!r}"
 
 
 def _place(pose: Sequence[float], goal: Sequence[float] | None) -> str:

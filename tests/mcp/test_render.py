@@ -20,8 +20,9 @@ async def test_line_and_picture(workspace: Path) -> None:
     text = text_of(result)
     line = text.splitlines()[0]
     assert "t=0 s (step 0, nothing is random); world x 0..8 m, y 0..6 m" in line
-    assert "'rover': diff, circle r 0.3, at (1.00, 1.00) heading 0.00 goal (7.00, 1.00)" in text
-    assert "'crate': static obstacle" in text
+    assert ": rover at (1.00, 1.00) heading 0.00 goal (7.00, 1.00)" in text
+    assert "- diff, circle r 0.3, dash, vel_max [" in text
+    assert "- static obstacle, circle r 0.5: 'crate' at (4.00, 1.00)" in text
     assert "dash-into-obstacle" in text
     assert "collision of 'rover' with 'crate' at 2.2 s" in text
     assert "irsim render scenario.yaml --seed 1 --steps 0 --strict --size 300" in line
@@ -133,7 +134,8 @@ async def test_ranges_over_seeds_and_seeds_without_room_are_named(empty: Path) -
     async with connected(empty) as client:
         text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": RANDOM, "seed": 1}))
     assert "Objects with seed 1 (random: placement)" in text
-    assert "and 2 more: diff" in text
+    assert "- 5 x diff, circle r 0.3, dash" in text
+    assert text.count("r4 'robot_4' at") == 1
     assert "over 20 seeds starts x 1." in text
 
 
