@@ -28,7 +28,7 @@ ROBOT = {
     "goal": [8, 8],
     "behavior": {"name": "dash"},
 }
-ELSEWHERE = ("map-not-found", "keep-clear")
+ELSEWHERE = ("map-not-found", "keep-clear", "unknown-object")
 """Errors about a file, or another object, that is not part of the example."""
 LESS_TELLING = ("name", "type", "_linewidth", "marker_size", "edge_width")
 
