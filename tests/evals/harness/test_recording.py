@@ -171,7 +171,7 @@ def test_a_folder_reads_in_parts_and_lists_what_is_there(tmp_path: Path) -> None
 def test_each_arm_is_told_what_it_has(tmp_path: Path) -> None:
     told = {arm: briefing(arm, tmp_path) for arm in MODEL_ARMS}
     assert ["SKILL.md" in text for text in told.values()] == [False, True, True, True]
-    assert ["validate_scenario until valid" in text for text in told.values()] == [False, False, True, True]
+    assert ["edit the YAML -> validate_scenario" in text for text in told.values()] == [False, False, True, True]
     assert told["skill+mcp"] == told["skill+mcp+distractors"]
     assert skill_folders("no-skill") == {}
     for arm in MODEL_ARMS[1:]:
