@@ -146,7 +146,8 @@ def template_answer(template: Template) -> Answer:
         topic=template.name,
         kind="template",
         title=f"template {template.name}: {template.title}",
-        text=f"{template.purpose} With the default parameters it ends in {' or '.join(template.outcomes)}.",
+        text=f"{template.purpose} With the default parameters it ends in {' or '.join(template.outcomes)}. "
+        f"Picture of its start: {templates.picture_file(template.name)}",
         groups={"parameters": keys},
         example=f"irsim new {template.name}{setting}",
         see=["templates"],

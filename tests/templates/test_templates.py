@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import jsonschema
+import numpy as np
 import pytest
 import yaml
 from PIL import Image
@@ -16,6 +17,7 @@ from irsim.bundled import templates
 from irsim.bundled.templates import Template
 from irsim.bundled.templates.expressions import names_in
 from irsim.common import data_files as resources
+from tests.templates.draw import draw
 
 ALL = templates.names()
 MODELINE = "# yaml-language-server: $schema=../../schema/scenario.schema.json"
@@ -138,6 +140,16 @@ def test_draws(template: Template, tmp_path: Path) -> None:
     with Image.open(result.files[0]) as picture:
         assert 280 <= max(picture.size) <= 300
         assert len(picture.convert("RGB").getcolors(1 << 20) or []) > 20
+
+
+def test_has_a_picture_of_its_start(template: Template, tmp_path: Path) -> None:
+    stored = templates.picture_file(template.name)
+    assert stored.stat().st_size < 40_000
+    draw(template.name, tmp_path / "now.png")
+    with Image.open(stored) as known, Image.open(tmp_path / "now.png") as now:
+        assert known.size == now.size
+        pixels = [np.asarray(picture.convert("L").resize((100, 80)), dtype=float) for picture in (known, now)]
+    assert np.abs(pixels[0] - pixels[1]).mean() < 2.0, "python -m tests.templates.draw"  # Matplotlib's letters vary
 
 
 def test_the_car_finds_whichever_bay_is_free(tmp_path: Path) -> None:

@@ -1,13 +1,13 @@
 """Scenario templates: ready-made files with named parameters.
 
-A template is a folder with two files. ``scenario.yaml`` is a complete scenario, usable as it is; ``template.yaml``
-gives its purpose, its parameters, and the values of the scenario that follow from them (see :mod:`.metadata`). Filling
-a template replaces only those values in the text, so comments and layout stay.
+A template is a folder with a picture of its start and two files. ``scenario.yaml`` is a complete scenario, usable as it
+is; ``template.yaml`` gives its purpose, its parameters, and the values of the scenario that follow from them (see
+:mod:`.metadata`). Filling a template replaces only those values in the text, so comments and layout stay.
 """
 
 from irsim.bundled.templates.fill import fill, parse_settings
 from irsim.bundled.templates.metadata import Parameter, Template, TemplateError
-from irsim.bundled.templates.store import find, load, load_all, names, scenario_file
+from irsim.bundled.templates.store import find, load, load_all, names, picture_file, scenario_file
 
 __all__ = [
     "Parameter",
@@ -19,5 +19,6 @@ __all__ = [
     "load_all",
     "names",
     "parse_settings",
+    "picture_file",
     "scenario_file",
 ]

@@ -9,7 +9,7 @@ from irsim.bundled.templates.metadata import Template, TemplateError
 from irsim.common import data_files as resources
 from irsim.diagnostics.diagnostic import suggestion
 
-__all__ = ["find", "load", "load_all", "names", "scenario_file"]
+__all__ = ["find", "load", "load_all", "names", "picture_file", "scenario_file"]
 
 
 def names() -> list[str]:
@@ -60,6 +60,11 @@ def find(words: Iterable[str], *, every: bool = False) -> list[Template]:
 def scenario_file(name: str) -> Path:
     """Path of a template's scenario."""
     return resources.templates_directory() / name / "scenario.yaml"
+
+
+def picture_file(name: str) -> Path:
+    """Path of the picture of a template's start."""
+    return resources.templates_directory() / name / "picture.png"
 
 
 def _search_text(template: Template) -> str:
