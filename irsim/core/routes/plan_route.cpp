@@ -152,8 +152,8 @@ bool Follower::find_legs(double reach, int most) {
   const double room = inner_radius(shapes_, object_);
   const bool backs = state_.vel_min[row_][0] < 0.0;
   const PoseProblem problem{
-      blockers_, shapes_, object_, bounds(), state_.pose[row_], route_.goal, world_.goal_threshold[object_], backs,
-      radius,    reach,   room,    region(), most};
+      blockers_, shapes_, object_, bounds(), state_.pose[row_], route_.goal, world_.goal_threshold[object_],
+      backs,     radius,  reach,   room,     region(),          most};
   route_.legs = search_poses(problem);
   route_.leg = 1;
   if (route_.legs.size() < 2) {
