@@ -194,6 +194,7 @@ def test_keyboard_control_without_environment_reads_keys(monkeypatch: pytest.Mon
     import matplotlib.pyplot as plt
     from matplotlib.backend_bases import KeyEvent
 
+    plt.close("all")  # older versions warn when they close figures themselves
     plt.switch_backend("Agg")
     keyboard = KeyboardControl(backend="mpl", key_lv_max=2.0)
     canvas = plt.gcf().canvas
