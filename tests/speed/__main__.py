@@ -38,7 +38,7 @@ def line(row: Row) -> tuple[str, ...]:
         _totals(row) if row.scene.mode == "batch" else _rate(row.step_s),
         _duration(row.step_s),
         "" if row.peer_s is None else _rate(row.peer_s),
-        "" if row.ratio is None else f"{row.ratio:.3g}",
+        "" if row.ratio is None else f"{row.ratio:,.0f}" if row.ratio >= 10 else f"{row.ratio:.2g}",
         f"{row.memory_mb:.0f} MB",
     )
 
