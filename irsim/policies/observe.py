@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -82,7 +81,20 @@ class Observer:
             for index in robots.tolist():
                 self._beams = beams_of(simulation, index)
                 self._first_beam[index] = 0 if self._beams is None else self._beams.first
+        self._looking = self._look()
         self._grids = Grids(simulation, needs.map_resolution) if needs.map else None
+
+    def _look(self) -> core.Looking:
+        needs, beams = self._needs, self._beams
+        return core.Looking(
+            neighbors=needs.neighbors,
+            reach=needs.neighbor_range,
+            statics=needs.static_neighbors,
+            steered=self._steered.tolist(),
+            first_beam=self._first_beam.tolist(),
+            beams=0 if beams is None else len(beams.angles),
+            range_max=0.0 if beams is None else beams.range_max,
+        )
 
     def observe(self, rows: NDArray[np.int64], first: NDArray[np.bool_], slot: NDArray[np.int64]) -> Observations:
         """What these robots observe now.
@@ -113,34 +125,17 @@ class Observer:
             low=self._low[robot] * pace,
             high=self._high[robot] * pace,
             arrived=simulation.arrived[rows].astype(bool),
-            neighbors=self._neighbors(rows, world) if needs.neighbors > 0 else None,
+            neighbors=self._neighbors(rows) if needs.neighbors > 0 else None,
             scan=self._scan(world, robot) if needs.scan else None,
             maps=None if self._grids is None else self._grids.of(world),
         )
 
-    def _neighbors(self, rows: NDArray[np.int64], world: NDArray[np.int64]) -> Neighbors:
-        simulation, needs = self._simulation, self._needs
-        reach = needs.neighbor_range if math.isfinite(needs.neighbor_range) else math.inf
-        index = core.nearest_objects(
-            simulation.world, simulation.state, rows, needs.neighbors, reach, needs.static_neighbors
-        ).astype(np.int64)
-        mask = index >= 0
-        others = np.zeros((len(simulation.pose) + 1, 8))  # the last row stands for no object
-        others[:-1, :3] = core.bounding_circles(simulation.world, simulation.state)
-        others[:-1, 3] = simulation.pose[:, 2]
-        others[:-1, 4:6] = simulation.twist[:, :2]
-        others[:-1, 6] = np.tile(simulation.robots, simulation.copies)
-        others[:-1, 7] = simulation.arrived * others[:-1, 6]
-        found = others.take(np.where(mask, world[:, None] * simulation.objects + index, len(others) - 1), axis=0)
+    def _neighbors(self, rows: NDArray[np.int64]) -> Neighbors:
+        simulation = self._simulation
+        found = core.find_neighbors(simulation.world, simulation.state, self._looking, rows)
+        mask, index, position, heading, velocity, radius, arrived, robot = found
         return Neighbors(
-            mask=mask,
-            index=index,
-            position=found[..., :2],
-            heading=found[..., 3],
-            velocity=found[..., 4:6],
-            radius=found[..., 2],
-            arrived=found[..., 7] > 0.0,
-            robot=found[..., 6] > 0.0,
+            mask.view(bool), index, position, heading, velocity, radius, arrived.view(bool), robot.view(bool)
         )
 
     def _scan(self, world: NDArray[np.int64], robot: NDArray[np.int64]) -> Scan:
