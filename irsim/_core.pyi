@@ -631,6 +631,8 @@ class State:
     collided: Flags  # (R,)
     stopped: Flags  # (R,)
     radius: Floats  # (R,) radius of the minimum bounding circle [m]
+    vel_min: Floats  # (R, 3) lower limits of the controls in this scene
+    vel_max: Floats  # (R, 3) upper limits likewise
     pace: Floats  # (R,) factor on the speeds of the object in this scene
     start_step: NDArray[np.int64]  # (R,) steps for which the object stands still at its start in this scene
     infeasible: NDArray[np.int32]  # (R,) steps of the episode in which no velocity avoided every collision
@@ -922,10 +924,25 @@ def observe_rows(
     parts: Sequence[tuple[object, int]],
     rows: NDArray[np.int64],
     out: NDArray[np.float32],
+    threads: int = 1,
 ) -> None:
     """Write the observation parts of (B,) rows to ``out`` (B, D), each from the column that is given for it on.
 
     The numbers are those of `look`, rounded to single precision; absent members of sets hold zeros.
+    """
+
+def gaps(
+    world: World, state: State, rows: NDArray[np.int64], kinds: Flags, reach: float, threads: int = 1
+) -> Floats:
+    """(B, 3) distance [m] between the footprint of each row and the nearest robot, human and static object.
+
+    Args:
+        world: The world.
+        state: The state.
+        rows: (B,) rows.
+        kinds: (N,) what each object is: 0 robot, 1 human, 2 static, 3 ignored.
+        reach: Larger distances are infinite [m]. Those of overlaps are negative.
+        threads: Number of threads.
     """
 
 def find_neighbors(

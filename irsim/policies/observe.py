@@ -11,7 +11,6 @@ import irsim._core as core
 from irsim.options.registry import SENSORS
 from irsim.policies.grids import Grids
 from irsim.policies.observations import Neighbors, Observations, Scan
-from irsim.simulation.build import padded, speed_controls
 
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
@@ -19,8 +18,6 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Beams", "Observer", "beams_of"]
-
-_CONTROLS = 3
 
 
 class Beams:
@@ -63,17 +60,15 @@ class Observer:
         simulation: The simulation.
         needs: What is observed besides the robots themselves.
         robots: (n,) indices, within a world, of the robots that may be observed. For scans all have equal lidars.
+
+    Attributes:
+        looking: What is observed, for the core.
     """
 
     def __init__(self, simulation: Simulation, needs: Needs, robots: NDArray[np.int64]) -> None:
         self._simulation, self._needs = simulation, needs
         records = simulation.scenario.objects
         self._threshold = np.array([record.goal_threshold for record in records], dtype=np.float64)
-        self._low = np.array([padded(record.vel_min) for record in records], dtype=np.float64).reshape(-1, _CONTROLS)
-        self._high = np.array([padded(record.vel_max) for record in records], dtype=np.float64).reshape(-1, _CONTROLS)
-        self._paced = np.zeros((len(records), _CONTROLS), dtype=bool)
-        for index in robots.tolist():
-            self._paced[index, [c for c in speed_controls(records[index]) if c < _CONTROLS]] = True
         self._steered = np.array([bool(getattr(record.kinematics, "steered", False)) for record in records])
         self._first_beam = np.zeros(len(records), dtype=np.int64)
         self._beams: Beams | None = None
@@ -81,7 +76,7 @@ class Observer:
             for index in robots.tolist():
                 self._beams = beams_of(simulation, index)
                 self._first_beam[index] = 0 if self._beams is None else self._beams.first
-        self._looking = self._look()
+        self.looking = self._look()
         self._grids = Grids(simulation, needs.map_resolution) if needs.map else None
 
     def _look(self) -> core.Looking:
@@ -107,7 +102,6 @@ class Observer:
         simulation, needs = self._simulation, self._needs
         world, robot = np.divmod(rows, simulation.objects)
         step_time = float(simulation.scenario.world.step_time)
-        pace = np.where(self._paced[robot], simulation.pace[rows, None], 1.0)
         return Observations(
             world=slot,
             robot=simulation.ids[robot].astype(np.int64),
@@ -122,8 +116,8 @@ class Observer:
             goal=simulation.goal[rows],
             goal_threshold=self._threshold[robot],
             radius=simulation.radius[rows],
-            low=self._low[robot] * pace,
-            high=self._high[robot] * pace,
+            low=simulation.state.vel_min[rows],
+            high=simulation.state.vel_max[rows],
             arrived=simulation.arrived[rows].astype(bool),
             neighbors=self._neighbors(rows) if needs.neighbors > 0 else None,
             scan=self._scan(world, robot) if needs.scan else None,
@@ -132,7 +126,7 @@ class Observer:
 
     def _neighbors(self, rows: NDArray[np.int64]) -> Neighbors:
         simulation = self._simulation
-        found = core.find_neighbors(simulation.world, simulation.state, self._looking, rows)
+        found = core.find_neighbors(simulation.world, simulation.state, self.looking, rows)
         mask, index, position, heading, velocity, radius, arrived, robot = found
         return Neighbors(
             mask.view(bool), index, position, heading, velocity, radius, arrived.view(bool), robot.view(bool)

@@ -2,7 +2,9 @@
 #include <cstring>
 
 #include "bindings/bound_state.hpp"
+#include "parallel.hpp"
 #include "parts.gen.hpp"
+#include "surroundings/gaps.hpp"
 #include "surroundings/observe.hpp"
 
 namespace irsim {
@@ -13,11 +15,24 @@ using Given = nb::ndarray<const T, nb::ndim<N>, nb::c_contig, nb::device::cpu>;
 using RowNumbers = Given<std::int64_t, 1>;
 using Output = nb::ndarray<float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
+constexpr std::size_t kRowsPerThread = 64;
+constexpr const char* kObject = "there must be one entry for each object";
 constexpr const char* kRow = "there must be one row for each robot";
 constexpr const char* kMember = "there must be one row for each neighbor of each robot";
 
 void expect_fit(bool fits, const char* what) {
   if (!fits) throw nb::value_error(what);
+}
+
+void check_each(const State& state, const RowNumbers& rows) {
+  for (std::size_t b = 0; b < rows.shape(0); ++b) {
+    if (rows.data()[b] < 0 || rows.data()[b] >= state.rows) throw nb::index_error("no such row");
+  }
+}
+
+void check_looking(const World& world, const Looking& looking) {
+  const std::size_t n = world.objects;
+  expect_fit(looking.steered.size() == n && looking.first_beam.size() == n, kObject);
 }
 
 Vec2 vector_at(const double* numbers, std::size_t k) { return {numbers[2 * k], numbers[2 * k + 1]}; }
@@ -165,13 +180,11 @@ std::size_t numbers_of(const Options& options) {
 std::size_t numbers_of(const std::monostate&) { return 0; }
 
 void observe_rows(World& world, BoundState& bound, const Looking& looking, const std::vector<PartAtColumn>& parts,
-                  const RowNumbers& rows, const Output& out) {
+                  const RowNumbers& rows, const Output& out, int threads) {
   const State& state = bound.of(world);
   const Claim claim(bound);
   expect_fit(out.shape(0) == rows.shape(0), "there must be one row of numbers for each row");
-  expect_fit(looking.steered.size() == static_cast<std::size_t>(world.objects) &&
-                 looking.first_beam.size() == static_cast<std::size_t>(world.objects),
-             "there must be one number for each object");
+  check_looking(world, looking);
   std::size_t most = 0, most_members = 0;
   for (const auto& [part, column] : parts) {
     const std::size_t numbers = std::visit([](const auto& o) { return numbers_of(o); }, part);
@@ -179,28 +192,51 @@ void observe_rows(World& world, BoundState& bound, const Looking& looking, const
     most = std::max(most, numbers);
     with(part, [&](const auto& o) { most_members = std::max(most_members, members(o)); });
   }
-  for (std::size_t b = 0; b < rows.shape(0); ++b) {
-    if (rows.data()[b] < 0 || rows.data()[b] >= state.rows) throw nb::index_error("no such row");
-  }
+  check_each(state, rows);
   nb::gil_scoped_release free;
   const Observer observer(world, state, looking);
-  Near near;
-  std::vector<double> numbers(most);
-  std::vector<std::uint8_t> mask(most_members);
-  for (std::size_t b = 0; b < rows.shape(0); ++b) {
-    const Seen seen = observer.see(static_cast<int>(rows.data()[b]), near);
-    float* const row = out.data() + b * out.shape(1);
-    for (const auto& [part, column] : parts) {
-      with(part, [&](const auto& o) {
-        run(o, seen, numbers.data(), mask.data());
-        std::copy(numbers.data(), numbers.data() + numbers_of(o), row + column);
-      });
+  in_parts(rows.shape(0), threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
+    Near near;
+    std::vector<double> numbers(most);
+    std::vector<std::uint8_t> mask(most_members);
+    for (std::size_t b = first; b < last; ++b) {
+      const Seen seen = observer.see(static_cast<int>(rows.data()[b]), near);
+      float* const row = out.data() + b * out.shape(1);
+      for (const auto& [part, column] : parts) {
+        with(part, [&, column = column](const auto& o) {
+          run(o, seen, numbers.data(), mask.data());
+          std::copy(numbers.data(), numbers.data() + numbers_of(o), row + column);
+        });
+      }
     }
+  });
+}
+
+nb::object gaps_of(World& world, BoundState& bound, const RowNumbers& rows, const Mask& codes, double reach,
+                   int threads) {
+  const State& state = bound.of(world);
+  check_each(state, rows);
+  expect_fit(codes.shape(0) == static_cast<std::size_t>(world.objects), kObject);
+  std::vector<ObjectKind> kinds;
+  for (std::size_t i = 0; i < codes.shape(0); ++i)
+    kinds.push_back(static_cast<ObjectKind>(std::min<int>(codes.data()[i], kKinds)));
+  const std::size_t count = rows.shape(0), each = kKinds;
+  std::vector<double> out(count * each);
+  {
+    const Claim claim(bound);
+    nb::gil_scoped_release free;
+    in_parts(count, threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
+      for (std::size_t b = first; b < last; ++b)
+        gaps(world, state, static_cast<int>(rows.data()[b]), kinds, reach, out.data() + b * each);
+    });
   }
+  return own(std::move(out), {count, each});
 }
 
 nb::object neighbors_of(World& world, BoundState& bound, const Looking& looking, const RowNumbers& rows) {
   const State& state = bound.of(world);
+  check_each(state, rows);
+  check_looking(world, looking);
   const std::size_t count = rows.shape(0), most = looking.neighbors;
   std::vector<std::int64_t> index(count * most, -1);
   std::vector<std::uint8_t> present(count * most), arrived(count * most), robot(count * most);
@@ -209,7 +245,6 @@ nb::object neighbors_of(World& world, BoundState& bound, const Looking& looking,
   const Observer observer(world, state, looking);
   Near near;
   for (std::size_t b = 0; b < count; ++b) {
-    if (rows.data()[b] < 0 || rows.data()[b] >= state.rows) throw nb::index_error("no such row");
     const Seen seen = observer.see(static_cast<int>(rows.data()[b]), near);
     for (std::size_t n = 0; n < seen.neighbor_count; ++n) {
       const Neighbor& other = seen.neighbors[n];
@@ -249,7 +284,9 @@ void bind_observing(nb::module_& m) {
   IRSIM_PARTS(IRSIM_LOOK)
 #undef IRSIM_LOOK
   m.def("observe_rows", &observe_rows, nb::arg("world"), nb::arg("state"), nb::arg("looking"), nb::arg("parts"),
-        nb::arg("rows"), nb::arg("out"));
+        nb::arg("rows"), nb::arg("out"), nb::arg("threads") = 1);
+  m.def("gaps", &gaps_of, nb::arg("world"), nb::arg("state"), nb::arg("rows"), nb::arg("kinds"), nb::arg("reach"),
+        nb::arg("threads") = 1);
   m.def("find_neighbors", &neighbors_of, nb::arg("world"), nb::arg("state"), nb::arg("looking"), nb::arg("rows"));
 }
 

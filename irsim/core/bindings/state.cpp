@@ -175,6 +175,8 @@ void bind_state(nb::module_& m) {
       .def_ro("collided", &S::collided)
       .def_ro("stopped", &S::stopped)
       .def_ro("radius", &S::radius)
+      .def_ro("vel_min", &S::vel_min)
+      .def_ro("vel_max", &S::vel_max)
       .def_ro("pace", &S::pace)
       .def_ro("start_step", &S::start_step)
       .def_ro("infeasible", &S::infeasible)

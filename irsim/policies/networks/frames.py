@@ -8,7 +8,6 @@ import numpy as np
 
 from irsim.common.arrays import Floats
 from irsim.policies.networks.values import apply
-from irsim.policies.observations import Observations
 
 __all__ = ["Frame", "turn_back", "x_axis"]
 
@@ -17,16 +16,23 @@ Frame = Literal["own", "goal", "world"]
 is the origin of all."""
 
 
-def x_axis(frame: Frame, observations: Observations) -> Floats:
-    """(B, 2) unit vector of the x axis of a frame, in the world frame."""
+def x_axis(frame: Frame, pose: Floats, goal: Floats) -> Floats:
+    """Unit vector of the x axis of a frame, in the world frame.
+
+    Args:
+        frame: The frame.
+        pose, goal: (B, 3) x, y [m] and heading [rad] of B robots and of their goals, world frame; NaN without a goal.
+
+    Returns:
+        (B, 2) vectors.
+    """
     if frame == "world":
-        return np.broadcast_to(np.array([1.0, 0.0]), (len(observations), 2))
-    heading = observations.pose[:, 2]
-    ahead = np.stack([apply("cos", heading), apply("sin", heading)], axis=-1)
+        return np.broadcast_to(np.array([1.0, 0.0]), (len(pose), 2))
+    ahead = np.stack([apply("cos", pose[:, 2]), apply("sin", pose[:, 2])], axis=-1)
     if frame == "own":
         return ahead
-    there = np.isfinite(observations.goal[:, 0]) & np.isfinite(observations.goal[:, 1])
-    offset = np.where(there[:, None], observations.goal[:, :2] - observations.pose[:, :2], 0.0)
+    there = np.isfinite(goal[:, 0]) & np.isfinite(goal[:, 1])
+    offset = np.where(there[:, None], goal[:, :2] - pose[:, :2], 0.0)
     distance = np.sqrt(offset[:, 0] * offset[:, 0] + offset[:, 1] * offset[:, 1])  # np.hypot has other last bits
     far = distance > 0
     return np.where(far[:, None], offset / np.where(far, distance, 1.0)[:, None], ahead)

@@ -1,0 +1,38 @@
+"""Learning: scenarios as environments of learning libraries.
+
+Importing this package registers the bundled tasks with Gymnasium, where that is installed: ``gymnasium.make("irsim/…")``.
+Every other task is a file, or data.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from irsim.common.lazy import lazy_names
+from irsim.learning.registration import register_environments
+
+if TYPE_CHECKING:
+    from irsim.learning.gym_env import Env
+    from irsim.learning.vector_env import VectorEnv
+    from irsim.learning.worlds import Result, Worlds
+    from irsim.tasks.files import TaskError, open_task
+    from irsim.tasks.moment import Moment
+    from irsim.tasks.task import Task
+
+__all__ = ["Env", "Moment", "Result", "Task", "TaskError", "VectorEnv", "Worlds", "open_task"]
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "Env": "irsim.learning.gym_env",
+        "Moment": "irsim.tasks.moment",
+        "Result": "irsim.learning.worlds",
+        "Task": "irsim.tasks.task",
+        "TaskError": "irsim.tasks.files",
+        "VectorEnv": "irsim.learning.vector_env",
+        "Worlds": "irsim.learning.worlds",
+        "open_task": "irsim.tasks.files",
+    },
+)
+
+register_environments()
