@@ -105,7 +105,8 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             self.worlds.reset(mask)
         self._fresh = False
         self._over[slice(None) if mask is None else mask] = False
-        return self._observe(), {}
+        seen = self.worlds.observe(self._observed)
+        return seen.copy() if self._copy else seen, {}
 
     def step(
         self, actions: Any
@@ -128,14 +129,15 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             worlds.reset(before)  # these worlds were over before the step, which did not count
             begun = np.repeat(before, worlds.learners)
             info["active"] |= begun
+        seen = worlds.observe(self._observed)
         if self._mode is AutoresetMode.SAME_STEP and over.any():
-            ended = np.repeat(over, worlds.learners)
-            final = self.worlds.observe()
-            info |= {"final_obs": _objects(final, ended), "_final_obs": ended}
+            slots = np.flatnonzero(np.repeat(over, worlds.learners))
+            info |= _final(seen, slots)
             worlds.reset(over)
+            seen[slots] = worlds.eyes.observe(worlds.rows[slots])
             over = np.zeros_like(over)
         self._over = over
-        return self._observe(), reward, terminated, truncated, info
+        return seen.copy() if self._copy else seen, reward, terminated, truncated, info
 
     def render(self) -> tuple[Any, ...] | None:
         """A picture of the first world."""
@@ -151,10 +153,6 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         """Close the window."""
         if self._camera is not None:
             self._camera.close()
-
-    def _observe(self) -> NDArray[np.float32]:
-        seen = self.worlds.observe(self._observed)
-        return seen.copy() if self._copy else seen
 
     def _mask(self, mask: Any) -> Flags | None:
         """(n,) worlds of the slots of a mask."""
@@ -191,9 +189,10 @@ def _info(result: Result) -> dict[str, Any]:
     return {"arrived": arrived, "collided": result.collided.reshape(-1), "is_success": arrived, "active": active}
 
 
-def _objects(rows: NDArray[np.float32], chosen: Flags) -> NDArray[Any]:
-    """(num_envs,) array of objects: the row of each chosen slot, None elsewhere, as Gymnasium has it."""
-    found = np.full(len(rows), None, dtype=object)
-    for slot in np.flatnonzero(chosen).tolist():
-        found[slot] = rows[slot]
-    return found
+def _final(seen: NDArray[np.float32], slots: NDArray[np.int64]) -> dict[str, Any]:
+    """What slots observed last in an episode, as Gymnasium has it: an array of objects, and which of them there are."""
+    found, there = np.full(len(seen), None, dtype=object), np.zeros(len(seen), dtype=bool)
+    there[slots] = True
+    for slot, row in zip(slots.tolist(), seen[slots], strict=True):
+        found[slot] = row
+    return {"final_obs": found, "_final_obs": there}
