@@ -67,7 +67,7 @@ def _named(words: list[str], records: tuple[ObjectRecord, ...], able: list[int])
         these = [i for i in able if records[i].name == word or word in records[i].tags]
         if not these:
             known = sorted({records[i].name for i in able})
-            fix = suggestion(word, known, f"choose from {listed(known[:8])}")
+            fix = suggestion(word, known, f"choose from {listed(known, 8)}")
             raise TaskError(f"no robot that can move has the name or the tag {clean(word)!r}", fix)
         found += [i for i in these if i not in found]
     return sorted(found)

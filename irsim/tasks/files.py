@@ -16,8 +16,9 @@ from irsim.bundled.templates.fill import fill
 from irsim.bundled.templates.metadata import TemplateError
 from irsim.bundled.templates.store import load
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import Diagnostic, format_path
+from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import CodedError
+from irsim.diagnostics.report import format_diagnostics
 from irsim.tasks.task import Task
 from irsim.scenario.messages.translate import translate
 from irsim.scenario.open import or_raise
@@ -30,7 +31,7 @@ __all__ = ["TaskError", "TaskSource", "open_task", "read_task", "task_scenario"]
 TaskSource = str | os.PathLike[str] | Mapping[str, Any] | Task
 """A task, its data, or the path of its file."""
 _MOST = 10
-"""Number of problems that the message of an error lists."""
+"""Largest number of problems that are listed."""
 
 
 class TaskError(CodedError, ValueError):
@@ -80,7 +81,7 @@ def _validated(document: Document) -> Task:
     try:
         return Task.model_validate(document.data)
     except ValidationError as failure:
-        found = [item.diagnostic for item in translate(failure, document.data, document, _MOST)]
+        found = [item.diagnostic for item in translate(failure, document.data, document, _MOST, Task)]
         raise _error(document, [_located(item, document) for item in found]) from None
 
 
@@ -92,14 +93,9 @@ def _located(item: Diagnostic, document: Document) -> Diagnostic:
 
 
 def _error(document: Document, found: Sequence[Diagnostic]) -> TaskError:
-    texts = []
-    for item in found[:_MOST]:
-        place = f"line {item.line}, " if item.line is not None else ""
-        path = f"{clean(format_path(item.path), 100)}: " if item.path else ""
-        texts.append(f"{place}{path}{item.message}" + (f" ({item.fix})" if item.fix and len(found) > 1 else ""))
-    texts += [f"and {len(found) - _MOST} more"] if len(found) > _MOST else []
-    fix = found[0].fix if len(found) == 1 and found[0].fix else "`irsim describe task` lists the keys of a task"
-    return TaskError(f"{clean(document.name or 'the task', 200)} is not a valid task: {'; '.join(texts)}", fix, found)
+    name = clean(document.name or "the task", 200)
+    text = format_diagnostics(found, document.text)
+    return TaskError(f"{name} is not a valid task\n{text}", "`irsim describe task` lists the keys of a task", found)
 
 
 def task_scenario(task: Task, folder: Path) -> ResolvedScenario:
