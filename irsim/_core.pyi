@@ -931,9 +931,7 @@ def observe_rows(
     The numbers are those of `look`, rounded to single precision; absent members of sets hold zeros.
     """
 
-def gaps(
-    world: World, state: State, rows: NDArray[np.int64], kinds: Flags, reach: float, threads: int = 1
-) -> Floats:
+def gaps(world: World, state: State, rows: NDArray[np.int64], kinds: Flags, reach: float, threads: int = 1) -> Floats:
     """(B, 3) distance [m] between the footprint of each row and the nearest robot, human and static object.
 
     Args:

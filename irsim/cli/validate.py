@@ -24,7 +24,7 @@ __all__ = ["validate"]
 def validate(
     files: Annotated[
         list[str],
-        typer.Argument(metavar="FILE...", help="Scenario files or suites; - is a scenario from standard input."),
+        typer.Argument(metavar="FILE...", help="Scenario files, suites or tasks; - is a scenario from standard input."),
     ],
     json_output: Annotated[
         bool, typer.Option("--json", help="Print only one JSON object per file, one per line.")
@@ -51,7 +51,7 @@ def validate(
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:
-    """Check scenario files and suites without running them; the exit code is 2 if any file is invalid."""
+    """Check scenario files, suites and tasks without running them; the exit code is 2 if any file is invalid."""
     from irsim.cli.findings import import_user_modules, limits_for, not_found
     from irsim.cli.output import print_json, progress
 
@@ -88,13 +88,15 @@ def _check_file(
     from irsim import api
     from irsim.benchmarks.suite_files import is_suite
     from irsim.benchmarks.suite_report import suite_report
+    from irsim.learning.tasks.report import is_task, task_report
 
     path = None if file == "-" else file
-    if path is not None and is_suite(path):
+    other = None if path is None else "a suite" if is_suite(path) else "a task" if is_task(path) else None
+    if path is not None and other is not None:
         if fix or simulate:
             option = "--fix" if fix else "--simulate"
-            raise ArgumentError(f"{option} belongs to scenario files, and {file} is a suite", f"leave out {option}")
-        return suite_report(path), None
+            raise ArgumentError(f"{option} belongs to scenario files, and {file} is {other}", f"leave out {option}")
+        return suite_report(path) if other == "a suite" else task_report(path), None
     fixes, fix_texts = [], {}
     if fix:
         mended, report = api.fix(path, text=text, strict=strict, limits=limits)

@@ -8,20 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arguments import as_given
+from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.pictures import Camera
 from irsim.learning.spaces import action_space, observation_space
+from irsim.learning.tasks.files import TaskError, TaskSource
 from irsim.learning.worlds import Result, Worlds
-from irsim.tasks.files import TaskError, TaskSource
 
-import gymnasium  # noqa: I001 - irsim.learning.spaces says how to install it
+require("gym", "gymnasium")
+import gymnasium
 
 __all__ = ["Env"]
 
 RENDER_MODES = ("rgb_array", "human")
 
 
-class Env(gymnasium.Env[NDArray[np.float32], Any]):
+class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # types of an extra are not read
     """A task with one learner.
 
     ``reset(seed=s)`` starts the first scene of the seed s; each further ``reset()`` starts the next one.
@@ -39,14 +41,16 @@ class Env(gymnasium.Env[NDArray[np.float32], Any]):
         ScenarioError: The scenario cannot be used.
     """
 
-    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10}  # noqa: RUF012 - as Gymnasium has it
+    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10}
 
     def __init__(self, task: TaskSource, *, render_mode: str | None = None, seed: int | None = None) -> None:
         check_render_mode(render_mode)
         self.worlds = Worlds(task, 1, seed=seed)
         if self.worlds.learners != 1:
             what = f"the task has {self.worlds.learners} learners, and gymnasium.Env has one"
-            fix = "use irsim.learning.VectorEnv or irsim.learning.ParallelEnv, or choose one robot with learners: [NAME]"
+            fix = (
+                "use irsim.learning.VectorEnv or irsim.learning.ParallelEnv, or choose one robot with learners: [NAME]"
+            )
             raise TaskError(what, fix)
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": frames_per_second(self.worlds)}

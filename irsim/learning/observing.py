@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.tasks.files import TaskError
+from irsim.learning.tasks.files import TaskError
 from irsim.policies.fit import lidar_problem
 from irsim.policies.networks.layout import Layout, layout_bounds, layout_needs, layout_shapes, observe
 from irsim.policies.observe import Observer

@@ -11,18 +11,18 @@ from irsim.common.extras import require
 from irsim.learning.gym_env import RENDER_MODES, check_render_mode, facts, frames_per_second
 from irsim.learning.pictures import Camera
 from irsim.learning.spaces import action_space, observation_space
+from irsim.learning.tasks.files import TaskSource
 from irsim.learning.worlds import Worlds
-from irsim.tasks.files import TaskSource
 
 require("gym", "pettingzoo")
-import pettingzoo  # noqa: E402 - after the message that says how to install it
+import pettingzoo
 
 __all__ = ["ParallelEnv"]
 
 Agent = str
 
 
-class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):
+class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):  # type: ignore[misc] # as above
     """A task with any number of learners; each robot is an agent, by its name.
 
     An agent whose episode is over leaves ``agents`` after the step that says so; its robot stays in the world. When the
@@ -43,7 +43,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):
         ScenarioError: The scenario cannot be used.
     """
 
-    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10, "is_parallelizable": True}  # noqa: RUF012
+    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10, "is_parallelizable": True}
 
     def __init__(self, task: TaskSource, *, render_mode: str | None = None, seed: int | None = None) -> None:
         check_render_mode(render_mode)

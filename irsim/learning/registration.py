@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from irsim.tasks.bundled_tasks import bundled_task, bundled_tasks
+from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
 
 __all__ = ["environment_id", "register_environments"]
 
@@ -17,8 +17,7 @@ def environment_id(task: str) -> str:
 
 
 def register_environments() -> None:
-    """Register the bundled tasks, and ``irsim/Task-v0``, whose argument ``task`` is a task file; nothing without
-    Gymnasium."""
+    """Register the bundled tasks, and ``irsim/Task-v0`` with the argument ``task``; nothing without Gymnasium."""
     if find_spec("gymnasium") is None:
         return
     import gymnasium  # an import of what only some have installed

@@ -12,20 +12,20 @@ from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.pictures import Camera
 from irsim.learning.spaces import action_space, observation_space
+from irsim.learning.tasks.files import TaskSource
 from irsim.learning.worlds import Worlds
-from irsim.tasks.files import TaskSource
 
 require("learn", "stable_baselines3")
-from stable_baselines3.common.vec_env import VecEnv  # noqa: E402 - after the message that says how to install it
+from stable_baselines3.common.vec_env import VecEnv
 
 __all__ = ["SB3VecEnv"]
 
 
-class SB3VecEnv(VecEnv):
+class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     """Each learner of each world is a slot, so that all share one policy.
 
-    A slot whose episode is over while its world goes on waits: its rewards are 0, and ``infos[slot]["active"]`` is False
-    (see :attr:`active`). ``monitor`` facts of whole episodes come in ``infos[slot]["episode"]``: ``r``, ``l`` and
+    A slot waits when its episode is over before that of its world: it earns nothing, and :attr:`active` is False. Facts of
+    whole episodes come in ``infos[slot]["episode"]``: ``r``, ``l`` and
     ``is_success``, as :class:`stable_baselines3.common.monitor.Monitor` has them.
 
     Args:
@@ -65,7 +65,7 @@ class SB3VecEnv(VecEnv):
         self._fresh = False
         self._reset_seeds()
         self._length[:], self._return[:], self.active[:] = 0, 0.0, True
-        self.reset_infos = [{} for _ in range(self.num_envs)]
+        self.reset_infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         return self.worlds.observe()
 
     def step_async(self, actions: NDArray[Any]) -> None:

@@ -10,7 +10,7 @@ from irsim.common.extras import require
 from irsim.learning.worlds import Worlds
 
 require("gym", "gymnasium")
-from gymnasium import spaces  # noqa: E402 - after the message that says how to install it
+from gymnasium import spaces
 
 __all__ = ["action_space", "observation_space"]
 

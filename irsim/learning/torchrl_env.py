@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from irsim.common.extras import require
+from irsim.learning.tasks.files import TaskSource
 from irsim.learning.worlds import Worlds
-from irsim.tasks.files import TaskSource
 
 require("learn", "torch", "torchrl", "tensordict")
-import torch  # noqa: E402 - after the message that says how to install it
-from tensordict import TensorDict, TensorDictBase  # noqa: E402
-from torchrl.data import Bounded, Categorical, Composite, Unbounded  # noqa: E402
-from torchrl.envs import EnvBase  # noqa: E402
+import torch
+from tensordict import TensorDict, TensorDictBase
+from torchrl.data import Bounded, Categorical, Composite, Unbounded
+from torchrl.envs import EnvBase
 
 __all__ = ["TorchRLEnv"]
 
@@ -22,8 +22,8 @@ __all__ = ["TorchRLEnv"]
 class TorchRLEnv(EnvBase):  # type: ignore[misc]
     """``worlds`` worlds with A learners as an environment of the batch size (worlds * A,), locked.
 
-    Learners of one world have neighboring entries. An entry whose episode is over while its world goes on has the reward
-    0 and ``active`` False; it is reset with its world.
+    Learners of one world have neighboring entries. An entry whose episode is over before that of its world has the
+    reward 0 and ``active`` False; it is reset with its world.
 
     Args:
         task: The task: its file, its data, or a task that was read.

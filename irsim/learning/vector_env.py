@@ -9,14 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arguments import as_given
+from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.gym_env import RENDER_MODES, check_render_mode, frames_per_second
 from irsim.learning.pictures import Camera
 from irsim.learning.spaces import action_space, observation_space
+from irsim.learning.tasks.files import TaskSource
 from irsim.learning.worlds import Result, Worlds
-from irsim.tasks.files import TaskSource
 
-from gymnasium.vector import AutoresetMode, VectorEnv as GymnasiumVectorEnv  # noqa: I001 - as in gym_env
+require("gym", "gymnasium")
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector import VectorEnv as GymnasiumVectorEnv
 from gymnasium.vector.utils import batch_space
 
 __all__ = ["VectorEnv"]
@@ -24,11 +27,11 @@ __all__ = ["VectorEnv"]
 Flags = NDArray[np.bool_]
 
 
-class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
-    """``num_envs`` learners: those of one world have neighboring slots, so that A learners in n worlds make n * A slots.
+class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # type: ignore[misc] # as in gym_env
+    """``num_envs`` learners; those of one world have neighboring slots, so n worlds with A learners make n * A slots.
 
-    With one learner in each world, slot i is what :class:`irsim.learning.Env` is with the seed of the slot, bit for bit.
-    With several, the episode of a learner may be over before that of its world. Its slot then waits: the reward is 0,
+    With one learner in each world, slot i is bit for bit what :class:`irsim.learning.Env` is with its seed. With more,
+    the episode of a learner may be over before that of its world. Its slot then waits: the reward is 0,
     ``info["active"]`` is False, and the flag ``truncated`` says in which step the world is over, too.
 
     Args:
@@ -51,7 +54,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         ArgumentError: ``num_envs`` is not a multiple of the number of learners.
     """
 
-    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}  # noqa: RUF012
+    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}
 
     def __init__(
         self,
@@ -108,9 +111,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         seen = self.worlds.observe(self._observed)
         return seen.copy() if self._copy else seen, {}
 
-    def step(
-        self, actions: Any
-    ) -> tuple[NDArray[np.float32], NDArray[np.float64], Flags, Flags, dict[str, Any]]:
+    def step(self, actions: Any) -> tuple[NDArray[np.float32], NDArray[np.float64], Flags, Flags, dict[str, Any]]:
         """Advance all worlds by one period.
 
         Raises:
@@ -120,9 +121,13 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
         if self._mode is AutoresetMode.DISABLED and before.any():
             raise ArgumentError("a world is over", 'start its next episode: reset(options={"reset_mask": mask})')
         result = worlds.step(actions)
-        reward, terminated, truncated = (a.reshape(-1) for a in (result.reward, result.terminated, result.truncated))
+        reward, terminated, truncated = (
+            result.reward.reshape(-1),
+            result.terminated.reshape(-1),
+            result.truncated.reshape(-1),
+        )
         info = _info(result)
-        over = result.over & ~before
+        over: Flags = result.over & ~before
         waiting = ~info["active"] & np.repeat(over, worlds.learners)
         truncated = truncated | waiting
         if self._mode is AutoresetMode.NEXT_STEP and before.any():
@@ -135,7 +140,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):
             info |= _final(seen, slots)
             worlds.reset(over)
             seen[slots] = worlds.eyes.observe(worlds.rows[slots])
-            over = np.zeros_like(over)
+            over[:] = False
         self._over = over
         return seen.copy() if self._copy else seen, reward, terminated, truncated, info
 

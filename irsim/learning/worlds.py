@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,15 +13,15 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError, PlacementError
 from irsim.env.batch import Batch
+from irsim.learning.features import REWARDS
+from irsim.learning.moment import Moment
 from irsim.learning.observing import Eyes
-from irsim.learning.team import team_of
+from irsim.learning.tasks.files import TaskSource, open_task, task_scenario
+from irsim.learning.tasks.team import team_of
 from irsim.metrics.roles import kinds_of
 from irsim.policies.networks.output import Present, decide
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.simulation import Simulation
-from irsim.tasks.features import REWARDS
-from irsim.tasks.files import TaskSource, open_task, task_scenario
-from irsim.tasks.moment import Moment
 
 __all__ = ["Result", "Worlds"]
 
@@ -58,8 +57,8 @@ class Result:
 class Worlds:
     """``n`` worlds of a task with A learners each; learner a of world w has the slot ``w * A + a``.
 
-    World i is bit for bit the same as it is alone with the same seed, on any number of threads. Its first episode is the
-    first scene of its seed, the next one the second scene, and so on.
+    World i is bit for bit the same as it is alone with the same seed, on any number of threads. Its first episode is
+    the first scene of its seed, the next one the second scene, and so on.
 
     Args:
         task: The task: its file, its data, or a task that was read.
@@ -82,7 +81,7 @@ class Worlds:
 
     def __init__(self, task: TaskSource, n: int = 1, *, seed: int | None = None, threads: int = 1) -> None:
         self.task, folder = open_task(task)
-        self.scenario: ResolvedScenario = task_scenario(self.task, folder if folder else Path())
+        self.scenario: ResolvedScenario = task_scenario(self.task, folder)
         self.n = n
         first = self.task.seeds.train if seed is None else seed
         self._batch = Batch(self.scenario, [first + i for i in range(n)], threads)

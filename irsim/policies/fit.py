@@ -90,7 +90,9 @@ def lidar_problem(needs: Needs, simulation: Simulation, robots: Sequence[int]) -
             what = f"was made for {count} beams, but the first lidar of {name!r} has {len(beams.angles)}"
             return what, f"write number: {count} in the lidar of {name!r}"
         if first is not None and not first[1].equal(beams):
-            what = f"needs equal lidars, but those of {first[0]!r} and {name!r} differ in number, angle_range, offset or "
+            what = (
+                f"needs equal lidars, but those of {first[0]!r} and {name!r} differ in number, angle_range, offset or "
+            )
             return what + "range_max", f"give {name!r} the lidar of {first[0]!r}"
         first = first or (name, beams)
     return None

@@ -15,8 +15,8 @@ import irsim.learning
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning import Env, VectorEnv
 from irsim.learning.registration import environment_id
-from irsim.tasks.bundled_tasks import bundled_task, bundled_tasks
-from irsim.tasks.files import TaskError
+from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
+from irsim.learning.tasks.files import TaskError
 from tests.learning.tasks import crowd, lidar_among_boxes, task
 
 CHOICES = {"choices": [[0, 0], [1, 0], [0.5, 1], [0.5, -1]]}
@@ -27,9 +27,7 @@ def actions_of(env: VectorEnv, seed: int, steps: int) -> list[Any]:
     return [env.action_space.sample() for _ in range(steps)]
 
 
-@pytest.mark.parametrize(
-    "made", [lidar_among_boxes(), lidar_among_boxes(action=CHOICES)], ids=["controls", "choices"]
-)
+@pytest.mark.parametrize("made", [lidar_among_boxes(), lidar_among_boxes(action=CHOICES)], ids=["controls", "choices"])
 def test_the_checker_of_gymnasium_has_no_complaint(made: dict[str, Any]) -> None:
     check_env(gymnasium.make("irsim/Task-v0", task=made).unwrapped)
 

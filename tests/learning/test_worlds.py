@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.tasks.files import TaskError
 from irsim.learning.worlds import Result, Worlds
 from irsim.policies.networks.layout import Layout, layout_needs, observe
 from irsim.policies.observe import Observer
-from irsim.tasks.files import TaskError
 from tests.learning.tasks import LIDAR, RANDOM, crowd, lidar_among_boxes, task
 
 AHEAD = np.array([[1.0, 0.0]])
@@ -253,7 +253,9 @@ def test_others_follow_their_behaviors() -> None:
     assert worlds.names == ("ann",)
     assert result.reward.shape == (1, 1)
     assert worlds.simulation.twist[1, 0] > 0.5
-    with pytest.raises(TaskError, match=r"no robot that can move has the name or the tag 'anne'. Fix: did you mean ann"):
+    with pytest.raises(
+        TaskError, match=r"no robot that can move has the name or the tag 'anne'. Fix: did you mean ann"
+    ):
         Worlds(task(*names, learners=["anne"]))
 
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from irsim.policies import Needs, Observations
 from irsim.policies.observe import Observer
+from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.simulation.simulation import Simulation
-from tests.policies.scenes import simulation
+from tests.policies.scenes import scenario, simulation
 
 
 def observe(made: Simulation, needs: Needs | None = None, rows: Any = None) -> Observations:

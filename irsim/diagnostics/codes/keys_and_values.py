@@ -74,8 +74,8 @@ KEYS_AND_VALUES: dict[str, Code] = {
     # names of features
     "unknown-reward": Code(
         "unknown reward",
-        "No term of rewards of that name is built in or installed; `irsim describe task.reward` lists them. A function of "
-        "your own is {name: python, function: \"module:function\"}.",
+        "No term of rewards of that name is built in or installed; `irsim describe task.reward` lists them. A "
+        'function of your own is {name: python, function: "module:function"}.',
     ),
     "unknown-part": Code(
         "unknown part of an observation",

@@ -21,7 +21,8 @@ def x_axis(frame: Frame, pose: Floats, goal: Floats) -> Floats:
 
     Args:
         frame: The frame.
-        pose, goal: (B, 3) x, y [m] and heading [rad] of B robots and of their goals, world frame; NaN without a goal.
+        pose: (B, 3) x, y [m] and heading [rad] of B robots, world frame.
+        goal: (B, 3) the same of their goals; NaN without one.
 
     Returns:
         (B, 2) vectors.

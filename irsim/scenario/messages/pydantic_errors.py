@@ -69,9 +69,7 @@ class Explainer:
         root: Model of the whole document.
     """
 
-    def __init__(
-        self, path: Path, item: Any, data: Any, document: Document, root: type[BaseModel] = Scenario
-    ) -> None:
+    def __init__(self, path: Path, item: Any, data: Any, document: Document, root: type[BaseModel] = Scenario) -> None:
         self.path, self.data, self.document, self.root = path, data, document, root
         self.kind: str = item["type"]
         self.value = item.get("input")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,8 +10,8 @@ from numpy.typing import NDArray
 
 from irsim.common.text import clean, listed
 from irsim.diagnostics.diagnostic import suggestion
-from irsim.tasks.task import Task
-from irsim.tasks.files import TaskError
+from irsim.learning.tasks.files import TaskError
+from irsim.learning.tasks.task import Task
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 __all__ = ["Team", "team_of"]
@@ -47,7 +48,9 @@ def team_of(task: Task, scenario: ResolvedScenario) -> Team:
     able = [i for i, one in enumerate(records) if one.role == "robot" and one.kinematics is not None and not one.static]
     chosen = able if task.learners is None else _named(task.learners, records, able)
     if not chosen:
-        raise TaskError("no robot of the scenario can move", "add a robot with a drive, such as kinematics: {name: diff}")
+        raise TaskError(
+            "no robot of the scenario can move", "add a robot with a drive, such as kinematics: {name: diff}"
+        )
     first = records[chosen[0]]
     for index in chosen:
         record = records[index]
@@ -61,7 +64,7 @@ def team_of(task: Task, scenario: ResolvedScenario) -> Team:
     return Team(np.array(chosen, dtype=np.int64), names, drive, first.vel_dim, _action_width(task, first))
 
 
-def _named(words: list[str], records: tuple[ObjectRecord, ...], able: list[int]) -> list[int]:
+def _named(words: list[str], records: Sequence[ObjectRecord], able: list[int]) -> list[int]:
     found: list[int] = []
     for word in words:
         these = [i for i in able if records[i].name == word or word in records[i].tags]
@@ -76,10 +79,14 @@ def _named(words: list[str], records: tuple[ObjectRecord, ...], able: list[int])
 def _action_width(task: Task, record: ObjectRecord) -> int:
     action = task.action
     controls = record.vel_dim if action.returns == "control" else 2
-    for key, row in (("low", action.low), ("high", action.high), ("choices", (action.choices or [None])[0])):
+    for key, row in (
+        ("low", action.low),
+        ("high", action.high),
+        ("choices", action.choices[0] if action.choices else None),
+    ):
         if row is not None and len(row) != controls:
-            what = f"action.{key} has {len(row)} numbers, and {'the drive has' if action.returns == 'control' else ''}"
-            raise TaskError(f"{what} {controls}".replace("  ", " "), f"give {controls} numbers")
+            whose = "the drive has" if action.returns == "control" else "a velocity has"
+            raise TaskError(f"action.{key} has {len(row)} numbers, and {whose} {controls}", f"give {controls} numbers")
     if action.choices is None and action.returns == "control" and action.low is None:
         low, high = np.array(record.vel_min), np.array(record.vel_max)
         if not (np.isfinite(low).all() and np.isfinite(high).all()):

@@ -8,9 +8,9 @@ import numpy as np
 from pydantic import Field
 
 from irsim.common.arrays import Floats
-from irsim.tasks.features import REWARDS
-from irsim.tasks.moment import Moment
-from irsim.tasks.rewards._options import RewardOptions
+from irsim.learning.features import REWARDS
+from irsim.learning.moment import Moment
+from irsim.learning.rewards._options import RewardOptions
 from irsim.options.units import Meters, Number
 
 _COLUMNS = {"robots": (0,), "obstacles": (1, 2), "all": (0, 1, 2)}
@@ -42,4 +42,5 @@ def clearance(moment: Moment, options: Clearance) -> Floats:
 def missing_share(moment: Moment, margin: float, kinds: tuple[int, ...]) -> Floats:
     """(n, A) share of a margin [m] that is missing to the nearest object of these kinds, 0 to 1."""
     gap = moment.gaps(margin)[..., list(kinds)].min(axis=-1)
-    return np.clip((margin - gap) / margin, 0.0, 1.0)
+    missing: Floats = np.clip((margin - gap) / margin, 0.0, 1.0)
+    return missing

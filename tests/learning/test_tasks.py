@@ -9,10 +9,10 @@ import pytest
 import yaml
 
 from irsim.learning import Worlds
+from irsim.learning.features import REWARDS
+from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
+from irsim.learning.tasks.files import TaskError, open_task
 from irsim.options.registry import Feature
-from irsim.tasks.bundled_tasks import bundled_task, bundled_tasks
-from irsim.tasks.features import REWARDS
-from irsim.tasks.files import TaskError, open_task
 from irsim.testing import conformance
 from tests.learning.tasks import task
 

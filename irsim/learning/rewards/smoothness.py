@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.tasks.features import REWARDS
-from irsim.tasks.moment import Moment
-from irsim.tasks.rewards._options import RewardOptions
+from irsim.learning.features import REWARDS
+from irsim.learning.moment import Moment
+from irsim.learning.rewards._options import RewardOptions
 from irsim.options.units import Number
 
 
@@ -38,4 +38,5 @@ def smoothness(moment: Moment, options: Smoothness) -> Floats:
     extent = moment.high - moment.low
     usable = np.isfinite(extent) & (extent > 0)
     share = np.where(usable, (moment.control - moment.control_before) / np.where(usable, extent, 1.0), 0.0)
-    return moment.step_time * (share * share).sum(axis=-1) / np.maximum(usable.sum(axis=-1), 1)
+    squares: Floats = (share * share).sum(axis=-1) / np.maximum(usable.sum(axis=-1), 1)
+    return moment.step_time * squares

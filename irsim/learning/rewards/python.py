@@ -10,9 +10,9 @@ from pydantic import Field
 
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError
-from irsim.tasks.features import REWARDS
-from irsim.tasks.moment import Moment
-from irsim.tasks.rewards._options import RewardOptions
+from irsim.learning.features import REWARDS
+from irsim.learning.moment import Moment
+from irsim.learning.rewards._options import RewardOptions
 
 
 class Python(RewardOptions):

@@ -23,8 +23,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from irsim.tasks.features import REWARDS
-from irsim.tasks.rewards._options import RewardOptions
+from irsim.learning.features import REWARDS
+from irsim.learning.rewards._options import RewardOptions
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
 from irsim.options.units import Bool, Integer, Seconds
@@ -104,7 +104,7 @@ class Task(Options):
     """What robots do that have arrived: stand still (`freeze`), stay controlled so that they can make room (`yield`),
     or what the scenario says (`as-written`)."""
     observation: Annotated[list[Annotated[PartOptions, Select(PARTS)]], Field(min_length=1, max_length=32)]
-    """Parts of what a learner observes, in this order; `irsim describe parts` lists them."""
+    """Parts of what a learner observes, in this order; `irsim describe task.observation` lists them."""
     action: Action = Action()
     """What the numbers of an action mean."""
     reward: Annotated[list[Annotated[RewardOptions, Select(REWARDS)]], Field(min_length=1, max_length=32)]

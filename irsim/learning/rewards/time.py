@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.tasks.features import REWARDS
-from irsim.tasks.moment import Moment
-from irsim.tasks.rewards._options import RewardOptions
+from irsim.learning.features import REWARDS
+from irsim.learning.moment import Moment
+from irsim.learning.rewards._options import RewardOptions
 from irsim.options.units import Number
 
 

@@ -19,7 +19,7 @@ from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import CodedError
 from irsim.diagnostics.report import format_diagnostics
-from irsim.tasks.task import Task
+from irsim.learning.tasks.task import Task
 from irsim.scenario.messages.translate import translate
 from irsim.scenario.open import or_raise
 from irsim.scenario.read import read

@@ -7,10 +7,10 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from irsim.common.arrays import Floats
-from irsim.tasks.features import REWARDS
-from irsim.tasks.moment import Moment
-from irsim.tasks.rewards._options import RewardOptions
-from irsim.tasks.rewards.clearance import missing_share
+from irsim.learning.features import REWARDS
+from irsim.learning.moment import Moment
+from irsim.learning.rewards._options import RewardOptions
+from irsim.learning.rewards.clearance import missing_share
 from irsim.options.units import Meters, Number
 
 _PEOPLE = (1,)
