@@ -24,9 +24,9 @@ __all__ = ["SB3VecEnv"]
 class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     """Each learner of each world is a slot, so that all share one policy.
 
-    A slot waits when its episode is over before that of its world: it earns nothing, and :attr:`active` is False. Facts of
-    whole episodes come in ``infos[slot]["episode"]``: ``r``, ``l`` and
-    ``is_success``, as :class:`stable_baselines3.common.monitor.Monitor` has them.
+    A slot waits when its episode is over before that of its world: it earns nothing, and :attr:`active` is False.
+    Facts of whole episodes come in ``infos[slot]["episode"]``: ``r``, ``l`` and ``is_success``, as
+    :class:`stable_baselines3.common.monitor.Monitor` has them.
 
     Args:
         task: The task: its file, its data, or a task that was read.

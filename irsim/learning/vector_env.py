@@ -167,8 +167,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         if found.shape != (self.num_envs,) or found.dtype != np.bool_ or not found.any():
             what = f"reset_mask is {as_given(mask)}"
             raise ArgumentError(what, f"give an array of bool of shape ({self.num_envs},) with at least one True")
-        chosen: Flags = found.reshape(self.worlds.n, self.worlds.learners).any(axis=1)
-        return chosen
+        return np.asarray(found.reshape(self.worlds.n, self.worlds.learners).any(axis=1))
 
 
 def _worlds(task: TaskSource, slots: int, seed: int | None, threads: int) -> Worlds:
