@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
+from irsim.episodes.appearances import absence, appearances_message, is_absent
 from irsim.episodes.detours import closeness_message, shunting_message
 from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
 from irsim.episodes.out_of_bounds import exits_message
@@ -60,8 +61,7 @@ def summary_message(
 ) -> str:
     """Say which robots arrived, the first collision, and what else happened to objects."""
     parts = [_arrivals_message(robots, env.sim_time, parked)]
-    if waiting := _waiting_message(env):
-        parts.append(waiting)
+    parts += filter(None, [_waiting_message(env), appearances_message(env)])
     if hit := _first_collision_message({robot.name for robot in robots}, hits):
         parts.append(hit + _standing_message(env, {robot.name for robot in robots}, hits))
     if out := exits_message(env.scenario, left):
@@ -114,7 +114,9 @@ def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequen
 
 def _waiting_message(env: Env) -> str | None:
     """Say which objects have not started yet at the end because of their ``start_time``; None if there are none."""
-    late = [view for view in env.objects if view.record.start_time and env.simulation.waits(view.row)]
+    late = [
+        view for view in env.objects if view.record.start_time and env.simulation.waits(view.row) and not is_absent(env, view)
+    ]
     if not late:
         return None
     first = min(view.record.start_time for view in late)
@@ -226,6 +228,8 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
     if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < standing:
         return f"stands still {place}: there is no path to it"
+    if is_absent(env, view):
+        return f"is not in the world yet, {place} ({absence(env, view)})"
     if env.simulation.waits(view.row):
         start = float(env.simulation.start_step[view.row]) * env.step_time
         when = "it starts at" if record.start_time else "its start is delayed to"

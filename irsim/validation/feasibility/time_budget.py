@@ -77,7 +77,7 @@ def _time_limit(context: Context, going: list[Mover], straight: dict[int, float]
     if limit is not None:
         return limit, f"time_limit is {limit:g} s"
     usual = max([MIN_HORIZON, *(HORIZON_FACTOR * _time(m, straight[m.record.id]) for m in going)])
-    usual += max((m.record.start_time for m in going), default=0.0)
+    usual += max((m.record.moves_from for m in going), default=0.0)
     return usual, f"without a time_limit a run ends after {usual:.3g} s"
 
 
@@ -94,12 +94,14 @@ def _path_length(grid: ClearanceGrid, leg: Leg) -> float:
 def _check_time(mover: Mover, length: float, limit: float, limit_reason: str, scene: Scene, tally: Tally) -> None:
     """Report a robot that needs more time than the limit, or nearly as much."""
     rate = _max_acceleration(mover)
-    needed = _least_time(mover, length, rate) + mover.record.start_time
+    needed = _least_time(mover, length, rate) + mover.record.moves_from
     if needed <= _TIGHT_TIME_SHARE * limit:
         return
     late = needed > limit
-    wait = f" after its start_time of {mover.record.start_time:g} s" if mover.record.start_time else ""
-    moving = needed - mover.record.start_time
+    record = mover.record
+    key = "appear_time" if record.appear_time > record.start_time else "start_time"
+    wait = f" after its {key} of {record.moves_from:g} s" if record.moves_from else ""
+    moving = needed - record.moves_from
     slowly = f", accelerating with {rate:.3g} m/s²," if moving > 1.01 * _time(mover, length) else ""
     tally.add(
         "time-too-short",
