@@ -12,6 +12,7 @@ from irsim.episodes.appearances import absence, appearances_message, is_absent
 from irsim.episodes.detours import closeness_message, shunting_message
 from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
 from irsim.episodes.out_of_bounds import exits_message
+from irsim.episodes.stalling import stalled_step
 from irsim.episodes.stuck import (
     find_circling,
     find_obstruction,
@@ -115,7 +116,9 @@ def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequen
 def _waiting_message(env: Env) -> str | None:
     """Say which objects have not started yet at the end because of their ``start_time``; None if there are none."""
     late = [
-        view for view in env.objects if view.record.start_time and env.simulation.waits(view.row) and not is_absent(env, view)
+        view
+        for view in env.objects
+        if view.record.start_time and env.simulation.waits(view.row) and not is_absent(env, view)
     ]
     if not late:
         return None
@@ -238,7 +241,9 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
         if circle := _circling_message(env, view, events):
             return f"circles its goal: {circle}"
         if no_progress_since(env.simulation.state.trajectory(view.row)[:, :2], env.step_time, view.max_speed) is None:
-            return f"still moved at {speed:.2g} m/s, {place}"
+            stalled = stalled_step(env, view, events)
+            since = "" if stalled is None else f", hardly nearer than at {seconds(stalled * env.step_time)}"
+            return f"still moved at {speed:.2g} m/s, {place}{since}"
         return f"hardly moves {place}{_obstruction_message(env, view, held)}"
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"

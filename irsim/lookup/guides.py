@@ -101,7 +101,7 @@ GUIDES: dict[str, Guide] = {
         "A robot can represent only a drone that keeps its height: omni or omni_angular, and nothing passes over or "
         "under it. (unobstructed on shelves lets it through, but then nothing is tested; on the drone it does not "
         "help.) A side view with y as height is a drawing, not a flight: label it as such. Objects "
-        "can appear at a time (appear_time: 5) or stand at their start until then (start_time: 5, where others see them); "
+        "can appear at a time (appear_time: 5) or stand at their start until then (start_time: 5, for all to see); "
         "nothing vanishes or is made during a run. perturb delays starts by chance. Doors and "
         "walls that open at a time or on a signal do not exist; an object that slides back and forth is an obstacle "
         "with kinematics omni and behavior {name: dash, loop: true}. No weather, slippery floors, speed zones, traffic "

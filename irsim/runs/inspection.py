@@ -110,8 +110,15 @@ def inspect_run(
         from_step=from_step,
         to_step=last,
         next_cursor=str(shown) if shown < found.total else None,
-        notes=opened.notes,
+        notes=[*opened.notes, *_beyond(opened, end, to_step)],
     )
+
+
+def _beyond(run: Run, end: int, to_step: int | None) -> list[str]:
+    """A note if steps were asked for that come after the end of a run."""
+    if to_step is None or to_step <= end:
+        return []
+    return [f"step {to_step} is beyond the end of the episode: {run.extent}"]
 
 
 # request --------------------------------------------------------------------------------------------------------------
@@ -281,7 +288,7 @@ def _speeds(trace: Trace, index: int, first: int, last: int) -> Floats:
     if first == 0:
         before = np.concatenate([here[:1], before])
     speeds: Floats = np.linalg.norm(here - before, axis=1) / trace.step_time
-    return speeds
+    return np.nan_to_num(speeds)  # before its appear_time it has no position
 
 
 def _least_forward(asked: Question, index: int, last: int) -> Cell:

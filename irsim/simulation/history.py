@@ -22,8 +22,8 @@ def past_poses(simulation: Simulation, row: int) -> Floats | None:
         row: Row of the object.
 
     Returns:
-        x, y [m] and heading [rad], world frame, NaN before the object came into the world; None if the object came later, or if a script has interfered with its
-        history.
+        x, y [m] and heading [rad], world frame, NaN before its ``appear_time``; None if a script added the object, or
+        has interfered with its history.
     """
     state, steps = simulation.state, int(simulation.count[0])
     start = state.initial_state(row)[None, :3]

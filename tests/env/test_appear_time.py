@@ -58,7 +58,9 @@ obstacle:
         assert env.robot.lidar.range_data[0] == 20
     env.step()
     assert env.robot.lidar.range_data[0] == pytest.approx(2.6, abs=0.1)
-    assert env.robot.state[0, 0] == pytest.approx(5, abs=0.1), "it drove through the place of the object that comes later"
+    assert env.robot.state[0, 0] == pytest.approx(5, abs=0.1), (
+        "it drove through the place of the object that comes later"
+    )
     assert not env.robot.collision
     for _ in range(30):
         env.step()
@@ -222,13 +224,17 @@ def test_who_starts_where_another_one_appears_is_no_mistake_but_a_wall_is() -> N
 
 
 def test_a_time_limit_before_the_appearance_is_reported() -> None:
-    found = irsim.validate(text=TEXT.replace("time_limit: 30", "time_limit: 8.5").replace("goal: [9, 1]", "goal: [3, 1]")).findings
+    found = irsim.validate(
+        text=TEXT.replace("time_limit: 30", "time_limit: 8.5").replace("goal: [9, 1]", "goal: [3, 1]")
+    ).findings
     assert any("after its appear_time of 1 s" in f.message for f in found if f.code == "time-too-short")
 
 
 def test_the_default_time_limit_counts_from_the_appearance(tmp_path: Path) -> None:
     path = tmp_path / "late.yaml"
-    path.write_text(TEXT.replace(", time_limit: 30", "").replace("appear_time: 1.0, sensors", "appear_time: 100, sensors"))
+    path.write_text(
+        TEXT.replace(", time_limit: 30", "").replace("appear_time: 1.0, sensors", "appear_time: 100, sensors")
+    )
     assert irsim.run(path).outcome == "success"
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import irsim._core as core
+from irsim.common.text import metres
 from irsim.components.maps._grid import MapCells, Walls
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.registry import SHAPES
@@ -103,7 +104,7 @@ def _depth_text(a: _Body, b: _Body) -> str:
         least = high
     if least < _MIN_DEPTH:
         return ": they touch"
-    return f", {least:.2g} m deep" if least < most else ", all of it"
+    return f", {metres(least)} deep" if least < most else ", all of it"
 
 
 def _free_place(context: Context, mover: _Body, bodies: list[_Body]) -> tuple[float, float] | None:
