@@ -54,7 +54,7 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
     Args:
         episodes: The episodes of all scenarios and behaviors.
     """
-    found, seeds = [], incident_seeds(episodes)
+    found, seeds_of = list[str](), incident_seeds(episodes)
     words = {
         "human_contacts": "contacts between people in",
         "left": "objects left the world in",
@@ -62,11 +62,11 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
         "seen": "robots were seen in",
     }
     for key, what in words.items():
-        if key in seeds:
+        if key in seeds_of:
             contacts = sum(episode.human_contacts for episode in episodes) if key == "human_contacts" else 0
             count = f"{contacts} contact{'s' * (contacts != 1)}; " if contacts else ""
-            where = f"({count}{_seeds(seeds[key])})"
-            found.append(f"{what} {len(seeds[key])} of {len(placed(episodes))} episodes {where}")
+            where = f"({count}{_seeds(seeds_of[key])})"
+            found.append(f"{what} {len(seeds_of[key])} of {len(placed(episodes))} episodes {where}")
     for name in dict.fromkeys(episode.scenario for episode in episodes):
         mine = [episode for episode in episodes if episode.scenario == name]
         crowded = sorted({episode.seed for episode in mine if episode.outcome == CROWDED})

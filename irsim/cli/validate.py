@@ -107,7 +107,7 @@ def _check_file(
 ) -> tuple[ValidationReport, str | None]:
     """Return the report on a file or a text from standard input, and the text; with ``fix``, on the repaired one."""
     from irsim import api
-    from irsim.benchmarks.suite_files import is_suite
+    from irsim.benchmarks.suite_files import is_suite, is_suite_text
     from irsim.benchmarks.suite_report import suite_report
 
     path = None if file == "-" else file
@@ -117,6 +117,8 @@ def _check_file(
         ]:
             raise ArgumentError(f"{used[0]} belongs to scenario files, and {file} is a suite", f"leave out {used[0]}")
         return suite_report(path), None
+    if text is not None and is_suite_text(text):
+        raise ArgumentError("- stands for a scenario, and this is a suite", "give the name of its file instead of -")
     fixes, fix_texts = [], {}
     if fix:
         mended, report = api.fix(path, text=text, strict=strict, limits=limits)

@@ -201,7 +201,7 @@ def first_collision(names: Collection[str], events: Sequence[Event]) -> Event | 
 
 
 def _standing_message(env: Env, names: set[str], hits: Sequence[Event]) -> str:
-    """Say who has stood since the first collision, which stops what touches; empty if nobody has."""
+    """Say who has stood still since the first collision stopped them; empty if nobody has."""
     first, rows = first_collision(names, hits), {record.name: k for k, record in enumerate(env.scenario.objects)}
     pair = [] if first is None else [rows[name] for name in (first.object, str(first.partner)) if name in rows]
     held = [
@@ -209,7 +209,13 @@ def _standing_message(env: Env, names: set[str], hits: Sequence[Event]) -> str:
         for row in pair
         if env.simulation.stopped[row] and not env.simulation.arrived[row] and not env.scenario.objects[row].static
     ]
-    return "" if not held else ", both stand since" if len(held) == 2 else f", {quoted(held[0])} stands since"
+    return (
+        ""
+        if not held
+        else ", and both have stood still since"
+        if len(held) == 2
+        else f", and {quoted(held[0])} has stood still since"
+    )
 
 
 def _first_collision_message(names: set[str], events: Sequence[Event]) -> str | None:

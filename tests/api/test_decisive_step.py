@@ -32,7 +32,7 @@ def test_the_collision_of_robots_decides_and_not_an_earlier_one_of_obstacles() -
     assert (first.kind, first.object, first.step) == ("collision", "p", 4)
     assert found.outcome == "collision"
     assert found.decisive_step == 48
-    assert "'a' hit 'b' at 4.8 s near (6.00, 3.00), both stand since" in found.summary
+    assert "'a' hit 'b' at 4.8 s near (6.00, 3.00), and both have stood still since" in found.summary
 
 
 def test_success_has_no_decisive_step() -> None:

@@ -119,3 +119,9 @@ def test_a_picture_after_the_arrival_says_when_the_episode_ended(irsim: Run, tmp
     assert "step 80 is beyond the end of the episode, which is step 29" in late.stdout
     soon = irsim("render", "places.yaml", "-o", "places.png", "--steps", "20", *more)
     assert "beyond the end" not in soon.stdout
+
+
+def test_a_suite_from_standard_input_is_told_to_come_as_a_file(irsim: Run, tmp_path: Path) -> None:
+    result = irsim("validate", "-", input="suite: mine\nversion: 1\n")
+    assert result.exit_code == 2
+    assert "give the name of its file" in result.output

@@ -25,7 +25,7 @@ struct Perturbation;
 struct BehaviorGroup;
 struct Scan;
 
-/// The objects of one entry that are placed anew for each scene.
+/// The objects of one entry whose places are drawn for each scene.
 using Placement = std::variant<RandomPlacement, CircleCrossing, SquareCrossing>;
 
 /// A goal without a heading has theta NaN.

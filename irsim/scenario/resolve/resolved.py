@@ -99,7 +99,7 @@ class ObjectRecord:
 
 @dataclass(slots=True)
 class Placement:
-    """The objects of one entry that are placed anew for each scene, such as ``distribution: random``.
+    """The objects of one entry whose places are drawn for each scene, such as ``distribution: random``.
 
     ``range_low``, ``range_high``, ``min_distance`` and ``clear_of`` are those of :class:`Drawn`, ``options`` its
     ``kernel``, where ``Drawn`` is that of :mod:`irsim.components.distributions._options`.
