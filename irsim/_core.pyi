@@ -421,6 +421,7 @@ class ObjectSpec:
         driven: Whether the object has a drive, native or in Python. Contacts alone move an object that has none and is
             not static; its control is a world-frame velocity and a yaw rate.
         start_step: Number of steps for which the object stands still at its start.
+        appear_step: Number of steps for which the object is not in the world.
     """
 
     def __init__(
@@ -460,6 +461,7 @@ class ObjectSpec:
         tau: float,
         driven: bool,
         start_step: int,
+        appear_step: int,
     ) -> None: ...
 
 class RandomPlacement:
@@ -635,6 +637,7 @@ class State:
     vel_max: Floats  # (R, 3) upper limits likewise
     pace: Floats  # (R,) factor on the speeds of the object in this scene
     start_step: NDArray[np.int64]  # (R,) steps for which the object stands still at its start in this scene
+    appeared: NDArray[np.int64]  # (R,) step in which the object came into the world; -1 while it is absent
     infeasible: NDArray[np.int32]  # (R,) steps of the episode in which no velocity avoided every collision
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)

@@ -54,7 +54,7 @@ def _is_native(sensor: Any) -> bool:
 
 
 class Observer:
-    """Observes robots of a simulation; made anew when objects are added, removed or changed.
+    """Observes robots of a simulation; made again when objects are added, removed or changed.
 
     Args:
         simulation: The simulation.

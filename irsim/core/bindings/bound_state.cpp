@@ -52,6 +52,7 @@ void BoundState::expose() {
   vel_max = view<double>(state.vel_max.memory, {rows, 3});
   pace = view<double>(state.pace.memory, {rows});
   start_step = view<std::int64_t>(state.start_step.memory, {rows});
+  appeared = view<std::int64_t>(state.appeared.memory, {rows});
   infeasible = view<std::int32_t>(state.infeasible.memory, {rows});
   goal = view<double>(state.goal.memory, {rows, 3});
   ranges = view<double>(state.ranges.memory, {beams});

@@ -179,6 +179,7 @@ void bind_state(nb::module_& m) {
       .def_ro("vel_max", &S::vel_max)
       .def_ro("pace", &S::pace)
       .def_ro("start_step", &S::start_step)
+      .def_ro("appeared", &S::appeared)
       .def_ro("infeasible", &S::infeasible)
       .def_ro("goal", &S::goal)
       .def_ro("ranges", &S::ranges)
