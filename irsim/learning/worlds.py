@@ -118,7 +118,7 @@ class Worlds:
         Raises:
             PlacementError: No scene of a world has room for all objects.
         """
-        chosen = np.ones(self.n, dtype=bool) if mask is None else np.asarray(mask, dtype=bool)
+        chosen = np.ones(self.n, dtype=bool) if mask is None else np.array(mask, dtype=bool)
         if chosen.shape != (self.n,):
             raise ArgumentError(f"a mask of {self.n} worlds has the shape ({self.n},), not {chosen.shape}", "give one")
         if seeds is not None:
