@@ -25,7 +25,9 @@ class Follower {
     if (!options_.within.empty()) within_.emplace(options_.within);
   }
 
-  /// Plan where that is due, and set `State::target` to the point that the behavior heads for.
+  /// Plan where that is due, go on along the route, and note the progress.
+  void follow_route();
+  /// React to others that are in the way, and set `State::target` to the point that the behavior heads for.
   void update_target();
   /// Change the command of the behavior so that the object stays on its route and hits no static object.
   void adjust_command();
@@ -58,6 +60,9 @@ class Follower {
   double max_steering(const AckerOptions& car) const;
   /// The command that continues along the legs, which are cleared when the last one is finished.
   void follow_legs(Vec3& u);
+  /// Slow down where the command would lead to a collision, or turn aside during a retreat. Returns false if nothing
+  /// helps.
+  bool slow_down_on_leg(Vec3& u);
   /// Legs of a drive that turns on the spot.
   void follow_legs_in_place(Vec3& u);
   /// Legs of a car, by pure pursuit of those with one direction. Coulter: "Implementation of the Pure Pursuit Path
@@ -79,8 +84,8 @@ class Follower {
   /// Turn round what blocks an object that cannot move sideways: it plans again round those in its way, or retreats
   /// along its track for another one that goes first.
   void recover();
-  /// Start a retreat. Returns false if there is no track or no reverse gear.
-  bool retreat();
+  /// Start a retreat that lets another object pass. Returns false if there is no track or no reverse gear.
+  bool retreat(int other);
   /// End a retreat.
   void forget_retreat();
   /// Plan poses round all movers where they are. The present route stays if there is no such plan.

@@ -29,6 +29,15 @@ struct RouteOptions {
   }
 };
 
+/// What others go by when they meet an object on a route: its state after all routes of a step have been followed, and
+/// before one of them reacts to another. So it does not matter which object is declared first.
+struct RightOfWay {
+  double way = 0.0;       // length of the rest of the path [m]; infinite at the goal and without a path
+  int yielded = 0;        // an object that retreats claims the way of the one it lets pass: how many such steps away
+  bool held_up = false;   // whether it has made no progress for some time
+  std::int64_t held = 0;  // number of steps without progress
+};
+
 /// What an object remembers of its route from step to step.
 struct Route {
   Vec2 goal{kNone, kNone};       // goal of the path
@@ -49,6 +58,9 @@ struct Route {
   std::vector<Leg> track;        // last poses of a drive that cannot move sideways, and how each was reached
   bool retreats = false;         // whether the legs lead back along the track; the object then waits there ...
   std::int64_t wait_until = 0;   // ... until this step
+  int lets_pass = -1;            // the object that it retreats for
+  std::int64_t insists_until = 0;  // an object that could not retreat goes before all others until this step
+  RightOfWay right_of_way;
   std::size_t retraced = 0;      // number of legs of that retreat
   bool reported = false;         // whether the missing path to this goal was logged
   // The path is free for a smaller body only, because poses for the whole body were not found from `failed_pose`.
