@@ -96,7 +96,9 @@ class Follower {
   void keep_apart(Vec3& u);
   /// Slow down, veer or back up where the command would end in a collision with a static object.
   void keep_clear(Vec3& u);
-  /// Whether the body at a pose touches nothing static and stays on its `Workspace::sides`.
+  /// Set the gap to walls that the next command must keep: that of the route, or a little less than the present one.
+  void measure_gap();
+  /// Whether the body at a pose touches nothing static, keeps the gap to it, and stays on its `Workspace::sides`.
   bool clear_at(const Pose& pose);
   /// Whether a command, followed by braking as hard as the limits allow, leads to no collision.
   bool clear_after(const Vec3& command);
@@ -110,6 +112,7 @@ class Follower {
   const Fixed& fixed_;
   const Shapes& shapes_;
   Blockers blockers_;
+  double gap_ = 0.0;  // gap to static objects that the next command must keep [m]
   std::optional<Region> within_;  // area that the path must not leave
 };
 

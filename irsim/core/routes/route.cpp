@@ -50,6 +50,7 @@ void Follower::adjust_command() {
     u = {};
     return;
   }
+  measure_gap();
   if (!route_.legs.empty()) {
     follow_legs(u);
     if (!route_.legs.empty()) return keep_apart(u);

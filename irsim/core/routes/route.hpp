@@ -51,6 +51,7 @@ struct Route {
   bool keeps_heading = false;    // the path is free of collisions only at the present heading
   int backing_steps = 0;         // remaining steps of backing up
   double wall_radius = 0.0;      // radius of the disc about the origin that behaviors keep off walls [m]
+  double wall_margin = 0.0;      // gap between the body and walls below which no command is allowed to lead [m]
   double way_ahead = 0.0;        // length of the rest of the path [m]
   double shortest_way = 0.0;     // shortest that it was at the last progress [m]
   std::int64_t progress_at = 0;  // step of that progress
