@@ -57,7 +57,8 @@ bool Follower::slow_down_on_leg(Vec3& u) {
       v[0] *= share;
       if (car == nullptr) v[1] *= share;
       if (turn != 0.0) {
-        const double wanted = clip((car->mode == Steering::steer ? v[1] : psi + v[1] * world_.step_time) + turn, -most, most);
+        const double planned = car->mode == Steering::steer ? v[1] : psi + v[1] * world_.step_time;
+        const double wanted = clip(planned + turn, -most, most);
         v[1] = car->mode == Steering::steer ? wanted : (wanted - psi) / world_.step_time;
       }
       if (!clear_after(v)) continue;

@@ -112,7 +112,7 @@ class Follower {
   const Fixed& fixed_;
   const Shapes& shapes_;
   Blockers blockers_;
-  double gap_ = 0.0;  // gap to static objects that the next command must keep [m]
+  double gap_ = 0.0;              // gap to static objects that the next command must keep [m]
   std::optional<Region> within_;  // area that the path must not leave
 };
 

@@ -9,9 +9,9 @@ namespace {
 constexpr double kMarginShare = 0.3;                       // wanted margin beside a path, as a share of the radius
 constexpr double kMaxMargin = 0.3;                         // upper limit of that margin [m]
 constexpr double kMarginShares[] = {1.0, 0.3, 0.05, 0.0};  // shares of the margin, tried in this order
-constexpr double kLocalShare = 0.5;    // share of that margin that is kept when others push the object aside
-constexpr double kLegMargin = 0.01;    // the same of cars and on legs, whose plans have margins of their own [m]
-constexpr int kMaxTries = 10;                              // plans attempted with a planner that draws samples
+constexpr double kLocalShare = 0.5;       // share of that margin that is kept when others push the object aside
+constexpr double kLegMargin = 0.01;       // the same of cars and on legs, whose plans have margins of their own [m]
+constexpr int kMaxTries = 10;             // plans attempted with a planner that draws samples
 constexpr double kSteeringShare = 0.9;    // share of the largest steering angle with which poses are planned
 constexpr double kRestingDistance = 0.1;  // an object that moves less than this counts as resting [m]
 constexpr double kStuckTime = 5.0;        // resting this long on a path that may be too narrow counts as stuck [s]
@@ -123,7 +123,8 @@ void Follower::plan() {
       // The body can turn anywhere along this path. A car hardly turns on the spot, so it may pass closer to walls.
       if (std::holds_alternative<AckerOptions>(world_.drive[object_])) continue;
       route_.wall_margin = kLocalShare * share * margin;
-      route_.wall_radius = extent.reach + route_.wall_margin;
+      // Other bodies mostly reach less far than that, which is margin enough.
+      route_.wall_radius = extent.reach + (round ? route_.wall_margin : 0.0);
     }
     if (!found && !round && sideways) found = route_.keeps_heading = at_present_heading();
     if (!found && !round && !sideways) {

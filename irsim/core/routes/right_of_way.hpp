@@ -1,7 +1,7 @@
 // Who goes first where objects on routes meet. As long as they move they share the avoidance. One that gets no nearer
 // to its goal is held up; then the one with the longer way ahead gives way alone, so that two at a door do not block
-// each other for good. One that retreats for another goes first where the other would, so that those behind it retreat as
-// well.
+// each other for good. One that retreats for another goes first where the other would, so that those behind it retreat
+// as well.
 #pragma once
 
 namespace irsim {
