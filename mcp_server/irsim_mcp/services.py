@@ -20,7 +20,7 @@ from irsim_mcp.worker import Progress, Workers
 
 __all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "is_command", "line_of"]
 
-ScenarioPath = Annotated[str | None, Field(description="Workspace file, or id of an earlier text.")]
+ScenarioPath = Annotated[str | None, Field(description="Workspace file, or id of a text.")]
 ScenarioYaml = Annotated[str | None, Field(description="Or its YAML text (at most 256 KiB).")]
 Seed = Annotated[
     int | None,

@@ -32,7 +32,7 @@ def tool(services: Services) -> StrictTool:
         job_id: Annotated[str, Field(description="From benchmark.")],
         wait_s: Annotated[int, Field(ge=0, le=MAX_WAIT_SECONDS)] = 45,
         cancel: bool = False,
-        detailed: Annotated[bool, Field(description="More metrics.")] = False,
+        detailed: bool = False,
     ) -> Annotated[CallToolResult, Benchmark]:
         if cancel:
             services.jobs.cancel(job_id)
