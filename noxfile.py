@@ -12,6 +12,7 @@
   many servers, and the properties that the quick tests try with a quarter of their examples, with all of them.
 - ``evals``: models as agents, with inspect_ai and a stand-in of a model's service; without network.
 - ``cluster``: benchmarks on Ray clusters of several processes, one of which is killed.
+- ``learn``: environments of TorchRL and Stable-Baselines3, and training, with torch.
 - ``records``: exports of recorded runs, opened by the tools they are for: pandas, DuckDB, mcap-ros2-support, Minari.
 - ``onnx``: policies from ONNX models, with onnxruntime.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
@@ -39,7 +40,7 @@ PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0
 UV = "uv>=0.9"
 TOOLS = ("pandas>=2.2", "duckdb>=1.1", "mcap-ros2-support>=0.5")
 """What opens exported runs in tests, and is no dependency."""
-FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster")
+FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster", "learn")
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
 """Tests of the core that are about Python and NumPy rather than arithmetic."""
 ARITHMETIC = (
@@ -134,7 +135,9 @@ def run_linters(session: nox.Session) -> None:
 
 def run_slow_tests(session: nox.Session) -> None:
     """Tests marked slow, and properties with all of their examples."""
-    chosen = "(slow or hypothesis) and not browser and not evals and not records and not onnx and not cluster"
+    chosen = (
+        "(slow or hypothesis) and not browser and not evals and not records and not onnx and not cluster and not learn"
+    )
     options = ("-m", chosen, "-n", "2", "--dist", "loadgroup", "--durations", "15")
     timed(session, "slow tests", "pytest", *options, env={"IRSIM_TESTS": "thorough"})
 
@@ -221,7 +224,8 @@ def slow(session: nox.Session) -> None:
 def lowest(session: nox.Session) -> None:
     """Quick tests of what depends on the dependencies, with the lower bound of each, on the oldest Python."""
     project = nox.project.load_toml("pyproject.toml")["project"]
-    required = [*project["dependencies"], *project["optional-dependencies"]["test"]]
+    extras = project["optional-dependencies"]
+    required = [*project["dependencies"], *extras["test"], *extras["gym"]]
     constraints = Path(session.virtualenv.location, "lowest.txt")
     bounds = [re.match(r"([\w-]+)>=([\w.]+)", requirement) for requirement in required]
     constraints.write_text("".join(f"{bound[1]}=={bound[2]}\n" for bound in bounds if bound), encoding="utf-8")
@@ -263,6 +267,13 @@ def cluster(session: nox.Session) -> None:
     """Benchmarks on local Ray clusters of several processes: the files are those of a local run."""
     install(session, "-e", ".[test,cluster]")
     timed(session, "tests on clusters", "pytest", "-m", "cluster", "tests/cluster", *session.posargs)
+
+
+@nox.session(reuse_venv=True, python=find_python(NEWEST))
+def learn(session: nox.Session) -> None:
+    """Environments of TorchRL and Stable-Baselines3, and training; torch takes minutes to install and gigabytes."""
+    install(session, "-e", ".[test,learn]")
+    timed(session, "tests of learning", "pytest", "-m", "learn", "-n", "2", "tests/learning/torch", *session.posargs)
 
 
 def find_chromium(session: nox.Session) -> dict[str, str]:

@@ -89,6 +89,50 @@ class SfmOptions(_Options):
         gaze_vision_angle: float,
     ) -> None: ...
 
+# observation parts (core/parts/)
+class OwnOptions(_Options):
+    def __init__(
+        self,
+        *,
+        features: Sequence[str],
+        frame: str,
+        controls: int,
+        speed_max: float,
+        yaw_rate_max: float,
+        radius_max: float,
+        steering_max: float,
+        limit_max: float,
+        clip: bool,
+    ) -> None: ...
+
+class GoalOptions(_Options):
+    def __init__(
+        self, *, features: Sequence[str], frame: str, distance_max: float, decay: float, clip: bool
+    ) -> None: ...
+
+class NeighborsOptions(_Options):
+    def __init__(
+        self,
+        *,
+        features: Sequence[str],
+        count: int,
+        range: float | None,
+        nearest_last: bool,
+        frame: str,
+        relative_velocity: bool,
+        distance_max: float,
+        speed_max: float,
+        radius_max: float,
+        decay: float,
+        clip: bool,
+    ) -> None: ...
+
+class ScanOptions(_Options):
+    def __init__(self, *, sectors: int, range_max: float | None, nearness: bool) -> None: ...
+
+class MapOptions(_Options):
+    def __init__(self, *, cells: int, size: float, frame: str, outside_occupied: bool) -> None: ...
+
 # planners (core/planners/)
 class AstarOptions(_Options):
     def __init__(self, *, resolution: float) -> None: ...
@@ -377,6 +421,7 @@ class ObjectSpec:
         driven: Whether the object has a drive, native or in Python. Contacts alone move an object that has none and is
             not static; its control is a world-frame velocity and a yaw rate.
         start_step: Number of steps for which the object stands still at its start.
+        appear_step: Number of steps for which the object is not in the world.
     """
 
     def __init__(
@@ -416,6 +461,7 @@ class ObjectSpec:
         tau: float,
         driven: bool,
         start_step: int,
+        appear_step: int,
     ) -> None: ...
 
 class RandomPlacement:
@@ -587,8 +633,11 @@ class State:
     collided: Flags  # (R,)
     stopped: Flags  # (R,)
     radius: Floats  # (R,) radius of the minimum bounding circle [m]
+    vel_min: Floats  # (R, 3) lower limits of the controls in this scene
+    vel_max: Floats  # (R, 3) upper limits likewise
     pace: Floats  # (R,) factor on the speeds of the object in this scene
     start_step: NDArray[np.int64]  # (R,) steps for which the object stands still at its start in this scene
+    appeared: NDArray[np.int64]  # (R,) step in which the object came into the world; -1 while it is absent
     infeasible: NDArray[np.int32]  # (R,) steps of the episode in which no velocity avoided every collision
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)
@@ -811,14 +860,101 @@ def follow_rows(world: World, state: State, rows: NDArray[np.int64], velocities:
 def bounding_circles(world: World, state: State) -> Floats:
     """(R, 3) x, y of the centre and radius of the minimum bounding circle of each row at its present pose [m]."""
 
-def nearest_objects(
-    world: World, state: State, rows: NDArray[np.int64], most: int, reach: float, statics: bool
-) -> NDArray[np.int32]:
-    """(B, most) indices of the nearest other objects of the world of each row; -1 where there are fewer.
+class Looking:
+    """What rows observe besides themselves.
 
-    They are sorted by the distance between bounding circles, which is at most `reach` [m], then by index. Objects count
-    whose role the row targets; static ones only with `statics`, and neither unobstructed ones, maps nor the walls round
-    a world.
+    Args:
+        neighbors: Number of nearest other objects.
+        reach: Largest gap between bounding circles [m]. Objects count whose role the row targets.
+        statics: Whether static objects count, except unobstructed ones, maps and the walls round a world.
+        steered: (N,) whether the first extra state of an object is a steering angle.
+        first_beam: (N,) first beam of the lidar of each object among those of its world.
+        beams: Number of beams of a lidar; 0 if it is not observed.
+        range_max: Largest range of a lidar [m].
+    """
+
+    def __init__(
+        self,
+        neighbors: int,
+        reach: float,
+        statics: bool,
+        steered: Sequence[int],
+        first_beam: Sequence[int],
+        beams: int,
+        range_max: float,
+    ) -> None: ...
+
+class SeenRows:
+    """What B robots observed, for `look`: the arrays of :class:`irsim.policies.Observations`."""
+
+    def __init__(
+        self,
+        *,
+        pose: Floats,
+        steering: Floats,
+        velocity: Floats,
+        yaw_rate: Floats,
+        control: Floats,
+        low: Floats,
+        high: Floats,
+        goal: Floats,
+        goal_threshold: Floats,
+        radius: Floats,
+        arrived: Flags,
+    ) -> None: ...
+    def set_neighbors(
+        self,
+        present: Flags,
+        position: Floats,
+        heading: Floats,
+        velocity: Floats,
+        radius: Floats,
+        arrived: Flags,
+        robot: Flags,
+    ) -> None: ...
+    def set_scan(self, ranges: Floats, range_max: float) -> None: ...
+    def set_pictures(
+        self, pictures: Sequence[tuple[Flags, tuple[float, float], float]], which: Sequence[int]
+    ) -> None: ...
+
+def look(options: object, rows: SeenRows) -> tuple[Floats, Flags | None]:
+    """(B, F) numbers of an observation part, or (B, K, F) and the (B, K) mask of the members that are present."""
+
+def observe_rows(
+    world: World,
+    state: State,
+    looking: Looking,
+    parts: Sequence[tuple[object, int]],
+    rows: NDArray[np.int64],
+    out: NDArray[np.float32],
+    threads: int = 1,
+) -> None:
+    """Write the observation parts of (B,) rows to ``out`` (B, D), each from the column that is given for it on.
+
+    The numbers are those of `look`, rounded to single precision; absent members of sets hold zeros.
+    """
+
+def gaps(world: World, state: State, rows: NDArray[np.int64], kinds: Flags, reach: float, threads: int = 1) -> Floats:
+    """(B, 3) distance [m] between the footprint of each row and the nearest robot, human and static object.
+
+    Args:
+        world: The world.
+        state: The state.
+        rows: (B,) rows.
+        kinds: (N,) what each object is: 0 robot, 1 human, 2 static, 3 ignored.
+        reach: Larger distances are infinite [m]. Those of overlaps are negative.
+        threads: Number of threads.
+    """
+
+def find_neighbors(
+    world: World, state: State, looking: Looking, rows: NDArray[np.int64]
+) -> tuple[Flags, NDArray[np.int64], Floats, Floats, Floats, Floats, Flags, Flags]:
+    """The nearest other objects of (B,) rows, sorted by the gap between bounding circles, then by index.
+
+    Returns:
+        (B, K) whether there is one, its index among the objects of the world (-1: none), (B, K, 2) position of the
+        middle of its bounding circle [m], (B, K) heading [rad], (B, K, 2) velocity [m/s], (B, K) radius [m], whether it
+        is a robot that has reached its last goal, whether it is a robot.
     """
 
 # The phases for a single object; they depend neither on `given` of others nor on the clock

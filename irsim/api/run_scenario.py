@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.api.picture_notes import ended_before
 from irsim.api.read_input import policy_of_suite, read_input
 from irsim.api.take_snapshot import snapshot, snapshot_of
 from irsim.common.arguments import check_whole_number
@@ -32,11 +33,13 @@ from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
 from irsim.simulation.random_streams import fresh_seed
+from irsim.validation.scene_table import scene_table
 from irsim.validation.validate import diff, fix, validate
 
 if TYPE_CHECKING:
     from irsim.policies.catalog import PolicySource
     from irsim.policies.policy import Policy
+    from irsim.results.scene import SceneTable
 
 __all__ = [
     "default_time_limit",
@@ -241,7 +244,7 @@ def render(
             imports=imports,
             out=out,
         )
-        return _write_sheet(sheet, target)
+        return _write_sheet(sheet, target, scene_table(scenario, sheet.seed))
     animated = target.suffix.lower() in MOVING_SUFFIXES
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR")
     if region is not None:
@@ -264,13 +267,15 @@ def render(
         size=env._env_plot.size,
         files=files,
         warnings=warnings,
+        ended=None if animated else ended_before(env),
+        table=scene_table(scenario, env.seed),
         reproduce=reproduce_command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
     env.end(ending_time=0.0)
     return result
 
 
-def _write_sheet(sheet: SnapshotResult, target: Path) -> RenderResult:
+def _write_sheet(sheet: SnapshotResult, target: Path, table: SceneTable) -> RenderResult:
     """Write a picture of several moments."""
     from irsim.common.files import replacing
 
@@ -284,6 +289,9 @@ def _write_sheet(sheet: SnapshotResult, target: Path) -> RenderResult:
         size=sheet.size,
         files=[str(target.absolute())],
         warnings=sheet.warnings,
+        ended=sheet.ended,
+        table=table,
+        labels={robot.name: robot.label for robot in sheet.robots if robot.label != robot.name},
         reproduce=sheet.reproduce,
     )
 

@@ -199,7 +199,11 @@ def snapshot_of_env(
         view=None if region is not None else moved_view(env),
         ended=ended_before(env),
         robots=_poses(env),
-        moving=[_moving(view) for view in env.obstacle_list if not view.record.static],
+        moving=[
+            _moving(view)
+            for view in env.obstacle_list
+            if not view.record.static and env.simulation.appeared[view.row] >= 0
+        ],
         moments=list(moments or ()),
         plans=plan_results(env, ways),
         size=_size_of(png) if png else (0, 0),
@@ -215,13 +219,15 @@ def _poses(env: Env) -> list[RobotPose]:
     robots = []
     for view in env.robot_list:
         goal = None if env.scenario.is_parked(view.record) else view.goal
+        absent = bool(env.simulation.appeared[view.row] < 0)
+        place = (view.init_state if absent else view.state)[:, 0]
         robots.append(
             RobotPose(
                 name=view.name,
                 label=view.label,
-                pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
+                pose=(float(place[0]), float(place[1]), float(place[2])),
                 goal=None if goal is None else (float(goal[0, 0]), float(goal[1, 0])),
-                status=status.get(outcomes[view.name], "under way"),
+                status="not there yet" if absent else status.get(outcomes[view.name], "under way"),
             )
         )
     return robots

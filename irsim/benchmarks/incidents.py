@@ -11,7 +11,9 @@ from irsim.results.labels import CROWDED
 __all__ = ["incident_counts", "incident_messages", "incident_seeds", "placed"]
 
 _MAX_SEEDS = 5
-"""Number of seeds that a message lists."""
+"""Number of seeds without room that a message lists."""
+_MAX_HEADLINE_SEEDS = 3
+"""Number of seeds of an incident that a message lists."""
 
 
 def placed(episodes: Sequence[EpisodeRow]) -> list[EpisodeRow]:
@@ -40,23 +42,31 @@ def _episodes_with(episodes: Sequence[EpisodeRow]) -> dict[str, list[EpisodeRow]
     }
 
 
+def _seeds(seeds: Sequence[int]) -> str:
+    """The first seeds in words, each once: ``seeds 1, 4, 7 and 2 more``."""
+    each = sorted(set(seeds))
+    return f"seed{'s' * (len(each) > 1)} {listed([str(seed) for seed in each], _MAX_HEADLINE_SEEDS)}"
+
+
 def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
     """What happened besides outcomes, with the number of episodes; empty if nothing did.
 
     Args:
         episodes: The episodes of all scenarios and behaviors.
     """
-    counts, found = incident_counts(episodes), []
-    of_all = f" of {len(placed(episodes))} episodes"
-    if many := counts.get("human_contacts"):
-        contacts = sum(episode.human_contacts for episode in episodes)
-        found.append(f"contacts between people in {many}{of_all} ({contacts} contact{'s' * (contacts != 1)})")
-    if many := counts.get("left"):
-        found.append(f"objects left the world in {many}{of_all}")
-    if many := counts.get("jumped"):
-        found.append(f"objects jumped over their goal in {many}{of_all}")
-    if many := counts.get("seen"):
-        found.append(f"robots were seen in {many}{of_all}")
+    found, seeds_of = list[str](), incident_seeds(episodes)
+    words = {
+        "human_contacts": "contacts between people in",
+        "left": "objects left the world in",
+        "jumped": "objects jumped over their goal in",
+        "seen": "robots were seen in",
+    }
+    for key, what in words.items():
+        if key in seeds_of:
+            contacts = sum(episode.human_contacts for episode in episodes) if key == "human_contacts" else 0
+            count = f"{contacts} contact{'s' * (contacts != 1)}; " if contacts else ""
+            where = f"({count}{_seeds(seeds_of[key])})"
+            found.append(f"{what} {len(seeds_of[key])} of {len(placed(episodes))} episodes {where}")
     for name in dict.fromkeys(episode.scenario for episode in episodes):
         mine = [episode for episode in episodes if episode.scenario == name]
         crowded = sorted({episode.seed for episode in mine if episode.outcome == CROWDED})

@@ -11,9 +11,9 @@ from irsim.benchmarks.suite import Suite
 from irsim.benchmarks.suite_problems import SuiteError, located, problems_of, suite_error
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import is_slip_of, suggestion
-from irsim.scenario.yaml.document import load_path
+from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["SuiteError", "is_suite", "load_suite", "read_suite", "suite_names"]
+__all__ = ["SuiteError", "is_suite", "is_suite_text", "load_suite", "read_suite", "suite_names"]
 
 _FOLDER = Path(__file__).with_name("suites")
 
@@ -32,8 +32,16 @@ def is_suite(word: str) -> bool:
         return any(is_slip_of(word, name) for name in suite_names())
     if path.suffix not in (".yaml", ".yml") or not path.is_file():
         return False
-    data = load_path(path).data
-    return isinstance(data, dict) and "suite" in data
+    return _is_suite(load_path(path))
+
+
+def is_suite_text(text: str) -> bool:
+    """Whether a YAML text is a suite rather than a scenario."""
+    return _is_suite(load_text(text))
+
+
+def _is_suite(document: Document) -> bool:
+    return isinstance(document.data, dict) and "suite" in document.data
 
 
 def load_suite(word: str) -> tuple[Suite, Path]:

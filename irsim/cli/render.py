@@ -53,11 +53,15 @@ def render(
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:
-    """Draw a scenario as a picture or an animation, depending on the suffix of the file."""
+    """Draw a scenario as a picture or an animation, depending on the suffix of the file.
+
+    Also print a table of its objects: drives, footprints, places, and the ranges of what is random.
+    """
     from rich.text import Text
 
     from irsim.cli.findings import import_user_modules, limits_for, print_findings
     from irsim.cli.output import console, print_json, progress
+    from irsim.validation.scene_text import scene_lines
 
     import_user_modules(imports)
     with progress("drawing") as report:
@@ -91,4 +95,8 @@ def render(
         shown.print(
             Text.assemble("wrote ", (written, "bold"), f" ({width} x {height} px{frames}, step {result.steps})")
         )
+    if result.ended is not None:
+        shown.print(f"step {result.steps} is beyond the end of the episode, which is step {result.ended}")
+    for line in scene_lines(result.table.model_dump(), result.labels, result.seed):
+        shown.print(Text(line), soft_wrap=True)
     shown.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)

@@ -1,4 +1,4 @@
-"""``irsim schema``: write the JSON Schemas of scenarios, suites and networks, for editors."""
+"""``irsim schema``: write the JSON Schemas of scenarios, suites, tasks and networks, for editors."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def schema(
         bool, typer.Option("--check", help="Write nothing; exit with code 1 if the file is out of date.")
     ] = False,
     kind: Annotated[
-        Literal["scenario", "suite", "policy"] | None,
+        Literal["scenario", "suite", "task", "policy"] | None,
         typer.Option("--of", help="Files that the schema describes. Default: all, and scenarios with -o."),
     ] = None,
     scenario: Annotated[
@@ -34,17 +34,23 @@ def schema(
         typer.Option("--for", metavar="FILE", help="Add a first line to FILE with which editors find the schema."),
     ] = None,
 ) -> None:
-    """Write the JSON Schemas of scenarios, suites and networks, or connect a scenario file to its schema."""
+    """Write the JSON Schemas of scenarios, suites, tasks and networks, or connect a scenario file to its schema."""
     if scenario is not None:
         _connect(scenario)
         return
     from irsim.benchmarks.suite_schema import suite_schema_text
     from irsim.common import data_files as resources
     from irsim.common.files import write_atomically
+    from irsim.learning.tasks.schema import task_schema_text
     from irsim.policies.networks.schema import policy_schema_text
     from irsim.scenario.model.json_schema import schema_text
 
-    makers = {"scenario": schema_text, "suite": suite_schema_text, "policy": policy_schema_text}
+    makers = {
+        "scenario": schema_text,
+        "suite": suite_schema_text,
+        "task": task_schema_text,
+        "policy": policy_schema_text,
+    }
     if str(out) == "-" or (out is None and not check and resources.checkout() is None):
         typer.echo(makers[kind or "scenario"](), nl=False)
         return

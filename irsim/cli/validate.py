@@ -24,7 +24,7 @@ __all__ = ["validate"]
 def validate(
     files: Annotated[
         list[str],
-        typer.Argument(metavar="FILE...", help="Scenario files or suites; - is a scenario from standard input."),
+        typer.Argument(metavar="FILE...", help="Scenario files, suites or tasks; - is a scenario from standard input."),
     ],
     json_output: Annotated[
         bool, typer.Option("--json", help="Print only one JSON object per file, one per line.")
@@ -44,19 +44,31 @@ def validate(
         bool,
         typer.Option("--simulate", help="Also simulate the scenario for about a second and report what happens."),
     ] = False,
+    table: Annotated[
+        bool,
+        typer.Option(
+            "--table", help="Also print what a valid scenario becomes: drives, footprints, places, what is random."
+        ),
+    ] = False,
     seed: Annotated[
         int | None,
-        typer.Option(min=0, max=2**64 - 1, help="Seed for --simulate. Default: the seed of the scenario, otherwise 0."),
+        typer.Option(
+            min=0,
+            max=2**64 - 1,
+            help="Seed for --simulate and --table. Default: the seed of the scenario, otherwise 0.",
+        ),
     ] = None,
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:
-    """Check scenario files and suites without running them; the exit code is 2 if any file is invalid."""
+    """Check scenario files, suites and tasks without running them; the exit code is 2 if any file is invalid."""
     from irsim.cli.findings import import_user_modules, limits_for, not_found
     from irsim.cli.output import print_json, progress
 
     import_user_modules(imports)
     filtering = fix and "-" in files
+    if table and json_output:
+        raise ArgumentError("--table prints text, so it cannot be combined with --json", "leave out one of them")
     if filtering and (json_output or len(files) > 1):
         raise ArgumentError(
             "--fix with - prints the repaired text, so it cannot be combined with --json or other files",
@@ -67,7 +79,7 @@ def validate(
         text = sys.stdin.read() if file == "-" else None
         with progress(f"checking {file}"):
             try:
-                report, text = _check_file(file, text, fix, simulate, seed, not lenient, limits_for(max_objects))
+                report, text = _check_file(file, text, fix, simulate, table, seed, not lenient, limits_for(max_objects))
             except ScenarioNotFoundError as error:  # continue with the other files
                 report, text = not_found(file, str(error)), ""
         valid &= report.valid
@@ -75,6 +87,8 @@ def validate(
             print_json(report, line=True)
         else:
             _show(report, file, text, stderr=filtering)
+        if table and report.valid:
+            _show_table(file, text, seed, limits_for(max_objects), stderr=filtering)
         if filtering:
             sys.stdout.write(text or "")
     if not valid:
@@ -82,19 +96,31 @@ def validate(
 
 
 def _check_file(
-    file: str, text: str | None, fix: bool, simulate: bool, seed: int | None, strict: bool, limits: Limits | None
+    file: str,
+    text: str | None,
+    fix: bool,
+    simulate: bool,
+    table: bool,
+    seed: int | None,
+    strict: bool,
+    limits: Limits | None,
 ) -> tuple[ValidationReport, str | None]:
     """Return the report on a file or a text from standard input, and the text; with ``fix``, on the repaired one."""
     from irsim import api
-    from irsim.benchmarks.suite_files import is_suite
+    from irsim.benchmarks.suite_files import is_suite, is_suite_text
     from irsim.benchmarks.suite_report import suite_report
+    from irsim.learning.tasks.report import is_task, task_report
 
     path = None if file == "-" else file
-    if path is not None and is_suite(path):
-        if fix or simulate:
-            option = "--fix" if fix else "--simulate"
-            raise ArgumentError(f"{option} belongs to scenario files, and {file} is a suite", f"leave out {option}")
-        return suite_report(path), None
+    other = None if path is None else "a suite" if is_suite(path) else "a task" if is_task(path) else None
+    if path is not None and other is not None:
+        if used := [
+            option for option, given in (("--fix", fix), ("--simulate", simulate), ("--table", table)) if given
+        ]:
+            raise ArgumentError(f"{used[0]} belongs to scenario files, and {file} is {other}", f"leave out {used[0]}")
+        return suite_report(path) if other == "a suite" else task_report(path), None
+    if text is not None and is_suite_text(text):
+        raise ArgumentError("- stands for a scenario, and this is a suite", "give the name of its file instead of -")
     fixes, fix_texts = [], {}
     if fix:
         mended, report = api.fix(path, text=text, strict=strict, limits=limits)
@@ -133,6 +159,20 @@ def _show(report: ValidationReport, file: str, text: str | None, *, stderr: bool
         show_dry_run(report.dry_run, out)
     if report.valid:
         out.print(Text.assemble((report.file, "bold"), ": ", (report.summary, "bold green")))
+
+
+def _show_table(file: str, text: str | None, seed: int | None, limits: Limits | None, *, stderr: bool) -> None:
+    from rich.text import Text
+
+    from irsim import api
+    from irsim.cli.output import console
+    from irsim.validation.scene_table import scene_table
+    from irsim.validation.scene_text import scene_lines
+
+    scenario, _ = api.read_scenario(None if file == "-" else file, text=text, strict=False, limits=limits)
+    chosen = seed if seed is not None else scenario.world.seed or 0
+    for line in scene_lines(scene_table(scenario, chosen).model_dump(), {}, chosen):
+        console(stderr=stderr).print(Text(line), soft_wrap=True)
 
 
 def show_dry_run(found: DryRun, out: Console) -> None:

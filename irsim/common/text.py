@@ -8,6 +8,8 @@ __all__ = ["clean", "listed", "metres", "names_if_different", "quoted", "seconds
 
 MAX_NAME = 40
 """Number of characters of a name that a message shows."""
+_MOST_DECIMALS = 6
+"""Number of decimals of a length at which two lengths count as equal."""
 
 
 def shorten_pair(before: object, after: object, longest: int = 80) -> tuple[str, str]:
@@ -53,13 +55,25 @@ def seconds(time: float) -> str:
     return f"{round(time, 2):.10g} s"
 
 
-def metres(length: float) -> str:
+def metres(length: float, unlike: float | None = None) -> str:
     """A length as text, to the centimetre, and with two digits below 10 cm: ``1 m``, ``2.35 m``, ``0.083 m``.
 
     Args:
         length: Length to format [m]; one that was computed may miss a round number by a little.
+        unlike: A length that differs, beside which it is read: as many decimals are shown as tell them apart.
     """
-    return f"{length:.2g} m" if abs(length) < 0.1 else f"{round(length, 2):.10g} m"
+    shown = _metres(length, 2)
+    if unlike is None or length == unlike:
+        return shown
+    decimals = 2
+    while shown == _metres(unlike, decimals) and decimals < _MOST_DECIMALS:
+        decimals += 1
+        shown = _metres(length, decimals)
+    return shown
+
+
+def _metres(length: float, decimals: int) -> str:
+    return f"{length:.{decimals}g} m" if abs(length) < 0.1 else f"{round(length, decimals):.10g} m"
 
 
 def clean(text: object, longest: int = 80) -> str:

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 namespace irsim {
 
@@ -23,6 +24,14 @@ struct Choice {
   std::array<const char*, N> words;
 };
 
+/// A list of such words.
+template <class Owner, class Enum, std::size_t N>
+struct Choices {
+  const char* name;
+  std::vector<Enum> Owner::* member;
+  std::array<const char*, N> words;
+};
+
 template <class Owner, class Value>
 constexpr Field<Owner, Value> field(const char* name, Value Owner::* member) {
   return {name, member};
@@ -30,6 +39,12 @@ constexpr Field<Owner, Value> field(const char* name, Value Owner::* member) {
 
 template <class Owner, class Enum, class... Words>
 constexpr Choice<Owner, Enum, sizeof...(Words)> choice(const char* name, Enum Owner::* member, Words... words) {
+  return {name, member, {words...}};
+}
+
+template <class Owner, class Enum, class... Words>
+constexpr Choices<Owner, Enum, sizeof...(Words)> choices(const char* name, std::vector<Enum> Owner::* member,
+                                                         Words... words) {
   return {name, member, {words...}};
 }
 

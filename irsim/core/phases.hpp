@@ -12,6 +12,8 @@ void integrate(const World& world, State& state, int w);
 /// Push overlapping bodies apart (`collision_mode: contact`).
 void push_apart(const World& world, State& state, int w, Workspace& work);
 void finish(const World& world, State& state, int w);
+/// Put objects whose time has come at their starts, in their order, each as soon as nobody is there.
+void appear(const World& world, State& state, int w);
 void collide(const World& world, State& state, int w);
 void arrive(const World& world, State& state, int w);
 void sense(const World& world, State& state, int w, Workspace& work);
@@ -32,6 +34,8 @@ void integrate(const World& world, State& state, int w, int object);
 /// Give a wandering object a new random goal and a looping one its initial goals; a single goal alternates with the
 /// start.
 void renew_goals(const World& world, State& state, int w, int object);
+/// Take a row out of the world, until `appear` puts it at its start.
+void leave_world(State& state, int row);
 /// Append the present pose of a row to its history.
 void remember(State& state, int row);
 

@@ -21,7 +21,7 @@ from irsim.policies.behavior import with_policy
 from irsim.policies.driver import attach_policy
 from irsim.scenario.open import open_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
-from irsim.simulation.active_env import use
+from irsim.simulation.active_env import next_seed, use
 from irsim.simulation.random_streams import check_seed, fresh_seed
 from irsim.simulation.simulation import Simulation
 
@@ -38,6 +38,7 @@ def open_world(env: EnvState, world_name: str | Path | ResolvedScenario | None) 
             env.logger.warning(_one_line(warning))
     mode = checked_step_mode(env._wanted_mode if env._wanted_mode is not None else scenario.world.step_mode)
     chosen = env._wanted_seed if env._wanted_seed is not None else scenario.world.seed
+    chosen = next_seed() if chosen is None else chosen
     seed = fresh_seed() if chosen is None else check_seed(chosen)
     plain, scenario = scenario, with_policy(scenario, env._policy)
     simulation = Simulation(scenario, [seed], history=True)

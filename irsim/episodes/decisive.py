@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.episodes.explanation import first_collision, has_one_end
+from irsim.episodes.stalling import stalled_step
 from irsim.episodes.stuck import find_circling, find_obstruction, no_progress_since
 from irsim.results.run import RobotResult
 from irsim.simulation.events import Event
@@ -64,8 +65,9 @@ def _end_of_progress(env: Env, view: ObjectView, events: Sequence[Event], held: 
     if (jump := next((event for event in mine if event.kind == "overshoot"), None)) is not None:
         return jump.step
     if view.goal is not None and has_one_end(view.record):
-        circle = find_circling(track, view.goal[:2, 0])
-        return None if circle is None else offset + circle.since
+        if (circle := find_circling(track, view.goal[:2, 0])) is not None:
+            return offset + circle.since
+        return stalled_step(env, view, mine)
     return None
 
 

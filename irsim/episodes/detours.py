@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from irsim.common.text import quoted, seconds
+from irsim.common.text import metres, quoted, seconds
 
 if TYPE_CHECKING:
     from irsim.env import Env
@@ -45,9 +45,9 @@ def shunting_message(env: Env, robots: Sequence[RobotResult], parked: Sequence[s
         time = (len(track) - 1 - first) * env.step_time
         if moved < 3 * _NEAR or time < _MIN_TIME:
             continue
-        least = "" if arrived is not None else f", no nearer than {float(away.min()):.2g} m"
+        least = "" if arrived is not None else f", no nearer than {metres(float(away.min()))}"
         found.append(
-            f"{quoted(robot.name)} drove {driven:.3g} m of a {driven - moved + float(away[first]):.3g} m way, "
+            f"{quoted(robot.name)} drove {metres(driven)} of a {metres(driven - moved + float(away[first]))} way, "
             f"{seconds(time)} of it to and fro at the goal{least}"
         )
     if not found:

@@ -132,15 +132,16 @@ def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
 def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
     """Time limit [s] of a scenario without one: 4 times the longest straight route at top speed, at least 30 s.
 
-    The latest start of a robot is added: its ``start_time``, and the longest delay if starts are perturbed.
+    The latest start of a robot is added: its ``start_time`` or ``appear_time``, and the longest delay if starts are
+    perturbed.
     """
     longest = 0.0
     for view in env.robot_list:
-        points = [view.position[:, 0], *(goal[:2, 0] for goal in view.goals)]
+        points = [view.init_state[:2, 0], *(goal[:2, 0] for goal in view.goals)]
         way = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
         if view.max_speed > 0:
             longest = max(longest, way / view.max_speed)
-    starts = [record.start_time + (record.spreads.delay if record.spreads else 0.0) for record in scenario.robots()]
+    starts = [record.moves_from + (record.spreads.delay if record.spreads else 0.0) for record in scenario.robots()]
     return max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(starts, default=0.0)
 
 

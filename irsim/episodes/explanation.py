@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
+from irsim.episodes.appearances import absence, appearances_message, is_absent
 from irsim.episodes.detours import closeness_message, shunting_message
 from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
 from irsim.episodes.out_of_bounds import exits_message
+from irsim.episodes.stalling import stalled_step
 from irsim.episodes.stuck import (
     find_circling,
     find_obstruction,
@@ -60,8 +62,7 @@ def summary_message(
 ) -> str:
     """Say which robots arrived, the first collision, and what else happened to objects."""
     parts = [_arrivals_message(robots, env.sim_time, parked)]
-    if waiting := _waiting_message(env):
-        parts.append(waiting)
+    parts += filter(None, [_waiting_message(env), appearances_message(env)])
     if hit := _first_collision_message({robot.name for robot in robots}, hits):
         parts.append(hit + _standing_message(env, {robot.name for robot in robots}, hits))
     if out := exits_message(env.scenario, left):
@@ -114,7 +115,11 @@ def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequen
 
 def _waiting_message(env: Env) -> str | None:
     """Say which objects have not started yet at the end because of their ``start_time``; None if there are none."""
-    late = [view for view in env.objects if view.record.start_time and env.simulation.waits(view.row)]
+    late = [
+        view
+        for view in env.objects
+        if view.record.start_time and env.simulation.waits(view.row) and not is_absent(env, view)
+    ]
     if not late:
         return None
     first = min(view.record.start_time for view in late)
@@ -196,7 +201,7 @@ def first_collision(names: Collection[str], events: Sequence[Event]) -> Event | 
 
 
 def _standing_message(env: Env, names: set[str], hits: Sequence[Event]) -> str:
-    """Say who has stood since the first collision, which stops what touches; empty if nobody has."""
+    """Say who has stood still since the first collision stopped them; empty if nobody has."""
     first, rows = first_collision(names, hits), {record.name: k for k, record in enumerate(env.scenario.objects)}
     pair = [] if first is None else [rows[name] for name in (first.object, str(first.partner)) if name in rows]
     held = [
@@ -204,7 +209,13 @@ def _standing_message(env: Env, names: set[str], hits: Sequence[Event]) -> str:
         for row in pair
         if env.simulation.stopped[row] and not env.simulation.arrived[row] and not env.scenario.objects[row].static
     ]
-    return "" if not held else ", both stand since" if len(held) == 2 else f", {quoted(held[0])} stands since"
+    return (
+        ""
+        if not held
+        else ", and both have stood still since"
+        if len(held) == 2
+        else f", and {quoted(held[0])} has stood still since"
+    )
 
 
 def _first_collision_message(names: set[str], events: Sequence[Event]) -> str | None:
@@ -226,6 +237,8 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
     if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < standing:
         return f"stands still {place}: there is no path to it"
+    if is_absent(env, view):
+        return f"is not in the world yet, {place} ({absence(env, view)})"
     if env.simulation.waits(view.row):
         start = float(env.simulation.start_step[view.row]) * env.step_time
         when = "it starts at" if record.start_time else "its start is delayed to"
@@ -234,7 +247,9 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
         if circle := _circling_message(env, view, events):
             return f"circles its goal: {circle}"
         if no_progress_since(env.simulation.state.trajectory(view.row)[:, :2], env.step_time, view.max_speed) is None:
-            return f"still moved at {speed:.2g} m/s, {place}"
+            stalled = stalled_step(env, view, events)
+            since = "" if stalled is None else f", hardly nearer than at {seconds(stalled * env.step_time)}"
+            return f"still moved at {speed:.2g} m/s, {place}{since}"
         return f"hardly moves {place}{_obstruction_message(env, view, held)}"
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"

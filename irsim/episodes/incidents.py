@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
-from irsim.common.text import quoted, seconds
+from irsim.common.text import metres, quoted, seconds
 from irsim.metrics.roles import HUMAN, kinds_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.simulation.events import Event
@@ -77,7 +77,7 @@ def jumps_message(jumps: dict[str, Event], nearest: Mapping[str, float]) -> str 
     first, others = next(iter(jumps.values())), len(jumps) - 1
     more = f" and {others} more after it" if others else ""
     near = nearest.get(first.object)
-    close = "" if near is None else f", at no step nearer than {near:.3g} m"
+    close = "" if near is None else f", at no step nearer than {metres(near)}"
     return (
         f"{quoted(first.object)} jumped over its goal at {seconds(first.time)}{close}{more} "
         f"(raise goal_threshold{' above that' if close else ''} or lower step_time)"

@@ -147,6 +147,7 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
         ended = outcomes[view.name]
         goal = None if view.name in parked else view.goal
         arrival = arrivals.get(view.name)
+        place = (view.init_state if env.simulation.appeared[view.row] < 0 else view.state)[:3, 0]
         robots.append(
             RobotResult(
                 name=view.name,
@@ -155,12 +156,12 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
                 collision_count=counts[view.name],
                 infeasible_steps=int(env.simulation.infeasible[view.row]) or None,
                 path_length=_path_length(env, view.row),
-                distance_to_goal=None if goal is None else math.dist(goal[:2, 0], view.position[:, 0]),
+                distance_to_goal=None if goal is None else math.dist(goal[:2, 0], place[:2]),
                 min_clearance=None if approach is None else approach.distance,
                 nearest=None if approach is None else approach.partner,
                 goal_visible_ratio=visible.get(view.name),
                 **watched[view.name],
-                pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
+                pose=(float(place[0]), float(place[1]), float(place[2])),
             )
         )
     return robots

@@ -29,12 +29,19 @@ __all__ = [
     "is_moving_obstacle",
     "jam_message",
     "no_progress_since",
+    "stalled_since",
 ]
 
 _WINDOW = 5.0
 """Time [s] in which an object that makes progress moves by at least ``_MIN_MOVE``."""
 _MIN_MOVE = 0.1
 """Least movement [m] in the window that counts as progress; very slow objects need half of what they could move."""
+_STALL_SHARE = 0.1
+"""Share of what its top speed allows by which an object that makes progress comes nearer to its goal in the window."""
+_CREEP_SHARE = 0.25
+"""Share of what its top speed allows below which an object without progress creeps."""
+_TO_AND_FRO_SHARE = 0.5
+"""Share of the way driven in the window below which the net movement means driving to and fro."""
 _MAX_OBSTRUCTION_DISTANCE = 0.5
 """Distance [m] up to which an object obstructs one that makes no progress."""
 _MAX_JAM_DISTANCE = 2.0
@@ -142,6 +149,35 @@ def no_progress_since(places: NDArray[np.float64], step_time: float, max_speed: 
     far = np.flatnonzero(np.hypot(*(places - places[-1]).T) >= min_move)
     since = int(far[-1]) + 1 if far.size else 0
     return None if len(places) - 1 - since < max(1, round(_WINDOW / step_time)) else since
+
+
+def stalled_since(
+    places: NDArray[np.float64], goal: NDArray[np.float64], step_time: float, max_speed: float
+) -> int | None:
+    """First row from which an object creeps or drives to and fro, hardly nearer to its goal, up to the end; else None.
+
+    An object on a detour is fast and gets somewhere, so it is not stalled.
+
+    Args:
+        places: (T, 2) positions of the object [m] since it had its present goal.
+        goal: (2,) present goal [m].
+        step_time: Time between two rows [s].
+        max_speed: Top speed of the object [m/s].
+    """
+    window = max(1, round(_WINDOW / step_time))
+    if len(places) <= window or not 0 < max_speed < math.inf:
+        return None
+    possible = max_speed * window * step_time
+    nearest = np.minimum.accumulate(np.hypot(*(places - goal).T))
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
+    gained, driven = nearest[:-window] - nearest[window:], way[window:] - way[:-window]
+    moved = np.hypot(*(places[window:] - places[:-window]).T)
+    lost = (driven < _CREEP_SHARE * possible) | (moved < _TO_AND_FRO_SHARE * driven)
+    stalled = lost & (gained < _STALL_SHARE * possible)
+    if not stalled[-1]:
+        return None
+    ended = np.flatnonzero(~stalled)
+    return int(ended[-1]) + 1 if ended.size else 0
 
 
 def find_obstruction(

@@ -37,6 +37,7 @@ from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
 from irsim.lookup.small_examples import BETTER, small_example
 from irsim.lookup.suites import suite_answer, suite_key_answer, suite_names, suites_answer
 from irsim.lookup.synonyms import named
+from irsim.lookup.tasks import task_answer
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
 
@@ -92,6 +93,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return suite_answer(topic.strip())
     if words[:1] == ["suites"] and (found_key := suite_key_answer(words[1:])) is not None:
         return found_key
+    if words[:1] in (["task"], ["tasks"]) and (found_task := task_answer(words[1:])) is not None:
+        return found_task
     if topic.strip() in DIFFERENCES:
         return difference_answer(topic.strip())
     schema = json_schema() if schema is None else schema

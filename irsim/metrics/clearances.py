@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -100,14 +101,7 @@ def clearance(
     records = simulation.scenario.objects
     poses = trace if isinstance(trace, np.ndarray) else trace.pose
     robots = [index for index, record in enumerate(records) if record.role == "robot"]
-    distance, partner = core.clearances(
-        simulation.world,
-        simulation.state,
-        world,
-        np.ascontiguousarray(poses, dtype=np.float64),
-        robots,
-        kinds_of(records),
-    )
+    distance, partner = _clearances(simulation, world, poses, robots, kinds_of(records))
     names = tuple(record.name for record in records)
     return Clearance(distance, partner, np.asarray(robots, dtype=np.int64), names)
 
@@ -124,8 +118,7 @@ def static_distance(poses: NDArray[np.float64], simulation: Simulation, objects:
     company[company != STATIC] = IGNORED
     if not len(objects) or (company == IGNORED).all():
         return np.full((len(poses), len(objects)), np.nan)
-    poses = np.ascontiguousarray(poses, dtype=np.float64)
-    distance, _ = core.clearances(simulation.world, simulation.state, 0, poses, list(objects), company)
+    distance, _ = _clearances(simulation, 0, poses, list(objects), company)
     return distance[:, :, STATIC]
 
 
@@ -169,7 +162,7 @@ def approaches(
     for index in objects:
         company, mine = kinds_of(records), list[Approach]()
         for _ in range(rounds):
-            distance, partner = core.clearances(simulation.world, simulation.state, 0, poses, [index], company)
+            distance, partner = _clearances(simulation, 0, poses, [index], company)
             known = len(mine)
             for kind, table in enumerate(distance[:, 0].T):
                 if np.isfinite(table).any():
@@ -197,8 +190,53 @@ def least(
     """
     records = simulation.scenario.objects
     company = kinds_of(records)
-    found = core.least_clearances(simulation.world, simulation.state, world, poses, robots, company, ends)
-    return [
-        None if partner < 0 else Approach(row, distance, records[partner].name, KINDS[company[partner]])
-        for distance, partner, row in zip(*(column.tolist() for column in found), strict=True)
-    ]
+    best: list[Approach | None] = [None] * len(robots)
+    for rows, absent in _stretches(poses):
+        present = [place for place, robot in enumerate(robots) if not absent[robot] and ends[place] > rows.start]
+        found = core.least_clearances(
+            simulation.world,
+            simulation.state,
+            world,
+            poses[rows],
+            [robots[place] for place in present],
+            np.where(absent, IGNORED, company).astype(company.dtype),
+            [ends[place] - rows.start for place in present],
+        )
+        for place, distance, partner, row in zip(present, *(column.tolist() for column in found), strict=True):
+            before = best[place]
+            if partner >= 0 and (before is None or distance < before.distance):
+                best[place] = Approach(rows.start + row, distance, records[partner].name, KINDS[company[partner]])
+    return best
+
+
+def _stretches(poses: NDArray[np.float64]) -> Iterator[tuple[slice, NDArray[np.bool_]]]:
+    """Rows in which the same objects are absent, with NaN for their positions, and which (N,) objects these are."""
+    absent = np.isnan(poses[:, :, 0])
+    changes = np.flatnonzero((absent[1:] != absent[:-1]).any(axis=1)) + 1
+    for begin, end in itertools.pairwise([0, *changes.tolist(), len(poses)]):
+        yield slice(begin, end), absent[begin] if end > begin else np.zeros(poses.shape[1], dtype=bool)
+
+
+def _clearances(
+    simulation: Simulation, world: int, poses: NDArray[np.float64], objects: list[int], company: NDArray[np.uint8]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """(T, M, 3) distances of M objects to the nearest object of each kind, NaN without one, and which that is, or -1.
+
+    Args:
+        simulation: The simulation with the scene of the poses.
+        world: Index of one of its worlds.
+        poses: (T, N, 3) poses of all objects, NaN before an object came into the world.
+        objects: Indices of the M objects.
+        company: (N,) kind of each object.
+    """
+    poses = np.ascontiguousarray(poses, dtype=np.float64)
+    distances, partners = [], []
+    for rows, absent in _stretches(poses):
+        kinds = np.where(absent, IGNORED, company).astype(company.dtype)
+        distance, partner = core.clearances(simulation.world, simulation.state, world, poses[rows], objects, kinds)
+        missing = absent[objects]
+        if missing.any():
+            distance[:, missing], partner[:, missing] = np.nan, -1
+        distances.append(distance)
+        partners.append(partner)
+    return (distances[0], partners[0]) if len(distances) == 1 else (np.concatenate(distances), np.concatenate(partners))

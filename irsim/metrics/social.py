@@ -68,10 +68,13 @@ def social_metrics(track: Track) -> dict[str, float]:
         on_it, by_it = social_forces(
             track.position[1:], track.velocity, track.others[1:, :, :2], steps / track.step_time
         )
+        absent = np.isnan(steps).any(axis=2)
+        on_it[absent] = by_it[absent] = 0.0
         robot = float(np.linalg.norm(on_it.sum(axis=1), axis=1).sum() * track.step_time)
         agents = float(np.linalg.norm(by_it, axis=2).sum() * track.step_time)
         found |= {"social_force_robot": robot, "social_force_agents": agents, "social_work": robot + agents}
-        found["pedestrian_velocity_avg"] = float(np.linalg.norm(steps, axis=2).mean() / track.step_time)
+        if not absent.all():
+            found["pedestrian_velocity_avg"] = float(np.linalg.norm(steps[~absent], axis=1).mean() / track.step_time)
     return found
 
 

@@ -32,9 +32,9 @@ class Track:
     Attributes:
         name: Name of the robot.
         index: Index of the robot among the objects.
-        first: Step of the first row.
+        first: Step of the first row, in which it came into the world.
         step_time: Period [s].
-        pose: (K, 3) x, y [m], heading [rad], world frame; row 0 is the start.
+        pose: (K, 3) x, y [m], heading [rad], world frame; row 0 is the start. NaN if it never came into the world.
         goal: (K, 3) present goal; NaN without one.
         collided: (K,) whether the robot touches an object that blocks it.
         stopped: Whether a contact keeps it from moving at the last row.
@@ -44,7 +44,7 @@ class Track:
         control: (K - 1, C) controls executed in each step.
         limits: (C,) greatest magnitude of each control.
         outside: (K,) whether its position is outside the world.
-        others: (K, M, 3) poses of the humans.
+        others: (K, M, 3) poses of the humans; NaN before they came into the world.
         others_static: (K, M) distance of each human to the nearest static object [m].
         people: Names of the humans.
         groups: Members of each social group, as columns of ``others``.
@@ -164,7 +164,10 @@ def tracks(
     for place, robot in enumerate(distances.robots.tolist()):
         name = trace.names[robot]
         arrival = arrivals[name].step if name in arrivals else None
-        rows = slice(0, len(trace) if arrival is None else arrival - first + 1)
+        end = len(trace) if arrival is None else arrival - first + 1
+        there = np.flatnonzero(~np.isnan(trace.pose[:end, robot, 0]))
+        begin = int(there[0]) if len(there) else end - 1  # it is measured from when it came into the world
+        rows = slice(begin, end)
         hits = []
         for event in events:
             if is_collision_of(event, name, passable) and (arrival is None or event.step <= arrival):
@@ -180,7 +183,7 @@ def tracks(
             Track(
                 name=name,
                 index=robot,
-                first=first,
+                first=first + begin,
                 step_time=trace.step_time,
                 pose=trace.pose[rows, robot],
                 goal=trace.goal[rows, robot],

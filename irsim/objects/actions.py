@@ -90,7 +90,7 @@ def assign_actions(
         if not isinstance(action, Mapping):
             raise TypeError(f"action must be a list, tuple, ndarray or mapping, got {type(action).__name__}")
         pairs = [(_find(objects, key), value) for key, value in action.items()]
-    elif action_id is None and _is_one(action):
+    elif (one := _is_one(action)) and action_id is None:
         pairs = [(view, action) for view in objects[:1]]
     else:
         several_ids = isinstance(action_id, (list, tuple, np.ndarray))
@@ -100,7 +100,7 @@ def assign_actions(
             targets = list(objects)
         else:
             targets = list(objects[objects.index(_find(objects, action_id)) :])
-        if _is_one(action):
+        if one:
             pairs = [(view, action) for view in (targets if several_ids else targets[:1])]
         else:
             if len(action) > len(targets):

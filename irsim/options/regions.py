@@ -9,10 +9,18 @@ from pydantic import BeforeValidator, Field
 from irsim.options.base import Options, problem
 from irsim.options.vectors import Component, Point, is_vector, vector
 
-__all__ = ["OUTLINES", "Corners", "Points", "Rectangle", "Region", "rectangle_corners"]
+__all__ = ["OUTLINES", "OUTLINE_ALIASES", "Corners", "Points", "Rectangle", "Region", "rectangle_corners"]
 
 OUTLINES = ("polygon", "rectangle")
 """Keys that say where a region is; each region has exactly one of them."""
+OUTLINE_ALIASES = {
+    "vertices": "polygon",
+    "corners": "polygon",
+    "outline": "polygon",
+    "box": "rectangle",
+    "rect": "rectangle",
+}
+"""What these keys are also called, in regions and in other areas."""
 
 
 def _check_points(value: Any) -> Any:
@@ -43,14 +51,7 @@ def rectangle_corners(rectangle: list[float]) -> list[list[float]]:
 class Region(Options):
     """An area of the world. Give either `polygon` or `rectangle`."""
 
-    also_called: ClassVar[dict[str, str]] = {
-        "vertices": "polygon",
-        "corners": "polygon",
-        "outline": "polygon",
-        "points": "polygon",
-        "box": "rectangle",
-        "rect": "rectangle",
-    }
+    also_called: ClassVar[dict[str, str]] = {**OUTLINE_ALIASES, "points": "polygon"}
     schema_extra: ClassVar[dict[str, Any]] = {
         "oneOf": [{"required": [key], "properties": {key: {"not": {"type": "null"}}}} for key in OUTLINES],
         "examples": [{"rectangle": [0, 4, 10, 6]}, {"polygon": [[0, 0], [6, 0], [6, 3], [0, 3]]}],

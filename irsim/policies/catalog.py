@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any
 
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.diagnostic import nearest, suggestion
 from irsim.diagnostics.errors import CodedError, PolicyError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.policies.behavior import BehaviorPolicy
@@ -155,6 +156,8 @@ def _unknown(name: str, root: str | Path | None) -> UnknownPolicyError:
 
 def _made(name: str, maker: Callable[..., Any], options: Mapping[str, Any]) -> Policy:
     """What a maker makes of options."""
+    if (unknown := _unknown_option(name, maker, options)) is not None:
+        raise unknown
     try:
         made = maker(**options)
     except CodedError:
@@ -166,6 +169,22 @@ def _made(name: str, maker: Callable[..., Any], options: Mapping[str, Any]) -> P
         what = f"{clean(name)!r} made {as_given(made)}, which is no policy"
         raise PolicyError("policy-failed", what, "return an object of a class derived from irsim.Policy")
     return made
+
+
+def _unknown_option(name: str, maker: Callable[..., Any], options: Mapping[str, Any]) -> PolicyError | None:
+    """The error for the first option that a policy does not have; None if it may have all of them."""
+    try:
+        parameters = inspect.signature(maker).parameters.values()
+    except (TypeError, ValueError):
+        return None  # calling the maker will tell
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters):
+        return None
+    known = [parameter.name for parameter in parameters if parameter.kind is not parameter.VAR_POSITIONAL]
+    key = next((key for key in options if key not in known), None)
+    if key is None:
+        return None
+    fix = suggestion(key, known, f"its options are {', '.join(known)}" if known else "leave it out")
+    return PolicyError("policy-failed", f"policy {clean(name)!r} has no option {clean(key)!r}", fix)
 
 
 def _named(policy: Policy, text: str) -> Policy:

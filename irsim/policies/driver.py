@@ -146,7 +146,7 @@ class PolicyDriver:
         self._begin_episodes(simulation)
         rows = self._rows(simulation)
         idle = (simulation.stopped[rows] | simulation.given[rows]).astype(bool)
-        idle |= simulation.count[:, None] < simulation.start_step[rows]
+        idle |= (simulation.count[:, None] < simulation.start_step[rows]) | (simulation.appeared[rows] < 0)
         self._active = ~idle
         self._next[idle] = 0  # such a robot decides as soon as it can
         simulation.given[rows[self._active]] = 1

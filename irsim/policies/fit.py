@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from irsim.policies.policy import Policy
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["check_declaration", "check_fit", "drive_of"]
+__all__ = ["check_declaration", "check_fit", "drive_of", "lidar_problem"]
 
 
 def drive_of(simulation: Simulation, robot: int) -> str:
@@ -64,32 +64,38 @@ def check_fit(policy: Policy, simulation: Simulation, robots: Sequence[int]) -> 
                 f"controls {known}, but {name!r} has the drive {drive}",
                 f"give {name!r} kinematics {{name: {sorted(policy.drives)[0]}}}, or choose another policy",
             )
-    if policy.needs.scan:
-        _check_lidars(policy, simulation, robots)
+    problem = lidar_problem(policy.needs, simulation, robots)
+    if problem is not None:
+        raise _mismatch(policy, *problem)
 
 
-def _check_lidars(policy: Policy, simulation: Simulation, robots: Sequence[int]) -> None:
-    count = policy.needs.beams
+def lidar_problem(needs: Needs, simulation: Simulation, robots: Sequence[int]) -> tuple[str, str] | None:
+    """What is wrong with the lidars of robots as the second half of a sentence, and what mends it; None if nothing is.
+
+    Args:
+        needs: What is to be observed.
+        simulation: The simulation.
+        robots: Indices of the robots within a world.
+    """
+    if not needs.scan:
+        return None
+    count = needs.beams
     wanted = "sensors: [{name: lidar2d" + (f", number: {count}" if count else "") + "}]"
     first: tuple[str, Beams] | None = None
     for robot in robots:
         name, beams = simulation.scenario.objects[robot].name, beams_of(simulation, robot)
         if beams is None:
-            raise _mismatch(policy, f"needs the scan of a lidar, but {name!r} has none", f"give {name!r} {wanted}")
+            return f"needs the scan of a lidar, but {name!r} has none", f"give {name!r} {wanted}"
         if count is not None and len(beams.angles) != count:
-            raise _mismatch(
-                policy,
-                f"was made for {count} beams, but the first lidar of {name!r} has {len(beams.angles)}",
-                f"write number: {count} in the lidar of {name!r}",
-            )
+            what = f"was made for {count} beams, but the first lidar of {name!r} has {len(beams.angles)}"
+            return what, f"write number: {count} in the lidar of {name!r}"
         if first is not None and not first[1].equal(beams):
-            raise _mismatch(
-                policy,
+            what = (
                 f"needs equal lidars, but those of {first[0]!r} and {name!r} differ in number, angle_range, offset or "
-                "range_max",
-                f"give {name!r} the lidar of {first[0]!r}",
             )
+            return what + "range_max", f"give {name!r} the lidar of {first[0]!r}"
         first = first or (name, beams)
+    return None
 
 
 def _mismatch(policy: Policy, message: str, fix: str) -> PolicyError:

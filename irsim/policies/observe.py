@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +11,6 @@ import irsim._core as core
 from irsim.options.registry import SENSORS
 from irsim.policies.grids import Grids
 from irsim.policies.observations import Neighbors, Observations, Scan
-from irsim.simulation.build import padded, speed_controls
 
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
@@ -20,8 +18,6 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Beams", "Observer", "beams_of"]
-
-_CONTROLS = 3
 
 
 class Beams:
@@ -58,23 +54,21 @@ def _is_native(sensor: Any) -> bool:
 
 
 class Observer:
-    """Observes robots of a simulation; made anew when objects are added, removed or changed.
+    """Observes robots of a simulation; made again when objects are added, removed or changed.
 
     Args:
         simulation: The simulation.
         needs: What is observed besides the robots themselves.
         robots: (n,) indices, within a world, of the robots that may be observed. For scans all have equal lidars.
+
+    Attributes:
+        looking: What is observed, for the core.
     """
 
     def __init__(self, simulation: Simulation, needs: Needs, robots: NDArray[np.int64]) -> None:
         self._simulation, self._needs = simulation, needs
         records = simulation.scenario.objects
         self._threshold = np.array([record.goal_threshold for record in records], dtype=np.float64)
-        self._low = np.array([padded(record.vel_min) for record in records], dtype=np.float64).reshape(-1, _CONTROLS)
-        self._high = np.array([padded(record.vel_max) for record in records], dtype=np.float64).reshape(-1, _CONTROLS)
-        self._paced = np.zeros((len(records), _CONTROLS), dtype=bool)
-        for index in robots.tolist():
-            self._paced[index, [c for c in speed_controls(records[index]) if c < _CONTROLS]] = True
         self._steered = np.array([bool(getattr(record.kinematics, "steered", False)) for record in records])
         self._first_beam = np.zeros(len(records), dtype=np.int64)
         self._beams: Beams | None = None
@@ -82,7 +76,20 @@ class Observer:
             for index in robots.tolist():
                 self._beams = beams_of(simulation, index)
                 self._first_beam[index] = 0 if self._beams is None else self._beams.first
+        self.looking = self._look()
         self._grids = Grids(simulation, needs.map_resolution) if needs.map else None
+
+    def _look(self) -> core.Looking:
+        needs, beams = self._needs, self._beams
+        return core.Looking(
+            neighbors=needs.neighbors,
+            reach=needs.neighbor_range,
+            statics=needs.static_neighbors,
+            steered=self._steered.tolist(),
+            first_beam=self._first_beam.tolist(),
+            beams=0 if beams is None else len(beams.angles),
+            range_max=0.0 if beams is None else beams.range_max,
+        )
 
     def observe(self, rows: NDArray[np.int64], first: NDArray[np.bool_], slot: NDArray[np.int64]) -> Observations:
         """What these robots observe now.
@@ -95,7 +102,6 @@ class Observer:
         simulation, needs = self._simulation, self._needs
         world, robot = np.divmod(rows, simulation.objects)
         step_time = float(simulation.scenario.world.step_time)
-        pace = np.where(self._paced[robot], simulation.pace[rows, None], 1.0)
         return Observations(
             world=slot,
             robot=simulation.ids[robot].astype(np.int64),
@@ -110,37 +116,20 @@ class Observer:
             goal=simulation.goal[rows],
             goal_threshold=self._threshold[robot],
             radius=simulation.radius[rows],
-            low=self._low[robot] * pace,
-            high=self._high[robot] * pace,
+            low=simulation.state.vel_min[rows],
+            high=simulation.state.vel_max[rows],
             arrived=simulation.arrived[rows].astype(bool),
-            neighbors=self._neighbors(rows, world) if needs.neighbors > 0 else None,
+            neighbors=self._neighbors(rows) if needs.neighbors > 0 else None,
             scan=self._scan(world, robot) if needs.scan else None,
             maps=None if self._grids is None else self._grids.of(world),
         )
 
-    def _neighbors(self, rows: NDArray[np.int64], world: NDArray[np.int64]) -> Neighbors:
-        simulation, needs = self._simulation, self._needs
-        reach = needs.neighbor_range if math.isfinite(needs.neighbor_range) else math.inf
-        index = core.nearest_objects(
-            simulation.world, simulation.state, rows, needs.neighbors, reach, needs.static_neighbors
-        ).astype(np.int64)
-        mask = index >= 0
-        others = np.zeros((len(simulation.pose) + 1, 8))  # the last row stands for no object
-        others[:-1, :3] = core.bounding_circles(simulation.world, simulation.state)
-        others[:-1, 3] = simulation.pose[:, 2]
-        others[:-1, 4:6] = simulation.twist[:, :2]
-        others[:-1, 6] = np.tile(simulation.robots, simulation.copies)
-        others[:-1, 7] = simulation.arrived * others[:-1, 6]
-        found = others.take(np.where(mask, world[:, None] * simulation.objects + index, len(others) - 1), axis=0)
+    def _neighbors(self, rows: NDArray[np.int64]) -> Neighbors:
+        simulation = self._simulation
+        found = core.find_neighbors(simulation.world, simulation.state, self.looking, rows)
+        mask, index, position, heading, velocity, radius, arrived, robot = found
         return Neighbors(
-            mask=mask,
-            index=index,
-            position=found[..., :2],
-            heading=found[..., 3],
-            velocity=found[..., 4:6],
-            radius=found[..., 2],
-            arrived=found[..., 7] > 0.0,
-            robot=found[..., 6] > 0.0,
+            mask.view(bool), index, position, heading, velocity, radius, arrived.view(bool), robot.view(bool)
         )
 
     def _scan(self, world: NDArray[np.int64], robot: NDArray[np.int64]) -> Scan:

@@ -107,6 +107,8 @@ def _direction_arrows(scene: Scene, objects: dict[int, ObjectView]) -> list[Mark
         if not can_move(view) or view.id in with_arrow or plot.show_arrow is not None:
             continue
         x, y = view.state[:2, 0].tolist()
+        if math.isnan(x):  # it is not in the world yet
+            continue
         dx, dy = view.velocity_xy[:2, 0].tolist()
         if math.hypot(dx, dy) < MIN_SPEED_M_S:
             if view.goal is None or view.arrive:

@@ -96,7 +96,8 @@ def legible_scene(
     """Return the scene of a snapshot, and the images in it; see :func:`render_scene` for the arguments."""
     options, source = simulation.scenario.world.plot, simulation.scenario.source
     pictures = Pictures(Path(source).parent if source else None)
-    builder = SceneBuilder(simulation, world=world, has_picture=pictures.has)
+    at_start = int(simulation.count[world]) == 0
+    builder = SceneBuilder(simulation, world=world, has_picture=pictures.has, ghosts=at_start)
     chosen = {"show_text": True, "show_goal": True, "show_goal_text": True, "show_trajectory": True} if labels else {}
     scene = builder.build(
         viewpoint=options.viewpoint if viewpoint is None else viewpoint, overrides={**chosen, **(overrides or {})}

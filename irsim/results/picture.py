@@ -8,6 +8,7 @@ from pydantic import Field
 
 from irsim.results.base import Result
 from irsim.results.findings import Finding
+from irsim.results.scene import SceneTable
 
 __all__ = ["MovingPose", "RenderResult", "RobotPlan", "RobotPose", "SnapshotResult"]
 
@@ -29,6 +30,12 @@ class RenderResult(Result):
     """Files written."""
     warnings: list[Finding]
     """Warnings about the scenario."""
+    ended: int | None = None
+    """Step in which the episode had ended, if a picture shows a later one."""
+    table: SceneTable
+    """What the scenario becomes, one row for each entry."""
+    labels: dict[str, str] = {}
+    """Label in the picture of each robot whose name is not drawn."""
     reproduce: str
     """Command that reproduces this result."""
 
@@ -43,7 +50,7 @@ class RobotPose(Result):
     """x, y [m] and heading [rad]."""
     goal: tuple[float, float] | None
     """Present goal [m]; None without one."""
-    status: Literal["under way", "arrived", "collided"]
+    status: Literal["under way", "arrived", "collided", "not there yet"]
     """Its state at that moment."""
 
 

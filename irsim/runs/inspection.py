@@ -110,8 +110,15 @@ def inspect_run(
         from_step=from_step,
         to_step=last,
         next_cursor=str(shown) if shown < found.total else None,
-        notes=opened.notes,
+        notes=[*opened.notes, *_beyond(opened, end, to_step)],
     )
+
+
+def _beyond(run: Run, end: int, to_step: int | None) -> list[str]:
+    """A note if steps were asked for that come after the end of a run."""
+    if to_step is None or to_step <= end:
+        return []
+    return [f"step {to_step} is beyond the end of the episode: {run.extent}"]
 
 
 # request --------------------------------------------------------------------------------------------------------------
@@ -178,6 +185,8 @@ def _cells(asked: Question, field: Field, row: int, index: int, controls: int) -
     if field == "goal":
         return [None, None] if no_goal else [rounded(goal_x), rounded(goal_y)]
     if field == "status":
+        if math.isnan(x):
+            return ["absent"]
         flags = (("arrived", trace.arrived), ("collided", trace.collided), ("stopped", trace.stopped))
         return [" ".join(word for word, flag in flags if flag[row, index]) or ("" if no_goal else "under way")]
     if field == "nearest_hit":
@@ -244,8 +253,9 @@ def _speeds_of_robots(asked: Question) -> Table:
         first = int(np.argmax(arrived)) if arrived.any() else len(arrived)
         last = asked.first + first if 0 < first < len(arrived) else asked.last
         speeds = _speeds(trace, index, asked.first, last)
-        way = float(speeds[1:].sum() * trace.step_time) if len(speeds) > 1 else 0.0
         begin, length = _longest_stop(speeds[:first])
+        speeds = np.nan_to_num(speeds)  # before its appear_time it has no position
+        way = float(speeds[1:].sum() * trace.step_time) if len(speeds) > 1 else 0.0
         stand: list[Cell] = [rounded(length * trace.step_time), None]
         if length:
             stand[1] = int(trace.step[asked.first + begin])
@@ -293,6 +303,9 @@ def _least_forward(asked: Question, index: int, last: int) -> Cell:
         return None
     moved, heading = np.diff(pose[:, :2], axis=0), pose[:-1, 2]
     forward = moved[:, 0] * np.cos(heading) + moved[:, 1] * np.sin(heading)
+    forward = forward[~np.isnan(forward)]
+    if not forward.size:
+        return None
     return rounded(float(forward.min()) / asked.trace.step_time)
 
 

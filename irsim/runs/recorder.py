@@ -331,7 +331,7 @@ def recording(
 def _log_of(simulation: Simulation, scans: bool) -> tuple[core.Log, list[int]]:
     """A log of the objects that can move, and their rows; with Python behaviors or drives any object can."""
     records, any_can_move = simulation.scenario.objects, simulation.in_python
-    movers = [row for row, record in enumerate(records) if any_can_move or not record.static]
+    movers = [row for row, record in enumerate(records) if any_can_move or not record.static or record.appear_time]
     columns = max((records[row].vel_dim for row in movers), default=0)
     return core.Log(simulation.world, movers, min(3, columns), scans), movers
 

@@ -1,20 +1,25 @@
 """Which environment was used last: the names of ``irsim.config`` and ``irsim.util.random`` follow it.
 
-Nothing in the engine reads it; it exists for scripts that use those names (difference D8).
+Nothing in the engine reads it; it exists for scripts that use those names (difference D8). Environments made without a
+seed take the seeds that ``irsim.util.random.set_seed`` determined, if a script has called it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 from weakref import ReferenceType, ref
 
 import numpy as np
 
-__all__ = ["current_rng", "last_used", "set_current_rng", "use"]
+__all__ = ["current_rng", "last_used", "next_seed", "seed_next", "set_current_rng", "use"]
 
 _LAST: list[ReferenceType[Any]] = []
 _OUTSIDE: list[np.random.Generator] = []
 """The generator of scripts without an environment; made on first use, as NumPy's generators take long to import."""
+
+_SEEDS: list[Iterator[int]] = []
+"""Seeds of the next environments that are made without one; empty unless a script has determined them."""
 
 
 def use(env: Any) -> None:
@@ -44,3 +49,20 @@ def set_current_rng(generator: np.random.Generator) -> None:
         _OUTSIDE[:] = [generator]
     else:
         env.simulation.set_rng(generator)
+
+
+def seed_next(seed: int) -> None:
+    """Determine the seeds of environments that are made without one: the first has this seed, others follow from it."""
+
+    def seeds() -> Iterator[int]:
+        yield seed
+        rng = np.random.default_rng(seed)
+        while True:
+            yield int(rng.integers(2**63))
+
+    _SEEDS[:] = [seeds()]
+
+
+def next_seed() -> int | None:
+    """The seed of an environment that is made without one; None unless :func:`seed_next` has determined it."""
+    return next(_SEEDS[0]) if _SEEDS else None

@@ -190,7 +190,8 @@ def build_object(
         restitution=record.restitution,
         tau=record.drive_tau,
         driven=record.kinematics is not None,
-        start_step=math.ceil(record.start_time / step_time - _ROUNDING),
+        start_step=math.ceil(max(record.start_time, record.appear_time) / step_time - _ROUNDING),
+        appear_step=math.ceil(record.appear_time / step_time - _ROUNDING),
     )
 
 

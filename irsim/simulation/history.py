@@ -22,18 +22,22 @@ def past_poses(simulation: Simulation, row: int) -> Floats | None:
         row: Row of the object.
 
     Returns:
-        x, y [m] and heading [rad], world frame; None if the object came later, or if a script has interfered with its
-        history.
+        x, y [m] and heading [rad], world frame, NaN before its ``appear_time``; None if a script added the object, or
+        has interfered with its history.
     """
     state, steps = simulation.state, int(simulation.count[0])
     start = state.initial_state(row)[None, :3]
+    appeared = int(simulation.appeared[row])
+    begin = appeared if appeared >= 0 else steps + 1  # it records no state before
+    absent = np.array([[np.nan, np.nan, start[0, 2]]])
     if simulation.scenario.objects[row].static:
-        return np.repeat(start, steps + 1, axis=0)
+        return np.concatenate([np.repeat(absent, begin, axis=0), np.repeat(start, steps + 1 - begin, axis=0)])
     since, _, stopped = state.standings(row)
     if not len(since) or since[0] != 0:
         return None
     held = np.repeat(stopped.astype(bool), np.diff([*since, steps + 1]))[:-1]  # a stopped object records no state
-    track = np.concatenate([start, state.trajectory(row)[:, :3]])
+    held[: max(0, begin - 1)] = True
+    track = np.concatenate([absent if begin else start, state.trajectory(row)[:, :3]])
     last = np.concatenate([[0], np.cumsum(~held)])
     return track[last] if last[-1] == len(track) - 1 else None
 

@@ -59,7 +59,7 @@ class Simulation:
         arrived, collided, stopped: (R,) flags, uint8.
         goal: (R, 3) present goals; NaN without a goal.
         pace: (R,) factor on the speeds of an object; 1 unless the scenario is perturbed.
-        start_step: (R,) number of steps for which an object stands still at its start; 0 likewise.
+        start_step: (R,) steps for which an object stands still at its start. appeared: -1 while it is not in the world.
         scans: (owner, first beam, number of beams) of each native sensor of a world.
         velocity_slices: (first row, number of rows) of each native sensor in the measured velocities.
         infeasible: (R,) number of steps in which the behavior found no collision-free velocity (`orca`).
@@ -123,7 +123,7 @@ class Simulation:
         self.command, self.given = state.command, state.given
         self.arrived, self.collided, self.stopped = state.arrived, state.collided, state.stopped
         self.goal, self.radius = state.goal, state.radius
-        self.pace, self.start_step = state.pace, state.start_step
+        self.pace, self.start_step, self.appeared = state.pace, state.start_step, state.appeared
         self.infeasible = state.infeasible
         self.ranges, self.hits, self.valid = state.ranges, state.hits, state.valid
         self.count = state.count
@@ -270,8 +270,8 @@ class Simulation:
         return nullcontext() if self.drives is None else self.drives.feeling()
 
     def waits(self, row: int) -> bool:
-        """Return whether a row stands still because its start is delayed."""
-        return bool(self.count[row // self.objects] < self.start_step[row])
+        """Return whether a row stands still because its start is delayed, or is not in the world yet."""
+        return bool(self.count[row // self.objects] < self.start_step[row] or self.appeared[row] < 0)
 
     def stands(self, row: int) -> bool:
         """Return whether a row cannot move now: a collision has stopped it, or its start is delayed."""

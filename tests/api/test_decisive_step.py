@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+import pytest
+
 import irsim
 from irsim.api import snapshot
+from irsim.episodes.stuck import stalled_since
+from irsim.policies import FunctionPolicy
 
 BODY = "kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, behavior: {name: dash}"
 WALKER = "kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: dash}, tags: [pedestrian]"
@@ -25,7 +32,7 @@ def test_the_collision_of_robots_decides_and_not_an_earlier_one_of_obstacles() -
     assert (first.kind, first.object, first.step) == ("collision", "p", 4)
     assert found.outcome == "collision"
     assert found.decisive_step == 48
-    assert "'a' hit 'b' at 4.8 s near (6.00, 3.00), both stand since" in found.summary
+    assert "'a' hit 'b' at 4.8 s near (6.00, 3.00), and both have stood still since" in found.summary
 
 
 def test_success_has_no_decisive_step() -> None:
@@ -80,3 +87,35 @@ def test_a_picture_that_follows_a_viewpoint_says_what_it_shows() -> None:
     assert snapshot(text=followed, draw=False).view == (-5.0, 7.0, 0.0, 6.0)
     assert snapshot(text=followed, region=[0, 0, 4, 4], draw=False).view is None
     assert snapshot(text=TOUCH, draw=False).view is None
+
+
+CREEPER = """
+world: {width: 12, height: 8, time_limit: 40}
+robot: {name: r, kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [2, 4, 0], goal: [10, 4]}
+"""
+
+
+def test_a_robot_that_creeps_without_touching_anything_is_decided_when_it_begins_to_creep() -> None:
+    def creep(seen: Any) -> Any:
+        ahead = np.zeros_like(seen.pose[:, :2])
+        ahead[:, 0] = np.where(seen.pose[:, 0] < 5, 0.8, 0.0)
+        ahead[:, 1] = np.where(seen.pose[:, 0] < 5, 0.0, 0.04)
+        return ahead
+
+    found = irsim.run(text=CREEPER, policy=FunctionPolicy(creep, output="velocity"))
+    assert found.outcome == "timeout"
+    assert found.decisive_step == pytest.approx(34, abs=6)
+    assert "still moved at 0.04 m/s" in str(found.reason)
+    assert "hardly nearer than at 3" in str(found.reason)
+
+
+def test_a_robot_that_goes_to_and_fro_is_decided_too_and_one_on_a_detour_is_not() -> None:
+    time = 0.1 * np.arange(400)
+    fro = np.stack([5 + np.zeros(400), 4 + np.sin(time)], axis=1)
+    there = np.stack([np.linspace(2, 5, 40), np.full(40, 4.0)], axis=1)
+    goal = np.array([10.0, 4.0])
+    since = stalled_since(np.concatenate([there, fro]), goal, 0.1, 1.0)
+    assert since == pytest.approx(40, abs=15)
+    detour = np.stack([np.full(400, 5.0), 4 + time], axis=1)
+    assert stalled_since(np.concatenate([there, detour]), goal, 0.1, 1.0) is None
+    assert stalled_since(there, goal, 0.1, 1.0) is None, "too short"

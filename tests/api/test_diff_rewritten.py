@@ -195,6 +195,7 @@ OTHER: dict[str, Any] = {
     "waypoints": [[4, 4], [5, 5]],
     "velocity": [0.1, 0.1],
     "start_time": 3.0,
+    "appear_time": 4.0,
     "kinematics": {"name": "omni_angular"},
     "shape": {"name": "rectangle", "length": 1, "width": 0.4},
     "behavior": {"name": "dash", "wander": True},

@@ -91,3 +91,37 @@ def test_an_unknown_overlay_names_the_nearest(irsim: Run, room: Path, tmp_path: 
     as_pdf = irsim("render", "room.yaml", "-o", "plan.pdf", "--overlays", "plan")
     assert as_pdf.exit_code == 2
     assert "unknown-format" in as_pdf.output
+
+
+PLACES = """\
+world: {width: 10, height: 10}
+robot: {name: scout, state: [1, 1, 0], goal: [4, 1], kinematics: {name: diff}, shape: {name: circle, radius: 0.2},
+        behavior: {name: dash}}
+"""
+
+
+def test_render_prints_what_the_file_becomes_and_validate_does_when_asked(irsim: Run, tmp_path: Path) -> None:
+    (tmp_path / "places.yaml").write_text(PLACES)
+    line = "- diff, circle r 0.2, dash, vel_max [1, 1]: 'scout' at (1.00, 1.00) heading 0.00 goal (4.00, 1.00)"
+    assert line in irsim("render", "places.yaml", "-o", "places.png").stdout
+    data = parsed(irsim("render", "places.yaml", "-o", "places.png", "--json"))
+    assert data["table"]["rows"][0]["names"] == ["scout"]
+    assert line not in irsim("validate", "places.yaml").stdout
+    assert line in irsim("validate", "places.yaml", "--table").stdout
+    assert irsim("validate", "places.yaml", "--table", "--json").exit_code == 2
+    assert "belongs to scenario files" in irsim("validate", "maps_v1", "--table").output
+
+
+@pytest.mark.parametrize("more", [[], ["--strip", "3"]])
+def test_a_picture_after_the_arrival_says_when_the_episode_ended(irsim: Run, tmp_path: Path, more: list[str]) -> None:
+    (tmp_path / "places.yaml").write_text(PLACES)
+    late = irsim("render", "places.yaml", "-o", "places.png", "--steps", "80", *more)
+    assert "step 80 is beyond the end of the episode, which is step 29" in late.stdout
+    soon = irsim("render", "places.yaml", "-o", "places.png", "--steps", "20", *more)
+    assert "beyond the end" not in soon.stdout
+
+
+def test_a_suite_from_standard_input_is_told_to_come_as_a_file(irsim: Run, tmp_path: Path) -> None:
+    result = irsim("validate", "-", input="suite: mine\nversion: 1\n")
+    assert result.exit_code == 2
+    assert "give the name of its file" in result.output

@@ -109,6 +109,7 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "tau": 0.0,
         "driven": overrides.get("drive", True) is not None,
         "start_step": 0,
+        "appear_step": 0,
         "target_roles": 0,
         "behavior": DASH,
         "grouped": False,

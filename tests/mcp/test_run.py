@@ -247,3 +247,26 @@ async def test_next_after_people_stand_since_a_collision_and_after_what_is_parke
     assert "dry_run" in tried["next"]
     assert still["next"].startswith("Nothing to change")
     assert "dry_run" not in looked["next"]
+
+
+POCKET = """
+world: {{width: 10, height: 6, time_limit: 8}}
+robot:
+  - {{name: caught, state: [1, 3, 0], goal: [9, 3], kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.3}},
+     behavior: {{name: orca, timeHorizon: 3}}, vel_max: [1, 1], vel_min: [-1, -1]}}
+obstacle:
+  - {{shape: {{name: linestring, vertices: [[6, 3.5], [0.5, 3.5], [0.5, 2.5], [6, 2.5]]}}, state: [0, 0, 0]}}
+  - {{state: [8, 3, 0], goal: [{goal}, 3], kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.3}},
+     behavior: {{name: dash}}, vel_max: [2, 2]}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("goal", "said"), [(3, "but it touched nothing, so that did no harm"), (2, "and it did touch something")]
+)
+async def test_steps_without_a_way_to_avoid_everybody_say_whether_that_mattered(
+    empty: Path, goal: float, said: str
+) -> None:
+    async with connected(empty) as client:
+        result = await client.call_tool("run_episode", {"scenario_yaml": POCKET.format(goal=goal), "seed": 0})
+    assert re.search(rf"in \d+ steps no velocity avoided everybody, {said}", text_of(result))

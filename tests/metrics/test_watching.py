@@ -139,7 +139,7 @@ def test_a_run_a_benchmark_and_a_trace_say_the_same() -> None:
     compared = irsim.benchmark(scenario, seeds=1)
     (episode,), (row,) = compared.episodes, compared.rows
     assert {key: episode.metrics[key] for key in KEYS} == {key: found.robots[0][key] for key in KEYS}
-    assert (row.incidents["seen"], compared.incidents) == (1, ["robots were seen in 1 of 1 episodes"])
+    assert (row.incidents["seen"], compared.incidents) == (1, ["robots were seen in 1 of 1 episodes (seed 0)"])
     assert episode.zones == found.zones
     assert {zone: {key: e.mean for key, e in values.items()} for zone, values in row.zones.items()} == found.zones
     assert rows_of([episode], compared.scenarios, compared.behaviors, compared.random)[0].zones == row.zones

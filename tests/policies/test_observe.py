@@ -9,8 +9,9 @@ import numpy as np
 
 from irsim.policies import Needs, Observations
 from irsim.policies.observe import Observer
+from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.simulation.simulation import Simulation
-from tests.policies.scenes import simulation
+from tests.policies.scenes import scenario, simulation
 
 
 def observe(made: Simulation, needs: Needs | None = None, rows: Any = None) -> Observations:
@@ -100,11 +101,13 @@ def test_static_neighbors_are_seen_on_request() -> None:
 
 
 def test_speed_limits_are_those_of_the_scene() -> None:
-    made = simulation({"kinematics": {"name": "diff"}, "vel_max": [1, 2], "vel_min": [-1, -2]}, seeds=(0, 1))
-    made.pace[1] = 0.5
+    robot = scenario({"kinematics": {"name": "diff"}, "vel_max": [1, 2], "vel_min": [-1, -2]})
+    made = Simulation(perturbed(robot, read_perturbations("speed=50%")), [0, 1])
+    pace = made.pace.tolist()
+    assert pace[0] != pace[1] != 1.0
     seen = observe(made)
-    assert seen.high.tolist() == [[1, 2, 0], [0.5, 2, 0]]
-    assert seen.low.tolist() == [[-1, -2, 0], [-0.5, -2, 0]]
+    assert seen.high.tolist() == [[one, 2, 0] for one in pace]
+    assert seen.low.tolist() == [[-one, -2, 0] for one in pace]
 
 
 def test_scans_are_those_of_the_first_lidar_in_the_frame_of_the_robot() -> None:

@@ -77,6 +77,19 @@ def test_the_name_of_a_compound_stands_on_its_edge(make: Make) -> None:
     assert 6.75 <= x <= 9.25
 
 
+def test_names_of_turned_rectangles_and_polygons_stand_at_the_thing_in_figures_too(make: Make) -> None:
+    env = make("""
+world: {width: 20, height: 10}
+obstacle:
+  - {name: turned, shape: {name: rectangle, length: 8, width: 0.4}, state: [5, 5, 1.5708]}
+  - {name: away, shape: {name: polygon, vertices: [[12, 6], [15, 6], [15, 8]]}, state: [0, 0, 0]}
+""")
+    names = labels_of(env._env_plot._builder.build(overrides={"show_text": True}))
+    assert (names["turned"].x, names["turned"].y) == pytest.approx((4.8, 9.1), abs=1e-3)
+    assert (names["away"].x, names["away"].y) == pytest.approx((12, 8.1))
+    assert names["away"].anchor == pytest.approx((13.5, 7))
+
+
 def test_a_position_that_the_user_gave_holds_for_lines_too(make: Make) -> None:
     env = make(SCENE)
     plain = env._env_plot._builder.build(overrides={"show_text": True, "text_position": [1, 1]})

@@ -135,6 +135,8 @@ def test_every_template(workspace: Path, name: str) -> None:
 
     run = recorded(load(name).text, steps=5)
     head, columns = unpacked(packing.pack_run(run).data)
-    np.testing.assert_allclose(poses_of(head, columns)[:, :, :2], run.trace().pose[:, :, :2], atol=2e-3)
+    recorded_poses = run.trace().pose[:, :, :2]
+    there = ~np.isnan(recorded_poses)  # the page knows from which step on an object is there
+    np.testing.assert_allclose(poses_of(head, columns)[:, :, :2][there], recorded_poses[there], atol=2e-3)
     if head["grid"] is not None:
         assert int(columns["cells"].sum()) == int(np.prod(head["grid"]["cells"]))

@@ -326,3 +326,10 @@ def test_all_objects_at_once(pair: Run) -> None:
     assert [row[2] for row in rows.rows[:3]] == ["left", "right", "walker"]
     with pytest.raises(RunError, match="did you mean 'left'"):
         inspect_run(pair, robot="right, lefd")
+
+
+def test_steps_beyond_the_end_of_the_episode_are_noted(pair: Run) -> None:
+    assert not inspect_run(pair, to_step=pair.last_step).notes
+    [note] = inspect_run(pair, to_step=pair.last_step + 50).notes
+    assert note.startswith(f"step {pair.last_step + 50} is beyond the end of the episode")
+    assert f"0 to {pair.last_step}" in note

@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.simulation.active_env import current_rng, last_used, set_current_rng
+from irsim.simulation.active_env import current_rng, last_used, seed_next, set_current_rng
 from irsim.simulation.random_streams import check_seed
 
 __all__ = ["random_uniform", "rng", "set_seed"]
 
+_BEFORE_FIRST = 2**32 - 1
+"""Number of an episode of noise after which the next reset starts with number 0."""
 MAX_ATTEMPTS = 1000
 """Number of draws per point after which the distance to other points is ignored."""
 
@@ -28,18 +30,24 @@ rng: Any = _Follower()
 
 
 def set_seed(seed: int | None = None) -> None:
-    """Restart ``rng`` with a seed, and let the next ``env.reset(random=True)`` start the first scene of this seed.
+    """Restart ``rng`` with a seed, which from now on also determines noise and scenes.
 
-    This concerns the environment used last. Its present scene stays until then; ``env.set_random_seed`` replaces it at
-    any next reset.
+    This concerns the environment used last: its noise from the next step on, and its next ``reset(random=True)``,
+    which starts the first scene of this seed. Its present scene stays until then; ``env.set_random_seed`` replaces
+    it at any next reset. Without an environment, or if the one used last was made without a seed, the seeds of the next
+    environments that are made without one follow from this seed, too; the first has this seed itself.
 
     Args:
         seed: A seed for NumPy; None takes fresh entropy.
     """
-    set_current_rng(np.random.default_rng(seed))
-    env = last_used()
+    env, number = last_used(), _seed_of(seed)
+    if env is None or (env._wanted_seed is None and env.scenario.world.seed is None):
+        seed_next(number)
     if env is not None:
-        env._next_seed = _seed_of(seed)
+        env._next_seed = number
+        state = env.simulation.state
+        state.seed[0], state.scene[0], state.noise[0] = number, 0, _BEFORE_FIRST
+    set_current_rng(np.random.default_rng(seed))
 
 
 def _seed_of(seed: Any) -> int:

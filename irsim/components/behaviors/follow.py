@@ -27,10 +27,10 @@ class Follow(BehaviorOptions):
     would close narrow passages. Where there is no space to turn, `diff` and `acker` follow a path of poses instead,
     with the turning circle of a car, and wait for objects in the way.
 
-    With any local behavior but `dash` objects on routes touch nobody who keeps to their own side of the line between
-    them, as others on routes do. One that gets no nearer to its goal for a second goes first if its way is the shorter
-    one, and the other gives way alone. Cars that block each other plan round those in their way, or back up along their
-    track; that needs a reverse gear (`vel_min`).
+    Unless the local behavior is `dash`, an object on a route stays on its own side of a line between it and each object
+    near it. Others on routes do the same, so they never touch. If two hold each other up for a second, the one that has
+    the shorter way left goes first and the other gives way. Cars that block each other plan a path around each other,
+    or back up the way they came, which needs a reverse gear (`vel_min`).
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -61,7 +61,7 @@ class Follow(BehaviorOptions):
     """Distance along the path to the point that the object heads for; null is the farthest corner in sight."""
     within: Region | None = None
     """Area that the path stays in, so that it does not go around through the open ends of a corridor or outside a
-    building. It holds for the middle of the object; one that is pushed out comes back. Null is no such area."""
+    building. It holds for the middle of the object; one that is pushed out comes back. Null sets no limit."""
 
 
 BEHAVIORS.register(Follow, kernel=core.RouteOptions)

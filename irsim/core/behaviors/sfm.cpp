@@ -96,6 +96,7 @@ struct Companions {
     for (const int position : positions) {
       if (position >= static_cast<int>(decision.members.size())) continue;
       const int id = decision.members[position], row = decision.first_row + id;
+      if (decision.state.absent(row)) continue;
       const Scene& scene = decision.state.scenes[decision.w()];
       visit(id, decision.state.pose[row].position(), scene.shapes->radius[id] + kPadding);
     }

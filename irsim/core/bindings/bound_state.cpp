@@ -48,8 +48,11 @@ void BoundState::expose() {
   collided = view<std::uint8_t>(state.collided.memory, {rows});
   stopped = view<std::uint8_t>(state.stopped.memory, {rows});
   radius = view<double>(state.radius.memory, {rows});
+  vel_min = view<double>(state.vel_min.memory, {rows, 3});
+  vel_max = view<double>(state.vel_max.memory, {rows, 3});
   pace = view<double>(state.pace.memory, {rows});
   start_step = view<std::int64_t>(state.start_step.memory, {rows});
+  appeared = view<std::int64_t>(state.appeared.memory, {rows});
   infeasible = view<std::int32_t>(state.infeasible.memory, {rows});
   goal = view<double>(state.goal.memory, {rows, 3});
   ranges = view<double>(state.ranges.memory, {beams});

@@ -22,6 +22,18 @@ std::vector<ObjectKind> kinds_of(const World& world, const Poses& poses, const s
   return kinds;
 }
 
+/// The geometry of all static objects, those that have not appeared yet at their starts.
+std::shared_ptr<const Fixed> all_fixed(const World& world, const State& state, int w) {
+  std::vector<Pose> poses;
+  bool whole = true;
+  for (const int i : world.fixed_objects) {
+    const int row = w * world.objects + i;
+    whole = whole && !state.absent(row);
+    poses.push_back(state.absent(row) ? state.initial_pose[row] : state.pose[row]);
+  }
+  return whole ? state.scenes[w].fixed : make_fixed(world, *state.scenes[w].shapes, std::move(poses));
+}
+
 nb::tuple clearances_of(World& world, BoundState& bound, int w, const Poses& poses, const std::vector<int>& robots,
                         const Mask& codes) {
   const State& state = bound.of(world);
@@ -31,7 +43,7 @@ nb::tuple clearances_of(World& world, BoundState& bound, int w, const Poses& pos
   std::vector<double> distance(count);
   std::vector<std::int32_t> partner(count);
   const std::shared_ptr<const Shapes> shapes = state.scenes[w].shapes;
-  const std::shared_ptr<const Fixed> fixed = state.scenes[w].fixed;
+  const std::shared_ptr<const Fixed> fixed = all_fixed(world, state, w);
   {
     nb::gil_scoped_release free;
     clearances(world, *shapes, *fixed, reinterpret_cast<const Pose*>(poses.data()), rows, robots, kinds,
@@ -52,7 +64,7 @@ nb::tuple least_clearances_of(World& world, BoundState& bound, int w, const Pose
   std::vector<double> distance(each);
   std::vector<std::int32_t> partner(each), row(each);
   const std::shared_ptr<const Shapes> shapes = state.scenes[w].shapes;
-  const std::shared_ptr<const Fixed> fixed = state.scenes[w].fixed;
+  const std::shared_ptr<const Fixed> fixed = all_fixed(world, state, w);
   {
     nb::gil_scoped_release free;
     least_clearances(world, *shapes, *fixed, reinterpret_cast<const Pose*>(poses.data()), rows, robots, kinds, ends,
@@ -73,7 +85,7 @@ nb::object free_lines_of(World& world, BoundState& bound, int w, const Points& s
     throw nb::value_error("blocking must have one entry per object");
   std::vector<std::uint8_t> out(count);
   const std::shared_ptr<const Shapes> shapes = state.scenes[w].shapes;
-  const std::shared_ptr<const Fixed> fixed = state.scenes[w].fixed;
+  const std::shared_ptr<const Fixed> fixed = all_fixed(world, state, w);
   {
     nb::gil_scoped_release free;
     free_lines(world, *shapes, *fixed, reinterpret_cast<const Vec2*>(start.data()),

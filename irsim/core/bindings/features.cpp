@@ -1,5 +1,6 @@
-// Options classes of kinematics, behaviors, sensors and shapes, generated from their lists of fields.
+// Options classes of kinematics, behaviors, sensors, shapes and observation parts, generated from their lists of fields.
 #include "bindings/helpers.hpp"
+#include "parts.gen.hpp"
 #include "world/spec.hpp"
 
 namespace irsim {
@@ -10,6 +11,7 @@ void bind_features(nb::module_& m) {
   IRSIM_BEHAVIORS(IRSIM_BIND)
   IRSIM_SENSORS(IRSIM_BIND)
   IRSIM_SHAPES(IRSIM_BIND)
+  IRSIM_PARTS(IRSIM_BIND)
 #undef IRSIM_BIND
 }
 

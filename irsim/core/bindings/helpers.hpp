@@ -42,16 +42,25 @@ template <class Owner, class Value>
 void read_field(Owner& owner, const Field<Owner, Value>& field, nb::handle value) {
   owner.*(field.member) = nb::cast<Value>(value);
 }
-template <class Owner, class Enum, std::size_t N>
-void read_field(Owner& owner, const Choice<Owner, Enum, N>& field, nb::handle value) {
-  const auto word = nb::cast<std::string>(value);
-  for (std::size_t i = 0; i < N; ++i) {
-    if (word == field.words[i]) {
-      owner.*(field.member) = static_cast<Enum>(i);
-      return;
-    }
+/// The index of a word among the choices of a field.
+template <class Choices>
+std::size_t index_of(const Choices& field, const std::string& word) {
+  for (std::size_t i = 0; i < field.words.size(); ++i) {
+    if (word == field.words[i]) return i;
   }
   throw nb::value_error((std::string(field.name) + ": '" + word + "' is not one of the choices").c_str());
+}
+template <class Owner, class Enum, std::size_t N>
+void read_field(Owner& owner, const Choice<Owner, Enum, N>& field, nb::handle value) {
+  owner.*(field.member) = static_cast<Enum>(index_of(field, nb::cast<std::string>(value)));
+}
+template <class Owner, class Enum, std::size_t N>
+void read_field(Owner& owner, const Choices<Owner, Enum, N>& field, nb::handle value) {
+  std::vector<Enum>& list = owner.*(field.member);
+  list.clear();
+  for (const std::string& word : nb::cast<std::vector<std::string>>(value)) {
+    list.push_back(static_cast<Enum>(index_of(field, word)));
+  }
 }
 
 template <class Owner, class Value>
@@ -61,6 +70,13 @@ nb::object show_field(const Owner& owner, const Field<Owner, Value>& field) {
 template <class Owner, class Enum, std::size_t N>
 nb::object show_field(const Owner& owner, const Choice<Owner, Enum, N>& field) {
   return nb::cast(field.words[static_cast<std::size_t>(owner.*(field.member))]);
+}
+
+template <class Owner, class Enum, std::size_t N>
+nb::object show_field(const Owner& owner, const Choices<Owner, Enum, N>& field) {
+  nb::list words;
+  for (const Enum one : owner.*(field.member)) words.append(field.words[static_cast<std::size_t>(one)]);
+  return words;
 }
 
 /// Fill the fields of `target` from keyword arguments, which must name all fields and nothing else.
@@ -119,6 +135,7 @@ void bind_world(nb::module_& m);
 void bind_state(nb::module_& m);
 void bind_steps(nb::module_& m);
 void bind_object(nb::module_& m);
+void bind_observing(nb::module_& m);
 void bind_tools(nb::module_& m);
 void bind_clearance(nb::module_& m);
 void bind_policies(nb::module_& m);

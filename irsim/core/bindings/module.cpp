@@ -15,4 +15,5 @@ NB_MODULE(_core, m) {
   irsim::bind_clearance(m);
   irsim::bind_networks(m);
   irsim::bind_policies(m);
+  irsim::bind_observing(m);
 }

@@ -36,23 +36,11 @@ nb::object circles_of(World& world, BoundState& bound) {
   return own(std::move(out), {static_cast<std::size_t>(state.rows), 3});
 }
 
-nb::object nearest_objects_of(World& world, BoundState& bound, const Rows& rows, int most, double reach, bool statics) {
-  const State& state = bound.of(world);
-  check_rows(state, rows);
-  if (most < 0) throw nb::value_error("most must not be negative");
-  const std::size_t count = rows.shape(0);
-  std::vector<std::int32_t> out =
-      nearest_objects(world, state, bounding_circles(world, state), rows.data(), count, most, reach, statics);
-  return own(std::move(out), {count, static_cast<std::size_t>(most)});
-}
-
 }  // namespace
 
 void bind_policies(nb::module_& m) {
   m.def("follow_rows", &follow_rows, nb::arg("world"), nb::arg("state"), nb::arg("rows"), nb::arg("velocities"));
   m.def("bounding_circles", &circles_of, nb::arg("world"), nb::arg("state"));
-  m.def("nearest_objects", &nearest_objects_of, nb::arg("world"), nb::arg("state"), nb::arg("rows"), nb::arg("most"),
-        nb::arg("reach"), nb::arg("statics"));
 }
 
 }  // namespace irsim

@@ -53,7 +53,7 @@ Obstacles make_obstacles(const World& world, const Shapes& shapes, const Fixed& 
   add_edges(all.edges, fixed.walls, world, false);
   add_edges(all.edges, fixed.lines, world, true);
   for (const int i : fixed.disc_ids) {
-    if (world.unobstructed[i]) continue;
+    if (world.unobstructed[i] || !fixed.outlines.footprint(shapes, i).box.finite()) continue;
     all.discs.push_back({fixed.outlines.footprint(shapes, i).centre, shapes.radius[i], i});
   }
   all.grid.clear(kCell);

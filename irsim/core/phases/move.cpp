@@ -80,10 +80,11 @@ void remember(State& state, int row) {
 void finish(const World& world, State& state, int w) {
   const int first = w * world.objects;
   ++state.count[w];
+  if (!world.latecomers.empty()) appear(world, state, w);
   for (int i = 0; i < world.objects; ++i) {
     const int row = first + i;
     state.given[row] = 0;
-    if (!world.is_static[i] && !state.stopped[row]) remember(state, row);
+    if (!world.is_static[i] && !state.stopped[row] && !state.absent(row)) remember(state, row);
   }
 }
 

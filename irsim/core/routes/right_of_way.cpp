@@ -110,7 +110,8 @@ void Follower::forget_retreat() {
 bool Follower::plan_among_others() {
   std::vector<Footprint> others;
   for (const int i : world_.moving) {
-    if (i != object_ && !world_.unobstructed[i]) others.push_back(state_.scenes[w_].moving.footprint(shapes_, i));
+    if (i != object_ && !world_.unobstructed[i] && !state_.absent(w_ * world_.objects + i))
+      others.push_back(state_.scenes[w_].moving.footprint(shapes_, i));
   }
   const Route before = route_;
   blockers_.others = &others;

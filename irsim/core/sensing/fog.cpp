@@ -104,6 +104,7 @@ void lift_fog(const World& world, State& state, int w, Workspace& work) {
     if (sensor == world.scans.end()) continue;
     const Mount& mount = sensor->mount;
     const int row = w * world.objects + object;
+    if (state.absent(row)) continue;
     const Pose& pose = state.pose[row];
     const Vec2 body = state.heading(row);
     const Vec2 from = pose.position() + rotate({mount.offset[0], mount.offset[1]}, body);
@@ -116,6 +117,7 @@ void lift_fog(const World& world, State& state, int w, Workspace& work) {
   for (std::size_t k = 0; k < fog.views.size(); ++k) {
     const View& view = fog.views[k];
     const int row = w * world.objects + view.object;
+    if (state.absent(row)) continue;
     const Pose& pose = state.pose[row];
     if (!view.occlusion) {
       cells.sector(pose, view.angle, view.reach);

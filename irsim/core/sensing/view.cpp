@@ -216,6 +216,7 @@ bool is_partly_visible(const World& world, const State& state, int w, int object
 
 bool sees(const World& world, const State& state, int w, const View& view, int target, Workspace& work) {
   if (!(view.angle >= 0.0 && view.reach >= 0.0)) return false;
+  if (state.absent(w * world.objects + view.object) || state.absent(w * world.objects + target)) return false;
   const Pose& pose = state.pose[w * world.objects + view.object];
   const Sector sector{pose.position(), pose.theta, view.angle >= kTurn ? kPi : 0.5 * view.angle, view.reach};
   if (target == view.object || !meets(state.footprint(world, w, target), sector)) return false;

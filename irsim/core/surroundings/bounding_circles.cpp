@@ -1,7 +1,6 @@
 #include "surroundings/bounding_circles.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "world/state.hpp"
 #include "world/world.hpp"
@@ -28,32 +27,27 @@ std::vector<BoundingCircle> bounding_circles(const World& world, const State& st
   return circles;
 }
 
-std::vector<std::int32_t> nearest_objects(const World& world, const State& state,
-                                          const std::vector<BoundingCircle>& circles, const std::int64_t* rows,
-                                          std::size_t count, int most, double reach, bool statics) {
-  std::vector<std::int32_t> out(count * static_cast<std::size_t>(most), -1);
-  if (most == 0) return out;
-  std::vector<std::pair<double, int>> found;  // the nearest so far
-  const auto full = [&](const auto& list) { return list.size() == static_cast<std::size_t>(most); };
-  for (std::size_t k = 0; k < count; ++k) {
-    const int row = static_cast<int>(rows[k]), w = row / world.objects, self = row % world.objects;
-    const int first = w * world.objects, roles = world.target_roles[self];
-    const Shapes& shapes = *state.scenes[w].shapes;
-    const BoundingCircle& own = circles[row];
-    found.clear();
-    for (int i = 0; i < world.objects; ++i) {
-      if (i == self || (roles != 0 && (roles == 1) != (world.is_robot[i] != 0))) continue;
-      if (world.is_static[i] && !(statics && is_compact(world, shapes, i))) continue;
-      const BoundingCircle& other = circles[first + i];
-      const double gap = norm(other.centre - own.centre) - other.radius - own.radius;
-      if (!(gap <= reach) || (full(found) && gap >= found.back().first)) continue;
-      if (full(found)) found.pop_back();
-      const std::pair<double, int> one{gap, i};
-      found.insert(std::upper_bound(found.begin(), found.end(), one), one);
-    }
-    for (std::size_t n = 0; n < found.size(); ++n) out[k * static_cast<std::size_t>(most) + n] = found[n].second;
+void nearest_objects(const World& world, const State& state, const std::vector<BoundingCircle>& circles, int row,
+                     int most, double reach, bool statics, NearestRows& out) {
+  out.object.clear();
+  out.gap.clear();
+  if (most == 0) return;
+  const int w = row / world.objects, self = row % world.objects, first = w * world.objects;
+  const int roles = world.target_roles[self];
+  const Shapes& shapes = *state.scenes[w].shapes;
+  const BoundingCircle& own = circles[row];
+  for (int i = 0; i < world.objects; ++i) {
+    if (i == self || (roles != 0 && (roles == 1) != (world.is_robot[i] != 0))) continue;
+    if (world.is_static[i] && !(statics && is_compact(world, shapes, i))) continue;
+    const BoundingCircle& other = circles[first + i];
+    const double gap = norm(other.centre - own.centre) - other.radius - own.radius;
+    const bool full = out.gap.size() == static_cast<std::size_t>(most);
+    if (!(gap <= reach) || (full && gap >= out.gap.back())) continue;
+    if (full) out.gap.pop_back(), out.object.pop_back();
+    const auto place = std::upper_bound(out.gap.begin(), out.gap.end(), gap);  // equal gaps keep the order of indices
+    out.object.insert(out.object.begin() + (place - out.gap.begin()), i);
+    out.gap.insert(place, gap);
   }
-  return out;
 }
 
 }  // namespace irsim

@@ -47,7 +47,7 @@ const Neighbors& neighbors(const World& world, const State& state, Workspace& wo
                      shapes.radius[i], i};
     if (is_line(shapes, i)) {
       near.bounds[m] = {kNone, kNone};
-      near.lines.push_back(i);
+      if (!state.absent(row)) near.lines.push_back(i);
     } else {
       near.off_centre = std::max(near.off_centre, norm(shapes.centroid[i] - shapes.centre[i]));
       near.off_origin = std::max(near.off_origin, norm(shapes.centre[i]));

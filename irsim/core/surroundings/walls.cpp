@@ -89,7 +89,7 @@ Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed) {
     const Footprint body = fixed.outlines.footprint(shapes, i);
     const Kind kind = body.parts[0].kind;
     const bool plain = body.count == 1 && (kind == Kind::circle || kind == Kind::linestring);
-    if (world.unobstructed[i] || plain || (kind == Kind::cells && !avoids)) continue;
+    if (world.unobstructed[i] || plain || !body.box.finite() || (kind == Kind::cells && !avoids)) continue;
     for (int p = 0; p < body.count; ++p) add_part(walls, body, body.parts[p], i);
   }
   walls.build();
@@ -101,7 +101,8 @@ Walls make_lines(const World& world, const Shapes& shapes, const Fixed& fixed) {
   for (const int i : world.fixed_objects) {
     const Footprint body = fixed.outlines.footprint(shapes, i);
     const Part& part = body.parts[0];
-    if (part.kind == Kind::linestring) walls.add_chain(body.vertices + part.first, part.last - part.first + 1, i);
+    if (part.kind == Kind::linestring && body.box.finite())
+      walls.add_chain(body.vertices + part.first, part.last - part.first + 1, i);
   }
   walls.build();
   return walls;

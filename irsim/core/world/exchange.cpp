@@ -25,6 +25,7 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.infeasible[row] = from.infeasible[old_row];
   to.pace[row] = from.pace[old_row];
   to.start_step[row] = from.start_step[old_row];
+  to.appeared[row] = from.appeared[old_row];
   to.before[row] = from.before[old_row];
   to.goal_draws[row] = from.goal_draws[old_row];
   to.initial_pose[row] = from.initial_pose[old_row];

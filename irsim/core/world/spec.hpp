@@ -44,6 +44,7 @@ struct ObjectSpec {
   double mass, friction, inertia, restitution, tau;  // for contacts; an inertia of NaN follows from shape and mass
   bool driven;                                       // whether the object has a drive, native or in Python
   std::int64_t start_step;                           // steps for which the object stands still at its start
+  std::int64_t appear_step;                          // steps for which it is not in the world at all
 
   static constexpr auto fields() {
     using S = ObjectSpec;
@@ -58,7 +59,8 @@ struct ObjectSpec {
         field("behavior", &S::behavior), field("grouped", &S::grouped), field("route", &S::route),
         field("sensors", &S::sensors), field("centroid", &S::centroid), field("mass", &S::mass),
         field("friction", &S::friction), field("inertia", &S::inertia), field("restitution", &S::restitution),
-        field("tau", &S::tau), field("driven", &S::driven), field("start_step", &S::start_step));
+        field("tau", &S::tau), field("driven", &S::driven), field("start_step", &S::start_step),
+        field("appear_step", &S::appear_step));
   }
 };
 

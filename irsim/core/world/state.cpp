@@ -18,6 +18,12 @@ void evaluate(const World& world, State& state, int w, bool with_arrival) {
   sense(world, state, w, work);
 }
 
+/// Whether two poses are equal; those of absent objects are.
+bool same_pose(const Pose& a, const Pose& b) {
+  const auto same = [](double p, double q) { return p == q || (std::isnan(p) && std::isnan(q)); };
+  return same(a.x, b.x) && same(a.y, b.y) && same(a.theta, b.theta);
+}
+
 void set_initial_values(const World& world, State& state, int w) {
   for (int i = 0; i < world.objects; ++i) {
     const ObjectSpec& spec = world.specs[i];
@@ -63,6 +69,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       vel_max(rows),
       pace(rows, 1.0),
       start_step(rows),
+      appeared(rows),
       infeasible(rows),
       goal(rows, {kNone, kNone, kNone}),
       ranges(static_cast<std::size_t>(worlds) * world.beams_per_world),
@@ -108,9 +115,7 @@ void place_fixed(const World& world, State& state, int w) {
   poses.reserve(world.fixed_objects.size());
   for (const int i : world.fixed_objects) poses.push_back(state.pose[w * world.objects + i]);
   const auto is_current = [&](const std::shared_ptr<const Fixed>& fixed) {
-    return fixed &&
-           std::equal(poses.begin(), poses.end(), fixed->poses.begin(), fixed->poses.end(),
-                      [](const Pose& a, const Pose& b) { return a.x == b.x && a.y == b.y && a.theta == b.theta; });
+    return fixed && std::equal(poses.begin(), poses.end(), fixed->poses.begin(), fixed->poses.end(), same_pose);
   };
   if (is_current(scene.fixed)) return;
   if (scene.shapes == world.shapes && is_current(world.fixed)) {
@@ -135,6 +140,8 @@ void restart_row(const World& world, State& state, int row) {
   const int w = row / world.objects, i = row % world.objects;
   const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
   state.pose[row] = state.initial_pose[row];
+  state.appeared[row] = 0;
+  if (state.count[w] < world.specs[i].appear_step) leave_world(state, row);
   std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
   state.before[row] = state.pose[row].position();
   state.control[row] = state.start_step[row] > 0 ? Vec3{} : state.initial_control[row];

@@ -54,6 +54,7 @@ struct State {
   Array<Vec3> vel_min, vel_max;    // limits of the controls in this scene
   Array<double> pace;              // factor on the speeds of the object in this scene
   Array<std::int64_t> start_step;  // steps that the object stands still at its start
+  Array<std::int64_t> appeared;    // step in which the object came into the world; negative while it is absent
   Array<std::int32_t> infeasible;  // steps of this episode in which no velocity avoided every collision
   Array<Goal> goal;                // head of the queue; x is NaN without a goal
   // (W * beams_per_world,)
@@ -89,8 +90,10 @@ struct State {
 
   /// Key of the random draws of the present episode of world w.
   Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
-  /// Whether a row stands still because its start is delayed.
-  bool waits(int row) const { return start_step[row] > 0 && count[row / objects] < start_step[row]; }
+  /// Whether a row is not in the world yet. Its x and y are NaN, so that nothing meets, sees or avoids it.
+  bool absent(int row) const { return appeared[row] < 0; }
+  /// Whether a row stands still because its start is delayed, or is absent.
+  bool waits(int row) const { return start_step[row] > 0 && (count[row / objects] < start_step[row] || absent(row)); }
   /// Point that the behavior of a row heads for: its goal, or a point of its route.
   const Goal& destination(int row) const { return target.empty() ? goal[row] : target[row]; }
   /// The route that a row follows; null without one. Routes avoid static objects; behaviors only keep

@@ -25,7 +25,7 @@ struct Perturbation;
 struct BehaviorGroup;
 struct Scan;
 
-/// The objects of one entry that are placed anew for each scene.
+/// The objects of one entry whose places are drawn for each scene.
 using Placement = std::variant<RandomPlacement, CircleCrossing, SquareCrossing>;
 
 /// A goal without a heading has theta NaN.
@@ -89,6 +89,7 @@ struct World {
   // object ids
   std::vector<int> moving, fixed_objects, robots, visible;  // `visible`: those that are not unobstructed
   std::vector<int> routed;                                  // objects with a route to follow
+  std::vector<int> latecomers;                              // objects that appear after the start
   std::vector<BehaviorGroup> behaviors;
   std::vector<Scan> scans;
   int beams_per_world = 0, velocities_per_world = 0;

@@ -72,6 +72,15 @@ KEYS_AND_VALUES: dict[str, Code] = {
         "with numbers from 0 to 1.",
     ),
     # names of features
+    "unknown-reward": Code(
+        "unknown reward",
+        "No term of rewards of that name is built in or installed; `irsim describe task.reward` lists them. A "
+        'function of your own is {name: python, function: "module:function"}.',
+    ),
+    "unknown-part": Code(
+        "unknown part of an observation",
+        "No part of observations of that name is built in or installed; `irsim describe task.observation` lists them.",
+    ),
     "unknown-behavior": Code(
         "unknown behavior",
         "No behavior of that name is built in or registered for the object's kinematics. Register your own with "

@@ -94,6 +94,10 @@ TOOLS: dict[str, Code] = {
         "run cannot be read",
         "A file of the recorded run was changed, removed or truncated; record the run again.",
     ),
+    "bad-task": Code(
+        "task cannot be used",
+        "Keys or values of the learning task are not allowed, or do not fit its scenario; the message lists all.",
+    ),
     "bad-suite": Code(
         "suite cannot be used",
         "Keys or values of the suite file are not allowed, or its scenarios cannot be made; the message lists all.",

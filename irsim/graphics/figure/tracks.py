@@ -34,7 +34,7 @@ _OVERLAP = 2
 _ALIGNED_PX = 1e-4
 """Deviation up to which Agg takes a segment for horizontal or vertical."""
 MAX_MASKS = 200
-"""Lines of more objects are drawn anew in every frame, because their masks would take too much memory."""
+"""Lines of more objects are drawn again in every frame, because their masks would take too much memory."""
 _POINTS_PER_INCH = 72.0
 _OPAQUE = 255.0
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.bodies import Body, Pose, box, ellipse, place, point_on
+from irsim.graphics.scene.bodies import Body, Pose, bounds, box, ellipse, place, point_on
 from irsim.graphics.scene.scene import Circle, Geometry, Label, Line, Mark, Sector, Stroke
 from irsim.graphics.scene.style import TEXT_GAP_M, ObjectStyle, default_text_position
 
@@ -42,12 +42,18 @@ def text_label(number: int, part: str, x: float, y: float, text: str, style: Obj
 
 
 def name_label(number: int, text: str, body: Body, style: ObjectStyle, pose: Pose) -> Label:
-    """The name of an object, beside its body; the pose of a line or a compound may lie anywhere else."""
-    if body.kind not in ("linestring", "compound") or style.text_position != default_text_position(body.radius):
+    """The name of an object, above its body, of which the pose may lie anywhere; a circle's is beside its centre."""
+    if body.kind == "circle" or style.text_position != default_text_position(body.radius):
         return text_label(number, "name", pose[0], pose[1], text, style)
-    x, y = point_on(place(body.geometry, pose)) or pose[:2]
-    label = text_label(number, "name", x, y, text, style)
-    label.x, label.y = x + TEXT_GAP_M, y + TEXT_GAP_M
+    shape = place(body.geometry, pose)
+    if body.kind in ("linestring", "compound"):
+        x, y = point_on(shape) or pose[:2]
+        label = text_label(number, "name", x, y, text, style)
+        label.x, label.y = x + TEXT_GAP_M, y + TEXT_GAP_M
+        return label
+    left, bottom, right, top = bounds(shape)
+    label = text_label(number, "name", (left + right) / 2, (bottom + top) / 2, text, style)
+    label.x, label.y = left, top + TEXT_GAP_M
     return label
 
 

@@ -52,6 +52,8 @@ _FOG_ZORDER = 2
 _GRID_ZORDER = 0.0
 WAITING_ALPHA = 0.4
 """Factor of the opacity of an object until its ``start_time``."""
+GHOST_ALPHA = 0.15
+"""Factor of the opacity of an object that is not in the world yet, where that is drawn at all."""
 MIN_ARROW_SPEED = 1e-9
 """Speed [m/s] up to which the arrow of an ``omni`` drive shows the heading of the body."""
 
@@ -77,6 +79,7 @@ class SceneBuilder:
         world: Index of the world.
         palette: Default colours.
         has_picture: Function that returns whether a description image exists; otherwise the body is drawn as a shape.
+        ghosts: Draw objects that are not in the world yet, very pale, where they will appear.
     """
 
     def __init__(
@@ -86,8 +89,10 @@ class SceneBuilder:
         world: int = 0,
         palette: Palette | None = None,
         has_picture: Callable[[str], bool] | None = None,
+        ghosts: bool = False,
     ) -> None:
         self.simulation = simulation
+        self.ghosts = ghosts
         self.world = world
         self.palette = palette or Palette()
         self._has_picture = has_picture or (lambda name: False)
@@ -216,9 +221,15 @@ class SceneBuilder:
         if view.shape == "map":
             scene.grids.append(self._grid(view))
             return
-        style = self.style(view, overrides)
+        style, absent = self.style(view, overrides), self.simulation.appeared[view.row] < 0
+        if absent and not self.ghosts:
+            return
+        if absent:
+            x, y, heading = self.simulation.state.initial_state(view.row)[:3].tolist()
+            pose = (x, y, heading)
         if self.simulation.waits(view.row):
-            style = replace(style, obj_alpha=WAITING_ALPHA * style.obj_alpha)
+            pale = GHOST_ALPHA if absent else WAITING_ALPHA
+            style = replace(style, obj_alpha=pale * style.obj_alpha)
         heading = self._heading(view, pose) if style.show_arrow else pose[2]
         body = self.body(view)
         key = (style, body, pose, str(goal), heading, view.text, view.goal_text, view.description)
@@ -229,7 +240,7 @@ class SceneBuilder:
         scene.labels += drawn.labels
         if drawn.picture is not None:
             scene.pictures.append(drawn.picture)
-        if style.show_trajectory or style.show_trail:
+        if not absent and (style.show_trajectory or style.show_trail):
             self._tracks.add(scene, tracks, view.id, view.row, body, style)
 
     def _grid(self, view: SimObject) -> GridImage:
@@ -289,6 +300,8 @@ class SceneBuilder:
     def _add_beams(self, scene: Scene, objects: Sequence[SimObject], overrides: Mapping[str, Any], mode: str) -> None:
         for view in objects:
             chosen = mode == "all" or (mode == "static") == view.static
+            if self.simulation.appeared[view.row] < 0:
+                continue
             if not view.sensors or not self.style(view, overrides if chosen else {}).show_sensor:
                 continue
             lidars = ((i, sensor) for i, sensor in enumerate(view.sensors) if isinstance(sensor, Lidar2D))

@@ -15,7 +15,7 @@ from irsim.policies.networks.layers._options import LayerOptions
 from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.parts._options import Label
 
-__all__ = ["FORMAT", "VERSION", "Card", "OutputOptions", "PolicyDocument", "PolicyHead"]
+__all__ = ["FORMAT", "VERSION", "Card", "Meaning", "OutputOptions", "PolicyDocument", "PolicyHead"]
 
 FORMAT = "irsim-policy"
 VERSION = 1
@@ -23,21 +23,13 @@ Text = Annotated[str, Field(max_length=4000)]
 Row = Annotated[list[Number], Field(min_length=1, max_length=3)]
 
 
-class OutputOptions(Options):
-    """What the numbers of the network mean.
+class Meaning(Options):
+    """What the numbers of a decision mean."""
 
-    Without `choices`, a number u is squashed first. With `low` and `high`, or with `limits`, it then becomes
-    low + (u + 1) / 2 (high - low); otherwise it stays as it is, in m/s and rad/s.
-    """
-
-    input: Label
-    """Label of the vector that is the result of the network."""
     returns: Literal["control", "velocity"] = "control"
     """Controls of the drive, or a velocity that every drive follows."""
     frame: Frame = "world"
     """Frame of the velocity."""
-    squash: Literal["none", "clip", "tanh"] = "none"
-    """Bring the numbers into [-1, 1] by clipping them or by their hyperbolic tangent."""
     low: Row | None = None
     """What -1 stands for, one number for each control or for vx and vy."""
     high: Row | None = None
@@ -50,7 +42,7 @@ class OutputOptions(Options):
     """Controls or velocities, of which the one with the largest number is chosen; the first of equal ones."""
 
     @model_validator(mode="after")
-    def _is_consistent(self) -> OutputOptions:
+    def _is_consistent(self) -> Meaning:
         if (self.low is None) != (self.high is None):
             raise problem("policy-file", "'low' and 'high' are given together or not at all", fix="give both")
         if self.low is not None and self.high is not None and len(self.low) != len(self.high):
@@ -59,12 +51,31 @@ class OutputOptions(Options):
             raise problem(
                 "policy-file", "'limits' are those of controls and replace low and high", fix="give one of them"
             )
-        if self.choices is not None and (self.low is not None or self.limits or self.squash != "none"):
-            raise problem("policy-file", "'choices' are neither squashed nor scaled", fix="remove squash, low and high")
+        if self.choices is not None and (self.low is not None or self.limits):
+            raise problem("policy-file", "'choices' are not scaled", fix="remove limits, low and high")
         if self.choices is not None and len({len(row) for row in self.choices}) > 1:
             raise problem("policy-file", "the choices have different lengths", fix="one number for each control")
         if self.frame != "world" and self.returns == "control":
             raise problem("policy-file", "'frame' is that of a velocity", fix="remove it, or set returns: velocity")
+        return self
+
+
+class OutputOptions(Meaning):
+    """What the numbers of the network mean.
+
+    Without `choices`, a number u is squashed first. With `low` and `high`, or with `limits`, it then becomes
+    low + (u + 1) / 2 (high - low); otherwise it stays as it is, in m/s and rad/s.
+    """
+
+    input: Label
+    """Label of the vector that is the result of the network."""
+    squash: Literal["none", "clip", "tanh"] = "none"
+    """Bring the numbers into [-1, 1] by clipping them or by their hyperbolic tangent."""
+
+    @model_validator(mode="after")
+    def _squashes_no_choices(self) -> OutputOptions:
+        if self.choices is not None and self.squash != "none":
+            raise problem("policy-file", "'choices' are not squashed", fix="remove squash")
         return self
 
 

@@ -8,42 +8,33 @@ import numpy as np
 
 from irsim.common.arrays import Floats
 from irsim.policies.networks.values import apply
-from irsim.policies.observations import Observations
 
-__all__ = ["Frame", "direction", "goal_offset", "length", "turn_back", "x_axis"]
+__all__ = ["Frame", "turn_back", "x_axis"]
 
 Frame = Literal["own", "goal", "world"]
 """``own``: x points ahead; ``goal``: x points to the goal (ahead without one); ``world``: as in the scenario. The robot
 is the origin of all."""
 
 
-def length(vectors: Floats) -> Floats:
-    """(...,) lengths of (..., 2) vectors; unlike ``np.hypot``, the same bits on every system."""
-    result: Floats = np.sqrt(vectors[..., 0] * vectors[..., 0] + vectors[..., 1] * vectors[..., 1])
-    return result
+def x_axis(frame: Frame, pose: Floats, goal: Floats) -> Floats:
+    """Unit vector of the x axis of a frame, in the world frame.
 
+    Args:
+        frame: The frame.
+        pose: (B, 3) x, y [m] and heading [rad] of B robots, world frame.
+        goal: (B, 3) the same of their goals; NaN without one.
 
-def direction(angle: Floats) -> Floats:
-    """(..., 2) cosine and sine of (...,) angles [rad]."""
-    return np.stack([apply("cos", angle), apply("sin", angle)], axis=-1)
-
-
-def goal_offset(observations: Observations) -> tuple[Floats, Floats]:
-    """(B, 2) vector from each robot to its goal [m], world frame, zero without one, and (B,) whether it has one."""
-    there = np.isfinite(observations.goal[:, 0]) & np.isfinite(observations.goal[:, 1])
-    offset = np.where(there[:, None], observations.goal[:, :2], observations.pose[:, :2]) - observations.pose[:, :2]
-    return offset, there.astype(np.float64)
-
-
-def x_axis(frame: Frame, observations: Observations) -> Floats:
-    """(B, 2) unit vector of the x axis of a frame, in the world frame."""
+    Returns:
+        (B, 2) vectors.
+    """
     if frame == "world":
-        return np.broadcast_to(np.array([1.0, 0.0]), (len(observations), 2))
-    ahead = direction(observations.pose[:, 2])
+        return np.broadcast_to(np.array([1.0, 0.0]), (len(pose), 2))
+    ahead = np.stack([apply("cos", pose[:, 2]), apply("sin", pose[:, 2])], axis=-1)
     if frame == "own":
         return ahead
-    offset, _ = goal_offset(observations)
-    distance = length(offset)
+    there = np.isfinite(goal[:, 0]) & np.isfinite(goal[:, 1])
+    offset = np.where(there[:, None], goal[:, :2] - pose[:, :2], 0.0)
+    distance = np.sqrt(offset[:, 0] * offset[:, 0] + offset[:, 1] * offset[:, 1])  # np.hypot has other last bits
     far = distance > 0
     return np.where(far[:, None], offset / np.where(far, distance, 1.0)[:, None], ahead)
 

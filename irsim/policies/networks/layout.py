@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from functools import cached_property
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
+import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
 from irsim.policies.networks.features import PARTS
 from irsim.policies.networks.parts._options import PartOptions
+from irsim.policies.networks.seen import seen_rows
 from irsim.policies.networks.values import Shape, Value
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Needs
@@ -39,6 +42,17 @@ class Layout(Options):
         if len({part.needs().static_neighbors for part in self.parts if part.needs().neighbors}) > 1:
             raise problem("policy-file", "'static' differs between two parts of neighbors", fix="give both the same")
         return self
+
+    @cached_property
+    def kernels(self) -> tuple[Any | None, ...]:
+        """The options of each part for the core; None for a part that a Python function computes."""
+        return tuple(_kernel(part) for part in self.parts)
+
+
+def _kernel(part: PartOptions) -> Any | None:
+    feature = PARTS.get(part.name)
+    kernel = None if feature is None else feature.kernel
+    return None if kernel is None else kernel(**{name: getattr(part, name) for name in kernel.fields})
 
 
 def layout_needs(layout: Layout) -> Needs:
@@ -85,10 +99,16 @@ def observe(layout: Layout, observations: Observations) -> dict[str, Value]:
     Raises:
         PolicyInputError: Something that a part needs is not observed.
     """
+    rows = seen_rows(observations)
     found = {}
-    for part in layout.parts:
-        feature = PARTS.get(part.name)
-        assert feature is not None
-        assert feature.function is not None
-        found[part.key] = feature.function(observations, part)
+    for part, kernel in zip(layout.parts, layout.kernels, strict=True):
+        part.check(observations)
+        if kernel is None:
+            feature = PARTS.get(part.name)
+            assert feature is not None
+            assert feature.function is not None, "the registry refuses parts that nothing computes"
+            found[part.key] = feature.function(observations, part)
+        else:
+            array, mask = core.look(kernel, rows)
+            found[part.key] = Value(array, None if mask is None else mask.view(bool))
     return found

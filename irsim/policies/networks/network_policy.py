@@ -13,7 +13,7 @@ from irsim.policies.networks.document import PolicyHead
 from irsim.policies.networks.graph import GraphPlan, run_graph
 from irsim.policies.networks.layout import layout_needs, layout_shapes, observe
 from irsim.policies.networks.network import Network
-from irsim.policies.networks.output import decide
+from irsim.policies.networks.output import Present, decide
 from irsim.policies.networks.slots import Slots
 from irsim.policies.networks.values import Array, Value
 from irsim.policies.policy import Policy
@@ -57,7 +57,7 @@ class NetworkPolicy(Policy):
             PolicyInputError: The robots do not observe what the network needs.
         """
         observed = observe(self.head.layout, observations)
-        return decide(self.head.output, self.compute(observed, observations), observations)
+        return decide(self.head.output, self.compute(observed, observations), Present.of(observations))
 
     @abstractmethod
     def compute(self, observed: Mapping[str, Value], observations: Observations) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from irsim.common.arrays import Floats
@@ -11,16 +13,40 @@ from irsim.policies.networks.frames import turn_back, x_axis
 from irsim.policies.networks.values import Array, apply
 from irsim.policies.observations import Observations
 
-__all__ = ["decide"]
+__all__ = ["Present", "decide"]
 
 
-def decide(output: OutputOptions, numbers: Array, observations: Observations) -> Floats:
+@dataclass(frozen=True)
+class Present:
+    """What the meaning of numbers may depend on, for B robots, as in :class:`irsim.policies.Observations`.
+
+    Attributes:
+        pose, goal: (B, 3) x, y [m], heading [rad], world frame.
+        velocity: (B, 2) [m/s], world frame.
+        control, low, high: (B, 3) control executed last, and limits of the controls.
+    """
+
+    pose: Floats
+    goal: Floats
+    velocity: Floats
+    control: Floats
+    low: Floats
+    high: Floats
+
+    @classmethod
+    def of(cls, observations: Observations) -> Present:
+        """That part of what robots observe."""
+        o = observations
+        return cls(o.pose, o.goal, o.velocity, o.control, o.low, o.high)
+
+
+def decide(output: OutputOptions, numbers: Array, present: Present) -> Floats:
     """What the numbers of a network mean for B robots.
 
     Args:
         output: Their meaning.
         numbers: (B, F) result of the network.
-        observations: What the robots observed.
+        present: Where the robots are, and how they move.
 
     Returns:
         (B, 2) velocities in the world frame [m/s], or (B, C) controls.
@@ -32,12 +58,12 @@ def decide(output: OutputOptions, numbers: Array, observations: Observations) ->
     if output.choices is not None:
         value = np.array(output.choices, dtype=np.float64)[np.argmax(value, axis=1)]
     else:
-        value = _scale(output, _squash(output, value), observations)
+        value = _scale(output, _squash(output, value), present)
     if output.returns == "control":
-        return value + observations.control[:, : value.shape[1]] if output.increment else value
-    axis = x_axis(output.frame, observations)
+        return value + present.control[:, : value.shape[1]] if output.increment else value
+    axis = x_axis(output.frame, present.pose, present.goal)
     turned = turn_back(value, axis * np.array([1.0, -1.0]))  # turning forward is turning back by the opposite angle
-    return turned + observations.velocity if output.increment else turned
+    return turned + present.velocity if output.increment else turned
 
 
 def _squash(output: OutputOptions, value: Floats) -> Floats:
@@ -46,9 +72,9 @@ def _squash(output: OutputOptions, value: Floats) -> Floats:
     return np.clip(value, -1.0, 1.0) if output.squash == "clip" else value
 
 
-def _scale(output: OutputOptions, value: Floats, observations: Observations) -> Floats:
+def _scale(output: OutputOptions, value: Floats, present: Present) -> Floats:
     if output.limits:
-        low, high = (limit[:, : value.shape[1]] for limit in (observations.low, observations.high))
+        low, high = (limit[:, : value.shape[1]] for limit in (present.low, present.high))
         if not (np.isfinite(low).all() and np.isfinite(high).all()):
             message = "the network chooses between the limits of the controls, and a robot has infinite limits"
             raise PolicyInputError(message, "give the robot finite vel_min and vel_max")

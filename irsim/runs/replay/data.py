@@ -86,7 +86,7 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
         shapes, objects, lidars = page_objects(env)
         grid = page_grid(env)
         zones = page_zones(env)
-        world = env.simulation.scenario.world
+        world, starts = env.simulation.scenario.world, env.simulation.start_step.copy()
         title = env.simulation.scenario.name
     columns = Columns()
     x, y = (float(value) for value in world.offset)
@@ -98,7 +98,9 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     rows, every = _rows(len(trace), len(moving))
     quantum = 2.0 ** min(max(math.floor(math.log2(max(width, height) / 20_000)), _MIN_EXPONENT), _MAX_EXPONENT)
     columns.add("step", trace.step[rows], 2)
-    _add_poses(columns, trace.pose[np.ix_(rows, moving)], quantum)
+    _add_poses(columns, _from_the_start(trace.pose)[np.ix_(rows, moving)], quantum)
+    for number, item in enumerate(objects):
+        item |= _beginning(trace, number, int(starts[number]))
     travellers = np.array([item["role"] == "robot" or "track" in item for item in objects], dtype=bool)
     _add_goals(columns, np.where(travellers[:, None], trace.goal[rows], np.nan), quantum)
     _add_flags(columns, trace, rows)
@@ -128,6 +130,26 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
         **_events(run, trace, objects),
     }
     return Packed(columns.block(head), head)
+
+
+def _beginning(trace: Trace, number: int, start: int) -> dict[str, int]:
+    """The step ``from`` which an object is in the world, and ``until`` which it stands at its start, if not 0."""
+    present = np.flatnonzero(~np.isnan(trace.pose[:, number, 0]))
+    steps = trace.step[present[:1]].tolist() or [int(trace.step[-1]) + 1]
+    found = {"from": steps[0], "until": start}
+    return {key: step for key, step in found.items() if step > int(trace.step[0])}
+
+
+def _from_the_start(pose: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Poses in which an object that comes later stands at its start before."""
+    absent = np.isnan(pose[:, :, 0])
+    late = np.flatnonzero(absent[0] & ~absent.all(axis=0))
+    if late.size:
+        pose = pose.copy()
+        for number in late.tolist():
+            first = int(np.argmin(absent[:, number]))
+            pose[:first, number] = pose[first, number]
+    return pose
 
 
 def _rows(count: int, moving: int) -> tuple[NDArray[np.int64], int]:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.common.text import metres
 from irsim.components.behaviors._options import CustomOptions
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.options.vectors import is_vector
@@ -84,7 +85,7 @@ def _goals_reached_at_start(context: Context, records: list[ObjectRecord]) -> It
                 continue
             key = "waypoints" if context.is_given(record, "waypoints") else "goal"
             where = _goal_path(context, record, key, index) if context.is_given(record, key) else record.path
-            gap = f"{math.dist(a[:2], b[:2]):.3g} m"
+            gap = f"{metres(math.dist(a[:2], b[:2]))}"
             if index == 0:
                 what = "goal" if len(record.goals) == 1 else "first goal"
                 message = f"'{record.name}' starts {gap} from its {what}: within {record.goal_threshold:g} m it counts"

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.common.text import metres
 from irsim.components.behaviors._options import CustomOptions
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context, distinct
@@ -216,7 +217,7 @@ def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     yield report(
         "goal-overshoot",
         record.path,
-        f"'{record.name}' drives {step:.3g} m per step and {'a car' if car else repr(name)} does not slow down: "
+        f"'{record.name}' drives {metres(step)} per step and {'a car' if car else repr(name)} does not slow down: "
         f"{effect}, which counts as reached within {record.goal_threshold:g} m",
         fix=f"goal_threshold: {threshold:g} or more, a smaller step_time, or a lower vel_max",
     )
@@ -256,8 +257,8 @@ def _circles_goal(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     yield warning(
         "turning-circle",
         context.entry_path(record, "state") if context.is_given(record, "state") else record.path,
-        f"the smallest turning radius of '{record.name}' is {radius:.3g} m, and its goal ({goal[0]:g}, {goal[1]:g}) "
-        f"lies inside that circle: it circles the goal and comes no nearer than {least:.2g} m",
+        f"the smallest turning radius of '{record.name}' is {metres(radius)}, and its goal ({goal[0]:g}, {goal[1]:g}) "
+        f"lies inside that circle: it circles the goal and comes no nearer than {metres(least)}",
         fix=f"start towards the goal, with heading {towards:.4g}, or goal_threshold: "
         f"{math.ceil(least * 100 + 1) / 100:g}, or more steering in 'vel_max' and 'vel_min'",
     )

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import irsim._core as core
+from irsim.common.text import metres
 from irsim.components.maps._grid import MapCells, Walls
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.registry import SHAPES
@@ -44,8 +45,8 @@ def check(context: Context) -> Iterator[Finding]:
     found: dict[tuple[Any, ...], tuple[ObjectRecord, ObjectRecord, int]] = {}
     for a, b in _near_pairs(bodies, reported):
         mover, other = (a.record, b.record) if _matters(a.record) else (b.record, a.record)
-        if other.unobstructed:
-            continue
+        if other.unobstructed or (mover.appear_time and not other.static) or other.appear_time:
+            continue  # who appears later waits until there is room
         key = (mover.path, other.path)
         if (len(found) >= _MAX_REPORTED and key not in found) or (key in found and found[key][2] >= _MAX_COUNTED):
             continue
@@ -57,16 +58,22 @@ def check(context: Context) -> Iterator[Finding]:
         where = context.entry_path(mover, "state") if context.is_given(mover, "state") else mover.path
         deep, place = _depth_text(by_id[mover.id], by_id[other.id]), _free_place(context, by_id[mover.id], bodies)
         instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
-        harmless = context.scenario.world.collision_mode == "unobstructed"
+        harmless = context.scenario.world.collision_mode == "unobstructed" and not mover.appear_time
         yield (hint if harmless else warning)(
             "initial-overlap",
             where,
-            f"'{mover.name}' starts {'overlapping' if harmless else 'in collision with'} {_describe(other)}{deep}"
+            f"'{mover.name}' {_meets(mover, harmless)} {_describe(other)}{deep}"
             + (f", and {_count_of_others(count)} more such pairs of these entries" if count > 1 else ""),
             fix="move one of them, or make it smaller" + instead
             if other.path[0] != "world"
             else "start in free space" + instead,
         )
+
+
+def _meets(mover: ObjectRecord, harmless: bool) -> str:
+    if mover.appear_time:
+        return "never appears, as its place is taken by"
+    return f"starts {'overlapping' if harmless else 'in collision with'}"
 
 
 def _count_of_others(count: int) -> str:
@@ -97,7 +104,7 @@ def _depth_text(a: _Body, b: _Body) -> str:
         least = high
     if least < _MIN_DEPTH:
         return ": they touch"
-    return f", {least:.2g} m deep" if least < most else ", all of it"
+    return f", {metres(least)} deep" if least < most else ", all of it"
 
 
 def _free_place(context: Context, mover: _Body, bodies: list[_Body]) -> tuple[float, float] | None:

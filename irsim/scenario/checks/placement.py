@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Edit, Path, nearest
 from irsim.options.vectors import is_vector
 from irsim.scenario.checks._context import Context
@@ -119,7 +120,7 @@ def _overlap_on_circle(path: Path, records: list[ObjectRecord]) -> Iterator[Find
         yield warning(
             "circle-overlap",
             (*path, "distribution"),
-            f"neighbours on the circle are {gap:.3g} m apart and overlap",
+            f"neighbours on the circle are {metres(gap)} apart and overlap",
             fix="use a larger 'radius', or fewer or smaller objects",
         )
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.common.text import metres
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error, warning
 from irsim.scenario.resolve.resolved import ObjectRecord, Placement
@@ -73,7 +74,7 @@ def _check_goal_distance(placement: Placement) -> Iterator[Finding]:
     yield (error if impossible else warning)(
         "placement-impossible" if impossible else "placement-tight",
         (*placement.path, "distribution", "goal_distance"),
-        f"goals must be {wanted:g} m from their starts, and the range is {longest:.4g} m from corner to corner"
+        f"goals must be {wanted:g} m from their starts, and the range is {metres(longest)} from corner to corner"
         + ("" if impossible else ": starts and goals all lie near opposite corners"),
         given=wanted,
         fix=f"goal_distance: {0.7 * longest:.2g} or less, or a larger range (range_low to range_high)",

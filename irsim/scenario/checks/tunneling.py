@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any
 
 import irsim._core as core
+from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.overlap import reach_of
@@ -77,13 +78,13 @@ def check(context: Context) -> Iterator[Finding]:
 def _finding(context: Context, one: _Body, other: _Body, least: float, speed: float) -> Finding:
     dt = context.scenario.world.step_time
     thing = _NAMES.get(other.record.shape.name, f"'{other.record.name}'")
-    together = "" if other.speed == 0 else f", and {thing} {other.speed * dt:.3g} m towards it"
+    together = "" if other.speed == 0 else f", and {thing} {metres(other.speed * dt)} towards it"
     longest = math.floor(least / speed * 100) / 100 or float(f"{least / speed:.1g}")
     return warning(
         "jumps-through",
         context.entry_path(one.record, "vel_max") if context.is_given(one.record, "vel_max") else one.record.path,
-        f"'{one.record.name}' moves {one.speed * dt:.3g} m per step{together}: it can pass through {thing} "
-        f"({other.shape.width:.3g} m thick) without ever touching it",
+        f"'{one.record.name}' moves {metres(one.speed * dt)} per step{together}: it can pass through {thing} "
+        f"({metres(other.shape.width)} thick) without ever touching it",
         given=one.record.vel_max,
         fix=f"step_time: {min(longest, least / speed):.3g} or less, or a lower speed (limits are in m/s)",
     )

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.checks.overlap import reach_of
@@ -105,7 +106,7 @@ def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield (hint if may_be else warning)(
             "looks-like-centimetres",
             context.entry_path(record, "shape"),
-            f"'{record.name}' is about {2 * reach:.3g} m long and {why}",
+            f"'{record.name}' is about {metres(2 * reach)} long and {why}",
             fix=f"lengths are in metres: {2 * reach:.3g} cm are {2 * reach / 100:.3g}",
         )
 
@@ -121,7 +122,7 @@ def _obstacle(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield hint(
             "looks-like-centimetres",
             context.entry_path(record, "shape"),
-            f"'{record.name}' is {width:.3g} m thick, but the world is only {world.width:g} m × {world.height:g} m",
+            f"'{record.name}' is {metres(width)} thick, but the world is only {world.width:g} m × {world.height:g} m",
             fix=f"lengths are in metres: {width:.3g} cm are {width / 100:.3g}",
         )
     elif record.shape.name in ("polygon", "linestring"):
@@ -138,7 +139,7 @@ def _obstacle(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield hint(
             "looks-like-centimetres",
             context.entry_path(record, "state"),
-            f"'{record.name}' is {far:.3g} m outside the world, which is {world.width:g} m × {world.height:g} m",
+            f"'{record.name}' is {metres(far)} outside the world, which is {world.width:g} m × {world.height:g} m",
             fix=f"lengths are in metres: ({x:g}, {y:g}) cm are ({x / 100:g}, {y / 100:g})",
         )
 
@@ -198,7 +199,7 @@ def _sensor(context: Context, record: ObjectRecord, path: Path, sensor: Any) -> 
             "looks-like-centimetres",
             (*path, "offset"),
             f"this sensor is {away:g} m away from the middle of '{record.name}', but the body extends only "
-            f"{reach_of(record.shape):.3g} m",
+            f"{metres(reach_of(record.shape))}",
             given=offset,
             fix=f"lengths are in metres: {away:g} cm are {away / 100:g}",
         )

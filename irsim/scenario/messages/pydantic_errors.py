@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from pydantic import BaseModel
+
 from irsim.diagnostics.codes import CODES
 from irsim.diagnostics.diagnostic import Edit, Path, format_path, is_slip_of, nearest
 from irsim.options.vectors import is_vector
@@ -64,15 +66,16 @@ class Explainer:
         item: The error as pydantic lists it.
         data: The data that were validated.
         document: The document of the data, to look up how values were written.
+        root: Model of the whole document.
     """
 
-    def __init__(self, path: Path, item: Any, data: Any, document: Document) -> None:
-        self.path, self.data, self.document = path, data, document
+    def __init__(self, path: Path, item: Any, data: Any, document: Document, root: type[BaseModel] = Scenario) -> None:
+        self.path, self.data, self.document, self.root = path, data, document, root
         self.kind: str = item["type"]
         self.value = item.get("input")
         self.context: dict[str, Any] = item.get("ctx") or {}
         self.message: str = item["msg"]
-        self.field = field_at(Scenario, path, data)
+        self.field = field_at(root, path, data)
 
     def finding(self) -> Finding:
         """The finding for this error."""
@@ -124,11 +127,11 @@ class Explainer:
             raw = next((k for k in at(self.data, parent) or () if not isinstance(k, str) and k == key), key)
             key = str(raw)
             self.path = (*parent, key)
-        model = model_at(Scenario, parent, self.data)
+        model = model_at(self.root, parent, self.data)
         allowed = list(model.model_fields) if model is not None else []
         meant = getattr(model, "also_called", {}).get(str(key).lower())
         near = meant or nearest(key, allowed)
-        where = f"'{format_path(parent)}'" if parent else "a scenario"
+        where = f"'{format_path(parent)}'" if parent else f"a {self.root.__name__.lower()}"
         written = at(self.data, parent)
         other, like = (None, None) if meant else advice_on_key(self.path, self.data)
         edit, fix = None, other

@@ -5,25 +5,29 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.vectors import UNION_TAGS
 from irsim.scenario.messages.findings import Finding
 from irsim.scenario.messages.pydantic_errors import Explainer
+from irsim.scenario.model.scenario import Scenario
 from irsim.scenario.yaml.document import Document
 
 __all__ = ["translate"]
 
 
-def translate(failure: ValidationError, data: Any, document: Document, most: int) -> list[Finding]:
+def translate(
+    failure: ValidationError, data: Any, document: Document, most: int, root: type[BaseModel] = Scenario
+) -> list[Finding]:
     """Findings for the errors of a validation, at most ``most`` of them.
 
     Args:
-        failure: The exception of ``Scenario.model_validate``.
+        failure: The exception of ``model_validate`` of the root.
         data: The data that were validated.
         document: The document of the data, to look up how values were written.
         most: Largest number of findings.
+        root: Model of the whole document.
     """
     found: dict[tuple[str, Path], list[Finding]] = {}
     for item in failure.errors(include_url=False):
@@ -32,7 +36,7 @@ def translate(failure: ValidationError, data: Any, document: Document, most: int
         if siblings and _list_path(path) != path:
             siblings.append(siblings[0])  # only counted
         elif len(found) <= most:
-            siblings.append(Explainer(path, item, data, document).finding())
+            siblings.append(Explainer(path, item, data, document, root).finding())
     return [_with_count(siblings) for siblings in found.values() if siblings]
 
 

@@ -77,6 +77,11 @@ class Entry(Options):
         "departure_time": "start_time",
         "depart": "start_time",
         "t_start": "start_time",
+        "spawn_time": "appear_time",
+        "appears": "appear_time",
+        "appears_at": "appear_time",
+        "enter_time": "appear_time",
+        "entry_time": "appear_time",
     }
     schema_extra: ClassVar[dict[str, Any]] = {
         "not": {
@@ -105,6 +110,10 @@ class Entry(Options):
     start_time: Annotated[Any, PerObject(Delay, "number")] = 0.0
     """Time from which the object moves. Until then it stands at its start, where others see it and collide with it,
     and follows neither its behavior nor commands. A list of numbers is one time per object."""
+    appear_time: Annotated[Any, PerObject(Delay, "number")] = 0.0
+    """Time at which the object comes into the world. Until then nobody senses it, collides with it or sees it in
+    pictures, and its x and y are NaN. If its place is taken then, it waits until there is room. A list of numbers is
+    one time per object."""
     velocity: Annotated[Any, PerObject(Control | None, "vector")] = None
     """Initial control; null is zero."""
     kinematics: Annotated[Any, PerObject(KinematicsField)] = None

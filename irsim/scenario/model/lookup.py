@@ -87,9 +87,10 @@ def unit_of(field: FieldInfo) -> str | None:
 
 
 def _target(field: FieldInfo) -> Select | type[BaseModel] | None:
+    selection = next((part for part in _all_parts(field) if isinstance(part, Select)), None)
+    if selection is not None:
+        return selection
     for part in _all_parts(field):
-        if isinstance(part, Select):
-            return part
         model = getattr(part, "model", part)
         if isinstance(model, type) and issubclass(model, BaseModel):
             return model

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from irsim.options.base import Options
 from irsim.options.colors import Color
-from irsim.options.regions import Corners, Points, Rectangle, rectangle_corners
+from irsim.options.regions import OUTLINE_ALIASES, Corners, Points, Rectangle, rectangle_corners
 from irsim.options.units import Meters
 from irsim.options.vectors import Point
 
@@ -34,14 +34,10 @@ class Zone(Options):
     """
 
     also_called: ClassVar[dict[str, str]] = {
+        **OUTLINE_ALIASES,
         "gate": "line",
         "segment": "line",
         "points": "line",
-        "vertices": "polygon",
-        "corners": "polygon",
-        "outline": "polygon",
-        "box": "rectangle",
-        "rect": "rectangle",
         "region": "rectangle",
         "disc": "circle",
     }

@@ -246,6 +246,7 @@ class _Maker:
             tags=tuple(value["tags"]),
             watches=entry.fov is not None,
             start_time=value["start_time"],
+            appear_time=value["appear_time"],
         )
 
     def _tau(self, kinematics: KinematicsOptions | None) -> float:
@@ -286,6 +287,7 @@ SPREAD_KEYS = (
     "goal",
     "waypoints",
     "start_time",
+    "appear_time",
     "velocity",
     "kinematics",
     "shape",

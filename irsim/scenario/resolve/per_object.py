@@ -16,6 +16,7 @@ _EXCEPTIONS: dict[str, Kind] = {
     "tags": "list",
     "waypoints": "path",
     "start_time": "number",
+    "appear_time": "number",
     "mass": "number",
     "friction": "number",
     "inertia": "number",

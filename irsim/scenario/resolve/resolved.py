@@ -88,12 +88,18 @@ class ObjectRecord:
     watches: bool = False  # whether `fov` is written, and the field of view is not just that of its lidar
     joined: bool = True  # whether it follows the behavior of its group
     start_time: float = 0.0  # until then it stands still [s]
+    appear_time: float = 0.0  # until then it is not in the world [s]
     spreads: Spreads | None = None  # None: it starts as written
+
+    @property
+    def moves_from(self) -> float:
+        """Time from which it may move [s]."""
+        return max(self.start_time, self.appear_time)
 
 
 @dataclass(slots=True)
 class Placement:
-    """The objects of one entry that are placed anew for each scene, such as ``distribution: random``.
+    """The objects of one entry whose places are drawn for each scene, such as ``distribution: random``.
 
     ``range_low``, ``range_high``, ``min_distance`` and ``clear_of`` are those of :class:`Drawn`, ``options`` its
     ``kernel``, where ``Drawn`` is that of :mod:`irsim.components.distributions._options`.

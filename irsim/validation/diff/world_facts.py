@@ -95,11 +95,13 @@ def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact:
         "kinematics": _options(record.kinematics),
         "shape": _shape(record),
         "footprint": _footprint(view),
-        "pose": _plain(view.state[:3, 0]),
+        "pose": _plain(view.init_state[:3, 0]),
         "extra_state": _plain([value for value in record.state[3:] if any(record.state[3:])]),
         "velocity": _plain(record.velocity),
         "goals": [] if record.static else [_plain(goal[:, 0]) for goal in view.goals],
     }
+    if record.appear_time:
+        found["appear_time"] = _plain(record.appear_time)
     if not record.static:
         found |= {key: _plain(getattr(view, key)[:, 0]) for key in ("vel_min", "vel_max", "acce")}
         found["angle_range"] = _plain(list(record.angle_range))

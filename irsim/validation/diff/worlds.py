@@ -7,6 +7,8 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from irsim.env import Env
 from irsim.results.diff import KeyChange, WorldChange
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -163,6 +165,10 @@ def _described(scenario: ResolvedScenario, seed: int | None) -> dict[str, Any]:
         seed = scenario.world.seed if scenario.world.seed is not None else 0
     env = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
     try:
+        simulation = env.simulation
+        for row in np.flatnonzero(simulation.appeared < 0).tolist():  # objects that come later are described there, too
+            simulation.pose[row] = simulation.state.initial_state(row)[:3]
+        simulation.refresh()
         return describe_world(env)
     finally:
         env.end(ending_time=0.0)

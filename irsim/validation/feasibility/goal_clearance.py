@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import irsim._core as core
+from irsim.common.text import metres
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.clearance_grid import Point, free_place, grid_of
 from irsim.validation.feasibility.movers import Mover
@@ -58,10 +59,10 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
             what = _goal_term(goals, index)
             place = free_place(grid_of(scene, movers), (goal[0], goal[1]), mover.around, _start(scene, mover))
             instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
-            fix = f"a goal with {mover.around:.3g} m of free space around it{instead}"
+            fix = f"a goal with {metres(mover.around)} of free space around it{instead}"
             if scene.rough:  # a place that is free with one seed is not free with the next
                 fix = (
-                    f"'range_low' and 'range_high' that keep randomly placed objects {mover.around:.3g} m away from "
+                    f"'range_low' and 'range_high' that keep randomly placed objects {metres(mover.around)} away from "
                     "the goal, or a goal outside that range"
                 )
             tally.add(
@@ -118,7 +119,7 @@ def _reason(context: Context, scene: Scene, mover: Mover, goal: list[float]) -> 
     name = _blocker(context, scene, mover, goal, 0.0 if inside else mover.radius)
     if inside:
         return f"it lies inside {name}"
-    return f"{name} is closer than the {mover.radius:.3g} m that the body needs"
+    return f"{name} is closer than the {metres(mover.radius)} that the body needs"
 
 
 def _blocker(context: Context, scene: Scene, mover: Mover, goal: list[float], radius: float) -> str:

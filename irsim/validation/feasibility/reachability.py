@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import irsim._core as core
+from irsim.common.text import metres
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.clearance_grid import (
     ClearanceGrid,
@@ -261,7 +262,7 @@ def _report_unchecked(mover: Mover, index: int, grid: ClearanceGrid, scene: Scen
         mover.record,
         f"an obstacle stands between '{mover.record.name}' and its goal, and it is not known whether there is a path: "
         f"a world of {width:g} m × {height:g} m with this many corners is too large to search for paths "
-        f"{_metres(2 * mover.radius)} wide",
+        f"{metres(2 * mover.radius)} wide",
         "behavior: {name: follow}, and --simulate or a run: an event 'no_path' means that there is no path",
         scene.seed,
         serious=False,
@@ -320,9 +321,13 @@ def _add_unreachable(
         fix = "an opening in the obstacles between them"
     else:
         x, y = found.place
-        wide = f"a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f})" if found.width < need else "too narrow a gap"
-        why = f"the widest path has {wide}, and the robot needs {'' if mover.is_disc else 'at least '}{_metres(need)}"
-        fix = f"a gap of more than {_metres(need)} ({_metres(_EASE * need)} to pass with ease), or a narrower robot"
+        wide = (
+            f"a gap of {metres(found.width, unlike=need)} at ({x:.2f}, {y:.2f})"
+            if found.width < need
+            else "too narrow a gap"
+        )
+        why = f"the widest path has {wide}, and the robot needs {'' if mover.is_disc else 'at least '}{metres(need)}"
+        fix = f"a gap of more than {metres(need)} ({metres(_EASE * need)} to pass with ease), or a narrower robot"
     if hasattr(context.scenario.world.obstacle_map, "fill"):
         fix += ", or a map with another 'seed' or a lower 'fill'"
     if place is not None:
@@ -344,27 +349,23 @@ def _report_narrow(context: Context, mover: Mover, index: int, found: Gap, scene
     need, name = 2 * mover.radius, mover.record.name
     x, y = found.place
     what = (
-        f"the path of '{name}' leads through a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f}), which leaves "
-        f"{_metres(max(0.0, found.width - need) / 2)} on each side of its {_metres(need)}"
+        f"the path of '{name}' leads through a gap of {metres(found.width)} at ({x:.2f}, {y:.2f}), which leaves "
+        f"{metres(max(0.0, found.width - need) / 2)} on each side of its {metres(need)}"
     )
-    fix = f"a gap of {_metres(_EASE * need)} or more is easier to pass"
+    fix = f"a gap of {metres(_EASE * need)} or more is easier to pass"
     missed = missed_way(context, scene, mover, index)
     if missed is not None:
-        cells = "" if missed.cell is None else f" with cells of {_metres(missed.cell)}"
+        cells = "" if missed.cell is None else f" with cells of {metres(missed.cell)}"
         planner = f"its planner '{missed.planner}'{cells}"
         what += (
             f". Even alone it gets stuck on the path of {planner}"
             if missed.found
             else f". It does not move, because {planner} does not find that path"
         )
-        fix = f"a gap of {_metres(_EASE * need)} or more"
+        fix = f"a gap of {metres(_EASE * need)} or more"
         if missed.finer is not None:
             fix = f"planner: {{name: astar, resolution: {missed.finer:g}}} in its behavior, or {fix}"
     tally.add("narrow-passage", mover.goal_path(index), mover.record, what, fix, scene.seed, serious=missed is not None)
-
-
-def _metres(value: float) -> str:
-    return f"{value:.3g} m" if value >= 0.1 else f"{value:.2g} m"
 
 
 def _is_line_blocked(grid: ClearanceGrid, mover: Mover, start: Point, goal: Point) -> bool:

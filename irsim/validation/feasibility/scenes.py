@@ -158,8 +158,8 @@ def _fixed_scene(context: Context) -> Scene:
 def _build_worlds(context: Context, seeds: list[int]) -> tuple[core.World, core.State]:
     """One world per seed, placed by the core, whose objects have no behavior and no sensors."""
     bare = [
-        replace(record, sensors=[], behavior=None, group_behavior=None)
-        if record.sensors or record.kinematics
+        replace(record, sensors=[], behavior=None, group_behavior=None, appear_time=0.0)
+        if record.sensors or record.kinematics or record.appear_time
         else record
         for record in context.resolved.objects
     ]

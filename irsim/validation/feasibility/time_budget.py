@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from irsim.common.text import metres
 from irsim.episodes.episode import HORIZON_FACTOR, MIN_HORIZON
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.clearance_grid import ClearanceGrid
@@ -77,7 +78,7 @@ def _time_limit(context: Context, going: list[Mover], straight: dict[int, float]
     if limit is not None:
         return limit, f"time_limit is {limit:g} s"
     usual = max([MIN_HORIZON, *(HORIZON_FACTOR * _time(m, straight[m.record.id]) for m in going)])
-    usual += max((m.record.start_time for m in going), default=0.0)
+    usual += max((m.record.moves_from for m in going), default=0.0)
     return usual, f"without a time_limit a run ends after {usual:.3g} s"
 
 
@@ -94,18 +95,20 @@ def _path_length(grid: ClearanceGrid, leg: Leg) -> float:
 def _check_time(mover: Mover, length: float, limit: float, limit_reason: str, scene: Scene, tally: Tally) -> None:
     """Report a robot that needs more time than the limit, or nearly as much."""
     rate = _max_acceleration(mover)
-    needed = _least_time(mover, length, rate) + mover.record.start_time
+    needed = _least_time(mover, length, rate) + mover.record.moves_from
     if needed <= _TIGHT_TIME_SHARE * limit:
         return
     late = needed > limit
-    wait = f" after its start_time of {mover.record.start_time:g} s" if mover.record.start_time else ""
-    moving = needed - mover.record.start_time
+    record = mover.record
+    key = "appear_time" if record.appear_time > record.start_time else "start_time"
+    wait = f" after its {key} of {record.moves_from:g} s" if record.moves_from else ""
+    moving = needed - record.moves_from
     slowly = f", accelerating with {rate:.3g} m/s²," if moving > 1.01 * _time(mover, length) else ""
     tally.add(
         "time-too-short",
         ("world", "time_limit") if limit_reason.startswith("time_limit") else mover.path,
         mover.record,
-        f"'{mover.record.name}' needs at least {needed:.3g} s for the {length:.3g} m to its goal "
+        f"'{mover.record.name}' needs at least {needed:.3g} s for the {metres(length)} to its goal "
         f"at {mover.speed:.3g} m/s{wait}{slowly}{'' if slowly else ','} and "
         + (limit_reason if late else f"{limit_reason}, which leaves no time for turning and giving way"),
         f"time_limit: {math.ceil(2 * needed):g}, or {'a larger acce' if slowly else 'a faster robot'}",
@@ -138,7 +141,7 @@ def _report_trap(mover: Mover, leg: Leg, trap: Trap, scene: Scene, tally: Tally)
         mover.goal_path(leg.index),
         mover.record,
         f"'{mover.behavior}' avoids nearby objects but plans no path: '{mover.record.name}' is likely to stop near "
-        f"({x:.2f}, {y:.2f}), in front of a wall {trap.length:.3g} m long, behind which its goal "
+        f"({x:.2f}, {y:.2f}), in front of a wall {metres(trap.length)} long, behind which its goal "
         f"({leg.goal[0]:g}, {leg.goal[1]:g}) lies",
         f"behavior: {{name: follow, planner: astar, local: {mover.behavior}}}, or waypoints",
         scene.seed,
@@ -172,7 +175,7 @@ def _report_detour(mover: Mover, leg: Leg, scene: Scene, around: float, length: 
         mover.goal_path(leg.index),
         mover.record,
         f"'{mover.behavior}' avoids nearby objects but plans no path: '{name}' is likely to get stuck on the "
-        f"path of {around:.3g} m around the obstacles (straight line: {length:.3g} m)",
+        f"path of {metres(around)} around the obstacles (straight line: {metres(length)})",
         f"behavior: {{name: follow, planner: astar, local: {mover.behavior}}}, or waypoints",
         scene.seed,
         serious=False,

@@ -35,8 +35,8 @@ __all__ = ["Benchmark", "answer", "tool"]
 
 _DESCRIPTION = """
     Compare policies fairly: every scenario under every policy with the same seeds. Rows have shares of
-    success, collision and timeout and the mean time as [value, low, high] (95 %), and the seeds that failed; diff
-    is the difference from the first policy, seed by seed. Work that exceeds wait_s becomes a job. Next: get_job (detailed:
+    success, collision and timeout, the mean time as [value, low, high] (95 %), and the seeds that failed; diff
+    is the difference from the first policy, seed by seed. Work over wait_s becomes a job. Next: get_job (detailed:
     more metrics), inspect_run with the job_id, or run_episode with a seed that failed.
 """
 _SHARES = ("success", "collision", "timeout")

@@ -323,9 +323,11 @@ def _robot_text(robot: Robot) -> str:
         facts.append(f"came as near as {robot.min_clearance + 0.0:g} m to {robot.nearest!r}, edge to edge")
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
     if robot.infeasible_steps is not None:
-        many = "steps" if robot.infeasible_steps != 1 else "step"
-        mattered = "and it touched something" if robot.collision_count else "but it touched nothing"
-        facts.append(f"its behavior found no collision-free velocity in {robot.infeasible_steps} {many}, {mattered}")
+        many = f"{robot.infeasible_steps} step{'s' * (robot.infeasible_steps != 1)}"
+        end = "but it touched nothing, so that did no harm"
+        if robot.collision_count:
+            end = "and it did touch something: more room or slower others would help it"
+        facts.append(f"in {many} no velocity avoided everybody, {end}")
     if robot.path_length is not None:
         facts.append(f"drove {robot.path_length:g} m")
     facts += [

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from typing import Annotated
 
-import numpy as np
 from pydantic import Field
 
-from irsim.common.arrays import Floats
 from irsim.options.base import Options, problem
 from irsim.policies.networks.values import Channel
+from irsim.policies.observations import Observations
 from irsim.policies.policy import Needs
 
-__all__ = ["Label", "PartOptions", "clip_to", "select", "unique"]
+__all__ = ["Label", "PartOptions", "unique"]
 
 Label = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
 """Name of a value in a network."""
@@ -45,6 +43,13 @@ class PartOptions(Options):
         """Its numbers in order, for each member if it is a set."""
         raise NotImplementedError
 
+    def check(self, observations: Observations) -> None:
+        """Refuse observations that lack what the part needs.
+
+        Raises:
+            PolicyInputError: Something is missing.
+        """
+
 
 def unique(features: list[str]) -> list[str]:
     """Validator of lists of features: none twice."""
@@ -52,14 +57,3 @@ def unique(features: list[str]) -> list[str]:
         twice = next(name for name in features if features.count(name) > 1)
         raise problem("invalid-value", f"'{twice}' is listed twice", fix="list each feature once")
     return features
-
-
-def clip_to(values: Floats, limit: float, clip: bool, *, low: float = -1.0) -> Floats:
-    """Values divided by ``limit`` and, with ``clip``, clipped to [``low``, 1]."""
-    scaled = values / limit
-    return np.clip(scaled, low, 1.0) if clip else scaled
-
-
-def select(columns: Mapping[str, Floats], names: Sequence[str]) -> Floats:
-    """(..., F) columns of these names."""
-    return np.stack([columns[name] for name in names], axis=-1)

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, ClassVar, Literal
 
-import numpy as np
 from pydantic import AfterValidator, Field
 
+import irsim._core as core
 from irsim.options.units import Bool, Meters
 from irsim.policies.networks.features import PARTS
-from irsim.policies.networks.frames import Frame, direction, goal_offset, length, turn_back, x_axis
-from irsim.policies.networks.parts._options import PartOptions, clip_to, select, unique
-from irsim.policies.networks.values import Channel, Value, apply
-from irsim.policies.observations import Observations
+from irsim.policies.networks.frames import Frame
+from irsim.policies.networks.parts._options import PartOptions, unique
+from irsim.policies.networks.values import Channel
 
 Feature = Literal["distance", "nearness", "cos", "sin", "x", "y", "heading_cos", "heading_sin", "threshold", "present"]
 
@@ -52,37 +51,4 @@ class Goal(PartOptions):
         return tuple(Channel(name, *(scaled | shares).get(name, (-1.0, 1.0))) for name in self.features)
 
 
-@PARTS.register(Goal)
-def goal(observations: Observations, options: Goal) -> Value:
-    """Observe the goal.
-
-    Args:
-        observations: Of B robots.
-        options: The options of the part.
-
-    Returns:
-        (B, F) features.
-    """
-    axis = x_axis(options.frame, observations)
-    offset, there = goal_offset(observations)
-    distance = length(offset)
-    position = turn_back(offset, axis)
-    far = (distance > 0)[:, None]
-    bearing = np.where(far, position / np.where(far, distance[:, None], 1.0), [1.0, 0.0]) * there[:, None]
-    heading = observations.goal[:, 2]
-    wanted = np.isfinite(heading)
-    facing = turn_back(direction(np.where(wanted, heading, 0.0)), axis) * (there * wanted)[:, None]
-    scaled = clip_to(position, options.distance_max, options.clip)
-    columns = {
-        "distance": clip_to(distance, options.distance_max, options.clip),
-        "nearness": apply("exp", -distance / options.decay) * there,
-        "cos": np.clip(bearing[:, 0], -1.0, 1.0),
-        "sin": np.clip(bearing[:, 1], -1.0, 1.0),
-        "x": scaled[:, 0],
-        "y": scaled[:, 1],
-        "heading_cos": np.clip(facing[:, 0], -1.0, 1.0),
-        "heading_sin": np.clip(facing[:, 1], -1.0, 1.0),
-        "threshold": clip_to(observations.goal_threshold, options.distance_max, options.clip) * there,
-        "present": there,
-    }
-    return Value(select(columns, options.features))
+PARTS.register(Goal, kernel=core.GoalOptions)

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, ClassVar, Literal
 
-import numpy as np
 from pydantic import AfterValidator, Field
 
+import irsim._core as core
 from irsim.options.units import Bool, Integer, Meters, MetersPerSecond
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.features import PARTS
-from irsim.policies.networks.frames import Frame, direction, length, turn_back, x_axis
-from irsim.policies.networks.parts._options import PartOptions, clip_to, select, unique
-from irsim.policies.networks.values import Channel, Value, apply
+from irsim.policies.networks.frames import Frame
+from irsim.policies.networks.parts._options import PartOptions, unique
+from irsim.policies.networks.values import Channel
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Needs
 
@@ -85,56 +85,12 @@ class NeighborsPart(PartOptions):
         bounds |= dict.fromkeys(("heading_cos", "heading_sin"), (-1.0, 1.0))
         return tuple(Channel(name, *bounds.get(name, (-most, most))) for name in self.features)
 
+    def check(self, observations: Observations) -> None:
+        """Refuse observations with no or fewer neighbors."""
+        there = 0 if observations.neighbors is None else observations.neighbors.mask.shape[1]
+        if there < self.count:
+            what = f"the network observes {self.count} neighbors, not {there}"
+            raise PolicyInputError(what, "observe what `needs` declares")
 
-@PARTS.register(NeighborsPart)
-def neighbors(observations: Observations, options: NeighborsPart) -> Value:
-    """Observe the neighbors.
 
-    Args:
-        observations: Of B robots, with at least ``count`` neighbors.
-        options: The options of the part.
-
-    Returns:
-        (B, K, F) features and the (B, K) mask.
-
-    Raises:
-        PolicyInputError: The observations hold no or fewer neighbors.
-    """
-    seen, count = observations.neighbors, options.count
-    if seen is None or seen.mask.shape[1] < count:
-        there = 0 if seen is None else seen.mask.shape[1]
-        raise PolicyInputError(f"the network observes {count} neighbors, not {there}", "observe what `needs` declares")
-    axis = x_axis(options.frame, observations)[:, None]
-    away = seen.position[:, :count] - observations.pose[:, None, :2]
-    distance = length(away)
-    radius = seen.radius[:, :count]
-    radii = radius + observations.radius[:, None]
-    gap = distance - radii
-    mask = seen.mask[:, :count] & (gap <= (math.inf if options.range is None else options.range))
-    moving = seen.velocity[:, :count]
-    velocity = turn_back(moving - observations.velocity[:, None] if options.relative_velocity else moving, axis)
-    position = turn_back(away, axis)
-    facing = np.clip(turn_back(direction(seen.heading[:, :count]), axis), -1.0, 1.0)
-    goal = observations.goal[:, None, :2]
-    to_goal = np.where(np.isfinite(goal).all(axis=2), length(goal - seen.position[:, :count]), 0.0)
-    far, clip = options.distance_max, options.clip
-    columns = {
-        "x": clip_to(position[..., 0], far, clip),
-        "y": clip_to(position[..., 1], far, clip),
-        "vx": clip_to(velocity[..., 0], options.speed_max, clip),
-        "vy": clip_to(velocity[..., 1], options.speed_max, clip),
-        "heading_cos": facing[..., 0],
-        "heading_sin": facing[..., 1],
-        "radius": clip_to(radius, options.radius_max, clip),
-        "radii": clip_to(radii, options.radius_max, clip),
-        "distance": clip_to(distance, far, clip),
-        "gap": clip_to(gap, far, clip),
-        "nearness": apply("exp", -np.maximum(gap, 0.0) / options.decay),
-        "goal_distance": clip_to(to_goal, far, clip),
-        "arrived": seen.arrived[:, :count].astype(np.float64),
-        "robot": seen.robot[:, :count].astype(np.float64),
-        "present": np.ones(mask.shape),
-    }
-    members = np.where(mask[:, :, None], select(columns, options.features), 0.0)
-    step = -1 if options.nearest_last else 1
-    return Value(members[:, ::step], mask[:, ::step])
+PARTS.register(NeighborsPart, kernel=core.NeighborsOptions)

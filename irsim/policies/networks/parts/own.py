@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, ClassVar, Literal
 
-import numpy as np
 from pydantic import AfterValidator, Field
 
-from irsim.common.arrays import Floats
+import irsim._core as core
 from irsim.options.units import Bool, Integer, Meters, MetersPerSecond, Number, Radians, RadiansPerSecond
 from irsim.policies.networks.features import PARTS
-from irsim.policies.networks.frames import Frame, direction, length, turn_back, x_axis
-from irsim.policies.networks.parts._options import PartOptions, clip_to, unique
-from irsim.policies.networks.values import Channel, Value
-from irsim.policies.observations import Observations
+from irsim.policies.networks.frames import Frame
+from irsim.policies.networks.parts._options import PartOptions, unique
+from irsim.policies.networks.values import Channel
 
 Feature = Literal[
     "vx", "vy", "speed", "yaw_rate", "heading_cos", "heading_sin", "radius", "steering", "arrived",
@@ -70,43 +68,4 @@ class Own(PartOptions):
         return tuple(found)
 
 
-@PARTS.register(Own)
-def own(observations: Observations, options: Own) -> Value:
-    """Observe the robot itself.
-
-    Args:
-        observations: Of B robots.
-        options: The options of the part.
-
-    Returns:
-        (B, F) features.
-    """
-    axis = x_axis(options.frame, observations)
-    velocity = turn_back(observations.velocity, axis)
-    facing = np.clip(turn_back(direction(observations.pose[:, 2]), axis), -1.0, 1.0)
-    clip = options.clip
-    low, high = (limit[:, : options.controls] for limit in (observations.low, observations.high))
-    columns: dict[str, Floats] = {
-        "vx": clip_to(velocity[:, 0], options.speed_max, clip),
-        "vy": clip_to(velocity[:, 1], options.speed_max, clip),
-        "speed": clip_to(length(velocity), options.speed_max, clip),
-        "yaw_rate": clip_to(observations.yaw_rate, options.yaw_rate_max, clip),
-        "heading_cos": facing[:, 0],
-        "heading_sin": facing[:, 1],
-        "radius": clip_to(observations.radius, options.radius_max, clip),
-        "steering": clip_to(observations.steering, options.steering_max, clip),
-        "arrived": observations.arrived.astype(np.float64),
-        "control": clip_to(_share(observations.control[:, : options.controls], low, high), 1.0, clip),
-        "low": clip_to(low, options.limit_max, clip),
-        "high": clip_to(high, options.limit_max, clip),
-    }
-    chosen = [columns[name] for name in options.features]
-    return Value(np.concatenate([values if values.ndim == 2 else values[:, None] for values in chosen], axis=1))
-
-
-def _share(control: Floats, low: Floats, high: Floats) -> Floats:
-    """Controls between their limits: -1 at the lower one, 1 at the upper one, 0 where there is no such interval."""
-    width = high - low
-    usable = np.isfinite(width) & (width > 0)
-    middle = np.where(usable, low, 0.0) + np.where(usable, width, 0.0) / 2
-    return np.where(usable, (control - middle) / np.where(usable, width / 2, 1.0), 0.0)
+PARTS.register(Own, kernel=core.OwnOptions)

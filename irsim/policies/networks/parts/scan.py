@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-import numpy as np
 from pydantic import Field
 
+import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.options.units import Bool, Integer, Meters, Radians
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.features import PARTS
 from irsim.policies.networks.parts._options import PartOptions
-from irsim.policies.networks.values import Channel, Value
-from irsim.policies.observations import Observations, Scan
+from irsim.policies.networks.values import Channel
+from irsim.policies.observations import Observations
 from irsim.policies.policy import Needs
 
 _ANGLE_TOLERANCE = 1e-3
@@ -43,40 +44,28 @@ class ScanPart(PartOptions):
         """One for each sector."""
         return tuple(Channel(f"sector_{i + 1}", 0.0, 1.0) for i in range(self.sectors))
 
+    def check(self, observations: Observations) -> None:
+        """Refuse observations without a lidar, with too few beams, or with beams in other directions."""
+        if observations.scan is None:
+            raise PolicyInputError("the network observes a lidar, and the robot has none", "add a lidar2d to the robot")
+        self.check_beams(observations.scan.angles)
 
-@PARTS.register(ScanPart)
-def scan(observations: Observations, options: ScanPart) -> Value:
-    """Observe the ranges of the lidar.
+    def check_beams(self, beams: Floats) -> None:
+        """Refuse a lidar that has too few beams, or beams in other directions.
 
-    Args:
-        observations: Of B robots, with a scan.
-        options: The options of the part.
-
-    Returns:
-        (B, n) features.
-
-    Raises:
-        PolicyInputError: There is no lidar, it has too few beams, or its beams have other directions.
-    """
-    seen = observations.scan
-    if seen is None:
-        raise PolicyInputError("the network observes a lidar, and the robot has none", "add a lidar2d to the robot")
-    _check(seen, options)
-    beams = seen.ranges.shape[1]
-    starts = np.arange(options.sectors) * beams // options.sectors
-    nearest = np.minimum.reduceat(seen.ranges, starts, axis=1)
-    share = np.clip(nearest / (options.range_max or seen.range_max), 0.0, 1.0)
-    return Value(1.0 - share if options.nearness else share)
-
-
-def _check(seen: Scan, options: ScanPart) -> None:
-    beams = seen.ranges.shape[1]
-    if beams < options.sectors:
-        message = f"the network observes {options.sectors} sectors of a lidar, and the lidar has {beams} beams"
-        raise PolicyInputError(message, f"give the lidar number: {options.sectors}, or a multiple of it")
-    if options.angles is not None:
-        given = [float(seen.angles[0]), float(seen.angles[-1])]
-        if max(abs(a - b) for a, b in zip(given, options.angles, strict=True)) > _ANGLE_TOLERANCE:
-            wanted = f"{options.angles[0]:.4g} to {options.angles[1]:.4g} rad"
+        Args:
+            beams: (n,) directions in the frame of the robot [rad].
+        """
+        if len(beams) < self.sectors:
+            message = f"the network observes {self.sectors} sectors of a lidar, and the lidar has {len(beams)} beams"
+            raise PolicyInputError(message, f"give the lidar number: {self.sectors}, or a multiple of it")
+        if self.angles is None:
+            return
+        given = [float(beams[0]), float(beams[-1])]
+        if max(abs(a - b) for a, b in zip(given, self.angles, strict=True)) > _ANGLE_TOLERANCE:
+            wanted = f"{self.angles[0]:.4g} to {self.angles[1]:.4g} rad"
             message = f"the network expects beams from {wanted}, and the lidar has {given[0]:.4g} to {given[1]:.4g} rad"
             raise PolicyInputError(message, "set angle_range and offset of the lidar to those of the training")
+
+
+PARTS.register(ScanPart, kernel=core.ScanOptions)

@@ -4,7 +4,7 @@ import { inMetres, toPixels, toWorld } from "./camera.js";
 import { cellImage } from "./cells.js";
 import { opposite, rgbOf, seen } from "./colors.js";
 import { makeLayer, showLayer, showTrails } from "./layer.js";
-import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, poseAt, rowOfTime } from "./run.js";
+import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, isAbsent, poseAt, rowOfTime, waits } from "./run.js";
 import { scanAt } from "./scan.js";
 
 const DENSE = 2.5; // pixels between points of a trail
@@ -67,7 +67,7 @@ function drawGround(context, drawing, run, camera, colors, ratio) {
   context.lineWidth = 1.5 / camera.scale;
   context.strokeRect(left, bottom, right - left, top - bottom);
   for (const object of run.objects) {
-    if (object.track < 0 && object.role !== "robot" && object.shape >= 0) {
+    if (object.track < 0 && object.role !== "robot" && object.shape >= 0 && !object.from) {
       paintShape(context, run, object, poseAt(run, object.index, 0), camera, ratio, seen(colors, object.color), 1);
     }
   }
@@ -204,7 +204,7 @@ function beginWay(context, color, width) {
 
 function drawGoals(context, run, shown, camera, colors, ratio) {
   for (const object of run.objects) {
-    if (!object.goal || object.shape < 0) continue;
+    if (!object.goal || object.shape < 0 || isAbsent(run, object, shown.at)) continue;
     const goal = goalAt(run, object.index, shown.at);
     if (!goal) continue;
     const chosen = object.index === shown.robot, color = seen(colors, object.color), px = 1 / camera.scale;
@@ -241,6 +241,7 @@ function drawGoals(context, run, shown, camera, colors, ratio) {
 }
 
 function drawScans(context, drawing, run, shown, camera, colors, ratio) {
+  if (isAbsent(run, run.objects[shown.robot], shown.at)) return;
   const key = `${run.head.run_id} ${shown.robot} ${shown.at}`;
   if (drawing.scan?.key !== key) {
     drawing.scan = { key, all: (run.lidars.get(shown.robot) ?? []).map((lidar) => scanAt(run, lidar, shown.at)) };
@@ -268,9 +269,9 @@ function drawScans(context, drawing, run, shown, camera, colors, ratio) {
 }
 
 function drawBody(context, run, object, at, shown, camera, colors, ratio) {
-  if (object.shape < 0) return;
+  if (object.shape < 0 || isAbsent(run, object, at)) return;
   const pose = poseAt(run, object.index, at), flags = flagsAt(run, object.index, at), px = 1 / camera.scale;
-  const color = seen(colors, object.color), hit = flags & COLLIDED, rests = flags & ARRIVED && !hit;
+  const color = seen(colors, object.color), hit = flags & COLLIDED, rests = (flags & ARRIVED || waits(run, object, at)) && !hit;
   const chosen = object.index === shown.robot;
   if (chosen) {
     inMetres(context, camera, ratio);
@@ -326,7 +327,7 @@ function drawNames(context, run, at, camera, colors, ratio) {
   }
   context.fillStyle = colors.ink;
   for (const object of run.objects) {
-    if (object.track < 0 && object.role !== "robot") continue;
+    if ((object.track < 0 && object.role !== "robot") || isAbsent(run, object, at)) continue;
     const pose = poseAt(run, object.index, at), [x, y] = toPixels(camera, pose.x, pose.y);
     if (x < 0 || y < 0 || x > camera.width || y > camera.height) continue;
     const away = 0.75 * object.radius * camera.scale + 2;
@@ -360,7 +361,7 @@ export function objectAt(context, run, at, camera, px, py) {
   const point = toWorld(camera, px, py), slack = 8 / camera.scale;
   let best = -1, nearest = Infinity;
   for (const object of run.objects) {
-    if (object.shape < 0) continue;
+    if (object.shape < 0 || isAbsent(run, object, at)) continue;
     const pose = poseAt(run, object.index, at), dx = point.x - pose.x, dy = point.y - pose.y;
     const away = Math.hypot(dx, dy);
     const moves = object.track >= 0 || object.role === "robot";

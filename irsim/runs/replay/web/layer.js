@@ -1,4 +1,4 @@
-// A picture that is kept: somewhat larger than the view, so that it can be moved along without being drawn anew.
+// A picture that is kept: somewhat larger than the view, so that it can be moved along without drawing it again.
 
 const MARGIN = 0.2; // of the view, on each side
 const SLICE = 2000; // rows times tracks that are painted at a time

@@ -113,6 +113,12 @@ export function poseAt(run, object, at, out = {}) {
   return out;
 }
 
+/** Whether an object has not come into the world at a moment. */
+export const isAbsent = (run, { from = 0 }, at) => from > 0 && run.step[Math.min(Math.floor(at), run.rows - 1)] < from;
+
+/** Whether an object stands at its start because its time has not come. */
+export const waits = (run, { until = 0 }, at) => until > 0 && run.step[Math.min(Math.floor(at), run.rows - 1)] < until;
+
 /** Speed since the row before [m/s]. */
 export function speedAt(run, object, at) {
   const { track } = run.objects[object], row = Math.ceil(at);

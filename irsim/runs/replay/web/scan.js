@@ -1,7 +1,7 @@
 // Scans of one robot: as recorded, or computed here by casting beams against the shapes that are drawn.
 
 import { castCells } from "./cells.js";
-import { poseAt } from "./run.js";
+import { isAbsent, poseAt } from "./run.js";
 
 /** { x, y, ends: Float32Array [x, y, …], hit: Uint8Array, recorded } of a lidar at a moment. */
 export function scanAt(run, lidar, at) {
@@ -30,7 +30,7 @@ function recorded(run, lidar, beam, row) {
 function nearby(run, lidar, at, x, y) {
   const found = [];
   run.objects.forEach((object, index) => {
-    if (index === lidar.object || !object.seen || object.shape < 0) return;
+    if (index === lidar.object || !object.seen || object.shape < 0 || isAbsent(run, object, at)) return;
     const pose = poseAt(run, index, at, {});
     const radius = run.reach[object.shape], reach = lidar.range_max + radius;
     if ((pose.x - x) ** 2 + (pose.y - y) ** 2 <= reach * reach) {

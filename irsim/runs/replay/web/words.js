@@ -1,6 +1,6 @@
 // What the page says about objects and events.
 
-import { ARRIVED, COLLIDED, flagsAt, goalAt, poseAt, speedAt, STOPPED } from "./run.js";
+import { ARRIVED, COLLIDED, flagsAt, goalAt, isAbsent, poseAt, speedAt, STOPPED, waits } from "./run.js";
 
 const KINDS = {
   collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way",
@@ -29,6 +29,7 @@ export const ofRobot = (run, { object, partner }) => [object, partner].some((ind
 /** Name and value pairs of an object at a moment. */
 export function valuesOf(run, index, at) {
   const object = run.objects[index], pose = poseAt(run, index, at), goal = goalAt(run, index, at);
+  if (isAbsent(run, object, at)) return [["state", `appears at ${seconds(object.from * run.head.step_time)}`]];
   const turn = Math.atan2(Math.sin(pose.heading), Math.cos(pose.heading));
   const pairs = [
     ["position", `${pose.x.toFixed(2)}, ${pose.y.toFixed(2)} m`],
@@ -39,6 +40,6 @@ export function valuesOf(run, index, at) {
   const flags = flagsAt(run, index, at);
   const state = [[COLLIDED, "in collision"], [ARRIVED, "arrived"], [STOPPED, "stopped"]];
   const told = state.filter(([bit]) => flags & bit).map(([, word]) => word).join(", ");
-  if (object.role === "robot" || told) pairs.push(["state", told || "under way"]);
+  if (object.role === "robot" || told) pairs.push(["state", told || (waits(run, object, at) ? "waits" : "under way")]);
   return pairs;
 }

@@ -1,0 +1,32 @@
+// Loops whose turns share nothing, on several threads.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace irsim {
+
+/// Call `work(first, last)` for parts of 0 to `count`, each on a thread of its own. `work` throws nothing. Parts have
+/// at least `least` turns, so that a thread is worth starting.
+template <class Work>
+void in_parts(std::size_t count, int threads, std::size_t least, const Work& work) {
+  const std::size_t most = std::max<std::size_t>(1, std::min<std::size_t>(threads < 1 ? 1 : threads, count / least));
+  std::vector<std::thread> helpers;
+  std::size_t done = count / most;  // the first part is for this thread
+  try {
+    for (std::size_t t = 1; t < most; ++t) {
+      const std::size_t last = count * (t + 1) / most;
+      helpers.emplace_back(work, done, last);
+      done = last;
+    }
+  } catch (const std::system_error&) {
+    work(done, count);  // the system gives no more threads
+  }
+  work(std::size_t{0}, count / most);
+  for (std::thread& helper : helpers) helper.join();
+}
+
+}  // namespace irsim

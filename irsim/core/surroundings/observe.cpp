@@ -1,0 +1,49 @@
+#include "surroundings/observe.hpp"
+
+#include "world/state.hpp"
+#include "world/world.hpp"
+
+namespace irsim {
+
+Observer::Observer(const World& world, const State& state, const Looking& looking)
+    : world_(world), state_(state), looking_(looking) {
+  if (looking.neighbors > 0) circles_ = bounding_circles(world, state);
+}
+
+Neighbor Observer::neighbor(int row) const {
+  const double robot = world_.is_robot[row % world_.objects] ? 1.0 : 0.0, arrived = state_.arrived[row] ? robot : 0.0;
+  const Vec3& twist = state_.twist[row];
+  const BoundingCircle& circle = circles_[row];
+  return {circle.centre, state_.pose[row].theta, {twist[0], twist[1]}, circle.radius, arrived, robot};
+}
+
+Seen Observer::see(int row, Near& near) const {
+  const int w = row / world_.objects, object = row % world_.objects;
+  const Vec3& twist = state_.twist[row];
+  Seen seen;
+  seen.pose = state_.pose[row];
+  seen.ahead = state_.heading(row);
+  seen.steering = looking_.steered[object] ? state_.extra[static_cast<std::size_t>(row) * state_.extra_rows] : 0.0;
+  seen.velocity = {twist[0], twist[1]};
+  seen.yaw_rate = twist[2];
+  seen.control = state_.control[row];
+  seen.low = state_.vel_min[row], seen.high = state_.vel_max[row];
+  seen.goal = state_.goal[row];
+  seen.goal_threshold = world_.goal_threshold[object];
+  seen.radius = state_.radius[row];
+  seen.arrived = state_.arrived[row] ? 1.0 : 0.0;
+  near.neighbors.clear();
+  if (looking_.neighbors > 0) {
+    nearest_objects(world_, state_, circles_, row, looking_.neighbors, looking_.reach, looking_.statics, near.nearest);
+    for (const int i : near.nearest.object) near.neighbors.push_back(neighbor(w * world_.objects + i));
+  }
+  seen.neighbors = near.neighbors.data(), seen.neighbor_count = near.neighbors.size();
+  if (looking_.beams > 0) {
+    const std::size_t beam = static_cast<std::size_t>(w) * world_.beams_per_world + looking_.first_beam[object];
+    seen.ranges = state_.ranges.data + beam;
+    seen.beams = looking_.beams, seen.range_max = looking_.range_max;
+  }
+  return seen;
+}
+
+}  // namespace irsim

@@ -1,0 +1,46 @@
+// What robots of a simulation know of themselves and of others: for observation parts and for policies.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "observing.hpp"
+#include "surroundings/bounding_circles.hpp"
+
+namespace irsim {
+
+/// What is observed besides the robots themselves.
+struct Looking {
+  int neighbors;                      // number of nearest other objects
+  double reach;                       // largest gap between bounding circles [m]
+  bool statics;                       // whether static objects count
+  std::vector<std::uint8_t> steered;  // (N,) whether the first extra state of an object is a steering angle
+  std::vector<int> first_beam;        // (N,) first beam of the lidar of each object among those of its world
+  int beams;                          // number of beams of a lidar, 0 if it is not observed
+  double range_max;                   // [m]
+};
+
+/// The neighbors of a row, with the memory for finding them.
+struct Near {
+  NearestRows nearest;
+  std::vector<Neighbor> neighbors;
+};
+
+/// Looks at rows of a state, which stays as it is meanwhile.
+class Observer {
+ public:
+  Observer(const World& world, const State& state, const Looking& looking);
+
+  /// What a row knows; its neighbors are written to `near`, which the result points to.
+  Seen see(int row, Near& near) const;
+
+ private:
+  Neighbor neighbor(int row) const;
+
+  const World& world_;
+  const State& state_;
+  const Looking& looking_;
+  std::vector<BoundingCircle> circles_;
+};
+
+}  // namespace irsim

@@ -1,0 +1,48 @@
+"""Objects that come into the world after its start, in words: who waited for room, who never came."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from irsim.common.text import listed, quoted, seconds
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+    from irsim.objects.view import ObjectView
+
+__all__ = ["absence", "appearances_message", "is_absent"]
+
+_MAX_NAMED = 3
+"""Number of objects that a sentence names."""
+_ROUNDING = 1e-9
+"""Rounding error of a time, in steps."""
+
+
+def is_absent(env: Env, view: ObjectView) -> bool:
+    """Return whether an object is not in the world yet."""
+    return bool(env.simulation.appeared[view.row] < 0)
+
+
+def absence(env: Env, view: ObjectView) -> str:
+    """Say why an absent object is not in the world: its time has not come, or its place is taken."""
+    due = view.record.appear_time
+    if int(env.simulation.count[0]) < math.ceil(due / env.step_time - _ROUNDING):
+        return f"it appears at {seconds(due)}"
+    return f"since {seconds(due)} there has been no room for it at its start"
+
+
+def appearances_message(env: Env) -> str | None:
+    """Say which objects came later than their ``appear_time`` or not at all; None if all came in time."""
+    late, missing = [], []
+    for view in env.objects:
+        due, appeared = view.record.appear_time, int(env.simulation.appeared[view.row])
+        if not due:
+            continue
+        if appeared < 0:
+            missing.append(f"{quoted(view.name)} did not appear ({absence(env, view)})")
+        elif appeared > math.ceil(due / env.step_time - _ROUNDING):
+            waited = seconds(appeared * env.step_time - due)
+            late.append(f"{quoted(view.name)} appeared {waited} late, when there was room at its start")
+    found = [listed(names, _MAX_NAMED) for names in (late, missing) if names]
+    return "; ".join(found) or None

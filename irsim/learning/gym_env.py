@@ -1,0 +1,123 @@
+"""One world with one learner as a Gymnasium environment."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.common.arguments import as_given
+from irsim.common.extras import require
+from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.pictures import Camera
+from irsim.learning.spaces import action_space, observation_space
+from irsim.learning.tasks.files import TaskError, TaskSource
+from irsim.learning.worlds import Result, Worlds
+
+require("gym", "gymnasium")
+import gymnasium
+
+__all__ = ["Env"]
+
+RENDER_MODES = ("rgb_array", "human")
+
+
+class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # types of an extra are not read
+    """A task with one learner.
+
+    ``reset(seed=s)`` starts the first scene of the seed s; each further ``reset()`` starts the next one.
+
+    Args:
+        task: The task: its file, its data, or a task that was read.
+        render_mode: ``rgb_array``: :meth:`render` returns a picture; ``human``: every step shows one in a window.
+        seed: Seed of the first episode if :meth:`reset` gets none; None: ``seeds.train`` of the task.
+
+    Attributes:
+        worlds: The world behind it.
+
+    Raises:
+        TaskError: The task is not valid, does not fit its scenario, or has several learners.
+        ScenarioError: The scenario cannot be used.
+    """
+
+    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10}
+
+    def __init__(self, task: TaskSource, *, render_mode: str | None = None, seed: int | None = None) -> None:
+        check_render_mode(render_mode)
+        self.worlds = Worlds(task, 1, seed=seed)
+        if self.worlds.learners != 1:
+            what = f"the task has {self.worlds.learners} learners, and gymnasium.Env has one"
+            fix = (
+                "use irsim.learning.VectorEnv or irsim.learning.ParallelEnv, or choose one robot with learners: [NAME]"
+            )
+            raise TaskError(what, fix)
+        self.render_mode = render_mode
+        self.metadata = {**self.metadata, "render_fps": frames_per_second(self.worlds)}
+        self.observation_space = observation_space(self.worlds)
+        self.action_space = action_space(self.worlds)
+        self._camera = Camera(self.worlds, human=render_mode == "human")
+        self._fresh = True
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Start an episode: the first scene of ``seed``, or the next scene."""
+        super().reset(seed=seed)
+        if seed is not None:
+            self.worlds.reset(seeds=[seed])
+        elif not self._fresh:
+            self.worlds.reset()
+        self._fresh = False
+        self._show()
+        return self.worlds.observe()[0], {}
+
+    def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Advance by one period.
+
+        Raises:
+            ArgumentError: The action has another shape, or is not finite.
+        """
+        result = self.worlds.step(np.asarray(action)[None])
+        self._show()
+        info = facts(result, 0)
+        return (
+            self.worlds.observe()[0],
+            float(result.reward[0, 0]),
+            bool(result.terminated[0, 0]),
+            bool(result.truncated[0, 0]),
+            info,
+        )
+
+    def render(self) -> Any:
+        """The picture of the present state, (H, W, 3) uint8; None with ``human``, which shows it anyway."""
+        return self._camera.picture() if self.render_mode == "rgb_array" else None
+
+    def _show(self) -> None:
+        if self.render_mode == "human":
+            self._camera.show()
+
+    def close(self) -> None:
+        """Close the window."""
+        self._camera.close()
+
+
+def check_render_mode(mode: str | None) -> None:
+    """Refuse an unknown render mode.
+
+    Raises:
+        ArgumentError: It is unknown.
+    """
+    if mode is not None and mode not in RENDER_MODES:
+        raise ArgumentError(f"render_mode is {as_given(mode)}", f"choose from {', '.join(RENDER_MODES)}, or None")
+
+
+def frames_per_second(worlds: Worlds) -> int:
+    """Frames of a video in which time passes as it does in the simulation."""
+    return max(1, round(1.0 / worlds.scenario.world.step_time))
+
+
+def facts(result: Result, slot: int) -> dict[str, Any]:
+    """What a step has led to for one learner: ``arrived``, ``collided``, and the terms of the reward."""
+    arrived, collided = bool(result.arrived.reshape(-1)[slot]), bool(result.collided.reshape(-1)[slot])
+    return {"arrived": arrived, "collided": collided, "is_success": arrived}

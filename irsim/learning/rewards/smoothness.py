@@ -1,0 +1,42 @@
+"""``smoothness``: how hard controls change."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from irsim.common.arrays import Floats
+from irsim.learning.features import REWARDS
+from irsim.learning.moment import Moment
+from irsim.learning.rewards._options import RewardOptions
+from irsim.options.units import Number
+
+
+class Smoothness(RewardOptions):
+    """The square of a change or of a turn, as a share of what the limits allow, per second.
+
+    - `change`: of the controls since the step before, as a share of the interval between their limits, the mean over
+      the controls
+    - `turning`: of the yaw rate, as a share of 1 rad/s
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "smoothness", "weight": -0.1, "of": "turning"}]}
+
+    name: Literal["smoothness"] = "smoothness"
+    weight: Number = -0.1
+    """Factor of the term; negative for a cost."""
+    of: Literal["change", "turning"] = "change"
+    """What should be small."""
+
+
+@REWARDS.register(Smoothness)
+def smoothness(moment: Moment, options: Smoothness) -> Floats:
+    """(n, A) squares, times the duration of the step [s]."""
+    if options.of == "turning":
+        return moment.step_time * moment.yaw_rate * moment.yaw_rate
+    extent = moment.high - moment.low
+    usable = np.isfinite(extent) & (extent > 0)
+    share = np.where(usable, (moment.control - moment.control_before) / np.where(usable, extent, 1.0), 0.0)
+    squares: Floats = (share * share).sum(axis=-1) / np.maximum(usable.sum(axis=-1), 1)
+    return moment.step_time * squares

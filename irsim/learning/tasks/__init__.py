@@ -1,0 +1,1 @@
+"""Tasks: what learning adds to a scenario, as data."""

@@ -1,0 +1,65 @@
+"""The report of ``irsim validate`` on a task file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.diagnostics.errors import ScenarioError
+from irsim.episodes.episode import as_finding
+from irsim.learning.tasks.files import TaskError, open_task, task_scenario
+from irsim.learning.tasks.team import team_of
+from irsim.results.validation import ValidationReport
+from irsim.scenario.yaml.document import load_path
+
+__all__ = ["is_task", "task_report"]
+
+
+def is_task(word: str) -> bool:
+    """Whether a word is the path of a YAML file with the key ``task``."""
+    path = Path(word)
+    if path.suffix not in (".yaml", ".yml") or not path.is_file():
+        return False
+    data = load_path(path).data
+    return isinstance(data, dict) and "task" in data
+
+
+def task_report(file: str) -> ValidationReport:
+    """Check a task file and its scenario, without running it.
+
+    Args:
+        file: Path of the file.
+    """
+    try:
+        task, folder = open_task(file)
+        team = team_of(task, task_scenario(task, folder))
+    except TaskError as error:
+        whole = Diagnostic("invalid-value", "error", (), error.message, fix=error.fix)
+        return _report(file, list(error.diagnostics) or [whole])
+    except ScenarioError as error:
+        wrong = [item for item in error.diagnostics if item.severity == "error"]
+        return _report(file, [_of_scenario(item) for item in wrong])
+    learners = f"{len(team.names)} learner{'s' * (len(team.names) != 1)} ({team.drive})"
+    return ValidationReport(
+        file=file,
+        valid=True,
+        summary=f"valid: task {task.task}, {learners}",
+        errors=0,
+        warnings=0,
+        hints=0,
+        findings=[],
+    )
+
+
+def _of_scenario(item: Diagnostic) -> Diagnostic:
+    """A problem of the scenario of a task."""
+    return replace(item, path=("scenario", *item.path), line=None, column=None, length=1, edit=None)
+
+
+def _report(file: str, found: list[Diagnostic]) -> ValidationReport:
+    findings = [as_finding(item) for item in found]
+    summary = f"{len(findings)} error{'s' * (len(findings) != 1)}, 0 warnings"
+    return ValidationReport(
+        file=file, valid=False, summary=summary, errors=len(findings), warnings=0, hints=0, findings=findings
+    )

@@ -1,0 +1,139 @@
+"""The content of a task file: what learning adds to a scenario.
+
+::
+
+    task: to_the_goal
+    title: One robot with a lidar drives to its goal
+    template: training-arena            # or scenario: {world: …, robot: …}, or file: scene.yaml
+    parameters: {robots: 1}
+    horizon: 30
+    observation:
+      - {name: scan, sectors: 36}
+      - {name: goal, features: [nearness, cos, sin]}
+      - {name: own, features: [vx, yaw_rate]}
+    reward:
+      - {name: progress, weight: 1.0}
+      - {name: arrival, weight: 1.0}
+      - {name: collision, weight: -3.0}
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from irsim.learning.features import REWARDS
+from irsim.learning.rewards._options import RewardOptions
+from irsim.options.base import Options, problem
+from irsim.options.selection import Select
+from irsim.options.units import Bool, Integer, Seconds
+from irsim.policies.networks.document import Meaning, OutputOptions
+from irsim.policies.networks.features import PARTS
+from irsim.policies.networks.layout import Layout
+from irsim.policies.networks.parts._options import PartOptions
+
+__all__ = ["Action", "Ends", "Seeds", "Task"]
+
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_.-]{0,63}$")]
+Value = bool | int | float | str
+
+
+class Action(Meaning):
+    """What the numbers of an action mean.
+
+    Without `choices`, an action is a vector of numbers from -1 to 1. They lie between the limits of each robot's
+    controls, or between `low` and `high`. With `choices` it is the number of one of them.
+    """
+
+    def meaning(self) -> OutputOptions:
+        """The same for a network, whose numbers are clipped to -1 and 1."""
+        given = self.model_dump()
+        if self.choices is not None:
+            return OutputOptions(input="action", **given)
+        scaled = self.low is not None or self.returns == "velocity"
+        return OutputOptions(input="action", squash="clip", **{**given, "limits": not scaled})
+
+
+class Ends(Options):
+    """When the episode of a learner, and that of its world, is over."""
+
+    arrival: Bool | None = None
+    """Whether the episode of a learner ends when it has reached its last goal; null: unless arrived robots make room
+    (`protocol: yield`)."""
+    collision: Bool = True
+    """Whether the episode of a learner ends when it begins to collide."""
+    world: Literal["all", "any", "collision"] = "all"
+    """When a world starts its next episode: when all learners are done, when any is, or already when one collides. It
+    always does at the horizon, and when every robot has arrived or stopped."""
+
+
+class Seeds(Options):
+    """Seeds of the worlds. Tests on other seeds show what a policy has learnt beyond its training."""
+
+    train: Annotated[Integer, Field(ge=0, lt=2**53)] = 1_000_000
+    """Seed of the first world in training; world i has this number plus i."""
+    validation: Annotated[Integer, Field(ge=0, lt=2**53)] = 900_000
+    """First of the seeds on which a training measures its success."""
+    validation_count: Annotated[Integer, Field(ge=1, le=100_000)] = 100
+    """Number of these seeds."""
+
+
+class Task(Options):
+    """A scenario, and what learning adds to it."""
+
+    task: Name
+    """Name of the task."""
+    version: Annotated[Integer, Field(ge=1)] = 1
+    """Version of the task: results of different versions are not comparable."""
+    title: Annotated[str, Field(max_length=100)] = ""
+    """What it is about, in one line."""
+    about: str = ""
+    """What it is for, where it comes from, and how to read its results."""
+    template: str | None = None
+    """Name of a bundled template; `irsim templates` lists them."""
+    parameters: dict[str, Value] = {}
+    """Values of parameters of the template."""
+    scenario: dict[str, Any] | None = None
+    """The scenario itself, as in a scenario file."""
+    file: str | None = None
+    """A scenario file, relative to the task file."""
+    learners: list[str] | None = None
+    """Names of the robots that learn, or tags; null: all robots. Others follow their behaviors."""
+    protocol: Literal["as-written", "freeze", "yield"] = "as-written"
+    """What robots do that have arrived: stand still (`freeze`), stay controlled so that they can make room (`yield`),
+    or what the scenario says (`as-written`)."""
+    observation: Annotated[list[Annotated[PartOptions, Select(PARTS)]], Field(min_length=1, max_length=32)]
+    """Parts of what a learner observes, in this order; `irsim describe task.observation` lists them."""
+    action: Action = Action()
+    """What the numbers of an action mean."""
+    reward: Annotated[list[Annotated[RewardOptions, Select(REWARDS)]], Field(min_length=1, max_length=32)]
+    """Terms of the reward; it is the sum of their values times their weights."""
+    ends: Ends = Ends()
+    """When episodes are over."""
+    horizon: Annotated[Seconds, Field(gt=0)] = 50.0
+    """Time after which an episode is cut off; this is no end of the task (`truncated`)."""
+    seeds: Seeds = Seeds()
+    """Seeds of the worlds."""
+
+    @model_validator(mode="after")
+    def _has_one_source(self) -> Task:
+        given = [key for key in ("template", "scenario", "file") if getattr(self, key) is not None]
+        if len(given) != 1:
+            names = " and ".join(given) or "none of them"
+            what = f"exactly one of template, scenario and file says what the robots do; given: {names}"
+            raise problem("invalid-value", what, fix="give one of them")
+        if self.parameters and self.template is None:
+            what = "'parameters' belong to a template"
+            raise problem("invalid-value", what, fix="write values of a scenario where they belong")
+        return self
+
+    @property
+    def layout(self) -> Layout:
+        """The observation as the layout of a network."""
+        return Layout(parts=self.observation)
+
+    @property
+    def ends_on_arrival(self) -> bool:
+        """Whether the episode of a learner ends with its arrival."""
+        return self.protocol != "yield" if self.ends.arrival is None else self.ends.arrival

@@ -1,0 +1,99 @@
+"""Worlds of a task as a batched environment of TorchRL."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from irsim.common.extras import require
+from irsim.learning.tasks.files import TaskSource
+from irsim.learning.worlds import Worlds
+
+require("learn", "torch", "torchrl", "tensordict")
+import torch
+from tensordict import TensorDict, TensorDictBase
+from torchrl.data import Bounded, Categorical, Composite, Unbounded
+from torchrl.envs import EnvBase
+
+__all__ = ["TorchRLEnv"]
+
+
+class TorchRLEnv(EnvBase):  # type: ignore[misc]
+    """``worlds`` worlds with A learners as an environment of the batch size (worlds * A,), locked.
+
+    Learners of one world have neighboring entries. An entry whose episode is over before that of its world has the
+    reward 0 and ``active`` False; it is reset with its world.
+
+    Args:
+        task: The task: its file, its data, or a task that was read.
+        worlds: Number of worlds.
+        seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
+        threads: Number of threads; results do not depend on it.
+        device: Device of the tensors; the simulation runs on the CPU.
+
+    Attributes:
+        worlds: The worlds behind it.
+
+    Raises:
+        TaskError: The task is not valid, or does not fit its scenario.
+        ScenarioError: The scenario cannot be used.
+    """
+
+    batch_locked = True
+
+    def __init__(
+        self, task: TaskSource, worlds: int = 1, *, seed: int | None = None, threads: int = 1, device: Any = "cpu"
+    ) -> None:
+        made = Worlds(task, worlds, seed=seed, threads=threads)
+        size = torch.Size([made.n * made.learners])
+        super().__init__(device=device, batch_size=size)
+        self.worlds = made
+        self._fresh = True
+        eyes, choices = made.eyes, made.task.action.choices
+        low, high = (torch.as_tensor(bound).expand(*size, eyes.size) for bound in (eyes.low, eyes.high))
+        flag = Categorical(2, shape=(*size, 1), dtype=torch.bool)
+        seen = Bounded(low, high, dtype=torch.float32)
+        self.observation_spec = Composite(observation=seen, active=flag.clone(), shape=size)
+        if choices is None:
+            self.action_spec = Bounded(-1.0, 1.0, shape=(*size, made.width), dtype=torch.float32)
+        else:
+            self.action_spec = Categorical(len(choices), shape=size, dtype=torch.int64)
+        self.reward_spec = Unbounded(shape=(*size, 1), dtype=torch.float32)
+        self.done_spec = Composite(done=flag.clone(), terminated=flag.clone(), truncated=flag.clone(), shape=size)
+
+    def _reset(self, tensordict: TensorDictBase | None = None, **kwargs: Any) -> TensorDictBase:
+        mask = None
+        if tensordict is not None and "_reset" in tensordict.keys():  # noqa: SIM118 - a TensorDict has no other way
+            asked = tensordict["_reset"].reshape(self.worlds.n, self.worlds.learners).cpu().numpy()
+            mask = asked.any(axis=1)
+        if mask is not None or not self._fresh:
+            self.worlds.reset(mask)
+        self._fresh = False
+        active = np.ones(self.batch_size[0], dtype=bool)
+        return self._dict(active=active)
+
+    def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
+        result = self.worlds.step(tensordict["action"].detach().cpu().numpy())
+        over = np.repeat(result.over, self.worlds.learners)
+        terminated, truncated = result.terminated.reshape(-1), result.truncated.reshape(-1)
+        waiting = over & ~result.active.reshape(-1)
+        out = self._dict(
+            active=result.active.reshape(-1),
+            terminated=terminated,
+            truncated=truncated | waiting,
+            done=terminated | truncated | waiting,
+        )
+        out["reward"] = torch.as_tensor(result.reward.reshape(-1, 1), dtype=torch.float32, device=self.device)
+        return out
+
+    def _dict(self, **flags: Any) -> TensorDictBase:
+        seen = torch.from_numpy(self.worlds.observe())  # shares the memory of the array
+        columns = {name: torch.as_tensor(flag).reshape(-1, 1) for name, flag in flags.items()}
+        made = {"observation": seen, **columns}
+        return TensorDict(made, batch_size=self.batch_size).to(self.device)
+
+    def _set_seed(self, seed: int | None) -> None:
+        first = 0 if seed is None else seed
+        self.worlds.reset(seeds=[first + i for i in range(self.worlds.n)])
+        self._fresh = True

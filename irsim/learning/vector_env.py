@@ -1,0 +1,202 @@
+"""Many worlds as one vector environment of Gymnasium."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.common.arguments import as_given
+from irsim.common.extras import require
+from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.gym_env import RENDER_MODES, check_render_mode, frames_per_second
+from irsim.learning.pictures import Camera
+from irsim.learning.spaces import action_space, observation_space
+from irsim.learning.tasks.files import TaskSource
+from irsim.learning.worlds import Result, Worlds
+
+require("gym", "gymnasium")
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector import VectorEnv as GymnasiumVectorEnv
+from gymnasium.vector.utils import batch_space
+
+__all__ = ["VectorEnv"]
+
+Flags = NDArray[np.bool_]
+
+
+class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # type: ignore[misc] # as in gym_env
+    """``num_envs`` learners; those of one world have neighboring slots, so n worlds with A learners make n * A slots.
+
+    With one learner in each world, slot i is bit for bit what :class:`irsim.learning.Env` is with its seed. With more,
+    the episode of a learner may be over before that of its world. Its slot then waits: the reward is 0,
+    ``info["active"]`` is False, and the flag ``truncated`` says in which step the world is over, too.
+
+    Args:
+        task: The task: its file, its data, or a task that was read.
+        num_envs: Number of slots; a multiple of the number of learners in a world.
+        autoreset_mode: ``NextStep``: the step after the last one of an episode starts the next and ignores the action;
+            ``SameStep``: the last step does, and ``info["final_obs"]`` has what was observed before; ``Disabled``: call
+            ``reset(options={"reset_mask": mask})``.
+        seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
+        threads: Number of threads; results do not depend on it.
+        copy: Whether each step returns new arrays of observations, instead of one that the next step overwrites.
+        render_mode: ``rgb_array``: :meth:`render` returns pictures of the first worlds; ``human`` shows the first one.
+
+    Attributes:
+        worlds: The worlds behind it.
+
+    Raises:
+        TaskError: The task is not valid, or does not fit its scenario.
+        ScenarioError: The scenario cannot be used.
+        ArgumentError: ``num_envs`` is not a multiple of the number of learners.
+    """
+
+    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}
+
+    def __init__(
+        self,
+        task: TaskSource,
+        num_envs: int = 1,
+        *,
+        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        seed: int | None = None,
+        threads: int = 1,
+        copy: bool = True,
+        render_mode: str | None = None,
+    ) -> None:
+        check_render_mode(render_mode)
+        self.worlds = _worlds(task, num_envs, seed, threads)
+        self.num_envs = num_envs
+        self.render_mode = render_mode
+        self._mode = _mode(autoreset_mode)
+        fps = frames_per_second(self.worlds)
+        self.metadata = {**self.metadata, "render_fps": fps, "autoreset_mode": self._mode}
+        self.single_observation_space = observation_space(self.worlds)
+        self.single_action_space = action_space(self.worlds)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._observed = np.zeros((num_envs, self.worlds.eyes.size), dtype=np.float32)
+        self._copy = copy
+        self._over = np.zeros(self.worlds.n, dtype=bool)
+        self._fresh = True
+        self._camera: Camera | None = None
+
+    def reset(
+        self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Start episodes.
+
+        Args:
+            seed: Seed of the first world, the next one has the next number; or one seed for each world. They start with
+                the first scene of their seed. None: the next scene.
+            options: ``reset_mask``: (num_envs,) bool; only worlds of slots that are True start an episode.
+
+        Raises:
+            ArgumentError: There is not one seed for each world, or the mask is none.
+        """
+        super().reset(seed=seed if isinstance(seed, int) else None)
+        mask = self._mask((options or {}).get("reset_mask"))
+        if seed is not None:
+            seeds = [seed + i for i in range(self.worlds.n)] if isinstance(seed, int) else list(seed)
+            if len(seeds) != self.worlds.n:
+                raise ArgumentError(f"{len(seeds)} seeds are given for {self.worlds.n} worlds", "give one for each")
+            self.worlds.reset(mask, seeds=seeds)
+        elif not self._fresh or mask is not None:
+            self.worlds.reset(mask)
+        self._fresh = False
+        self._over[slice(None) if mask is None else mask] = False
+        seen = self.worlds.observe(self._observed)
+        return seen.copy() if self._copy else seen, {}
+
+    def step(self, actions: Any) -> tuple[NDArray[np.float32], NDArray[np.float64], Flags, Flags, dict[str, Any]]:
+        """Advance all worlds by one period.
+
+        Raises:
+            ArgumentError: The actions have another shape, or are not finite; or, without autoreset, a world is over.
+        """
+        worlds, before = self.worlds, self._over
+        if self._mode is AutoresetMode.DISABLED and before.any():
+            raise ArgumentError("a world is over", 'start its next episode: reset(options={"reset_mask": mask})')
+        result = worlds.step(actions)
+        reward, terminated, truncated = (
+            result.reward.reshape(-1),
+            result.terminated.reshape(-1),
+            result.truncated.reshape(-1),
+        )
+        info = _info(result)
+        over: Flags = result.over & ~before
+        waiting = ~info["active"] & np.repeat(over, worlds.learners)
+        truncated = truncated | waiting
+        if self._mode is AutoresetMode.NEXT_STEP and before.any():
+            worlds.reset(before)  # these worlds were over before the step, which did not count
+            begun = np.repeat(before, worlds.learners)
+            info["active"] |= begun
+        seen = worlds.observe(self._observed)
+        if self._mode is AutoresetMode.SAME_STEP and over.any():
+            slots = np.flatnonzero(np.repeat(over, worlds.learners))
+            info |= _final(seen, slots)
+            worlds.reset(over)
+            seen[slots] = worlds.eyes.observe(worlds.rows[slots])
+            over[:] = False
+        self._over = over
+        return seen.copy() if self._copy else seen, reward, terminated, truncated, info
+
+    def render(self) -> tuple[Any, ...] | None:
+        """A picture of the first world."""
+        if self.render_mode is None:
+            return None
+        self._camera = self._camera or Camera(self.worlds, human=self.render_mode == "human")
+        if self.render_mode == "human":
+            self._camera.show()
+            return None
+        return (self._camera.picture(),)
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Close the window."""
+        if self._camera is not None:
+            self._camera.close()
+
+    def _mask(self, mask: Any) -> Flags | None:
+        """(n,) worlds of the slots of a mask."""
+        if mask is None:
+            return None
+        found = np.asarray(mask)
+        if found.shape != (self.num_envs,) or found.dtype != np.bool_ or not found.any():
+            what = f"reset_mask is {as_given(mask)}"
+            raise ArgumentError(what, f"give an array of bool of shape ({self.num_envs},) with at least one True")
+        return np.asarray(found.reshape(self.worlds.n, self.worlds.learners).any(axis=1))
+
+
+def _worlds(task: TaskSource, slots: int, seed: int | None, threads: int) -> Worlds:
+    one = Worlds(task, 1, seed=seed)
+    if slots < 1 or slots % one.learners:
+        what = f"num_envs is {slots}, and each world has {one.learners} learners"
+        raise ArgumentError(what, f"give a multiple of {one.learners}")
+    return one if slots == one.learners else Worlds(task, slots // one.learners, seed=seed, threads=threads)
+
+
+def _mode(given: str | AutoresetMode) -> AutoresetMode:
+    try:
+        return AutoresetMode(given)
+    except ValueError:
+        known = ", ".join(mode.value for mode in AutoresetMode)
+        raise ArgumentError(f"autoreset_mode is {as_given(given)}", f"choose from {known}") from None
+
+
+def _info(result: Result) -> dict[str, Any]:
+    """Facts of a step as arrays of one entry for each slot."""
+    arrived = result.arrived.reshape(-1)
+    active = result.active.reshape(-1).copy()
+    return {"arrived": arrived, "collided": result.collided.reshape(-1), "is_success": arrived, "active": active}
+
+
+def _final(seen: NDArray[np.float32], slots: NDArray[np.int64]) -> dict[str, Any]:
+    """What slots observed last in an episode, as Gymnasium has it: an array of objects, and which of them there are."""
+    found, there = np.full(len(seen), None, dtype=object), np.zeros(len(seen), dtype=bool)
+    there[slots] = True
+    for slot, row in zip(slots.tolist(), seen[slots], strict=True):
+        found[slot] = row
+    return {"final_obs": found, "_final_obs": there}

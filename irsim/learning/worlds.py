@@ -1,0 +1,285 @@
+"""Worlds of a task, stepped together: what all environments of learning libraries are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irsim._core as core
+from irsim.common.arrays import Floats
+from irsim.diagnostics.errors import ArgumentError, PlacementError
+from irsim.env.batch import Batch
+from irsim.learning.features import REWARDS
+from irsim.learning.moment import Moment
+from irsim.learning.observing import Eyes
+from irsim.learning.tasks.files import TaskSource, open_task, task_scenario
+from irsim.learning.tasks.team import team_of
+from irsim.metrics.roles import kinds_of
+from irsim.policies.networks.output import Present, decide
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.simulation.simulation import Simulation
+
+__all__ = ["Result", "Worlds"]
+
+_TRIES = 100
+"""Number of scenes that are drawn for a world before it is an error that none has room for all objects."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a step of n worlds with A learners each has led to.
+
+    Attributes:
+        reward: (n, A) sum of the terms; 0 for learners whose episode was over before.
+        terminated: (n, A) whether the episode of a learner ended in this step: it arrived, or it collided.
+        truncated: (n, A) whether it was cut off in this step without such an end: at the horizon, or because the world
+            starts its next episode.
+        active: (n, A) whether the episode of the learner was going on before the step.
+        over: (n,) whether the world is over, so that it has to be reset.
+        arrived, collided: (n, A) whether the learner arrived or began to collide in this step.
+        terms: (T, n, A) terms of the reward times their weights, in the order of the task.
+    """
+
+    reward: Floats
+    terminated: NDArray[np.bool_]
+    truncated: NDArray[np.bool_]
+    active: NDArray[np.bool_]
+    over: NDArray[np.bool_]
+    arrived: NDArray[np.bool_]
+    collided: NDArray[np.bool_]
+    terms: Floats
+
+
+class Worlds:
+    """``n`` worlds of a task with A learners each; learner a of world w has the slot ``w * A + a``.
+
+    World i is bit for bit the same as it is alone with the same seed, on any number of threads. Its first episode is
+    the first scene of its seed, the next one the second scene, and so on.
+
+    Args:
+        task: The task: its file, its data, or a task that was read.
+        n: Number of worlds.
+        seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
+        threads: Number of threads.
+
+    Attributes:
+        task: The task.
+        scenario: Its scenario.
+        n, learners: Number of worlds, and of learners in each.
+        names: Names of the learners of a world.
+        eyes: What they observe.
+        width: Number of numbers of an action; 1 for the number of a choice.
+
+    Raises:
+        TaskError: The task is not valid, or does not fit its scenario.
+        ScenarioError: The scenario cannot be used.
+    """
+
+    def __init__(self, task: TaskSource, n: int = 1, *, seed: int | None = None, threads: int = 1) -> None:
+        self.task, folder = open_task(task)
+        self.scenario: ResolvedScenario = task_scenario(self.task, folder)
+        self.n = n
+        first = self.task.seeds.train if seed is None else seed
+        self._batch = Batch(self.scenario, [first + i for i in range(n)], threads)
+        self._simulation = simulation = self._batch.simulation
+        self._threads = threads
+        team = team_of(self.task, self.scenario)
+        self.names, self.learners, self._meaning = team.names, len(team.indices), self.task.action.meaning()
+        starts = np.arange(n, dtype=np.int64) * simulation.objects
+        self.rows = (starts[:, None] + team.indices).reshape(-1)
+        self.eyes = Eyes(simulation, self.task.layout, team.indices, threads)
+        self.width = team.action_width
+        self._controls = team.controls
+        self._kinds = kinds_of(self.scenario.objects)
+        self._horizon = max(1, round(self.task.horizon / self.scenario.world.step_time))
+        self._terms = [(REWARDS.get(term.name), term) for term in self.task.reward]
+        self._shape = (n, self.learners)
+        self._begun = np.zeros(n, dtype=bool)
+        self._over = np.zeros(n, dtype=bool)
+        self._ended = np.zeros(self._shape, dtype=bool)
+        self._arrived = np.zeros(self._shape, dtype=bool)
+        self._collided = np.zeros(self._shape, dtype=bool)
+        self._low: Floats = np.zeros((len(self.rows), 3))
+        self._high: Floats = np.zeros((len(self.rows), 3))
+        self.reset()
+
+    # episodes ---------------------------------------------------------------------------------------------------------
+    def reset(self, mask: NDArray[np.bool_] | None = None, *, seeds: Sequence[int] | None = None) -> None:
+        """Start the next episode of worlds.
+
+        Args:
+            mask: (n,) worlds; None: all.
+            seeds: New seeds of these worlds, one for each of the n worlds; they start with their first scene.
+
+        Raises:
+            PlacementError: No scene of a world has room for all objects.
+        """
+        chosen = np.ones(self.n, dtype=bool) if mask is None else np.array(mask, dtype=bool)
+        if chosen.shape != (self.n,):
+            raise ArgumentError(f"a mask of {self.n} worlds has the shape ({self.n},), not {chosen.shape}", "give one")
+        if seeds is not None:
+            self._simulation.reseed(np.asarray(seeds, dtype=np.uint64), chosen)
+            self._begun[chosen] = False
+        for next_scene in (False, True):
+            these = chosen & (self._begun == next_scene)
+            if these.any():
+                self._draw(these, next_scene or seeds is not None)
+        self._begun[chosen] = True
+        self._over[chosen] = False
+        self._ended[chosen] = False
+        state = self._simulation.state
+        self._low, self._high = state.vel_min[self.rows], state.vel_max[self.rows]
+        flags = self._simulation
+        self._arrived[chosen] = flags.arrived[self.rows].reshape(self._shape)[chosen] != 0
+        self._collided[chosen] = flags.collided[self.rows].reshape(self._shape)[chosen] != 0
+
+    @property
+    def simulation(self) -> Simulation:
+        """The simulation behind the worlds."""
+        return self._simulation
+
+    def _draw(self, these: NDArray[np.bool_], next_scene: bool) -> None:
+        """Start scenes; a scene without room for all objects is skipped."""
+        for attempt in range(_TRIES):
+            try:
+                self._simulation.reset(these, next_scene=next_scene)
+                return
+            except PlacementError:
+                if attempt == _TRIES - 1:
+                    raise
+                these = these & (self._simulation.state.failed_placement >= 0)
+                next_scene = True
+
+    def observe(self, out: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
+        """(n * A, D) what the learners observe now, written to ``out`` if it is given."""
+        return self.eyes.observe(self.rows, out)
+
+    # a step -----------------------------------------------------------------------------------------------------------
+    def step(self, actions: Any) -> Result:
+        """Advance all worlds by one period.
+
+        Args:
+            actions: (n * A, C) numbers from -1 to 1, or (n * A,) numbers of choices.
+
+        Raises:
+            ArgumentError: The actions have another shape, or are not finite.
+        """
+        simulation, rows, shape = self._simulation, self.rows, self._shape
+        goal, before = simulation.goal[rows], simulation.pose[rows]
+        control_before = simulation.control[rows]
+        self._impose(self._read(actions), before, goal)
+        simulation.step()
+        after = simulation.pose[rows]
+        reached = ~_same(simulation.goal[rows], goal)
+        arrived = (simulation.arrived[rows] != 0).reshape(shape)
+        collided = (simulation.collided[rows] != 0).reshape(shape)
+        active = ~self._ended & ~self._over[:, None]
+        came, hit = arrived & ~self._arrived & active, collided & ~self._collided & active
+        self._arrived |= arrived
+        self._collided = collided
+        moment = Moment(
+            step_time=float(self.scenario.world.step_time),
+            distance_before=_distance(before, goal).reshape(shape),
+            distance=_distance(after, goal).reshape(shape),
+            reached=(reached.reshape(shape) & active) | came,
+            arrived=came,
+            collided=hit,
+            control=simulation.control[rows].reshape(*shape, 3),
+            control_before=control_before.reshape(*shape, 3),
+            low=self._low.reshape(*shape, 3),
+            high=self._high.reshape(*shape, 3),
+            velocity=simulation.twist[rows, :2].reshape(*shape, 2),
+            yaw_rate=simulation.twist[rows, 2].reshape(shape),
+            gaps=self._gaps(),
+        )
+        terms = np.stack([self._value(feature, options, moment) for feature, options in self._terms])
+        terms *= active
+        return self._close(terms, active, came, hit)
+
+    def _close(self, terms: Floats, active: Any, came: Any, hit: Any) -> Result:
+        """Find what has ended."""
+        ends = self.task.ends
+        terminated = np.zeros(self._shape, dtype=bool)
+        if self.task.ends_on_arrival:
+            terminated |= came
+        if ends.collision:
+            terminated |= hit
+        done = self._simulation.done()
+        terminated = active & (terminated | done[:, None])
+        self._ended |= terminated
+        over = self._over | self._ended.all(axis=1) | done | (self._simulation.count >= self._horizon)
+        if ends.world == "any":
+            over |= terminated.any(axis=1)
+        elif ends.world == "collision":
+            over |= hit.any(axis=1)
+        truncated = active & ~terminated & over[:, None]
+        self._ended |= truncated
+        self._over = over
+        return Result(terms.sum(axis=0), terminated, truncated, active, over, came, hit, terms)
+
+    def _value(self, feature: Any, options: Any, moment: Moment) -> Floats:
+        value: Floats = options.weight * feature.function(moment, options)
+        return value
+
+    def _gaps(self) -> Callable[[float], Floats]:
+        """The distances to others now, measured once for each reach."""
+        known: dict[float, Floats] = {}
+
+        def gaps(reach: float) -> Floats:
+            if reach not in known:
+                world, state = self._simulation.world, self._simulation.state
+                found = core.gaps(world, state, self.rows, self._kinds, reach, self._threads)
+                known[reach] = found.reshape(*self._shape, 3)
+            return known[reach]
+
+        return gaps
+
+    # actions ----------------------------------------------------------------------------------------------------------
+    def _read(self, actions: Any) -> Floats:
+        """(n * A, F) numbers that :func:`decide` reads."""
+        choices = self._meaning.choices
+        if choices is None:
+            numbers = np.asarray(actions, dtype=np.float64)
+            if numbers.shape != (len(self.rows), self.width):
+                what = f"actions have the shape {numbers.shape}, not {(len(self.rows), self.width)}"
+                raise ArgumentError(what, "give one row of numbers for each learner of each world")
+            if not np.isfinite(numbers).all():
+                raise ArgumentError("an action is not finite", "give numbers from -1 to 1")
+            return numbers
+        number = np.asarray(actions)
+        if number.shape != (len(self.rows),) or number.dtype.kind not in "iu":
+            raise ArgumentError("actions are numbers of choices, one whole number for each learner", "give integers")
+        if ((number < 0) | (number >= len(choices))).any():
+            raise ArgumentError(f"an action is not the number of a choice, 0 to {len(choices) - 1}", "give one of them")
+        numbers = np.zeros((len(number), len(choices)))
+        numbers[np.arange(len(number)), number] = 1.0
+        return numbers
+
+    def _impose(self, numbers: Floats, pose: Floats, goal: Floats) -> None:
+        """Command the learners whose episodes go on; the others stand still."""
+        simulation, rows = self._simulation, self.rows
+        velocity = simulation.twist[rows, :2]
+        present = Present(pose, goal, velocity, simulation.control[rows], self._low, self._high)
+        wanted = decide(self._meaning, numbers, present)
+        wanted[self._ended.reshape(-1)] = 0.0
+        simulation.given[rows] = 1
+        if self._meaning.returns == "velocity":
+            core.follow_rows(simulation.world, simulation.state, rows, wanted)
+        else:
+            simulation.command[rows, : self._controls] = wanted[:, : self._controls]
+
+
+def _distance(pose: Floats, goal: Floats) -> Floats:
+    away = goal[:, :2] - pose[:, :2]
+    result: Floats = np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1])
+    return result
+
+
+def _same(a: Floats, b: Floats) -> NDArray[np.bool_]:
+    """Whether goals are equal, (B,)."""
+    equal: NDArray[np.bool_] = ((a == b) | (np.isnan(a) & np.isnan(b))).all(axis=1)
+    return equal

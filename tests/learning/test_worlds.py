@@ -1,0 +1,277 @@
+"""Worlds of a task: what learners observe, what they earn, and when episodes end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.tasks.files import TaskError
+from irsim.learning.worlds import Result, Worlds
+from irsim.policies.networks.layout import Layout, layout_needs, observe
+from irsim.policies.observe import Observer
+from tests.learning.tasks import LIDAR, RANDOM, crowd, lidar_among_boxes, task
+
+AHEAD = np.array([[1.0, 0.0]])
+
+
+def drive(worlds: Worlds, steps: int, seed: int = 0) -> list[tuple[Any, ...]]:
+    """Random actions with resets: observations, rewards and flags of each step."""
+    rng, found = np.random.default_rng(seed), []
+    for _ in range(steps):
+        actions = rng.uniform(-1, 1, (worlds.n, worlds.learners, worlds.width))
+        actions[..., 0] = np.abs(actions[..., 0])
+        found.append(one_step(worlds, actions.reshape(-1, worlds.width)))
+    return found
+
+
+def one_step(worlds: Worlds, actions: Any) -> tuple[Any, ...]:
+    result = worlds.step(actions)
+    if result.over.any():
+        worlds.reset(result.over)
+    return worlds.observe(), result.reward, result.terminated, result.truncated, result.over
+
+
+@pytest.mark.parametrize("made", [crowd(), lidar_among_boxes()], ids=["crowd", "lidar"])
+def test_a_world_is_the_same_alone_and_among_others_on_any_number_of_threads(made: dict[str, Any]) -> None:
+    together = [Worlds(made, 5, seed=7, threads=threads) for threads in (1, 3)]
+    alone = [Worlds(made, 1, seed=7 + i) for i in range(5)]
+    rng = np.random.default_rng(1)
+    for _ in range(120):
+        actions = rng.uniform(-1, 1, (5, alone[0].learners, 2))
+        one, other = (one_step(worlds, actions.reshape(-1, 2)) for worlds in together)
+        for a, b in zip(one, other, strict=True):
+            assert np.array_equal(a, b)
+        for i, world in enumerate(alone):
+            for mine, all_of_them in zip(one_step(world, actions[i]), one, strict=True):
+                part = all_of_them.reshape(5, *np.shape(mine)) if mine.ndim == 2 and len(mine) > 1 else all_of_them
+                assert np.array_equal(np.ravel(mine), np.ravel(part[i]))
+
+
+def test_a_seed_decides_about_all_episodes() -> None:
+    first, again = (drive(Worlds(crowd(), 3, seed=4), 150) for _ in range(2))
+    for a, b in zip(first, again, strict=True):
+        assert all(np.array_equal(x, y) for x, y in zip(a, b, strict=True))
+    worlds = Worlds(crowd(), 3, seed=9)
+    drive(worlds, 20)
+    worlds.reset(seeds=[4, 5, 6])
+    for a, b in zip(first, drive(worlds, 150), strict=True):
+        assert all(np.array_equal(x, y) for x, y in zip(a, b, strict=True))
+
+
+def test_learners_observe_what_a_network_with_the_same_layout_does() -> None:
+    parts = [
+        {"name": "neighbors", "count": 3, "static": True, "frame": "goal"},
+        {"name": "scan", "sectors": 7},
+        {"name": "own", "features": ["vx", "low", "high", "control"]},
+        {"name": "map", "cells": 4, "size": 3.0},
+        {"name": "goal", "features": ["x", "y", "present"]},
+    ]
+    robot = {"number": 3, "distribution": RANDOM, "sensors": [LIDAR]}
+    box = {"number": 3, "distribution": RANDOM, "shape": {"name": "rectangle", "length": 1, "width": 0.5}}
+    worlds = Worlds(task(robot, obstacles=[box], observation=parts), 4, seed=1)
+    drive(worlds, 15)
+    layout = Layout.model_validate({"parts": parts})
+    observer = Observer(worlds.simulation, layout_needs(layout), np.arange(3))
+    first = np.zeros(len(worlds.rows), dtype=bool)
+    seen = observe(layout, observer.observe(worlds.rows, first, worlds.rows // worlds.simulation.objects))
+    expected = np.concatenate([seen[part["name"]].flat() for part in parts], axis=1).astype(np.float32)
+    found = worlds.observe()
+    assert np.array_equal(found, expected)
+    assert (found >= worlds.eyes.low).all()
+    assert (found <= worlds.eyes.high).all()
+
+
+# rewards -------------------------------------------------------------------------------------------------------------
+def earned(result: Result) -> float:
+    return float(result.reward[0, 0])
+
+
+def test_progress_is_the_way_towards_the_goal() -> None:
+    worlds = Worlds(task())
+    assert earned(worlds.step(AHEAD)) == pytest.approx(0.1)
+    assert earned(worlds.step(-AHEAD)) == pytest.approx(-0.1)
+
+
+def test_arrival_is_earned_once_and_ends_the_episode() -> None:
+    worlds = Worlds(task({"state": [8.55, 5, 0]}, reward=[{"name": "arrival", "weight": 5}]))
+    first, second = worlds.step(AHEAD), worlds.step(AHEAD)
+    assert (earned(first), earned(second)) == (0, 5)
+    assert not first.terminated.any()
+    assert second.terminated.all()
+    assert second.over.all()
+    assert not second.truncated.any()
+    assert earned(worlds.step(AHEAD)) == 0
+
+
+def test_a_collision_costs_once_and_ends_the_episode() -> None:
+    wall = {"shape": {"name": "rectangle", "length": 1, "width": 4}, "state": [1.85, 5, 0]}
+    worlds = Worlds(task(obstacles=[wall], reward=[{"name": "collision", "weight": -3}]))
+    first, second = worlds.step(AHEAD), worlds.step(AHEAD)
+    assert (earned(first), earned(second)) == (0, -3)
+    assert second.terminated.all()
+    assert not second.arrived.any()
+
+
+def test_clearance_is_the_missing_share_of_the_margin_per_second() -> None:
+    wall = {"shape": {"name": "rectangle", "length": 1, "width": 4}, "state": [1.9, 5, 0]}
+    worlds = Worlds(task(obstacles=[wall], reward=[{"name": "clearance", "weight": -1, "margin": 0.4}]))
+    assert earned(worlds.step(0 * AHEAD)) == pytest.approx(-0.1 * 0.5)  # the gap is 0.2 m
+
+
+def test_only_people_disturb_socially() -> None:
+    wall = {"shape": {"name": "rectangle", "length": 1, "width": 4}, "state": [1.85, 5, 0]}
+    person = {"kinematics": {"name": "omni"}, "behavior": {"name": "dash"}, "goal": [1, 9], "vel_max": [0, 0],
+              "shape": {"name": "circle", "radius": 0.2}, "state": [1, 5.5, 0]}  # fmt: skip
+    worlds = Worlds(task(obstacles=[wall, person], reward=[{"name": "social", "weight": -1, "distance": 0.2}]))
+    assert earned(worlds.step(0 * AHEAD)) == pytest.approx(-0.1 * 0.5)
+
+
+def test_time_and_smoothness() -> None:
+    reward = [{"name": "time", "weight": -1}, {"name": "smoothness", "weight": -1},
+              {"name": "smoothness", "weight": -1, "of": "turning"}]  # fmt: skip
+    result = Worlds(task(reward=reward)).step(np.array([[1.0, 0.5]]))
+    change, turn = (0.5**2 + 0.25**2) / 2, 1.0
+    assert result.terms[:, 0, 0] == pytest.approx([-0.1, -0.1 * change, -0.1 * turn])
+    assert earned(result) == pytest.approx(result.terms.sum())
+
+
+def test_a_function_of_the_user_sees_all_learners_at_once() -> None:
+    worlds = Worlds(crowd(reward=[{"name": "python", "function": "tests.learning.test_worlds:speed", "weight": 2}]), 3)
+    result = worlds.step(np.ones((12, 2)))
+    speeds = np.linalg.norm(worlds.simulation.twist[worlds.rows, :2], axis=1)
+    assert np.allclose(result.reward.reshape(-1), 2 * speeds)
+    wrong = Worlds(task(reward=[{"name": "python", "function": "tests.learning.test_worlds:nothing"}]))
+    with pytest.raises(ArgumentError, match=r"cannot be imported"):
+        wrong.step(AHEAD)
+
+
+def speed(moment: Any) -> Any:
+    return np.linalg.norm(moment.velocity, axis=-1)
+
+
+# ends ----------------------------------------------------------------------------------------------------------------
+def test_the_horizon_cuts_off_and_is_no_end() -> None:
+    worlds = Worlds(task(horizon=0.3))
+    results = [worlds.step(AHEAD) for _ in range(3)]
+    assert [bool(r.truncated[0, 0]) for r in results] == [False, False, True]
+    assert not any(r.terminated.any() for r in results)
+
+
+def test_robots_that_wait_for_others_earn_nothing() -> None:
+    near = {"state": [8.65, 5, 0]}
+    far = {"state": [1, 2, 0], "goal": [9, 2]}
+    worlds = Worlds(task(near, far, protocol="freeze", horizon=0.3))
+    ahead = np.array([[1.0, 0.0], [1.0, 0.0]])
+    first, second, third = (worlds.step(ahead) for _ in range(3))
+    assert first.terminated.tolist() == [[True, False]]
+    assert not first.over.any()
+    assert second.active.tolist() == [[False, True]]
+    assert second.reward[0, 0] == 0 < second.reward[0, 1]
+    assert third.truncated.tolist() == [[False, True]]
+    assert third.over.all()
+
+
+def test_robots_that_make_room_learn_until_all_have_arrived() -> None:
+    near, far = {"state": [8.65, 5, 0]}, {"state": [8.55, 2, 0], "goal": [9, 2]}
+    worlds = Worlds(task(near, far, protocol="yield"))
+    first, second = (worlds.step(np.array([[1.0, 0.0], [1.0, 0.0]])) for _ in range(2))
+    assert first.arrived.tolist() == [[True, False]]
+    assert not first.terminated.any()
+    assert second.active.all()
+    assert second.terminated.all()
+    assert second.over.all()
+
+
+@pytest.mark.parametrize(("when", "over"), [("all", False), ("any", True), ("collision", True)])
+def test_when_a_world_is_over(when: str, over: bool) -> None:
+    wall = {"shape": {"name": "rectangle", "length": 1, "width": 1}, "state": [1.75, 5, 0]}
+    worlds = Worlds(task({}, {"state": [1, 2, 0], "goal": [9, 2]}, obstacles=[wall], ends={"world": when}))
+    result = worlds.step(np.array([[1.0, 0.0], [1.0, 0.0]]))
+    assert result.terminated.tolist() == [[True, False]]
+    assert result.over.tolist() == [over]
+    assert result.truncated.tolist() == [[False, over]]
+
+
+def test_scenes_without_room_are_skipped() -> None:
+    crowded = {"number": 6, "shape": {"name": "circle", "radius": 0.8}, "distribution": {
+        "name": "random", "range_low": [1, 1, -3], "range_high": [4, 7, 3], "min_distance": 0.05}}  # fmt: skip
+    worlds = Worlds(task(crowded), 20, seed=0)
+    for _ in range(5):
+        worlds.reset(np.ones(20, dtype=bool))
+    assert np.isfinite(worlds.simulation.pose).all()
+
+
+# actions -------------------------------------------------------------------------------------------------------------
+def control_after(action: Any, *numbers: Any, **robot: Any) -> list[float]:
+    worlds = Worlds(task(robot, action=action))
+    for number in numbers:
+        worlds.step(np.array([number]))
+    return [round(float(x), 12) for x in worlds.simulation.control[0]]
+
+
+def test_numbers_lie_between_the_limits_of_the_controls() -> None:
+    forward = {"vel_min": [0, -2]}
+    assert control_after({}, [0.5, -0.5], **forward) == [0.75, -1.0, 0.0]
+    assert control_after({}, [7.0, -9.0], **forward) == [1.0, -2.0, 0.0]
+    assert control_after({"low": [0, -1], "high": [0.5, 1]}, [0.0, 1.0]) == [0.25, 1.0, 0.0]
+
+
+def test_increments_add_to_the_control() -> None:
+    change = {"increment": True, "low": [-0.2, -0.2], "high": [0.2, 0.2]}
+    assert control_after(change, [1.0, 0.0], [1.0, 0.5]) == [0.4, 0.1, 0.0]
+
+
+def test_choices_are_numbers() -> None:
+    choices = {"choices": [[0, 0], [1, 0], [0.5, 1.5]]}
+    assert control_after(choices, 2) == [0.5, 1.5, 0.0]
+    worlds = Worlds(task(action=choices))
+    for wrong in ([3], [-1], [0.5], [[0]]):
+        with pytest.raises(ArgumentError, match=r"action"):
+            worlds.step(np.array(wrong))
+
+
+def test_velocities_are_followed_in_the_chosen_frame() -> None:
+    omni = {"kinematics": {"name": "omni"}, "state": [5, 5, 0], "goal": [5, 9], "vel_max": [2, 2], "vel_min": [-2, -2]}
+    assert control_after({"returns": "velocity"}, [0.5, -0.25], **omni)[:2] == [0.5, -0.25]
+    assert control_after({"returns": "velocity", "frame": "goal"}, [1.0, 0.0], **omni)[:2] == [0.0, 1.0]
+
+
+@pytest.mark.parametrize("wrong", [np.zeros(2), np.zeros((2, 2)), np.full((1, 2), np.nan)])
+def test_wrong_actions_are_refused(wrong: Any) -> None:
+    with pytest.raises(ArgumentError, match=r"action"):
+        Worlds(task()).step(wrong)
+
+
+# who learns ----------------------------------------------------------------------------------------------------------
+def test_others_follow_their_behaviors() -> None:
+    names = {"name": "ann"}, {"name": "bob", "state": [1, 2, 0], "goal": [9, 2], "behavior": {"name": "dash"}}
+    worlds = Worlds(task(*names, learners=["ann"]))
+    result = worlds.step(0 * AHEAD)
+    assert worlds.names == ("ann",)
+    assert result.reward.shape == (1, 1)
+    assert worlds.simulation.twist[1, 0] > 0.5
+    with pytest.raises(
+        TaskError, match=r"no robot that can move has the name or the tag 'anne'. Fix: did you mean ann"
+    ):
+        Worlds(task(*names, learners=["anne"]))
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"observation": [{"name": "scan"}]}, r"needs the scan of a lidar, but 'robot_0' has none"),
+        ({"action": {"low": [0], "high": [1]}}, r"action.low has 1 numbers"),
+        ({"action": {"choices": [[1, 2, 3]]}}, r"action.choices has 3 numbers"),
+    ],
+)
+def test_tasks_that_do_not_fit_their_scenario_are_refused(keys: dict[str, Any], message: str) -> None:
+    with pytest.raises(TaskError, match=message):
+        Worlds(task(**keys))
+
+
+def test_learners_share_a_drive() -> None:
+    with pytest.raises(TaskError, match=r"different drives"):
+        Worlds(task({}, {"kinematics": {"name": "omni"}, "state": [1, 2, 0]}))

@@ -1,0 +1,70 @@
+"""Environments of Stable-Baselines3."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from stable_baselines3 import PPO
+from stable_baselines3.common.evaluation import evaluate_policy
+
+from irsim.learning import SB3VecEnv, VectorEnv
+from tests.learning.tasks import crowd, lidar_among_boxes, task
+
+pytestmark = pytest.mark.learn
+
+
+def test_slots_equal_those_of_gymnasium() -> None:
+    made = lidar_among_boxes(horizon=1.0)
+    env, other = SB3VecEnv(made, 3, seed=5), VectorEnv(made, 3, seed=5, autoreset_mode="SameStep")
+    assert np.array_equal(env.reset(), other.reset()[0])
+    rng = np.random.default_rng(0)
+    ended = 0
+    for _ in range(25):
+        actions = rng.uniform(-1, 1, (3, 2)).astype(np.float32)
+        seen, reward, done, infos = env.step(actions)
+        expected, theirs, terminated, truncated, facts = other.step(actions)
+        assert np.array_equal(seen, expected)
+        assert np.allclose(reward, theirs)
+        assert np.array_equal(done, terminated | truncated)
+        for slot in np.flatnonzero(done):
+            ended += 1
+            assert np.array_equal(infos[slot]["terminal_observation"], facts["final_obs"][slot])
+            assert infos[slot]["TimeLimit.truncated"] == truncated[slot]
+            assert infos[slot]["episode"]["l"] <= 10
+    assert ended >= 6
+
+
+def test_robots_share_a_policy_and_waiting_ones_say_so() -> None:
+    near, far = {"state": [8.65, 5, 0]}, {"state": [1, 2, 0], "goal": [9, 2]}
+    env = SB3VecEnv(task(near, far, protocol="freeze", horizon=0.4), 2)
+    env.reset()
+    ahead = np.tile([1.0, 0.0], (4, 1))
+    _, _, first, infos = env.step(ahead)
+    assert first.tolist() == [True, False, True, False]
+    assert infos[0]["is_success"]
+    _, reward, second, _ = env.step(ahead)
+    assert not second.any()
+    assert env.active.tolist() == [False, True, False, True]
+    assert reward[0] == 0 < reward[1]
+    env.step(ahead)
+    *_, last, infos = env.step(ahead)
+    assert last.all()
+    assert "episode" not in infos[0]
+    assert infos[1]["TimeLimit.truncated"]
+
+
+def test_ppo_learns_to_drive_ahead() -> None:
+    made = task({"goal": [4, 5]}, horizon=6, reward=[{"name": "progress"}, {"name": "arrival", "weight": 2.0}])
+    env = SB3VecEnv(made, 16)
+    model = PPO("MlpPolicy", env, n_steps=32, batch_size=128, learning_rate=1e-3, seed=0, device="cpu")
+    before, _ = evaluate_policy(model, SB3VecEnv(made, 1), 1, warn=False)
+    model.learn(12_000)
+    after, _ = evaluate_policy(model, SB3VecEnv(made, 1), 1, warn=False)
+    assert after > before
+    assert after > 4.0
+    assert model.policy.observation_space.shape == env.observation_space.shape
+
+
+def test_a_crowd_is_learnt_in() -> None:
+    env = SB3VecEnv(crowd(3), 2)
+    PPO("MlpPolicy", env, n_steps=16, batch_size=32, device="cpu").learn(200)
