@@ -15,12 +15,7 @@ from irsim_mcp.errors import failure
 from irsim_mcp.limits import MAX_STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.run_resources import uri
-<<<<<<< HEAD
-from irsim_mcp.scene_text import scene_lines
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services, is_command
-=======
-from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
->>>>>>> main
 from irsim_mcp.tool import StrictTool, strict
 from irsim_mcp.tools.validate_scenario import report_of, text_of
 
