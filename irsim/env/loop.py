@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from irsim.common.log import LEVELS
@@ -50,7 +51,7 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
     _after_step(env)
 
 
-def _report_limits(env: EnvState, view: SimObject, control: list[float]) -> None:
+def _report_limits(env: EnvState, view: SimObject, control: Sequence[float]) -> None:
     """Log, once per object, that its limits cut an action."""
     if view.static:
         return

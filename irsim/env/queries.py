@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -145,11 +144,13 @@ def get_lidar_offset(env: EnvState, id: int = 0) -> list[float]:
 
 
 def _robot(env: EnvState, index: int) -> ObjectView:
-    robots = (view for view in env._objects if view.role == "robot")
-    found = next(islice(robots, index, None), None) if index >= 0 else None
-    if found is None:
-        raise IndexError(f"no robot {index}: this scenario has {robot_number(env)}")
-    return found
+    left = index
+    for view in env._objects:
+        if view.role == "robot":
+            if left == 0:
+                return view
+            left -= 1
+    raise IndexError(f"no robot {index}: this scenario has {robot_number(env)}")
 
 
 def time(env: EnvState) -> float:

@@ -16,6 +16,7 @@ from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
 
 __all__ = [
+    "PICTURE",
     "all_codes",
     "code_answer",
     "codes_answer",
@@ -26,6 +27,9 @@ __all__ = [
     "template_answer",
     "templates_answer",
 ]
+
+PICTURE = "Picture of its start:"
+"""Words before the path of the picture of a template."""
 
 
 def index_answer() -> Answer:
@@ -147,7 +151,7 @@ def template_answer(template: Template) -> Answer:
         kind="template",
         title=f"template {template.name}: {template.title}",
         text=f"{template.purpose} With the default parameters it ends in {' or '.join(template.outcomes)}. "
-        f"Picture of its start: {templates.picture_file(template.name)}",
+        f"{PICTURE} {templates.picture_file(template.name)}",
         groups={"parameters": keys},
         example=f"irsim new {template.name}{setting}",
         see=["templates"],

@@ -12,7 +12,7 @@ from irsim.objects.base import SimObject
 
 __all__ = ["assign_actions"]
 
-Assignments = list[tuple[SimObject, list[float]]]
+Assignments = list[tuple[SimObject, Sequence[float]]]
 
 
 def _is_one(action: Any) -> bool:
@@ -41,19 +41,27 @@ def _find(objects: Sequence[SimObject], key: Any) -> SimObject:
     return found[0]
 
 
-def _control(view: SimObject, action: Any) -> list[float]:
-    numbers = action.tolist() if isinstance(action, np.ndarray) and action.ndim == 1 else action
-    if isinstance(numbers, (list, tuple)) and len(numbers) == view.vel_dim and all(map(_is_finite_float, numbers)):
-        return list(numbers)
-    return _checked_control(view, action)
+def _plain_control(view: SimObject, action: Any) -> Sequence[float] | None:
+    """Return an action that is the finite floats of one control; None for others, which `_checked_control` converts.
+
+    NumPy would take longer for them than a step of a small world.
+    """
+    numbers = action.tolist() if type(action) is np.ndarray else action
+    if not isinstance(numbers, (list, tuple)) or len(numbers) != view.vel_dim:
+        return None
+    for value in numbers:
+        if type(value) is not float or not math.isfinite(value):
+            return None
+    return numbers
 
 
-def _is_finite_float(value: Any) -> bool:
-    return type(value) is float and math.isfinite(value)
+def _control(view: SimObject, action: Any) -> Sequence[float]:
+    plain = _plain_control(view, action)
+    return _checked_control(view, action) if plain is None else plain
 
 
 def _checked_control(view: SimObject, action: Any) -> list[float]:
-    """Convert an action of any type; NumPy takes longer for it than a step of a small world."""
+    """Convert an action of any type."""
     try:
         values = np.asarray(action, dtype=np.float64).reshape(-1)
     except (TypeError, ValueError):
@@ -86,6 +94,8 @@ def assign_actions(
         TypeError: ``action`` is not a valid type of action.
         ValueError: A target does not exist, or a control has the wrong size or is not finite.
     """
+    if action_id is None and objects and (numbers := _plain_control(objects[0], action)) is not None:
+        return [(objects[0], numbers)]
     if not isinstance(action, (list, tuple, np.ndarray)):
         if not isinstance(action, Mapping):
             raise TypeError(f"action must be a list, tuple, ndarray or mapping, got {type(action).__name__}")

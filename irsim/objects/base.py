@@ -25,7 +25,7 @@ __all__ = ["SimObject", "column"]
 def column(values: Any) -> Floats:
     """Return a read-only copy of numbers as a column (n, 1)."""
     copied = np.array(values, dtype=np.float64).reshape(-1, 1)
-    copied.setflags(write=False)
+    copied.setflags(False)  # type: ignore[call-arg]  # NumPy takes it; named, it takes longer than the copy
     return copied
 
 
@@ -123,7 +123,7 @@ class SimObject:
         else:
             extra = self._simulation.extra[self.row, : self.state_dim - 3]
             state = np.concatenate([self._pose, extra])[:, None]
-        state.setflags(write=False)
+        state.setflags(False)  # type: ignore[call-arg]  # as in `column`
         return state
 
     @property

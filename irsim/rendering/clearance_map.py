@@ -14,7 +14,7 @@ from irsim.common.arrays import Floats
 from irsim.common.text import metres
 from irsim.graphics.scene.scene import Bounds, Label, Line, Mark, Region, Scene, Stroke
 from irsim.metrics.geodesic import inscribed_radius
-from irsim.metrics.roles import STATIC, kinds_of
+from irsim.metrics.roles import HUMAN, STATIC, kinds_of
 from irsim.navigation.outlines import placed_parts
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ _NO_OBJECT = -1000
 
 
 class FreeSpace:
-    """Distances to the nearest static obstacle, over a rectangle.
+    """Distances to the nearest static obstacle, standing people included, over a rectangle.
 
     Args:
         simulation: The simulation.
@@ -67,7 +67,8 @@ class FreeSpace:
 
     def __init__(self, simulation: Simulation, world: int, box: Bounds, radius: float) -> None:
         first, records = world * simulation.objects, simulation.scenario.objects
-        static = [i for i in np.flatnonzero(kinds_of(records) == STATIC).tolist() if records[i].static]
+        kinds = kinds_of(records)
+        static = [i for i, kind in enumerate(kinds.tolist()) if kind in (STATIC, HUMAN) and records[i].static]
         parts = [part for i in static for part in placed_parts(simulation.state, first + i, world_frame=True)]
         width, height = box[2] - box[0], box[3] - box[1]
         size = max(math.sqrt(width * height / MAX_CELLS), radius / _CELLS_PER_RADIUS)

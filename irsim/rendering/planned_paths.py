@@ -111,7 +111,7 @@ def _plan_path(
             leg, own = routes[view.id], 1
         else:
             leg = _shortest_path(geodesics, space, start, goal, (outer, inner))
-            if leg is None:
+            if leg is None or not _is_free(space, leg, inner):  # the shortest path knows no standing people
                 leg = space.path(start, goal, inner, view.record.goal_threshold)
         if leg is None:
             lost = float(goal[0]), float(goal[1])
@@ -139,6 +139,12 @@ def _shortest_path(
         if path is not None:
             return np.concatenate([[start], path[1:-1], [goal]])  # its ends are only the centres of cells
     return None
+
+
+def _is_free(space: FreeSpace, path: Floats, radius: float) -> bool:
+    """Whether a disc can move along a path, within the accuracy of the cells."""
+    distances = space.distance_at(_densify(np.asarray(path)[:, :2], space.half_diagonal))
+    return bool(distances.min() >= radius - 2 * space.half_diagonal)
 
 
 def draw_plans(scene: Scene, paths: Sequence[PlannedPath]) -> None:

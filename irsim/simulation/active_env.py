@@ -24,7 +24,8 @@ _SEEDS: list[Iterator[int]] = []
 
 def use(env: Any) -> None:
     """Remember an environment as the one used last, without keeping it alive."""
-    _LAST[:] = [ref(env)]
+    if last_used() is not env:
+        _LAST[:] = [ref(env)]
 
 
 def last_used() -> Any:

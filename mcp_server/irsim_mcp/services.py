@@ -8,17 +8,19 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from irsim.common.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.json_answer import Found
 from irsim_mcp.limits import MAX_SEED, ServerLimits
+from irsim_mcp.recent_texts import RecentTexts
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.suites import suite_of
 from irsim_mcp.worker import Progress, Workers
 
-__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "line_of"]
+__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "is_command", "line_of"]
 
-ScenarioPath = Annotated[str | None, Field(description="Path of a scenario in the workspace.")]
+ScenarioPath = Annotated[str | None, Field(description="Workspace file, or id of a text.")]
 ScenarioYaml = Annotated[str | None, Field(description="Or its YAML text (at most 256 KiB).")]
 Seed = Annotated[
     int | None,
@@ -47,6 +49,8 @@ class Services:
     jobs: Jobs
     known: dict[str, str] = field(default_factory=dict)
     """Cached answers of :meth:`reference`; the scenario language does not change while the server runs."""
+    texts: RecentTexts = field(default_factory=RecentTexts)
+    """Texts of scenarios that calls have given."""
 
     async def reference(self, task: str, argument: str, **arguments: Any) -> str:
         """Have a worker answer a question about the scenario language, unless the answer is cached.
@@ -147,6 +151,8 @@ class Services:
             return {}
         if "\n" in base or base.lstrip().startswith("{") or ": " in base:
             return {"base_text": self._text(base, "base")}
+        if (known := self._known_text(base, "base")) is not None:
+            return {"base_text": known}
         return {"base": self.workspace.scenario(base, "base")}
 
     async def _source(self, scenario_path: str | None, scenario_yaml: str | None) -> dict[str, str]:
@@ -155,10 +161,33 @@ class Services:
             fix = "give scenario_yaml (the YAML text) or scenario_path (a file in the workspace), and only one of them"
             raise failure("bad-argument", f"{given} given", fix=fix)
         if scenario_path:
+            if (known := self._known_text(scenario_path, "scenario_path")) is not None:
+                return {"text": known}
             text = await self._suite_scene(scenario_path, "scenario_path")
             return {"path": self.workspace.scenario(scenario_path)} if text is None else {"text": text}
         assert scenario_yaml
-        return {"text": self._text(scenario_yaml, "scenario_yaml")}
+        text = self._text(scenario_yaml, "scenario_yaml")
+        self.texts.remember(text)
+        return {"text": text}
+
+    def given(self, scenario_path: str | None, scenario_yaml: str | None) -> str:
+        """The shortest argument that gives a scenario again: ``scenario_path=`` with the file or the id of the text."""
+        name = self.texts.remember(scenario_yaml) if scenario_yaml else clean(scenario_path or "", 200)
+        return f"scenario_path={name}"
+
+    def _known_text(self, given: str, argument: str) -> str | None:
+        """The text that an id stands for; None if a file is meant.
+
+        Raises:
+            ToolError: The server does not know the id any more.
+        """
+        if not self.texts.is_id(given) or (self.workspace.root / given).is_file():
+            return None
+        text = self.texts.find(given)
+        if text is None:
+            what = f"no text with the id {given!r} is kept; the last ones are, until the server ends"
+            raise failure("file-not-found", what, where=argument, fix="give the text again, as scenario_yaml")
+        return text
 
     async def _suite_scene(self, given: str, argument: str) -> str | None:
         """The text of ``SUITE/SCENARIO``; None if no bundled suite is named.
@@ -189,6 +218,8 @@ class Services:
         """
         if "\n" in given:
             return self._text(given, argument)
+        if (known := self._known_text(given, argument)) is not None:
+            return known if "\n" in known else f"{known}\n"  # a text of one line would be taken for a path
         return self.workspace.scenario(given, argument)
 
     def _text(self, text: str, argument: str) -> str:
@@ -214,6 +245,11 @@ def _result(answer: dict[str, Any], argument: str) -> Found:
     result = Found(answer["result"])
     result.text = answer["text"]
     return result
+
+
+def is_command(reproduce: str) -> bool:
+    """Whether a command that repeats something works as it is: not where a text has no file yet."""
+    return "# the text, saved as" not in reproduce
 
 
 def line_of(item: dict[str, Any]) -> str:

@@ -36,6 +36,15 @@ def test_bounding_circles_are_those_of_the_placed_shapes() -> None:
     np.testing.assert_allclose(found, [[1.0, 3.0, 0.2], [1.0, 2.0, math.sqrt(1.25)]], atol=1e-12)
 
 
+def found(
+    world: core.World, state: core.State, rows: list[int], most: int, reach: float, statics: bool
+) -> list[list[int]]:
+    """Indices of the nearest objects of rows."""
+    none = [0] * world.objects
+    looking = core.Looking(most, reach, statics, steered=none, first_beam=none, beams=0, range_max=0.0)
+    return core.find_neighbors(world, state, looking, np.array(rows))[1].tolist()
+
+
 def test_nearest_objects_are_sorted_by_gap_then_index() -> None:
     things = [
         robot(),
@@ -48,7 +57,7 @@ def test_nearest_objects_are_sorted_by_gap_then_index() -> None:
     world, state = scene(*things, seeds=(0, 1))
 
     def nearest(most: int, reach: float = math.inf, statics: bool = False) -> list[list[int]]:
-        return core.nearest_objects(world, state, np.array([0, 6]), most, reach, statics).tolist()
+        return found(world, state, [0, 6], most, reach, statics)
 
     assert nearest(4) == [[2, 1, 3, -1]] * 2
     assert nearest(2) == [[2, 1]] * 2
@@ -61,7 +70,25 @@ def test_nearest_objects_are_of_the_role_that_a_robot_targets() -> None:
     others = [robot(pose=[1.0, 0.0, 0.0]), robot(pose=[2.0, 0.0, 0.0], role=1)]
     for roles, expected in ((0, [1, 2]), (1, [1, -1]), (2, [2, -1])):
         world, state = scene(robot(target_roles=roles), *others)
-        assert core.nearest_objects(world, state, np.array([0]), 2, math.inf, False).tolist() == [expected]
+        assert found(world, state, [0], 2, math.inf, False) == [expected]
+
+
+def test_gaps_are_those_between_footprints() -> None:
+    things = [
+        robot(),  # radius 0.2
+        robot(pose=[1.0, 0.0, 0.0]),
+        obstacle(pose=[0.0, 1.0, 0.0], parts=[rectangle(4.0, 0.5)]),
+        obstacle(pose=[0.0, 0.0, 0.0], unobstructed=True),
+    ]
+    world, state = scene(*things, seeds=(0, 1))
+    kinds = np.array([0, 0, 2, 3], dtype=np.uint8)
+    far = core.gaps(world, state, np.array([0, 5]), kinds, math.inf)
+    np.testing.assert_allclose(far, [[0.6, math.inf, 0.55], [0.6, math.inf, 0.55]], atol=1e-12)
+    near = core.gaps(world, state, np.array([0]), kinds, 0.58, threads=2)
+    np.testing.assert_allclose(near, [[math.inf, math.inf, 0.55]], atol=1e-12)
+    state.pose[0] = [0.75, 0.0, 0.0]
+    state.refresh()
+    assert core.gaps(world, state, np.array([0]), kinds, 1.0)[0, 0] == pytest.approx(-0.15)
 
 
 def test_wrong_rows_are_refused() -> None:

@@ -66,21 +66,26 @@ async def test_other_seeds_and_the_episodes_that_failed(workspace: Path) -> None
     arguments = {"scenarios": [RANDOM], "behaviors": ["dash", long], "seeds": 6, "first_seed": 1000}
     async with connected(workspace) as client:
         result = await client.call_tool("benchmark", arguments)
+        job = {"job_id": data_of(result)["job_id"], "detailed": True}
+        more = data_of(await client.call_tool("get_job", job))["rows"][0]
     found = data_of(result)
-    assert "--seeds 1000-1005 " in found["reproduce"]
+    assert " of 6" in more["failed"]
+    assert {"path_length", "spl", "min_clearance"} <= set(more)
+    assert "reproduce" not in found  # which would need a file
     kept = json.loads((workspace / found["artifact"]).read_text())
     assert kept["seeds"] == list(range(1000, 1006))
     bad = [e["seed"] for e in kept["episodes"] if e["behavior"] == "dash" and e["outcome"] == "collision"]
     row, same = found["rows"]
     assert row["failed"].startswith(f"collision: seed{'s' * (len(bad) > 1)} {', '.join(map(str, bad))}")
-    assert " of 6" in row["failed"]
+    assert " of 6" not in row["failed"]  # which robots failed how is detailed
+    assert "path_length" not in row
     assert same["behavior"] == "dash #2"
     assert found["notes"][0] == f"dash #2 is {long}"
     assert set(same["diff"]) >= {"success", "collision", "timeout"}
     assert same["diff"]["success"][0] == 0
     assert same["diff"]["success"][1] < 0 < same["diff"]["success"][2]
     told = text_of(result)
-    assert told.count(long) == 2  # in the note, and in the command that repeats it
+    assert told.count(long) == 1  # in the note
     assert row["failed"] in told
     assert f"seed={bad[0]} policy='dash' (collision)" in found["next"]
 

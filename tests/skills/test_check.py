@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tests.skills.conftest import SKILL, execute, parts, spans
+from tests.skills.conftest import SKILL, execute, spans
 from tests.skills.test_skill import SKELETON
 from tests.warm import warm
 
@@ -34,7 +34,8 @@ def check(folder: Path, *words: str) -> tuple[int, dict[str, Any]]:
 
 
 def test_the_command_of_the_skill_works_as_written(folder: Path) -> None:
-    [command] = [span for span in spans(parts()[1]) if span.startswith("python ")]
+    guide = (SKILL / "guides" / "commands.md").read_text(encoding="utf-8")
+    [command] = [span for span in spans(guide) if span.startswith("python ")]
     (folder / "before.yaml").write_text(SKELETON.replace("width: 12 ", "width: 14 "), encoding="utf-8")
     _, script, *words = shlex.split(command)
     told = json.loads(execute(["python", str(SKILL / script), *words], folder))

@@ -20,6 +20,8 @@ from irsim_mcp.server import build_server
 from tests.skills.conftest import PAGES, SKILL, execute, fences, parts, spans
 
 _, BODY = parts()
+GUIDES = {path.stem: path.read_text(encoding="utf-8") for path in sorted((SKILL / "guides").glob("*.md"))}
+ALL = "\n".join([BODY, *GUIDES.values()])
 [SKELETON] = fences(BODY, "yaml")
 SCOUT: dict[str, Any] = {
     "kinematics": {"name": "omni_angular"},
@@ -44,6 +46,11 @@ def test_every_page_can_be_reached_from_it() -> None:
     assert set(PAGES) - linked == {SKILL / "SKILL.md"}
 
 
+def test_what_most_requests_need_is_short_and_guides_hold_the_rest() -> None:
+    assert len((SKILL / "SKILL.md").read_text(encoding="utf-8")) <= 10_500
+    assert {name for name, text in GUIDES.items() if len(text) > 5000} == set()
+
+
 def test_the_skeleton_is_valid_without_a_remark_and_succeeds(tmp_path: Path) -> None:
     report = irsim.validate(text=SKELETON)
     assert [finding.code for finding in report.findings] == []
@@ -57,7 +64,7 @@ def test_commands_work_as_written(tmp_path: Path) -> None:
     after = SKELETON.replace("behavior:", "sensors: [{name: lidar2d}]\n    behavior:")
     for name, text in (("hall", SKELETON), ("before", SKELETON), ("after", after)):
         (tmp_path / f"{name}.yaml").write_text(text, encoding="utf-8")
-    commands = [span for span in spans(BODY) if span.startswith("irsim ")]
+    commands = [span for span in spans(ALL) if span.startswith("irsim ")]
     assert len(commands) >= 6
     for command in dict.fromkeys(commands):
         execute(shlex.split(command), tmp_path)
@@ -67,7 +74,7 @@ def test_commands_work_as_written(tmp_path: Path) -> None:
 def test_codes_are_those_of_the_program() -> None:
     known = {*CODES, *TOOL_CODES}
     named = {"not-yet-simulated", "placement-crowded", "no-behavior"}
-    assert named <= set(spans(BODY))
+    assert named <= set(spans(ALL))
     assert named <= known
 
 
@@ -79,11 +86,13 @@ async def tool_arguments(workspace: Path) -> dict[str, set[str]]:
 
 def test_tools_and_their_arguments_are_those_of_the_server(tmp_path: Path) -> None:
     tools = asyncio.run(tool_arguments(tmp_path))
-    table = BODY.partition("## Tools")[2].partition("## The loop")[0]
+    table = GUIDES["commands"]
     rows = [cells[1] for row in table.splitlines() if row.startswith("| ") and (cells := row.strip("|").split("|"))]
     calls = [spans(cell) for cell in rows[1:] if "`" in cell]
     assert {name for names in calls for name in names if name in tools} == set(tools)
     assert {"scenario_path", "scenario_yaml"} <= tools["validate_scenario"] & set(spans(table))
+    short = BODY.partition("## Tools")[2].partition("## The loop")[0]
+    assert {"lookup", "render_snapshot", "run_episode", "inspect_run", "benchmark"} <= set(spans(short)) & set(tools)
     assert {"response_format", "base"} <= tools["validate_scenario"]
     assert {"seed"} <= tools["run_episode"]
     assert {"step", "seed"} <= tools["render_snapshot"]
@@ -92,7 +101,7 @@ def test_tools_and_their_arguments_are_those_of_the_server(tmp_path: Path) -> No
 
 def snippets() -> Iterator[str]:
     """Inline code that looks like a key with its value."""
-    for span in spans(BODY.partition("## From words to keys")[2].partition("## Editing a file")[0]):
+    for span in spans("\n".join([BODY.partition("## From words to keys")[2], GUIDES["words"], GUIDES["traps"]])):
         text = re.sub(r"\bx\b", "1", re.sub(r"\by\b", "2", re.sub(r"\btheta\b", "0.5", span)))
         text = text.replace(", …]", "]").replace("omni_angular` ", "")
         if re.fullmatch(r"[a-z_.]+: .+", text):
@@ -120,7 +129,7 @@ def test_keys_and_values_are_valid_where_they_belong(text: str) -> None:
 
 
 def test_angles_are_right() -> None:
-    pairs = re.findall(r"(\d+)° (\d+\.\d+)", BODY)
+    pairs = re.findall(r"(\d+)° (\d+\.\d+)", ALL)
     assert len(pairs) >= 7
     for degrees, radians in pairs:
         assert math.radians(float(degrees)) == pytest.approx(float(radians), abs=1e-4)

@@ -21,6 +21,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn, TextIO
 
+from irsim.common.extras import ExtraError
+
 __all__ = ["end", "load", "run", "serve"]
 
 Program = tuple[list[str], str, dict[str, str]]
@@ -33,7 +35,8 @@ def load(name: str) -> None:
     if name.endswith(".*"):
         for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             if not found.name.endswith(".__main__") and not found.name.startswith("irsim.compat."):
-                importlib.import_module(found.name)
+                with suppress(ExtraError):  # a module for libraries that are not installed here
+                    importlib.import_module(found.name)
 
 
 def serve(address: str) -> Program | None:

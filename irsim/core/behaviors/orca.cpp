@@ -196,9 +196,11 @@ void avoid_movers(const OrcaOptions& options, const World& world, const State& s
   const auto seen = [&](int m) {
     return m != self && (all.member_of[m] == group || targets_role(world, object, world.moving[m]));
   };
-  const int count = all.nearest.find(agent.position, options.neighborDist, most, seen, all.neighbors.data());
-  for (int k = 0; k < count; ++k) {
-    const int m = all.neighbors[k].index;
+  std::vector<int>& before = all.neighbors_before[self];
+  const int count = all.nearest.find(agent.position, options.neighborDist, most, before, seen, all.neighbors.data());
+  before.clear();
+  for (int k = 0; k < count; ++k) before.push_back(all.neighbors[k].index);
+  for (const int m : before) {
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
     // not give way.
     const bool mutual = all.group[m] >= 0 && (all.group[m] == group || targets_role(world, world.moving[m], object));

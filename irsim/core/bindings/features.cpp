@@ -1,4 +1,5 @@
-// Options classes of kinematics, behaviors, sensors, shapes and observation parts, generated from their lists of fields.
+// Options classes of kinematics, behaviors, sensors, shapes and observation parts, generated from their lists of
+// fields.
 #include "bindings/helpers.hpp"
 #include "parts.gen.hpp"
 #include "world/spec.hpp"

@@ -41,7 +41,7 @@ std::vector<int> nearest_points(const std::vector<std::pair<double, double>>& po
   all.build();
   std::vector<Nearest::Found> found(static_cast<std::size_t>(std::max(most, 0)));
   const auto any = [](int) { return true; };
-  const int count = all.find({centre.first, centre.second}, reach, most, any, found.data());
+  const int count = all.find({centre.first, centre.second}, reach, most, {}, any, found.data());
   std::vector<int> out;
   for (int k = 0; k < count; ++k) out.push_back(found[k].index);
   return out;

@@ -11,7 +11,7 @@ Vec2 normalized(Vec2 a) { return a * (1.0 / norm(a)); }
 struct Tangents {
   Vec2 left, right;
 };
-Tangents tangents(Vec2 centre, double radius) {
+inline Tangents tangents(Vec2 centre, double radius) {
   const double distance2 = squared(centre), leg = std::sqrt(std::max(distance2 - radius * radius, 0.0));
   const double scale = 1.0 / distance2;
   const Vec2 along = centre * (leg * scale), aside = left_of(centre) * (radius * scale);

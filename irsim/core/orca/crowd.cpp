@@ -17,6 +17,7 @@ OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w)
   all.movers.resize(count);
   all.group.assign(count, -1);
   all.member_of.assign(count, -1);
+  if (all.neighbors_before.size() != count) all.neighbors_before.assign(count, {});
   all.nearest.clear();
   for (std::size_t m = 0; m < count; ++m) {
     const int i = world.moving[m], row = w * world.objects + i;

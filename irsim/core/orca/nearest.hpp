@@ -25,13 +25,23 @@ class Nearest {
   void build();
 
   /// Find up to `most` points less than `reach` [m] away from `centre` for which `seen(index)` holds, nearest first,
-  /// then by index. Returns their number; `found` must have space for `most`.
+  /// then by index. Returns their number; `found` must have space for `most`. `likely`: distinct indices of points that
+  /// may be among them, such as those found in the step before; they save time and do not change the result.
   template <class Seen>
-  int find(Vec2 centre, double reach, int most, Seen&& seen, Found* found) const {
+  int find(Vec2 centre, double reach, int most, const std::vector<int>& likely, Seen&& seen, Found* found) const {
     if (most <= 0) return 0;
     Best best{found, most, 0, reach * reach};
     if (start_.empty()) {
-      for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+      if (points_.size() > kMaxLinearPoints) return 0;  // `build` made no grid, because none of them is finite
+      const double limit2 = std::min(best.limit2, farthest(centre, most, likely, seen));
+      int candidates[kMaxLinearPoints + 1];
+      int count = 0;
+      for (int i = 0; i < static_cast<int>(points_.size()); ++i) {  // without a branch that nobody could foresee
+        candidates[count] = i;
+        count += squared(points_[i] - centre) <= limit2;
+      }
+      for (int k = 0; k < count; ++k) {
+        const int i = candidates[k];
         const double distance2 = squared(points_[i] - centre);
         if (distance2 <= best.limit2 && seen(i)) best.offer({distance2, i});
       }
@@ -84,6 +94,19 @@ class Nearest {
     Vec2 point;
     int index;
   };
+
+  /// Square of a distance within which there are at least `most` points; infinite if `likely` are too few to tell.
+  template <class Seen>
+  double farthest(Vec2 centre, int most, const std::vector<int>& likely, Seen&& seen) const {
+    if (static_cast<int>(likely.size()) < most) return kInfinity;
+    double farthest2 = 0.0;
+    for (int k = 0; k < most; ++k) {
+      const double distance2 = squared(points_[likely[k]] - centre);
+      if (!(distance2 < kInfinity) || !seen(likely[k])) return kInfinity;
+      farthest2 = std::max(farthest2, distance2);
+    }
+    return farthest2;
+  }
 
   int column(double offset, int count) const {
     return static_cast<int>(clip(std::floor(offset * inverse_), 0.0, count - 1.0));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collision/distance.hpp"
 #include "collision/touch.hpp"
 #include "geometry/predicates.hpp"
 
@@ -13,6 +14,17 @@ bool Blockers::meet(const Footprint& body) const {
   if (met || others == nullptr) return met;
   return std::any_of(others->begin(), others->end(),
                      [&](const Footprint& other) { return body.box.meets(other.box) && touch(body, other); });
+}
+
+double Blockers::gap(const Footprint& body, double most) const {
+  Box around = body.box;
+  around.include(Vec2{body.box.x0 - most, body.box.y0 - most});
+  around.include(Vec2{body.box.x1 + most, body.box.y1 + most});
+  double least = most;
+  grid.query(around, [&](int id) {
+    if (counts(id)) least = std::min(least, distance(body, outlines.footprint(shapes, id)));
+  });
+  return least;
 }
 
 void Terrain::add(const std::vector<Outline>& outlines, const Pose& pose) {

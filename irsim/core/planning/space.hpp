@@ -20,6 +20,8 @@ struct Blockers {
 
   bool counts(int id) const { return passable == nullptr || !passable[id]; }
   bool meet(const Footprint& body) const;
+  /// Distance from a body to the nearest static obstacle, or `most` if that is smaller [m]; negative if they overlap.
+  double gap(const Footprint& body, double most) const;
 };
 
 /// Obstacles with geometry of their own, for maps that Python assembles.

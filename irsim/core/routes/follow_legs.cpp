@@ -31,20 +31,42 @@ void Follower::follow_legs(Vec3& u) {
     route_.next = 1;
     return;
   }
-  for (const double share : {1.0, 0.5, 0.25, 0.1}) {
-    Vec3 v = u;
-    v[0] *= share;
-    if (!std::holds_alternative<AckerOptions>(world_.drive[object_])) v[1] *= share;
-    if (!clear_after(v)) continue;
-    u = v;
+  if (route_.retreats) find_sides();
+  const bool found = slow_down_on_leg(u);
+  work_.sides.clear();
+  if (found) {
     route_.blocked_steps = 0;
     return;
   }
   u = {};
-  if (++route_.blocked_steps > kMaxBlockedSteps) {
+  if (++route_.blocked_steps > kMaxBlockedSteps && !route_.retreats) {
     route_.blocked_steps = 0;
     plan();
   }
+}
+
+bool Follower::slow_down_on_leg(Vec3& u) {
+  const auto* car = std::get_if<AckerOptions>(&world_.drive[object_]);
+  const double psi = car == nullptr ? 0.0 : state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
+  const double most = car == nullptr ? 0.0 : max_steering(*car);
+  // A retreat need not follow the track closely: a car may turn away from what is beside it.
+  for (const double turn : {0.0, 0.3, -0.3, 0.8, -0.8}) {
+    if (turn != 0.0 && (car == nullptr || !route_.retreats)) break;
+    for (const double share : {1.0, 0.5, 0.25, 0.1}) {
+      Vec3 v = u;
+      v[0] *= share;
+      if (car == nullptr) v[1] *= share;
+      if (turn != 0.0) {
+        const double planned = car->mode == Steering::steer ? v[1] : psi + v[1] * world_.step_time;
+        const double wanted = clip(planned + turn, -most, most);
+        v[1] = car->mode == Steering::steer ? wanted : (wanted - psi) / world_.step_time;
+      }
+      if (!clear_after(v)) continue;
+      u = v;
+      return true;
+    }
+  }
+  return false;
 }
 
 double Follower::stopping_speed(double left, int control, double most) const {

@@ -25,7 +25,9 @@ class Follower {
     if (!options_.within.empty()) within_.emplace(options_.within);
   }
 
-  /// Plan where that is due, and set `State::target` to the point that the behavior heads for.
+  /// Plan where that is due, go on along the route, and note the progress.
+  void follow_route();
+  /// React to others that are in the way, and set `State::target` to the point that the behavior heads for.
   void update_target();
   /// Change the command of the behavior so that the object stays on its route and hits no static object.
   void adjust_command();
@@ -58,6 +60,9 @@ class Follower {
   double max_steering(const AckerOptions& car) const;
   /// The command that continues along the legs, which are cleared when the last one is finished.
   void follow_legs(Vec3& u);
+  /// Slow down where the command would lead to a collision, or turn aside during a retreat. Returns false if nothing
+  /// helps.
+  bool slow_down_on_leg(Vec3& u);
   /// Legs of a drive that turns on the spot.
   void follow_legs_in_place(Vec3& u);
   /// Legs of a car, by pure pursuit of those with one direction. Coulter: "Implementation of the Pure Pursuit Path
@@ -79,8 +84,8 @@ class Follower {
   /// Turn round what blocks an object that cannot move sideways: it plans again round those in its way, or retreats
   /// along its track for another one that goes first.
   void recover();
-  /// Start a retreat. Returns false if there is no track or no reverse gear.
-  bool retreat();
+  /// Start a retreat that lets another object pass. Returns false if there is no track or no reverse gear.
+  bool retreat(int other);
   /// End a retreat.
   void forget_retreat();
   /// Plan poses round all movers where they are. The present route stays if there is no such plan.
@@ -91,7 +96,9 @@ class Follower {
   void keep_apart(Vec3& u);
   /// Slow down, veer or back up where the command would end in a collision with a static object.
   void keep_clear(Vec3& u);
-  /// Whether the body at a pose touches nothing static and stays on its `Workspace::sides`.
+  /// Set the gap to walls that the next command must keep: that of the route, or a little less than the present one.
+  void measure_gap();
+  /// Whether the body at a pose touches nothing static, keeps the gap to it, and stays on its `Workspace::sides`.
   bool clear_at(const Pose& pose);
   /// Whether a command, followed by braking as hard as the limits allow, leads to no collision.
   bool clear_after(const Vec3& command);
@@ -105,6 +112,7 @@ class Follower {
   const Fixed& fixed_;
   const Shapes& shapes_;
   Blockers blockers_;
+  double gap_ = 0.0;              // gap to static objects that the next command must keep [m]
   std::optional<Region> within_;  // area that the path must not leave
 };
 

@@ -9,7 +9,9 @@ namespace {
 constexpr double kMarginShare = 0.3;                       // wanted margin beside a path, as a share of the radius
 constexpr double kMaxMargin = 0.3;                         // upper limit of that margin [m]
 constexpr double kMarginShares[] = {1.0, 0.3, 0.05, 0.0};  // shares of the margin, tried in this order
-constexpr int kMaxTries = 10;                              // plans attempted with a planner that draws samples
+constexpr double kLocalShare = 0.5;       // share of that margin that is kept when others push the object aside
+constexpr double kLegMargin = 0.01;       // the same of cars and on legs, whose plans have margins of their own [m]
+constexpr int kMaxTries = 10;             // plans attempted with a planner that draws samples
 constexpr double kSteeringShare = 0.9;    // share of the largest steering angle with which poses are planned
 constexpr double kRestingDistance = 0.1;  // an object that moves less than this counts as resting [m]
 constexpr double kStuckTime = 5.0;        // resting this long on a path that may be too narrow counts as stuck [s]
@@ -91,6 +93,7 @@ void Follower::plan() {
   route_.blocked_steps = 0;
   route_.next = 1;
   route_.wall_radius = inner_radius(shapes_, object_);
+  route_.wall_margin = 0.0;
   const Extent extent = extent_of(shapes_, object_);
   const double margin = std::min(kMarginShare * extent.reach, kMaxMargin);
   // A drive that keeps its heading needs free space for the body at that heading only; other drives need it at all
@@ -100,7 +103,10 @@ void Follower::plan() {
     const double theta = state_.pose[row_].theta;
     const Body tight = Body::of(shapes_, object_, theta, 0.0);
     for (const double share : kMarginShares) {
-      if (attempt(Body::of(shapes_, object_, theta, share * margin), tight, true)) return true;
+      if (!attempt(Body::of(shapes_, object_, theta, share * margin), tight, true)) continue;
+      route_.wall_margin = kLocalShare * share * margin;
+      route_.wall_radius += route_.wall_margin;
+      return true;
     }
     return false;
   };
@@ -115,7 +121,10 @@ void Follower::plan() {
       if (found || !attempt(Body::disc(extent.reach + share * margin), ahead, true)) continue;
       found = true;
       // The body can turn anywhere along this path. A car hardly turns on the spot, so it may pass closer to walls.
-      if (!std::holds_alternative<AckerOptions>(world_.drive[object_])) route_.wall_radius = extent.reach;
+      if (std::holds_alternative<AckerOptions>(world_.drive[object_])) continue;
+      route_.wall_margin = kLocalShare * share * margin;
+      // Other bodies mostly reach less far than that, which is margin enough.
+      route_.wall_radius = extent.reach + (round ? route_.wall_margin : 0.0);
     }
     if (!found && !round && sideways) found = route_.keeps_heading = at_present_heading();
     if (!found && !round && !sideways) {
@@ -124,6 +133,8 @@ void Follower::plan() {
     }
     found = found || (!round && (attempt(easy, ahead, true) || attempt(ahead, ahead, true)));
   }
+  if (std::holds_alternative<AckerOptions>(world_.drive[object_]) || !route_.legs.empty())
+    route_.wall_margin = kLegMargin;
   if (route_.path.empty()) report_no_path();
 }
 

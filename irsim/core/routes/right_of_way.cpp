@@ -19,10 +19,24 @@ constexpr std::size_t kTrackLength = 100;    // poses of the track
 constexpr int kMaxPosesAmongOthers = 15000;  // poses after which a plan among others is given up
 constexpr double kRetreat = 1.2;             // length of a retreat [m]
 constexpr double kWait = 3.0;                // time that an object waits after its retreat [s]
+constexpr double kInsistTime = 10.0;         // time for which an object that could not retreat goes first [s]
+constexpr double kInsistence = 1e6;          // by how much shorter its way counts [m]
 
 /// Way that is left to the goal [m]. Objects that have arrived or have no way give way to all others.
-double way_ahead(const State& state, int row) {
-  return state.arrived[row] || state.routes[row].path.empty() ? kInfinity : state.routes[row].way_ahead;
+double way_ahead(const State& state, int row, std::int64_t now) {
+  const Route& route = state.routes[row];
+  if (state.arrived[row] || route.path.empty()) return kInfinity;
+  return route.way_ahead - (now < route.insists_until ? kInsistence : 0.0);
+}
+
+/// Whether an object goes before another: the one with the shorter way, or else the one farther to the left, or down.
+bool goes_first(const State& state, int a, int b) {
+  const RightOfWay &one = state.routes[a].right_of_way, &two = state.routes[b].right_of_way;
+  const Pose &here = state.pose[a], &there = state.pose[b];
+  if (one.way != two.way) return one.way < two.way;
+  if (one.yielded != two.yielded) return one.yielded < two.yielded;
+  if (here.x != there.x) return here.x < there.x;
+  return here.y != there.y ? here.y < there.y : a < b;
 }
 
 }  // namespace
@@ -37,11 +51,26 @@ Precedence precedence(const World& world, const State& state, int w, int object,
   if (state.routes.empty() || !follows_route(world, state, w, object) || !follows_route(world, state, w, other))
     return Precedence::shared;
   const int a = w * world.objects + object, b = w * world.objects + other;
-  const auto held_up = [&](int row) { return state.routes[row].held_up && !state.arrived[row]; };
-  if (!held_up(a) && !held_up(b)) return Precedence::shared;
-  const double way_a = way_ahead(state, a), way_b = way_ahead(state, b);
-  if (way_a == way_b) return object < other ? Precedence::first : Precedence::second;
-  return way_a < way_b ? Precedence::first : Precedence::second;
+  if (!state.routes[a].right_of_way.held_up && !state.routes[b].right_of_way.held_up) return Precedence::shared;
+  return goes_first(state, a, b) ? Precedence::first : Precedence::second;
+}
+
+void publish_rights_of_way(const World& world, State& state, int w) {
+  const int first = w * world.objects;
+  const auto backs_up = [&](int row) {
+    return state.routes[row].retreats && !state.routes[row].legs.empty() && state.routes[row].lets_pass >= 0;
+  };
+  for (const int i : world.routed) {
+    Route& route = state.routes[first + i];
+    int origin = i;
+    route.right_of_way = {};
+    while (backs_up(first + origin) && route.right_of_way.yielded <= static_cast<int>(world.routed.size()))
+      origin = state.routes[first + origin].lets_pass, ++route.right_of_way.yielded;
+    route.right_of_way.way = way_ahead(state, first + origin, state.count[w]);
+    route.right_of_way.held_up = route.held_up && !state.arrived[first + i];
+    const bool waits = state.arrived[first + i] || (route.retreats && route.legs.empty());
+    route.right_of_way.held = waits ? 0 : state.count[w] - route.progress_at;
+  }
 }
 
 void Follower::track_progress() {
@@ -75,13 +104,19 @@ void Follower::keep_track() {
     const bool moved = norm(pose.position() - last.position()) >= kTrackStep;
     if (!moved && std::fabs(wrap(pose.theta - last.theta)) < kTrackTurn) return;
     if (track.size() == kTrackLength) track.erase(track.begin());
+    // Where the object comes back to its track, it need not drive the loop again.
+    for (std::size_t k = 0; k + 1 < track.size(); ++k) {
+      const Pose& old = track[k].pose;
+      if (norm(pose.position() - old.position()) < kTrackStep && std::fabs(wrap(pose.theta - old.theta)) < kTrackTurn)
+        return track.resize(k + 1);
+    }
     track.push_back({pose, moved ? (speed < 0.0 ? -1 : 1) : 0});
   } else {
     track.push_back({pose, 1});
   }
 }
 
-bool Follower::retreat() {
+bool Follower::retreat(int other) {
   const std::vector<Leg>& track = route_.track;
   if (track.size() < 2 || !(state_.vel_min[row_][0] < 0.0)) return false;
   route_.legs = {{state_.pose[row_], 0}};
@@ -94,6 +129,7 @@ bool Follower::retreat() {
   route_.leg = 1;
   route_.blocked_steps = 0;
   route_.retreats = true;
+  route_.lets_pass = other;
   route_.wait_until =
       state_.count[w_] + static_cast<std::int64_t>((kRetreat / top_speed(-1) + kWait) / world_.step_time);
   return true;
@@ -133,13 +169,13 @@ void Follower::recover() {
                       (std::holds_alternative<DiffOptions>(world_.drive[object_]) && !route_.legs.empty());
   if (!steers || std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) return;
   if (route_.retreats) {
-    if (state_.count[w_] >= route_.wait_until) plan();
+    if (state_.count[w_] < route_.wait_until) return;
+    const bool blocked = !route_.legs.empty();
+    plan();
+    if (blocked) route_.insists_until = state_.count[w_] + static_cast<std::int64_t>(kInsistTime / world_.step_time);
     return;
   }
   keep_track();
-  const auto steps_held = [&](int row) {
-    return state_.arrived[row] ? 0 : state_.count[w_] - state_.routes[row].progress_at;
-  };
   const auto patience = std::max<std::int64_t>(1, static_cast<std::int64_t>(kRecovery / world_.step_time));
   const Footprint body = state_.scenes[w_].moving.footprint(shapes_, object_);
   bool near = false;
@@ -151,13 +187,13 @@ void Follower::recover() {
         widest_strip(body, there, normal) > kNear)
       continue;
     near = true;
-    const std::int64_t held = steps_held(w_ * world_.objects + other);
+    const std::int64_t held = state_.routes[w_ * world_.objects + other].right_of_way.held;
     if (held > 0 && held % patience == 0 && precedence(world_, state_, w_, object_, other) == Precedence::second &&
-        retreat())
+        retreat(other))
       return;
   }
   // Searching takes long, so the second search comes after twice the time, the third after four times, and so on.
-  const std::int64_t held = steps_held(row_), times = held / patience;
+  const std::int64_t held = route_.right_of_way.held, times = held / patience;
   if (held <= 0 || held % patience != 0) return;
   if (!near && !route_.legs.empty()) return plan();
   if (near && (times & (times - 1)) == 0) plan_among_others();

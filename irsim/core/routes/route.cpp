@@ -12,17 +12,20 @@ constexpr double kMinTimeBetweenPlans = 1.0;  // after a plan, before another is
 
 }  // namespace
 
+void Follower::follow_route() {
+  if (std::isnan(state_.goal[row_].x)) return;
+  if (plan_is_due()) plan();
+  if (route_.path.empty()) return;
+  if (route_.legs.empty() && !route_.retreats) advance();
+  track_progress();
+}
+
 void Follower::update_target() {
   const Goal& goal = state_.goal[row_];
   Goal& target = state_.target[row_];
   target = goal;
   if (std::isnan(goal.x)) return;
-  if (plan_is_due()) plan();
-  if (!route_.path.empty()) {
-    if (route_.legs.empty() && !route_.retreats) advance();
-    track_progress();
-    recover();
-  }
+  if (!route_.path.empty()) recover();
   if (route_.path.empty() || (route_.retreats && route_.legs.empty())) {
     target.x = target.y = kNone;
     return;
@@ -47,6 +50,7 @@ void Follower::adjust_command() {
     u = {};
     return;
   }
+  measure_gap();
   if (!route_.legs.empty()) {
     follow_legs(u);
     if (!route_.legs.empty()) return keep_apart(u);
@@ -114,10 +118,16 @@ void find_routes(const World& world, State& state, int w, Workspace& work, int o
   if (world.routed.empty()) return;
   const int first = w * world.objects;
   for (int i = 0; i < world.objects; ++i) state.target[first + i] = state.goal[first + i];
-  for (const int i : world.routed) {
-    if ((only < 0 || only == i) && follows_route(world, state, w, i))
-      Follower(world, state, w, i, work).update_target();
-  }
+  const auto for_each = [&](auto&& act) {
+    for (const int i : world.routed) {
+      if ((only >= 0 && only != i) || !follows_route(world, state, w, i)) continue;
+      Follower follower(world, state, w, i, work);
+      act(follower);
+    }
+  };
+  for_each([](Follower& follower) { follower.follow_route(); });
+  publish_rights_of_way(world, state, w);
+  for_each([](Follower& follower) { follower.update_target(); });
 }
 
 void keep_routes(const World& world, State& state, int w, Workspace& work, int only) {

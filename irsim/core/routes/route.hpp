@@ -29,28 +29,41 @@ struct RouteOptions {
   }
 };
 
+/// What others go by when they meet an object on a route: its state after all routes of a step have been followed, and
+/// before one of them reacts to another. So it does not matter which object is declared first.
+struct RightOfWay {
+  double way = 0.0;       // length of the rest of the path [m]; infinite at the goal and without a path
+  int yielded = 0;        // an object that retreats claims the way of the one it lets pass: how many such steps away
+  bool held_up = false;   // whether it has made no progress for some time
+  std::int64_t held = 0;  // number of steps without progress
+};
+
 /// What an object remembers of its route from step to step.
 struct Route {
-  Vec2 goal{kNone, kNone};       // goal of the path
-  std::vector<Vec2> path;        // corners from the place of planning to the goal; empty if no path was found
-  std::size_t next = 0;          // corner of the path that the object heads for
-  std::int64_t planned_at = 0;   // step of the last plan
-  std::uint64_t plans = 0;       // number of plans in this episode, so that each has draws of its own
-  std::vector<Leg> legs;         // poses through a narrow place; empty where corners are enough
-  std::size_t leg = 0;           // leg that the object follows
-  int blocked_steps = 0;         // consecutive steps in which something blocked the leg
-  bool keeps_heading = false;    // the path is free of collisions only at the present heading
-  int backing_steps = 0;         // remaining steps of backing up
-  double wall_radius = 0.0;      // radius of the disc about the origin that behaviors keep off walls [m]
-  double way_ahead = 0.0;        // length of the rest of the path [m]
-  double shortest_way = 0.0;     // shortest that it was at the last progress [m]
-  std::int64_t progress_at = 0;  // step of that progress
-  bool held_up = false;          // whether the object has made no progress for some time
-  std::vector<Leg> track;        // last poses of a drive that cannot move sideways, and how each was reached
-  bool retreats = false;         // whether the legs lead back along the track; the object then waits there ...
-  std::int64_t wait_until = 0;   // ... until this step
-  std::size_t retraced = 0;      // number of legs of that retreat
-  bool reported = false;         // whether the missing path to this goal was logged
+  Vec2 goal{kNone, kNone};         // goal of the path
+  std::vector<Vec2> path;          // corners from the place of planning to the goal; empty if no path was found
+  std::size_t next = 0;            // corner of the path that the object heads for
+  std::int64_t planned_at = 0;     // step of the last plan
+  std::uint64_t plans = 0;         // number of plans in this episode, so that each has draws of its own
+  std::vector<Leg> legs;           // poses through a narrow place; empty where corners are enough
+  std::size_t leg = 0;             // leg that the object follows
+  int blocked_steps = 0;           // consecutive steps in which something blocked the leg
+  bool keeps_heading = false;      // the path is free of collisions only at the present heading
+  int backing_steps = 0;           // remaining steps of backing up
+  double wall_radius = 0.0;        // radius of the disc about the origin that behaviors keep off walls [m]
+  double wall_margin = 0.0;        // gap between the body and walls below which no command is allowed to lead [m]
+  double way_ahead = 0.0;          // length of the rest of the path [m]
+  double shortest_way = 0.0;       // shortest that it was at the last progress [m]
+  std::int64_t progress_at = 0;    // step of that progress
+  bool held_up = false;            // whether the object has made no progress for some time
+  std::vector<Leg> track;          // last poses of a drive that cannot move sideways, and how each was reached
+  bool retreats = false;           // whether the legs lead back along the track; the object then waits there ...
+  std::int64_t wait_until = 0;     // ... until this step
+  int lets_pass = -1;              // the object that it retreats for
+  std::int64_t insists_until = 0;  // an object that could not retreat goes before all others until this step
+  RightOfWay right_of_way;
+  std::size_t retraced = 0;  // number of legs of that retreat
+  bool reported = false;     // whether the missing path to this goal was logged
   // The path is free for a smaller body only, because poses for the whole body were not found from `failed_pose`.
   bool uncertain = false;
   Pose failed_pose{};

@@ -9,6 +9,7 @@ namespace irsim {
 namespace {
 
 constexpr int kBackingSteps = 8;      // steps that a manoeuvre of backing up lasts
+constexpr double kGapShare = 0.9;     // share of a gap to a wall that is too small already which a command must keep
 constexpr int kMaxBrakingSteps = 40;  // number of steps of braking that are simulated ahead
 
 }  // namespace
@@ -126,11 +127,19 @@ void Follower::keep_clear(Vec3& u) {
   u = scaled(0.0, car ? 1.0 : 0.0);
 }
 
+void Follower::measure_gap() {
+  const double wanted = route_.wall_margin;
+  gap_ = 0.0;
+  if (!(wanted > 0.0)) return;
+  const double now = blockers_.gap(state_.scenes[w_].moving.footprint(shapes_, object_), wanted);
+  gap_ = now < wanted ? std::max(0.0, kGapShare * now) : wanted;
+}
+
 bool Follower::clear_at(const Pose& pose) {
   work_.ghost.resize(shapes_.size[0]);
   work_.ghost.place(shapes_, object_, pose, unit(pose.theta));
   const Footprint body = work_.ghost.footprint(shapes_, object_);
-  if (blockers_.meet(body)) return false;
+  if (gap_ > 0.0 ? blockers_.gap(body, gap_) < gap_ : blockers_.meet(body)) return false;
   for (const Side& side : work_.sides) {
     if (support(body, side.normal) > side.offset) return false;
   }

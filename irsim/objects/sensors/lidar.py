@@ -97,7 +97,7 @@ class Lidar2D:
     _beams: slice
     _ranges: Floats
     _hits: NDArray[np.int32]
-    _valid: NDArray[np.uint8]
+    _valid: NDArray[np.bool_]
     _velocities: Floats
     _no_velocities: Floats
     _settings: ClassVar[tuple[str, ...]] = (
@@ -132,7 +132,7 @@ class Lidar2D:
         own["_ranges"], own["_hits"], own["_valid"] = (
             simulation.ranges[beams],
             simulation.hits[beams],
-            simulation.valid[beams],
+            simulation.valid[beams].view(np.bool_),
         )
         first, rows = simulation.velocity_slices[index]
         first += world * simulation.world.velocities_per_world
@@ -192,7 +192,7 @@ class Lidar2D:
     @property
     def valid(self) -> NDArray[np.bool_]:
         """Copy of the flags that say whether each beam hit something within ``[range_min, range_max]``, (number,)."""
-        return self._valid.astype(bool)
+        return self._valid.copy()
 
     @property
     def hits(self) -> NDArray[np.int32]:
@@ -245,11 +245,11 @@ class Lidar2D:
             [m/s], ``valid`` (number,) bool.
         """
         velocity = (self._velocities if self.has_velocity else self._no_velocities).copy()
-        return {**self._fixed, "ranges": self._ranges.copy(), "velocity": velocity, "valid": self._valid.astype(bool)}
+        return {**self._fixed, "ranges": self._ranges.copy(), "velocity": velocity, "valid": self._valid.copy()}
 
     def get_points(self) -> Floats | None:
         """Return the points of the valid hits in the sensor frame, (2, K) [m]; None without a hit."""
-        keep = self._valid.astype(bool) & (self._ranges < self.range_max - MISS_MARGIN)
+        keep = self._valid & (self._ranges < self.range_max - MISS_MARGIN)
         if not keep.any():
             return None
         ranges, angles = self._ranges[keep], self.angle_list[keep]
@@ -374,5 +374,5 @@ class FMCWLidar2D(Lidar2D):
         scan: dict[str, Any] = dict(self._fixed)
         scan["ranges"] = self._ranges.copy()
         scan["radial_velocity"] = self._velocities[0].copy()
-        scan["valid"] = self._valid.astype(bool)
+        scan["valid"] = self._valid.copy()
         return scan

@@ -35,14 +35,16 @@ __all__ = ["Benchmark", "answer", "tool"]
 
 _DESCRIPTION = """
     Compare policies fairly: every scenario under every policy with the same seeds. Rows have shares of
-    success, collision and timeout and means of metrics as [value, low, high] (95 %), and the seeds that failed; diff
-    is the difference from the first policy, seed by seed. Work that exceeds wait_s becomes a job. Next: get_job,
-    inspect_run with the job_id, or run_episode with a seed that failed.
+    success, collision and timeout, the mean time as [value, low, high] (95 %), and the seeds that failed; diff
+    is the difference from the first policy, seed by seed. Work over wait_s becomes a job. Next: get_job (detailed:
+    more metrics), inspect_run with the job_id, or run_episode with a seed that failed.
 """
 _SHARES = ("success", "collision", "timeout")
 """Outcomes whose shares a row has."""
-_METRICS = ("time_to_goal", "path_length", "velocity_avg", "spl", "min_clearance")
+_METRICS = ("time_to_goal",)
 """Metrics of a row."""
+_DETAILED = (*_METRICS, "path_length", "velocity_avg", "spl", "min_clearance")
+"""Metrics of a detailed row."""
 _SOMETIMES = ("distance_to_human_min", "time_in_zone", "zone_crossings", "seen_ratio")
 """Metrics that a row has if they are defined anywhere."""
 _DIFFERENCES = (*_SHARES, "time_to_goal")
@@ -180,8 +182,12 @@ def _check_size(scenarios: int, policies: int, seeds: int) -> None:
         )
 
 
-def answer(state: dict[str, Any]) -> CallToolResult:
+def answer(state: dict[str, Any], detailed: bool = False) -> CallToolResult:
     """The result of the tools about the state of a job.
+
+    Args:
+        state: The state.
+        detailed: With more metrics, and how the robots failed.
 
     Raises:
         ToolError: The job failed.
@@ -201,7 +207,7 @@ def answer(state: dict[str, Any]) -> CallToolResult:
     elif "result" not in state:
         found.next = "No episode was completed; call benchmark again."
     else:
-        _fill(found, state["result"], RESULT if state["status"] == "finished" else PARTIAL)
+        _fill(found, state["result"], RESULT if state["status"] == "finished" else PARTIAL, detailed)
         found.done, found.total = state["done"], state["total"]
         if state["status"] != "finished":
             why, more = "", "call benchmark again for all"
@@ -212,10 +218,13 @@ def answer(state: dict[str, Any]) -> CallToolResult:
     return CallToolResult(content=[text], structured_content=found.model_dump(exclude_none=True))
 
 
-def _fill(found: Benchmark, result: dict[str, Any], file: str) -> None:
+def _fill(found: Benchmark, result: dict[str, Any], file: str, detailed: bool) -> None:
     extra = [key for key in _SOMETIMES if any(row["metrics"][key]["n"] for row in result["rows"])]
     labels = policy_names(result)
-    found.rows = [_row(row, [*_METRICS, *extra], labels) for row in result["rows"][:_MAX_ROWS]]
+    found.rows = [
+        _row(row, [*(_DETAILED if detailed else _METRICS), *extra], labels, detailed)
+        for row in result["rows"][:_MAX_ROWS]
+    ]
     found.summary = _summary(result, labels)
     notes = [f"{label} is {text}" for text, label in labels.items() if label != text] + list(result["notes"])
     if len(result["rows"]) > _MAX_ROWS:
@@ -224,7 +233,8 @@ def _fill(found: Benchmark, result: dict[str, Any], file: str) -> None:
         notes += [f"{name}: {w['code']} at {w['path']}: {w['message']}" for w in warnings if w["severity"] == "warning"]
     found.notes = [clean(note, 300) for note in notes[:_MAX_NOTES]]
     found.artifact = f".irsim/jobs/{found.job_id}/{file}"
-    found.reproduce = clean(result["reproduce"], 1000)
+    command = clean(result["reproduce"], 1000)
+    found.reproduce = None if all(row["scenario"].startswith("(text") for row in result["rows"]) else command
     lost = [e for e in result["episodes"] if e["outcome"] not in ("success", CROWDED)]
     if not lost:
         done = any(e["outcome"] == "success" for e in result["episodes"])
@@ -245,7 +255,7 @@ def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
     return "; ".join([counts, *(clean(text, 200) for text in result["incidents"])])
 
 
-def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) -> dict[str, Any]:
+def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str], detailed: bool) -> dict[str, Any]:
     """One scenario under one behavior; numbers as [value, low, high], or only the value if there is no interval.
 
     ``n`` has the number of episodes in which a metric is defined, if not in all; ``diff.n`` that of differences.
@@ -265,7 +275,7 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) ->
         robots = [
             f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_MAX_FAILURES]
         ]
-        shown["failed"] = f"{failed} ({', '.join(robots)})"
+        shown["failed"] = f"{failed} ({', '.join(robots)})" if detailed else failed
     if row["incidents"]:
         shown["incidents"] = row["incidents"]
     if row["incident_seeds"]:
@@ -304,7 +314,10 @@ def _text(found: Benchmark) -> str:
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(values)}")
     lines += [f"Note: {note}" for note in found.notes]
     if found.artifact:
-        lines.append(f"Episodes: inspect_run run_id={found.job_id}; with all metrics: {found.artifact}")
+        lines.append(
+            f"Episodes: inspect_run run_id={found.job_id}; more metrics: get_job job_id={found.job_id} detailed=true; "
+            f"all: {found.artifact}"
+        )
     if found.reproduce:
         lines.append(f"Again: {found.reproduce}")
     return "\n".join([*lines, f"Next: {found.next}"])

@@ -32,11 +32,11 @@ def tool(services: Services) -> StrictTool:
         job_id: Annotated[str, Field(description="From benchmark.")],
         wait_s: Annotated[int, Field(ge=0, le=MAX_WAIT_SECONDS)] = 45,
         cancel: bool = False,
+        detailed: bool = False,
     ) -> Annotated[CallToolResult, Benchmark]:
         if cancel:
             services.jobs.cancel(job_id)
-        return answer(
-            await services.jobs.wait(job_id, _CANCEL_SECONDS if cancel else wait_s, reporter(ctx, "episodes"))
-        )
+        seconds = _CANCEL_SECONDS if cancel else wait_s
+        return answer(await services.jobs.wait(job_id, seconds, reporter(ctx, "episodes")), detailed)
 
     return strict(get_job, title="Wait for a job", description=_DESCRIPTION, read_only=False, idempotent=True)

@@ -15,7 +15,7 @@ from irsim_mcp.errors import failure
 from irsim_mcp.limits import MAX_STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.run_resources import uri
-from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
+from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services, is_command
 from irsim_mcp.tool import StrictTool, strict
 from irsim_mcp.tools.validate_scenario import report_of, text_of
 
@@ -80,7 +80,8 @@ def tool(services: Services) -> StrictTool:
             raise failure("bad-argument", "a run_id and a scenario or a seed are given", where="run_id", fix=fix)
         else:
             answer = await services.run_job("run_snapshot", run_id, **what)
-        line = TextContent(type="text", text=_text(answer, run_id, services.limits.text))
+        given = None if run_id else services.given(scenario_path, scenario_yaml)
+        line = TextContent(type="text", text=_text(answer, run_id, given, services.limits.text))
         if not return_image or answer["scene"] is None:
             return [line]
         return [line, ImageContent(type="image", data=answer["png"], mime_type="image/png")]
@@ -88,8 +89,15 @@ def tool(services: Services) -> StrictTool:
     return strict(render_snapshot, title="Draw a scenario", description=_DESCRIPTION, read_only=True, idempotent=True)
 
 
-def _text(answer: dict[str, Any], run_id: str | None, most: int) -> str:
-    """One line about the picture and, if the scenario was checked, the findings and a table of its objects."""
+def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: int) -> str:
+    """One line about the picture and, if the scenario was checked, the findings and a table of its objects.
+
+    Args:
+        answer: Answer of the worker.
+        run_id: The run that it shows; None for a scenario.
+        given: Argument that gives the scenario again; None for a run.
+        most: Greatest number of characters.
+    """
     if "report" not in answer:
         return _line(answer["scene"], run_id)
     report = report_of(answer["report"], _MAX_FINDINGS, False, most // 2)
@@ -98,9 +106,8 @@ def _text(answer: dict[str, Any], run_id: str | None, most: int) -> str:
         return text_of(report)
     labels = {robot["name"]: robot["label"] for robot in answer["scene"]["robots"]}
     table = scene_lines(answer["table"], labels, answer["scene"]["seed"])
-    report.next = (
-        "If the picture is right, run_episode." if not report.issues else "Fix what is not meant, then run_episode."
-    )
+    first = "If the picture is right" if not report.issues else "Fix what is not meant, then"
+    report.next = f"{first}{',' if not report.issues else ''} run_episode {given}."
     head, *findings, advice = text_of(report).splitlines()
     return "\n".join([_line(answer["scene"], run_id, brief=True), head, *findings, *table, advice])
 
@@ -143,8 +150,14 @@ def _line(scene: dict[str, Any], run_id: str | None, brief: bool = False) -> str
     warnings = sum(item["severity"] == "warning" for item in scene["warnings"])
     if warnings and not brief:
         parts.append(f"{warnings} warning{'s' * (warnings != 1)}, see validate_scenario")
-    again = f"Run: {uri(run_id, 'run.json')}" if run_id else f"Again: {clean(scene['reproduce'], 300)}"
-    return "; ".join(parts) + f". {again}"
+    return "; ".join(parts) + f". {_source(scene, run_id)}".rstrip()
+
+
+def _source(scene: dict[str, Any], run_id: str | None) -> str:
+    """Where the run is, or the command that draws a file again; nothing for a text."""
+    if run_id:
+        return f"Run: {uri(run_id, 'run.json')}"
+    return f"Again: {clean(scene['reproduce'], 300)}" if is_command(scene["reproduce"]) else ""
 
 
 def _moving(item: dict[str, Any]) -> str:

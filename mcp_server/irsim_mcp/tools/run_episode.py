@@ -14,7 +14,7 @@ from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.replay_page import PAGE
 from irsim_mcp.run_resources import uri
-from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
+from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services, is_command
 from irsim_mcp.tool import StrictTool, strict
 
 __all__ = ["Episode", "tool"]
@@ -23,7 +23,7 @@ _DESCRIPTION = """
     Simulate one episode, until every robot has arrived or stopped, or time is up. Outcome is success (every robot
     reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit what,
     where and when, and how far robots were from their goals. Also returns robots (unsuccessful first), first events,
-    the command that repeats it, and a run_id, kept for 24 hours. Next: after a failure the
+    a run_id, kept for 24 hours. Next: after a failure the
     call that `next` has, change the scenario and run again; after a success try other seeds if anything is random.
 """
 _UNDRIVEN = "has no behavior"
@@ -100,7 +100,7 @@ class Episode(BaseModel):
     event_count: int
     warnings: list[str]
     artifacts: dict[str, str] | None = None
-    reproduce: str
+    reproduce: str | None = None
     next: str
 
 
@@ -140,7 +140,8 @@ def tool(services: Services) -> StrictTool:
             policy=policy,
             perturb=perturb,
         )
-        episode = _episode(found, response_format == "detailed")
+        given = services.given(scenario_path, scenario_yaml)
+        episode = _episode(found, response_format == "detailed", given)
         text = TextContent(type="text", text=_text(episode))
         if response_format == "json":
             text = _json_answer(found, services.limits.text)
@@ -162,7 +163,7 @@ def _json_answer(found: Found, most: int) -> TextContent:
     return json_answer(found, most, alternative, prefix=prefix)
 
 
-def _episode(found: dict[str, Any], detailed: bool) -> Episode:
+def _episode(found: dict[str, Any], detailed: bool, given: str) -> Episode:
     most = _MAX_DETAILED if detailed else _MAX_CONCISE
     robots = sorted(found["robots"], key=lambda robot: robot["outcome"] == "success")
     warnings = [item for item in found["warnings"] if item["severity"] == "warning"]
@@ -190,8 +191,8 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         event_count=found["event_count"],
         warnings=[clean(line, 300) for line in lines],
         artifacts=None if run_id is None else {name: uri(run_id, name) for name in _ARTIFACTS},
-        reproduce=clean(found["reproduce"], 300),
-        next=_advice(found),
+        reproduce=clean(found["reproduce"], 300) if is_command(found["reproduce"]) else None,
+        next=_advice(found, given),
     )
 
 
@@ -253,13 +254,15 @@ def _event(event: dict[str, Any]) -> Event:
     return Event(kind=kind, object=name, partner=None if partner is None else clean(partner), **numbers)
 
 
-def _advice(found: dict[str, Any]) -> str:
+def _advice(found: dict[str, Any], given: str) -> str:
+    """What to do next; ``given`` is the argument that gives the scenario again."""
     run = f" run_id={found['run_id']}"
     if found["run_id"] is None:
         run = f" seed={found['seed']}" if found["random"] else ""
     held = set(found["jammed"])
     if found["outcome"] == "success" and not held:
-        more = "; try other seeds" if found["random"] else ""
+        name = given.removeprefix("scenario_path=")
+        more = f"; try other seeds with benchmark scenarios=[{name!r}]" if found["random"] else ""
         return f"See it with render_snapshot{run} {_STRIP}{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
         return "Nothing to change if it is meant to stay or a program drives it; to try the layout: policy=dash."
@@ -306,7 +309,8 @@ def _text(episode: Episode) -> str:
     lines.append(
         "Record: " + ", ".join((episode.artifacts or {"": "none, the workspace cannot be written to"}).values())
     )
-    return "\n".join([*lines, f"Again: {episode.reproduce}", f"Next: {episode.next}"])
+    lines += [] if episode.reproduce is None else [f"Again: {episode.reproduce}"]
+    return "\n".join([*lines, f"Next: {episode.next}"])
 
 
 def _robot_text(robot: Robot) -> str:

@@ -93,6 +93,8 @@ def tool(services: Services) -> StrictTool:
             **services.base(base),
         )
         report = report_of(found, max_issues, response_format == "detailed", services.limits.text)
+        if report.valid:
+            report.next = f"{report.next.removesuffix('.')} {services.given(scenario_path, scenario_yaml)}."
         text = TextContent(type="text", text=text_of(report))
         if response_format == "json":
             text = json_answer(found, services.limits.text, "fix the first problems, or use response_format=detailed")

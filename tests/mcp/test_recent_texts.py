@@ -1,0 +1,56 @@
+"""The short id of a scenario text, which later calls take instead of the text."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from irsim_mcp.recent_texts import RecentTexts
+from tests.mcp.conftest import CRASH, ROOM, connected, data_of, error_of, text_of
+
+pytestmark = pytest.mark.anyio
+
+
+async def test_a_text_is_sent_once(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        looked = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "return_image": False}))
+        [name] = set(re.findall(r"scenario_path=(text-[0-9a-f]{6})", looked))
+        checked = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))
+        assert name in checked["next"]
+        ran = data_of(await client.call_tool("run_episode", {"scenario_path": name, "seed": 3}))
+        same = data_of(await client.call_tool("run_episode", {"scenario_yaml": ROOM, "seed": 3}))
+        assert (ran["outcome"], ran["steps"]) == (same["outcome"], same["steps"]) == ("success", ran["steps"])
+        compared = data_of(await client.call_tool("benchmark", {"scenarios": [name], "seeds": 1}))
+        assert compared["rows"][0]["success"] == [1.0]
+        edited = {"scenario_yaml": CRASH, "base": name, "simulate": False}
+        assert data_of(await client.call_tool("validate_scenario", edited))["changes"]
+
+
+async def test_an_unknown_id_says_what_to_do(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        for tool, arguments in (
+            ("run_episode", {"scenario_path": "text-000000"}),
+            ("benchmark", {"scenarios": ["text-000000"]}),
+        ):
+            told = error_of(await client.call_tool(tool, arguments))
+            assert told.startswith("file-not-found: no text with the id 'text-000000' is kept")
+            assert told.endswith("Fix: give the text again, as scenario_yaml.")
+
+
+def test_texts_used_least_recently_are_forgotten() -> None:
+    texts = RecentTexts()
+    first, second = texts.remember("a: 0\n"), texts.remember("b: 0\n")
+    for number in range(62):
+        texts.remember(f"c: {number}\n")
+        assert texts.find(first) == "a: 0\n"
+    texts.remember("d: 0\n")
+    assert texts.find(first) == "a: 0\n"
+    assert texts.find(second) is None
+
+
+def test_long_texts_leave_room_for_few() -> None:
+    texts = RecentTexts()
+    names = [texts.remember(str(number) * 2**21) for number in range(3)]
+    assert [texts.find(name) is not None for name in names] == [False, True, True]
