@@ -58,7 +58,7 @@ def columns_of(eyes: Eyes, parts: Sequence[Any]) -> tuple[PartColumns, ...]:
 
 
 class PartsExtractor(BaseFeaturesExtractor):  # type: ignore[misc] # types of an extra are not read
-    """Vectors, then for each set the largest value of each feature of a small network over the members that are present.
+    """Vectors, then for each set the largest features that a small network gives to the members that are present.
 
     That network sees a member and all vectors, so that what a neighbor means can depend on the robot's own motion. The
     result does not depend on the order of the members (Zaheer et al.: Deep Sets, 2017).

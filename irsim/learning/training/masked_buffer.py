@@ -24,6 +24,7 @@ class MaskedRolloutBuffer(RolloutBuffer):  # type: ignore[misc] # types of an ex
     """
 
     now: Any = None
+    generator_ready: bool
 
     def reset(self) -> None:
         """Forget everything."""
@@ -37,7 +38,7 @@ class MaskedRolloutBuffer(RolloutBuffer):  # type: ignore[misc] # types of an ex
         super().add(*args, **kwargs)
 
     def get(self, batch_size: int | None = None) -> Generator[RolloutBufferSamples, None, None]:
-        """Minibatches of the steps that counted, in random order."""
+        """Minibatches of the steps that counted, in random order and of nearly equal sizes."""
         assert self.full, "the buffer is sampled when it is full"
         if not self.generator_ready:
             for name in ("observations", "actions", "values", "log_probs", "advantages", "returns"):
@@ -45,8 +46,7 @@ class MaskedRolloutBuffer(RolloutBuffer):  # type: ignore[misc] # types of an ex
             self.active = self.swap_and_flatten(self.active[..., None])[:, 0]
             self.generator_ready = True
         chosen = np.random.permutation(np.flatnonzero(self.active))  # noqa: NPY002 - the stream that SB3 seeds
-        size = batch_size or len(chosen)
-        for start in range(0, len(chosen), size):
-            indices = chosen[start : start + size]
+        count = max(1, -(-len(chosen) // (batch_size or len(chosen) or 1)))
+        for indices in np.array_split(chosen, count):
             if len(indices) > 1:  # the advantage of a single step has no deviation to divide by
                 yield self._get_samples(indices)

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+import yaml
+from pydantic import Field, ValidationError
 
+from irsim.common.arguments import as_given
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import ArgumentError
 from irsim.options.base import Options
 from irsim.options.units import Fraction, Integer, Number
 
-__all__ = ["TrainingSettings"]
+__all__ = ["TrainingSettings", "read_settings"]
 
 Count = Annotated[Integer, Field(ge=1)]
 
@@ -49,3 +55,44 @@ class TrainingSettings(Options):
     """Updates of a round; after each round the success is measured and everything is saved."""
     stop_at: Fraction | None = None
     """Success on the validation seeds at which the training stops; null uses all steps."""
+
+
+def read_settings(given: Mapping[str, Any], texts: Sequence[str]) -> TrainingSettings:
+    """Settings of a command.
+
+    Args:
+        given: Settings by name; None leaves the default.
+        texts: More of them as ``KEY=VALUE``, with values in YAML.
+
+    Raises:
+        ArgumentError: A text is none, or a value is not allowed.
+    """
+    values = {key: value for key, value in given.items() if value is not None}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise ArgumentError(f"{as_given(text)} is not a setting", "write KEY=VALUE, such as rate=3e-4")
+        if key not in TrainingSettings.model_fields:
+            known = list(TrainingSettings.model_fields)
+            raise ArgumentError(
+                f"there is no setting {clean(key)!r}", suggestion(key, known, f"choose from {', '.join(known)}")
+            )
+        read = yaml.safe_load(value)
+        number = number_of(read) if isinstance(read, str) else read
+        values[key] = number
+    try:
+        return TrainingSettings.model_validate(values)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise ArgumentError(
+            f"{where}: {first['msg']}, got {as_given(first.get('input'))}", "give an allowed value"
+        ) from None
+
+
+def number_of(text: str) -> Any:
+    """The number of a text such as ``3e-4``, which YAML takes for text; else the text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -26,14 +26,14 @@ class Success:
         learners: Share of learners that arrived and did not collide.
         collided: Share of learners that collided.
         reward: Mean of the sums of rewards of the learners.
-        seconds: Mean simulated time of the worlds [s].
+        time: Mean simulated time of the worlds [s].
     """
 
     worlds: float
     learners: float
     collided: float
     reward: float
-    seconds: float
+    time: float
 
 
 def measure_success(task: TaskSource, decide: Decide, *, seed: int, count: int, threads: int = 1) -> Success:
@@ -65,5 +65,5 @@ def measure_success(task: TaskSource, decide: Decide, *, seed: int, count: int, 
         learners=float(good.mean()),
         collided=float(collided.mean()),
         reward=float(reward.mean()),
-        seconds=float(seconds.mean()),
+        time=float(seconds.mean()),
     )

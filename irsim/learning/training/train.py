@@ -1,13 +1,14 @@
 """Trains a policy for a task with Stable-Baselines3, in rounds that can be resumed.
 
-What a round does depends on the model before it and on its number alone: seeds of its scenes and of all draws are made of
-both. A resumed training therefore equals one that was never interrupted.
+What a round does depends on the model before it and on its number alone, of which all seeds are made. A resumed
+training therefore equals one that was never interrupted.
 """
 
 from __future__ import annotations
 
 import random
 import time
+import warnings
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -114,7 +115,9 @@ def train(
     worlds = max(1, -(-settings.slots // one.learners))
     env = SB3VecEnv(task, worlds, threads=threads)
     done = run.rounds()
-    model = _model(env, opened, settings) if not done else PPO.load(run.latest, env, device="cpu")
+    with warnings.catch_warnings():  # minibatches are of nearly equal sizes, whatever their number
+        warnings.filterwarnings("ignore", message=".*mini-batch size.*")
+        model = _model(env, opened, settings) if not done else PPO.load(run.latest, env, device="cpu")
     model.set_logger(configure(str(run.path / "tensorboard"), ["tensorboard"]))
     per_round = settings.rollout * env.num_envs * settings.round_updates
     rounds = max(1, -(-settings.steps // per_round))
