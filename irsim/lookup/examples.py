@@ -64,10 +64,14 @@ def _values(data: Any, words: tuple[str, ...]) -> Iterator[Any]:
             yield from _values(data, words[1:])
 
 
+_LISTS = ("sensors", "zones")
+"""Keys whose mappings stand in a list."""
+
+
 def _example_text(name: str, value: Any, component: str | None) -> str:
-    one = [value] if name == "sensors" and isinstance(value, dict) else value
+    one = [value] if name in _LISTS and isinstance(value, dict) else value
     line = f"{name}: {yaml_text(one)}"
     if len(line) <= MAX_LINE_LENGTH + len(name) or not isinstance(value, dict):
         return line
-    whole = {name: [value] if name in ("robot", "obstacle", "sensors") else value}
+    whole = {name: [value] if name in ("robot", "obstacle", *_LISTS) else value}
     return yaml.safe_dump(whole, sort_keys=False, default_flow_style=None, width=MAX_LINE_LENGTH).rstrip()

@@ -164,7 +164,8 @@ class WorldModel(Options):
     """Named lines and areas that are watched: who crosses, enters and leaves them, and when. Without effect on
     motion and sensors."""
     fog_map: Annotated[Bool, OrNull(False)] = False
-    """Cover the world with fog that sensors clear."""
+    """Cover the world with fog that lidars and fields of view of robots clear, up to the first thing that blocks them;
+    the first scan clears it when the run begins."""
     fog_map_resolution: Annotated[Meters, Field(gt=0)] | None = None
     """Cell size of the fog; null is the map's, or 0.1 m without a map."""
     gravity: Annotated[Number, Field(gt=0, json_schema_extra={"x-unit": "m/s^2"})] = 9.81
