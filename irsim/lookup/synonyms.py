@@ -78,7 +78,7 @@ EVERYDAY: dict[str, str] = {
     "world.zones": "zone, region, gate, finish line, trip wire, geofence, enters, crosses a line, restricted area, "
     "surveillance",
     "world.fog_map": "explored, exploration, explored share, unknown area, fog of war, coverage, uncover",
-    "robot.sensors.fmcw_lidar2d.motion_compensate": "ego-motion, ego motion, motion compensation",
+    "robot.sensors.fmcw_lidar2d.motion_compensate": "ego-motion, motion compensation",
     "robot.distribution.circle": "circle distribution, ring, evenly on a circle",
     "robot.arrive_mode": "heading at the goal, goal heading, heading tolerance, orientation at the goal, goal orientation",
     "world.plot.title": "title, caption, heading of the picture",
