@@ -170,7 +170,15 @@ def _plan(plan: dict[str, Any]) -> str:
     lost, margin = plan["lost"], plan["margin"]
     if lost is not None:
         return f"no path for {plan['label']} to ({lost[0]:.2f}, {lost[1]:.2f})"
-    tight = "" if margin is None else ", least margin {} at ({:.2f}, {:.2f})".format(metres(margin), *plan["tightest"])
+    tight = ""
+    if margin is not None:
+        to, (x, y) = f" to {clean(plan['nearest'])!r}", plan["tightest"]
+        least = (
+            f"overlaps{to.removeprefix(' to')} by {metres(-margin)}"
+            if margin < 0
+            else f"least margin {metres(margin)}{to}"
+        )
+        tight = f", {least} at ({x:.2f}, {y:.2f})"
     return f"{'its own plan' if plan['own'] else 'a path'} for {plan['label']}: {metres(plan['length'])}{tight}"
 
 
