@@ -57,6 +57,8 @@ class Robot(BaseModel):
     distance_to_goal: float | None = None
     min_clearance: float | None = None
     nearest: str | None = None
+    nearest_at: list[float] | None = None
+    heading_error: float | None = None
     collision_count: int
     infeasible_steps: int | None = None
     path_length: float | None = None
@@ -217,6 +219,7 @@ def _chosen(found: dict[str, Any], detailed: bool, most: int) -> list[dict[str, 
     kept = sorted(
         important, key=lambda event: (event["kind"] in sights, not robots & {event["object"], event["partner"]})
     )[:most]
+    kept += [event for event in events if event["kind"] == "waypoint"][: most - len(kept)]
     return sorted(kept, key=lambda event: int(event["step"]))  # a stable sort keeps the order within a step
 
 
@@ -232,7 +235,9 @@ def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
         time_to_goal=_rounded(robot["time_to_goal"]),
         distance_to_goal=_rounded(robot["distance_to_goal"]),
         min_clearance=_rounded(robot["min_clearance"]),
-        nearest=None if robot["nearest"] is None else clean(robot["nearest"]),
+        nearest=None if robot["nearest_called"] is None else clean(robot["nearest_called"]),
+        nearest_at=None if robot["nearest_at"] is None else [_rounded(value) for value in robot["nearest_at"]],
+        heading_error=_rounded(robot["heading_error"]),
         collision_count=robot["collision_count"],
         infeasible_steps=robot["infeasible_steps"],
         path_length=_rounded(robot["path_length"]) if detailed else None,
@@ -316,11 +321,16 @@ def _text(episode: Episode) -> str:
 def _robot_text(robot: Robot) -> str:
     facts = [f"{robot.name!r} {robot.outcome}"]
     if robot.time_to_goal is not None:
-        facts.append(f"arrived at {robot.time_to_goal:g} s")
+        off = "" if robot.heading_error is None else f", heading {robot.heading_error:.2f} rad off"
+        facts.append(f"arrived at {robot.time_to_goal:g} s{off}")
     if robot.distance_to_goal is not None:
         facts.append(f"{robot.distance_to_goal:g} m from its goal")
     if robot.min_clearance is not None:
-        facts.append(f"came as near as {robot.min_clearance + 0.0:g} m to {robot.nearest!r}, edge to edge")
+        at = "" if robot.nearest_at is None else " at ({:g}, {:g})".format(*robot.nearest_at)
+        near = f"came as near as {robot.min_clearance + 0.0:g} m to {robot.nearest}, edge to edge"
+        if robot.min_clearance < 0:
+            near = f"overlapped {robot.nearest} by {-robot.min_clearance:g} m when they collided"
+        facts.append(near + at)
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
     if robot.infeasible_steps is not None:
         many = f"{robot.infeasible_steps} step{'s' * (robot.infeasible_steps != 1)}"
