@@ -26,7 +26,7 @@ from irsim.episodes.watching import sights_message, zones_message
 from irsim.metrics.roles import HUMAN, kinds_of
 from irsim.results.run import HorizonSource, Left, RobotResult, ZoneResult
 from irsim.simulation.events import Event
-from irsim.simulation.fog import explored_share
+from irsim.simulation.explored import explored_share
 
 if TYPE_CHECKING:
     from irsim.env import Env

@@ -20,13 +20,13 @@ from irsim.episodes.incidents import find_incidents
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, find_exits
 from irsim.episodes.reproduce import reproduce_command
 from irsim.episodes.scene_summary import called
-from irsim.episodes.stuck import find_jammed, heading_counts
+from irsim.episodes.stuck import find_jammed
 from irsim.episodes.watching import goal_visibility, watched_metrics, zone_results
 from irsim.results.findings import Finding
 from irsim.results.run import EventRecord, HorizonSource, Left, RobotResult, RunResult
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.simulation.events import SIGHTS, Event, first_events, passable_names
-from irsim.simulation.fog import explored_share
+from irsim.simulation.explored import explored_share
 from irsim.simulation.history import all_poses
 from irsim.simulation.outcome import robot_outcomes
 
@@ -197,7 +197,7 @@ def _place(env: Env, row: int, step: int) -> tuple[float, float]:
 
 def _heading_error(record: ObjectRecord, goal: Floats, heading: float) -> float | None:
     """Difference between a heading and that of a goal [rad]; None where the heading does not count."""
-    return abs(math.remainder(heading - float(goal[2]), math.tau)) if heading_counts(record, goal) else None
+    return abs(math.remainder(heading - float(goal[2]), math.tau)) if record.heading_counts(goal.tolist()) else None
 
 
 def _collisions(env: Env, events: list[Event]) -> tuple[list[Event], Counter[str]]:

@@ -208,11 +208,6 @@ def find_obstruction(
     return Obstruction(where, held=False)
 
 
-def heading_counts(record: ObjectRecord, goal: Sequence[float] | NDArray[np.float64]) -> bool:
-    """Whether an object arrives at a goal (2 or 3 numbers; NaN: any heading) only with the heading of the goal."""
-    return record.arrive_mode == "state" and len(goal) > 2 and not math.isnan(goal[2])
-
-
 def heading_message(record: ObjectRecord, pose: NDArray[np.float64], goal: NDArray[np.float64]) -> str | None:
     """Message for an object that is at its goal with a wrong heading; None if that is not the case.
 
@@ -221,7 +216,7 @@ def heading_message(record: ObjectRecord, pose: NDArray[np.float64], goal: NDArr
         pose: (3,) its pose [m, m, rad].
         goal: (3,) its goal; the heading is NaN where it does not matter.
     """
-    if not heading_counts(record, goal):
+    if not record.heading_counts(goal.tolist()):
         return None
     if not math.dist(pose[:2], goal[:2]) <= record.goal_threshold:
         return None

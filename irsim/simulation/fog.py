@@ -14,9 +14,8 @@ from irsim.simulation.occupancy import OCCUPIED, grid_collision_geometry, grid_o
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
-    from irsim.simulation.simulation import Simulation
 
-__all__ = ["DEFAULT_RESOLUTION", "FOG_COLOR", "FogMap", "build_fog", "explored_share", "fog_resolution", "fog_shape"]
+__all__ = ["DEFAULT_RESOLUTION", "FOG_COLOR", "FogMap", "build_fog", "fog_resolution", "fog_shape"]
 
 DEFAULT_RESOLUTION = 0.1
 """Cell size [m] if neither the scenario nor a map gives one."""
@@ -61,12 +60,6 @@ def build_fog(scenario: ResolvedScenario) -> core.Fog | None:
         carriers=carriers,
         views=views,
     )
-
-
-def explored_share(simulation: Simulation, world: int = 0) -> float | None:
-    """Share of the cells of the fog that the robots have seen, from 0 to 1; None without ``fog_map``."""
-    cells = simulation.state.explored[world]
-    return float(np.count_nonzero(cells)) / cells.size if cells.size else None
 
 
 class FogMap:

@@ -12,7 +12,6 @@ import numpy as np
 
 import irsim._core as core
 from irsim.episodes.scene_summary import MAP_OR_WALLS
-from irsim.episodes.stuck import heading_counts
 from irsim.results.scene import SceneRow, SceneTable
 from irsim.scenario.resolve.body_size import has_fixed_shape
 from irsim.scenario.resolve.randomness import random_parts
@@ -154,7 +153,7 @@ def _goals(scenario: ResolvedScenario, record: ObjectRecord, goals: Sequence[Any
 
 def _goal(record: ObjectRecord, goal: Any) -> tuple[float, float] | tuple[float, float, float]:
     x, y, *rest = (float(value) for value in goal)
-    return (x, y, rest[0]) if heading_counts(record, goal) else (x, y)
+    return (x, y, rest[0]) if record.heading_counts(goal) else (x, y)
 
 
 def _overlapping_goals(scenario: ResolvedScenario, state: core.State, objects: int, worlds: Sequence[int]) -> int:

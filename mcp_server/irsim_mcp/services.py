@@ -27,7 +27,7 @@ Seed = Annotated[
     Field(
         ge=0,
         le=MAX_SEED,
-        description="Of all draws. Default: the scenario's, else drawn and reported.",
+        description="Default: the scenario's; without one 0 in tries and pictures of the start, else drawn.",
     ),
 ]
 
