@@ -175,9 +175,8 @@ def _dry_run_text(found: dict[str, Any] | None, detailed: bool) -> str | None:
     ]
     more += [f"'{item['name']}' left the world at {seconds(item['time'])}" for item in found["left"][1:]]
     seed = f"seed {found['seed']}, " if found["random"] else ""
-    if found["ended"] == "done" and "jammed" in found:
-        ended = "success" if not _concerns(found) else "not as wanted"
-        seed = f"ran to its end: {ended}; {seed}"
+    if found["ended"] == "done":
+        seed += f"ran to its end{'' if _concerns(found) else ': success'}: "
     return clean("; ".join([seed + found["summary"], *(more if detailed else [])]), 1500)
 
 
