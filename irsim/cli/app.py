@@ -13,6 +13,7 @@ from irsim.cli import (
     diff,
     diff_runs,
     export,
+    export_policy,
     inspect,
     new,
     policies,
@@ -22,6 +23,7 @@ from irsim.cli import (
     schema,
     suites,
     templates,
+    train,
     validate,
 )
 from irsim.cli.guard import handle_errors
@@ -72,6 +74,8 @@ for _command in (
     benchmark.benchmark,
     suites.suites,
     policies.policies,
+    train.train,
+    export_policy.export_policy,
     render.render,
     describe.describe,
     schema.schema,

@@ -180,7 +180,7 @@ def test_what_it_names_exists() -> None:
     for name in ("state", "goal", "velocity_xy", "get_lidar_scan", "set_state"):
         assert hasattr(ObjectView, name)
     commands = {span.split()[1] for span in spans(BODY) if span.startswith("irsim ")}
-    known = {"run", "render", "benchmark", "inspect", "replay", "validate", "export", "diff-runs"}
+    known = {"run", "render", "benchmark", "inspect", "replay", "validate", "export", "diff-runs", "train"}
     assert commands <= known
 
 

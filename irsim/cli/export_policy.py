@@ -1,0 +1,23 @@
+"""``irsim export-policy``: make a policy file of a training."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["export_policy"]
+
+
+def export_policy(
+    training: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of the training.")],
+    out: Annotated[Path, typer.Argument(metavar="FILE", help="File to write, .npz; its card gets the suffix .md.")],
+    license: Annotated[str, typer.Option("--license", help="Licence of the weights, such as MIT.")] = "",
+    description: Annotated[str, typer.Option("--description", help="What the policy does; default: the title.")] = "",
+) -> None:
+    """Make a policy file of a training, which runs without torch, and its model card; needs the extra `learn`."""
+    from irsim.learning.training.export import export_policy as export
+
+    file = export(training, out, license=license, description=description)
+    typer.echo(f"wrote {file} and {file.with_suffix('.md')}; try it: irsim run SCENARIO --policy {file}")

@@ -1,0 +1,164 @@
+"""From a training to a policy: a file that irsim runs without torch, and its model card."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from irsim.common.extras import require
+from irsim.common.files import check_suffix, write_atomically
+from irsim.common.version import version
+from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.tasks.files import open_task, task_scenario
+from irsim.learning.tasks.task import Task
+from irsim.learning.tasks.team import team_of
+from irsim.learning.training.extractor import PartColumns, columns_of
+from irsim.learning.training.run_folder import RunFolder
+from irsim.learning.worlds import Worlds
+from irsim.policies.networks.document import PolicyDocument
+from irsim.policies.networks.files import save_network
+from irsim.policies.networks.network import Network, check_network, read_document
+from irsim.policies.networks.values import Array
+
+require("learn", "torch", "stable_baselines3")
+import torch
+from stable_baselines3 import PPO
+from torch import nn
+
+__all__ = ["export_policy", "network_of"]
+
+_ACTIVATIONS = {nn.ReLU: "relu", nn.Tanh: "tanh", nn.ELU: "elu", nn.SiLU: "silu", nn.GELU: "gelu"}
+
+
+def export_policy(folder: str | Path, out: str | Path, *, license: str = "", description: str = "") -> Path:
+    """Write the best policy of a training to a file, and its card beside it (``.md``).
+
+    Args:
+        folder: Folder of the training.
+        out: The file, ``.npz``.
+        license: Licence of the weights, such as an SPDX identifier.
+        description: What the policy does; by default the title of the task.
+
+    Returns:
+        The file.
+
+    Raises:
+        ArgumentError: The folder holds no finished round of a training.
+        TargetError: The file has another suffix.
+    """
+    target = Path(out)
+    check_suffix(target, [".npz"])
+    run = RunFolder(Path(folder))
+    rounds = run.rounds()
+    if not rounds or not run.best.is_file():
+        raise ArgumentError(
+            f"{folder} holds no finished round of a training", "train first: irsim train TASK -o FOLDER"
+        )
+    settings = run.settings()
+    file = run.path / "task.yaml"
+    task, _ = open_task(file)
+    best = max(rounds, key=lambda one: (one["learners"], -one["round"]))
+    card = {
+        "description": description or task.title,
+        "license": license,
+        "source": f"irsim {version()}, {settings.algo} of Stable-Baselines3",
+        "task": f"{task.task} version {task.version}, SHA-256 {hashlib.sha256(file.read_bytes()).hexdigest()}",
+        "protocol": task.protocol,
+        "seeds": [settings.seed, task.seeds.train],
+        "steps": best["steps"],
+        "notes": {
+            "validation_success": best["learners"],
+            "validation_collided": best["collided"],
+            "validation_first_seed": task.seeds.validation,
+            "validation_episodes": task.seeds.validation_count,
+            "training_seconds": best["seconds"],
+        },
+    }
+    network = network_of(PPO.load(run.best, device="cpu").policy, file, card)
+    save_network(target, network)
+    write_atomically(target.with_suffix(".md"), _card_text(target, task, card))
+    return target
+
+
+def network_of(policy: Any, source: Any, card: Mapping[str, Any] | None = None) -> Network:
+    """The network of a policy of Stable-Baselines3 as layers of irsim; it decides without exploration.
+
+    Args:
+        policy: The policy.
+        source: The task that it was trained on.
+        card: Where it comes from.
+    """
+    task, folder = open_task(source)
+    team = team_of(task, task_scenario(task, folder))
+    columns = columns_of(Worlds(source, 1).eyes, task.observation)
+    made = _Layers()
+    last = made.read(policy, columns)
+    meaning = task.action.meaning().model_dump(mode="json", exclude={"input"})
+    data = {
+        "layout": task.layout.model_dump(mode="json"),
+        "network": made.layers,
+        "output": {**meaning, "input": last},
+        "drives": [team.drive] if task.action.returns == "control" else None,
+        "card": dict(card or {}),
+    }
+    network = Network(read_document(PolicyDocument, data, "export"), made.arrays)
+    check_network(network, "export")
+    return network
+
+
+class _Layers:
+    """Collects layers and their arrays."""
+
+    def __init__(self) -> None:
+        self.layers: list[dict[str, Any]] = []
+        self.arrays: dict[str, Array] = {}
+
+    def read(self, policy: Any, columns: Sequence[PartColumns]) -> str:
+        """Add the layers of a policy, and return the label of the last one."""
+        vectors = [part.label for part in columns if part.members is None]
+        pooled = []
+        for part in columns:
+            if part.members is not None:
+                each = self._add("concat", f"each_{part.label}", [part.label, *vectors])
+                hidden = self._perceptron(policy.features_extractor.members[part.label], each, f"member_{part.label}")
+                pooled.append(self._add("pool", f"pool_{part.label}", [hidden], method="max"))
+        features = self._add("concat", "features", [*vectors, *pooled])
+        hidden = self._perceptron(policy.mlp_extractor.policy_net, features, "hidden")
+        return self._perceptron(nn.Sequential(policy.action_net), hidden, "decision")
+
+    def _add(self, name: str, label: str, inputs: list[str], **options: Any) -> str:
+        self.layers.append({"name": name, "label": label, "inputs": inputs, **options})
+        return label
+
+    def _perceptron(self, modules: nn.Sequential, before: str, stem: str) -> str:
+        linear = [(k, module) for k, module in enumerate(modules) if isinstance(module, nn.Linear)]
+        for number, (k, module) in enumerate(linear):
+            following = modules[k + 1] if k + 1 < len(modules) else None
+            activation = "none" if following is None else _ACTIVATIONS[type(following)]
+            before = self._add("dense", f"{stem}_{number}", [before], units=module.out_features, activation=activation)
+            with torch.no_grad():
+                self.arrays[f"{before}.w"] = module.weight.T.contiguous().numpy().astype("float32")
+                self.arrays[f"{before}.b"] = module.bias.numpy().astype("float32")
+        return before
+
+
+def _card_text(file: Path, task: Task, card: Mapping[str, Any]) -> str:
+    """The card as Markdown."""
+    notes = card["notes"]
+    rows = {
+        "task": card["task"],
+        "observes": ", ".join(part.key for part in task.observation) + f" (layout version {task.layout.version})",
+        "protocol": card["protocol"],
+        "trained for": f"{card['steps']:,} decisions, {notes['training_seconds']:.0f} s",
+        "seeds": f"training {card['seeds'][0]}, scenes from {card['seeds'][1]}",
+        "success": f"{100 * notes['validation_success']:.1f} % of {notes['validation_episodes']} episodes on the seeds "
+        f"from {notes['validation_first_seed']}, which were not trained on",
+        "made with": card["source"],
+        "licence": card["license"] or "not said",
+        "SHA-256": hashlib.sha256(file.read_bytes()).hexdigest(),
+    }
+    table = "\n".join(f"| {key} | {value} |" for key, value in rows.items())
+    use = f"Use it: `irsim run SCENARIO --policy {file.name}`"
+    return f"# {file.stem}\n\n{card['description']}\n\n| | |\n|---|---|\n{table}\n\n{use}\n"

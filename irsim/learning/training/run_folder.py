@@ -1,0 +1,83 @@
+"""The folder of a training: what it was asked for, what it has reached, and what it needs to go on."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from irsim.common.files import replacing, write_atomically
+from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.tasks.task import Task
+from irsim.learning.training.settings import TrainingSettings
+
+__all__ = ["RunFolder"]
+
+
+class RunFolder:
+    """Files of a training.
+
+    ``task.yaml`` and ``settings.yaml`` say what was asked for, ``progress.jsonl`` has a line for each round,
+    ``latest.zip`` and ``best.zip`` are models of Stable-Baselines3.
+
+    Args:
+        path: The folder.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.latest, self.best = path / "latest.zip", path / "best.zip"
+        self._progress = path / "progress.jsonl"
+
+    def begin(self, task: Task, scene: Path | None, settings: TrainingSettings) -> None:
+        """Write what was asked for.
+
+        Raises:
+            ArgumentError: The folder holds another training.
+        """
+        if self._progress.exists() or (self.path / "task.yaml").exists():
+            raise ArgumentError(
+                f"{self.path} holds a training", "resume it with --resume, or name another folder with -o"
+            )
+        self.path.mkdir(parents=True, exist_ok=True)
+        data = task.model_dump(mode="json", exclude_unset=True)
+        if scene is not None:
+            shutil.copyfile(scene, self.path / "scenario.yaml")
+            data["file"] = "scenario.yaml"
+        write_atomically(self.path / "task.yaml", yaml.safe_dump(data, sort_keys=False, allow_unicode=True))
+        text = yaml.safe_dump(settings.model_dump(mode="json"), sort_keys=False)
+        write_atomically(self.path / "settings.yaml", text)
+
+    def settings(self) -> TrainingSettings:
+        """The settings of the training in the folder.
+
+        Raises:
+            ArgumentError: There is none.
+        """
+        file = self.path / "settings.yaml"
+        if not file.is_file():
+            raise ArgumentError(f"{self.path} holds no training", "leave out --resume to begin one")
+        return TrainingSettings.model_validate(yaml.safe_load(file.read_text(encoding="utf-8")))
+
+    def rounds(self) -> list[dict[str, Any]]:
+        """What each finished round has reached."""
+        if not self._progress.is_file():
+            return []
+        return [json.loads(line) for line in self._progress.read_text(encoding="utf-8").splitlines()]
+
+    def save(self, model: Any, facts: dict[str, Any], *, best: bool) -> None:
+        """Keep the model after a round. A kill at any moment leaves the round finished, or not begun.
+
+        Args:
+            model: The model.
+            facts: What the round has reached.
+            best: Whether it is the best so far.
+        """
+        for target in [self.best, self.latest] if best else [self.latest]:
+            with replacing(target) as temporary, temporary.open("wb") as file:
+                model.save(file)
+        lines = [json.dumps(one) for one in [*self.rounds(), facts]]
+        write_atomically(self._progress, "\n".join(lines) + "\n")

@@ -1,0 +1,98 @@
+"""Settings of a training, which a resumed one keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Literal
+
+import yaml
+from pydantic import Field, ValidationError
+
+from irsim.common.arguments import as_given
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import ArgumentError
+from irsim.options.base import Options
+from irsim.options.units import Fraction, Integer, Number
+
+__all__ = ["TrainingSettings", "read_settings"]
+
+Count = Annotated[Integer, Field(ge=1)]
+
+
+class TrainingSettings(Options):
+    """What decides about a training, besides its task."""
+
+    algo: Literal["ppo"] = "ppo"
+    """Algorithm: proximal policy optimization (Schulman et al. 2017)."""
+    steps: Annotated[Integer, Field(ge=1)] = 1_000_000
+    """Decisions of all learners, at most."""
+    seed: Annotated[Integer, Field(ge=0, lt=2**32)] = 0
+    """Seed of the first weights, of exploration and of the order of samples."""
+    slots: Count = 128
+    """Number of learners at once, at least; worlds are whole."""
+    rollout: Count = 64
+    """Steps of each slot between two updates."""
+    batch: Count = 1024
+    """Samples of a minibatch."""
+    epochs: Count = 6
+    """Passes over the samples of an update."""
+    rate: Annotated[Number, Field(gt=0)] = 7e-4
+    """Learning rate at the start; it falls linearly to a tenth."""
+    gamma: Fraction = 0.98
+    """Discount per step."""
+    gae_lambda: Fraction = 0.95
+    """Decay of the generalized advantage estimation (Schulman et al. 2016)."""
+    clip: Annotated[Number, Field(gt=0)] = 0.2
+    """Largest change of the ratio of probabilities that counts."""
+    entropy: Annotated[Number, Field(ge=0)] = 0.002
+    """Weight of the entropy."""
+    units: list[Count] = [128, 128]
+    """Widths of the layers of the policy and of the value."""
+    set_units: list[Count] = [64, 64]
+    """Widths of the layers of the network that reads each member of a set."""
+    round_updates: Count = 8
+    """Updates of a round; after each round the success is measured and everything is saved."""
+    stop_at: Fraction | None = None
+    """Success on the validation seeds at which the training stops; null uses all steps."""
+
+
+def read_settings(given: Mapping[str, Any], texts: Sequence[str]) -> TrainingSettings:
+    """Settings of a command.
+
+    Args:
+        given: Settings by name; None leaves the default.
+        texts: More of them as ``KEY=VALUE``, with values in YAML.
+
+    Raises:
+        ArgumentError: A text is none, or a value is not allowed.
+    """
+    values = {key: value for key, value in given.items() if value is not None}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise ArgumentError(f"{as_given(text)} is not a setting", "write KEY=VALUE, such as rate=3e-4")
+        if key not in TrainingSettings.model_fields:
+            known = list(TrainingSettings.model_fields)
+            raise ArgumentError(
+                f"there is no setting {clean(key)!r}", suggestion(key, known, f"choose from {', '.join(known)}")
+            )
+        read = yaml.safe_load(value)
+        number = number_of(read) if isinstance(read, str) else read
+        values[key] = number
+    try:
+        return TrainingSettings.model_validate(values)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise ArgumentError(
+            f"{where}: {first['msg']}, got {as_given(first.get('input'))}", "give an allowed value"
+        ) from None
+
+
+def number_of(text: str) -> Any:
+    """The number of a text such as ``3e-4``, which YAML takes for text; else the text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -1,0 +1,69 @@
+"""How often learners succeed: whole episodes on given seeds, with decisions that leave nothing to chance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.learning.tasks.files import TaskSource
+from irsim.learning.worlds import Worlds
+
+__all__ = ["Success", "measure_success"]
+
+Decide = Callable[[NDArray[np.float32]], Any]
+
+
+@dataclass(frozen=True)
+class Success:
+    """Shares of episodes.
+
+    Attributes:
+        worlds: Share of worlds in which every learner arrived and none collided.
+        learners: Share of learners that arrived and did not collide.
+        collided: Share of learners that collided.
+        reward: Mean of the sums of rewards of the learners.
+        time: Mean simulated time of the worlds [s].
+    """
+
+    worlds: float
+    learners: float
+    collided: float
+    reward: float
+    time: float
+
+
+def measure_success(task: TaskSource, decide: Decide, *, seed: int, count: int, threads: int = 1) -> Success:
+    """Run the first episode of each seed.
+
+    Args:
+        task: The task.
+        decide: Returns actions (B, C), or numbers of choices (B,), for observations (B, D).
+        seed: First seed.
+        count: Number of seeds.
+        threads: Number of threads.
+    """
+    worlds = Worlds(task, count, seed=seed, threads=threads)
+    shape = (worlds.n, worlds.learners)
+    arrived, collided = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+    reward, seconds = np.zeros(shape), np.zeros(worlds.n)
+    step_time = float(worlds.scenario.world.step_time)
+    going = np.ones(worlds.n, dtype=bool)
+    while going.any():
+        result = worlds.step(decide(worlds.observe()))
+        arrived |= result.arrived & going[:, None]
+        collided |= result.collided & going[:, None]
+        reward += result.reward * going[:, None]
+        seconds += step_time * going
+        going &= ~result.over
+    good = arrived & ~collided
+    return Success(
+        worlds=float(good.all(axis=1).mean()),
+        learners=float(good.mean()),
+        collided=float(collided.mean()),
+        reward=float(reward.mean()),
+        time=float(seconds.mean()),
+    )

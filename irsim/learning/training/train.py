@@ -1,0 +1,194 @@
+"""Trains a policy for a task with Stable-Baselines3, in rounds that can be resumed.
+
+What a round does depends on the model before it and on its number alone, of which all seeds are made. A resumed
+training therefore equals one that was never interrupted.
+"""
+
+from __future__ import annotations
+
+import random
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from irsim.common.extras import require
+from irsim.learning.sb3_env import SB3VecEnv
+from irsim.learning.tasks.files import TaskSource, open_task
+from irsim.learning.training.extractor import PartsExtractor, columns_of
+from irsim.learning.training.masked_buffer import MaskedRolloutBuffer
+from irsim.learning.training.run_folder import RunFolder
+from irsim.learning.training.settings import TrainingSettings
+from irsim.learning.training.success import Success, measure_success
+from irsim.learning.worlds import Worlds
+
+require("learn", "torch", "stable_baselines3")
+import torch
+from stable_baselines3 import PPO
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.logger import configure
+
+__all__ = ["Round", "train"]
+
+_LOWEST_RATE = 0.1
+"""Share of the learning rate that is left at the end."""
+_SCENES_PER_ROUND = 1_000_003
+"""Distance between the seeds of two rounds: more than there are worlds."""
+
+
+@dataclass(frozen=True)
+class Round:
+    """A finished round.
+
+    Attributes:
+        number: Its number, from 1.
+        steps: Decisions of all learners so far, without those of learners that waited.
+        seconds: Wall-clock time of all rounds so far [s].
+        success: What the policy reaches on the validation seeds.
+        best: Whether no earlier round reached more.
+        rounds: Number of rounds of the whole training.
+    """
+
+    number: int
+    steps: int
+    seconds: float
+    success: Success
+    best: bool
+    rounds: int
+
+
+class _Active(BaseCallback):  # type: ignore[misc] # types of an extra are not read
+    """Tells the memory which slots a step counted for."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.counted = 0
+
+    def _on_step(self) -> bool:
+        active = self.training_env.active
+        self.model.rollout_buffer.now = active
+        self.counted += int(active.sum())
+        return True
+
+
+def train(
+    task: TaskSource,
+    folder: str | Path,
+    settings: TrainingSettings | None = None,
+    *,
+    resume: bool = False,
+    threads: int = 1,
+    on_round: Callable[[Round], None] | None = None,
+) -> Path:
+    """Train a policy.
+
+    Args:
+        task: The task.
+        folder: Where the training is kept.
+        settings: Settings; a resumed training has its own.
+        resume: Go on with the training in the folder.
+        threads: Number of threads of the simulation and of torch. Rounds are the same with the same number.
+        on_round: Called after each round.
+
+    Returns:
+        The best model.
+
+    Raises:
+        ArgumentError: The folder holds a training that is not to be resumed, or none that is.
+        TaskError: The task is not valid, or does not fit its scenario.
+        ScenarioError: The scenario cannot be used.
+    """
+    run = RunFolder(Path(folder))
+    if resume:
+        settings = run.settings()
+        task = run.path / "task.yaml"
+    settings = settings or TrainingSettings()
+    opened, where = open_task(task)
+    one = Worlds(task, 1)
+    if not resume:
+        run.begin(opened, None if opened.file is None else where / opened.file, settings)
+    torch.set_num_threads(threads)
+    worlds = max(1, -(-settings.slots // one.learners))
+    env = SB3VecEnv(task, worlds, threads=threads)
+    done = run.rounds()
+    with warnings.catch_warnings():  # minibatches are of nearly equal sizes, whatever their number
+        warnings.filterwarnings("ignore", message=".*mini-batch size.*")
+        model = _model(env, opened, settings) if not done else PPO.load(run.latest, env, device="cpu")
+    model.set_logger(configure(str(run.path / "tensorboard"), ["tensorboard"]))
+    per_round = settings.rollout * env.num_envs * settings.round_updates
+    rounds = max(1, -(-settings.steps // per_round))
+    best = max((one["learners"] for one in done), default=-1.0)
+    steps, before = (done[-1]["steps"], done[-1]["seconds"]) if done else (0, 0.0)
+    for number in range(len(done) + 1, rounds + 1):
+        if done and settings.stop_at is not None and best >= settings.stop_at:
+            break
+        begin = time.perf_counter()
+        counter = _begin_round(model, env, settings, number, rounds)
+        model.learn(per_round, callback=counter, reset_num_timesteps=False, progress_bar=False)
+        seeds = opened.seeds
+        success = measure_success(
+            task, lambda seen: model.predict(seen, deterministic=True)[0],
+            seed=seeds.validation, count=seeds.validation_count, threads=threads,
+        )  # fmt: skip
+        steps += counter.counted
+        before += time.perf_counter() - begin
+        better = success.learners > best
+        best = max(best, success.learners)
+        facts = {"round": number, "steps": steps, "seconds": round(before, 2), **asdict(success)}
+        run.save(model, facts, best=better)
+        done.append(facts)
+        for name, value in asdict(success).items():
+            model.logger.record(f"validation/{name}", value)
+        model.logger.dump(steps)
+        if on_round is not None:
+            on_round(Round(number, steps, before, success, better, rounds))
+    return run.best
+
+
+def _begin_round(model: Any, env: SB3VecEnv, settings: TrainingSettings, number: int, rounds: int) -> _Active:
+    """Set seeds, scenes and learning rate of a round."""
+    stream = np.random.SeedSequence([settings.seed, number]).generate_state(3)
+    torch.manual_seed(int(stream[0]))
+    np.random.seed(int(stream[1]))  # noqa: NPY002 - Stable-Baselines3 shuffles with this generator
+    random.seed(int(stream[2]))
+    env.seed(env.worlds.task.seeds.train + number * _SCENES_PER_ROUND)
+    model._last_obs = None  # so that learn() begins with new episodes
+    share = (number - 1) / max(1, rounds - 1)
+    model.learning_rate = settings.rate * (1.0 - (1.0 - _LOWEST_RATE) * share)
+    model._setup_lr_schedule()
+    return _Active()
+
+
+def _model(env: SB3VecEnv, task: Any, settings: TrainingSettings) -> Any:
+    columns = columns_of(env.worlds.eyes, task.observation)
+    sets = any(part.members is not None for part in columns)
+    extractor = {
+        "features_extractor_class": PartsExtractor,
+        "features_extractor_kwargs": {"columns": columns, "units": tuple(settings.set_units)},
+    }
+    layers = list(settings.units)
+    return PPO(
+        "MlpPolicy",
+        env,
+        n_steps=settings.rollout,
+        batch_size=settings.batch,
+        n_epochs=settings.epochs,
+        learning_rate=settings.rate,
+        gamma=settings.gamma,
+        gae_lambda=settings.gae_lambda,
+        clip_range=settings.clip,
+        ent_coef=settings.entropy,
+        rollout_buffer_class=MaskedRolloutBuffer,
+        policy_kwargs={
+            "net_arch": {"pi": layers, "vf": layers},
+            "activation_fn": torch.nn.ReLU,
+            "log_std_init": -0.5,
+            **(extractor if sets else {}),
+        },
+        seed=settings.seed,
+        device="cpu",
+    )
