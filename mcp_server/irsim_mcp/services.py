@@ -27,7 +27,7 @@ Seed = Annotated[
     Field(
         ge=0,
         le=MAX_SEED,
-        description="Default: the scenario's; without one 0 in tries and pictures of the start, else drawn.",
+        description="Default: the scenario's, else 0 for a first look, drawn for a run.",
     ),
 ]
 

@@ -57,8 +57,6 @@ class Robot(BaseModel):
     distance_to_goal: float | None = None
     min_clearance: float | None = None
     nearest: str | None = None
-    nearest_at: list[float] | None = None
-    heading_error: float | None = None
     collision_count: int
     infeasible_steps: int | None = None
     path_length: float | None = None
@@ -235,15 +233,26 @@ def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
         time_to_goal=_rounded(robot["time_to_goal"]),
         distance_to_goal=_rounded(robot["distance_to_goal"]),
         min_clearance=_rounded(robot["min_clearance"]),
-        nearest=None if robot["nearest_called"] is None else clean(robot["nearest_called"]),
-        nearest_at=None if robot["nearest_at"] is None else [_rounded(value) for value in robot["nearest_at"]],
-        heading_error=_rounded(robot["heading_error"]),
+        nearest=None if robot["nearest"] is None else clean(robot["nearest"]),
         collision_count=robot["collision_count"],
         infeasible_steps=robot["infeasible_steps"],
         path_length=_rounded(robot["path_length"]) if detailed else None,
         pose=[_rounded(value) for value in robot["pose"]] if detailed else None,
         **{key: _rounded(robot[key]) for key in _shown(detailed) if robot[key] is not None},
+        **_places(robot),
     )
+
+
+def _places(robot: dict[str, Any]) -> dict[str, Any]:
+    """What it came nearest to, in words, where that was, and the error of its heading, where these are defined."""
+    found: dict[str, Any] = {}
+    if robot["nearest_called"] is not None:
+        found["nearest_called"] = clean(robot["nearest_called"])
+    if robot["nearest_at"] is not None:
+        found["nearest_at"] = [_rounded(value) for value in robot["nearest_at"]]
+    if robot["heading_error"] is not None:
+        found["heading_error"] = _rounded(robot["heading_error"])
+    return found
 
 
 def _shown(detailed: bool) -> list[str]:
@@ -321,15 +330,16 @@ def _text(episode: Episode) -> str:
 def _robot_text(robot: Robot) -> str:
     facts = [f"{robot.name!r} {robot.outcome}"]
     if robot.time_to_goal is not None:
-        off = "" if robot.heading_error is None else f", heading {robot.heading_error:.2f} rad off"
+        off = "" if (error := getattr(robot, "heading_error", None)) is None else f", heading {error:.2f} rad off"
         facts.append(f"arrived at {robot.time_to_goal:g} s{off}")
     if robot.distance_to_goal is not None:
         facts.append(f"{robot.distance_to_goal:g} m from its goal")
     if robot.min_clearance is not None:
-        at = "" if robot.nearest_at is None else " at ({:g}, {:g})".format(*robot.nearest_at)
-        near = f"came as near as {robot.min_clearance + 0.0:g} m to {robot.nearest}, edge to edge"
+        place, other = getattr(robot, "nearest_at", None), getattr(robot, "nearest_called", repr(robot.nearest))
+        at = "" if place is None else " at ({:g}, {:g})".format(*place)
+        near = f"came as near as {robot.min_clearance + 0.0:g} m to {other}, edge to edge"
         if robot.min_clearance < 0:
-            near = f"overlapped {robot.nearest} by {-robot.min_clearance:g} m when they collided"
+            near = f"overlapped {other} by {-robot.min_clearance:g} m when they collided"
         facts.append(near + at)
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
     if robot.infeasible_steps is not None:
