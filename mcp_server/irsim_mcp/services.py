@@ -27,7 +27,7 @@ Seed = Annotated[
     Field(
         ge=0,
         le=MAX_SEED,
-        description="Default: the scenario's, else 0 for a first look, drawn for a run.",
+        description="Default: the scenario's, else 0 to look, drawn to run.",
     ),
 ]
 
