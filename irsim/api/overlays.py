@@ -93,8 +93,9 @@ def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
             label=labels[way.robot],
             own=way.own,
             length=way.length,
-            margin=None if way.margin == float("inf") else way.margin,
-            tightest=way.tightest,
+            margin=None if way.margin.nearest is None else way.margin.distance,
+            nearest=way.margin.nearest,
+            tightest=way.margin.pose[:2],
             lost=way.lost,
         )
         for way in ways

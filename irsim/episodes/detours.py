@@ -59,7 +59,7 @@ def shunting_message(env: Env, robots: Sequence[RobotResult], parked: Sequence[s
 def closeness_message(robots: Sequence[RobotResult]) -> str | None:
     """Which robot came within 0 m of something but did not touch it; None if none did."""
     names = [
-        (robot.name, robot.nearest)
+        (robot.name, robot.nearest_called)
         for robot in robots
         if robot.min_clearance is not None and 0 <= robot.min_clearance < _CLOSE and robot.collision_count == 0
     ]
@@ -67,5 +67,5 @@ def closeness_message(robots: Sequence[RobotResult]) -> str | None:
         return None
     (name, other), more = names[0], len(names) - 1
     others = f" and {more} more robot{'s' * (more > 1)}" if more else ""
-    beside = f" {quoted(other)}" if other else " something"
+    beside = f" {other}" if other else " something"
     return f"{quoted(name)}{others} came within 5 mm of{beside} without touching: that is no collision"

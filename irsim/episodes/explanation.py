@@ -12,6 +12,7 @@ from irsim.episodes.appearances import absence, appearances_message, is_absent
 from irsim.episodes.detours import closeness_message, shunting_message
 from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
 from irsim.episodes.out_of_bounds import exits_message
+from irsim.episodes.scene_summary import called
 from irsim.episodes.stalling import stalled_step
 from irsim.episodes.stuck import (
     find_circling,
@@ -22,8 +23,10 @@ from irsim.episodes.stuck import (
     no_progress_since,
 )
 from irsim.episodes.watching import sights_message, zones_message
+from irsim.metrics.roles import HUMAN, kinds_of
 from irsim.results.run import HorizonSource, Left, RobotResult, ZoneResult
 from irsim.simulation.events import Event
+from irsim.simulation.explored import explored_share
 
 if TYPE_CHECKING:
     from irsim.env import Env
@@ -63,7 +66,7 @@ def summary_message(
     """Say which robots arrived, the first collision, and what else happened to objects."""
     parts = [_arrivals_message(robots, env.sim_time, parked)]
     parts += filter(None, [_waiting_message(env), appearances_message(env)])
-    if hit := _first_collision_message({robot.name for robot in robots}, hits):
+    if hit := _first_collision_message(env.scenario, {robot.name for robot in robots}, hits):
         parts.append(hit + _standing_message(env, {robot.name for robot in robots}, hits))
     if out := exits_message(env.scenario, left):
         parts.append(out)
@@ -79,6 +82,8 @@ def summary_message(
         parts.append(close)
     if others := others_arrived_message(env.scenario, events):
         parts.append(others)
+    if not incidents.human_contacts and _people_may_overlap(env.scenario):
+        parts.append("no contacts between people")
     said = bool(held) or incidents.human_contacts[:1] == list(hits[:1])
     if touched := contacts_message(incidents.human_contacts, brief=said):
         parts.append(touched)
@@ -86,9 +91,22 @@ def summary_message(
         parts.append(jam)
     if zone := zones_message(zones):
         parts.append(zone)
+    share = explored_share(env.simulation)
+    if share is not None:
+        parts.append(f"explored {100 * share:.0f} %")
     if sight := sights_message(events):
         parts.append(sight)
     return ("" if driven is None else f"with {driven} for all robots: ") + "; ".join(parts)
+
+
+def _people_may_overlap(scenario: ResolvedScenario) -> bool:
+    """Whether several people move who pass through each other where they collide."""
+    people = [
+        record
+        for record, kind in zip(scenario.objects, kinds_of(scenario.objects), strict=True)
+        if kind == HUMAN and not record.static
+    ]
+    return len(people) > 1 and scenario.world.collision_mode == "unobstructed_obstacles"
 
 
 def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequence[str]) -> str:
@@ -177,7 +195,7 @@ def reason_message(
         return "there are no robots"
     reasons = []
     collided = {robot.name for robot in robots if robot.outcome == "collision"}
-    if hit := _first_collision_message(collided, hits):
+    if hit := _first_collision_message(env.scenario, collided, hits):
         others = len(collided) - 1
         reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else ""))
     views = {view.name: view for view in env.robot_list}
@@ -218,12 +236,14 @@ def _standing_message(env: Env, names: set[str], hits: Sequence[Event]) -> str:
     )
 
 
-def _first_collision_message(names: set[str], events: Sequence[Event]) -> str | None:
+def _first_collision_message(scenario: ResolvedScenario, names: set[str], events: Sequence[Event]) -> str | None:
     first = first_collision(names, events)
     if first is None:
         return None
     place = f"({first.x:.2f}, {first.y:.2f})"
-    return f"{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)} near {place}"
+    return (
+        f"{called(scenario, first.object)} hit {called(scenario, first.partner)} at {seconds(first.time)} near {place}"
+    )
 
 
 def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Event], held: dict[str, Event]) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.common.text import clean
 from irsim.common.version import version
 from irsim.episodes.decisive import decisive_step, nearest_to_goals
@@ -18,12 +19,14 @@ from irsim.episodes.explanation import has_one_end, reason_message, summary_mess
 from irsim.episodes.incidents import find_incidents
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, find_exits
 from irsim.episodes.reproduce import reproduce_command
+from irsim.episodes.scene_summary import called
 from irsim.episodes.stuck import find_jammed
 from irsim.episodes.watching import goal_visibility, watched_metrics, zone_results
 from irsim.results.findings import Finding
 from irsim.results.run import EventRecord, HorizonSource, Left, RobotResult, RunResult
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.simulation.events import SIGHTS, Event, first_events, passable_names
+from irsim.simulation.explored import explored_share
 from irsim.simulation.history import all_poses
 from irsim.simulation.outcome import robot_outcomes
 
@@ -31,7 +34,7 @@ if TYPE_CHECKING:
     from irsim.env import Env
     from irsim.metrics import Approach
     from irsim.policies.policy import Policy
-    from irsim.scenario.resolve.resolved import ResolvedScenario
+    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 __all__ = ["run_result"]
 
@@ -123,6 +126,7 @@ def run_result(
         jammed=list(held),
         left=left[:MAX_LISTED_EXITS],
         jumped=list(incidents.jumps)[:MAX_LISTED_EXITS],
+        explored=explored_share(env.simulation),
         human_contacts=len(incidents.human_contacts),
         zones=zones,
         events=[EventRecord(**event._asdict()) for event in _first(listed)],
@@ -159,6 +163,9 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
                 distance_to_goal=None if goal is None else math.dist(goal[:2, 0], place[:2]),
                 min_clearance=None if approach is None else approach.distance,
                 nearest=None if approach is None else approach.partner,
+                nearest_called=None if approach is None else called(env.scenario, approach.partner),
+                nearest_at=None if approach is None else _place(env, view.row, approach.row),
+                heading_error=None if goal is None else _heading_error(view.record, goal[:, 0], float(place[2])),
                 goal_visible_ratio=visible.get(view.name),
                 **watched[view.name],
                 pose=(float(place[0]), float(place[1]), float(place[2])),
@@ -177,6 +184,20 @@ def _approaches(env: Env, arrivals: dict[str, Event]) -> dict[int, Approach | No
         return {}
     ends = [arrivals[view.name].step + 1 if view.name in arrivals else steps + 1 for view in env.robot_list]
     return dict(zip(rows, least(poses, env.simulation, rows, ends), strict=True))
+
+
+def _place(env: Env, row: int, step: int) -> tuple[float, float]:
+    """Where an object was after a step [m]; step 0 is the start."""
+    state = env.simulation.state
+    track = state.trajectory(row)
+    before = int(env.simulation.count[0]) - len(track) + 1  # step of the first row of the track
+    x, y = (state.initial_state(row) if step < before else track[step - before])[:2].tolist()
+    return float(x), float(y)
+
+
+def _heading_error(record: ObjectRecord, goal: Floats, heading: float) -> float | None:
+    """Difference between a heading and that of a goal [rad]; None where the heading does not count."""
+    return abs(math.remainder(heading - float(goal[2]), math.tau)) if record.heading_counts(goal.tolist()) else None
 
 
 def _collisions(env: Env, events: list[Event]) -> tuple[list[Event], Counter[str]]:

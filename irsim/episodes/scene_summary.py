@@ -1,14 +1,23 @@
-"""Summary of a scene in numbers and words: ``2 robots, 6 obstacles and the boundary``."""
+"""Summary of a scene in numbers and words: ``2 robots, 6 obstacles, walls round the world``."""
 
 from __future__ import annotations
 
+from irsim.common.text import quoted
 from irsim.components.maps._grid import MapCells, Walls
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["MAP_OR_WALLS", "counts_of", "in_words"]
+__all__ = ["MAP_OR_WALLS", "called", "counts_of", "in_words"]
 
 MAP_OR_WALLS = (MapCells, Walls)
 """Shapes of objects that ``world`` options create, not an entry under ``robot`` or ``obstacle``."""
+
+
+def called(scenario: ResolvedScenario, name: str | None) -> str:
+    """What a sentence calls an object: its name in quotes, or ``the map``, ``the walls round the world``."""
+    record = next((item for item in scenario.objects if item.name == name), None)
+    if record is None or not isinstance(record.shape, MAP_OR_WALLS):
+        return quoted(name)
+    return "the walls round the world" if isinstance(record.shape, Walls) else "the map"
 
 
 def counts_of(scenario: ResolvedScenario) -> dict[str, int]:
@@ -41,7 +50,7 @@ def in_words(counts: dict[str, int], *, robots: bool = True, sensors: bool = Tru
         robots: Name the robots.
         sensors: Name the sensors.
     """
-    walls = " and the boundary" if "boundary" in counts else ""
+    walls = ", walls round the world" if "boundary" in counts else ""
     parts = [_count_of(counts["robots"], "robot")] if robots else []
     parts.append(_count_of(counts["obstacles"], "obstacle") + walls)
     if "map_columns" in counts:

@@ -216,7 +216,7 @@ def heading_message(record: ObjectRecord, pose: NDArray[np.float64], goal: NDArr
         pose: (3,) its pose [m, m, rad].
         goal: (3,) its goal; the heading is NaN where it does not matter.
     """
-    if record.arrive_mode != "state" or math.isnan(goal[2]):
+    if not record.heading_counts(goal.tolist()):
         return None
     if not math.dist(pose[:2], goal[:2]) <= record.goal_threshold:
         return None

@@ -11,13 +11,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.metrics.roles import IGNORED, KINDS, STATIC, kinds_of
+from irsim.metrics.roles import HUMAN, IGNORED, KINDS, STATIC, kinds_of
 from irsim.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["Approach", "Clearance", "approaches", "clearance", "closest", "least", "static_distance"]
+__all__ = [
+    "Approach",
+    "Clearance",
+    "approaches",
+    "clearance",
+    "closest",
+    "least",
+    "standing_distance",
+    "static_distance",
+]
 
 _MAX_WORK = 20_000_000
 """Number of footprints placed, up to which more than the nearest object of each kind is found."""
@@ -120,6 +130,34 @@ def static_distance(poses: NDArray[np.float64], simulation: Simulation, objects:
         return np.full((len(poses), len(objects)), np.nan)
     distance, _ = _clearances(simulation, 0, poses, list(objects), company)
     return distance[:, :, STATIC]
+
+
+def standing_distance(
+    simulation: Simulation, view: ObjectView, poses: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """(P,) distances [m] of a footprint at some poses to the nearest object that stands, and which (P,) object that is.
+
+    Objects that stand are static objects, maps, walls around the world and people that never move. Distances are
+    negative where footprints overlap; without any such object they are NaN, and the objects -1.
+
+    Args:
+        simulation: The simulation with the other objects.
+        view: The object with the footprint.
+        poses: (P, 3) poses of the footprint: x, y [m] and heading [rad].
+    """
+    records, first = simulation.scenario.objects, view.row - view.row % simulation.objects
+    stands = [
+        kind in (STATIC, HUMAN) and record.static for kind, record in zip(kinds_of(records), records, strict=True)
+    ]
+    company = np.where(stands, STATIC, IGNORED).astype(np.uint8)
+    index = view.row - first
+    company[index] = IGNORED
+    if (company == IGNORED).all():
+        return np.full(len(poses), np.nan), np.full(len(poses), -1, dtype=np.int32)
+    places = np.repeat(simulation.pose[None, first : first + simulation.objects, :3], len(poses), axis=0)
+    places[:, index] = poses
+    distance, partner = _clearances(simulation, first // simulation.objects, places, [index], company)
+    return distance[:, 0, STATIC], partner[:, 0, STATIC]
 
 
 def closest(distances: Clearance) -> list[Approach | None]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from shapely.affinity import affine_transform
 
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.palette import Color
@@ -15,6 +17,7 @@ from irsim.graphics.scene.scene import Label, Line, Mark, Scene, Stroke
 from irsim.metrics.geodesic import Geodesics, inscribed_radius
 from irsim.objects.views import views
 from irsim.rendering.clearance_map import FreeSpace
+from irsim.rendering.path_margin import PathMargin, path_margin
 
 if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
@@ -28,9 +31,8 @@ MIN_RADIUS_M = 0.01
 """Smallest radius [m] of a robot that paths are planned for."""
 _CLEARANCE_TOLERANCE_M = 2e-3
 """A goal counts as free for a disc whose radius exceeds the clearance of the goal by less than this [m]."""
-MAX_TIGHT_POINTS = 50
-"""Largest number of nearly tightest points of a path whose exact clearance is computed."""
 _LINE_WIDTH_PT = 1.4
+_OUTLINE_WIDTH_PT = 1.0
 _ALPHA = 0.9
 _ZORDER = 2.5
 _DASHES = (0, (5, 2.5))
@@ -52,8 +54,8 @@ class PlannedPath:
         own: Whether the behavior of the robot has planned the path to the present goal.
         own_points: Number of corners of that part of the path.
         lost: First goal that cannot be reached; None if all goals can be reached.
-        margin: Smallest distance along the path between the inscribed disc of the robot and a static obstacle [m].
-        tightest: Point at which that distance occurs.
+        margin: Where along the path the footprint of the robot is nearest to something that stands.
+        outlines: (M, 2) outlines of the footprint there, and of the footprint enlarged by the margin; none if round.
     """
 
     robot: int
@@ -62,8 +64,8 @@ class PlannedPath:
     own: bool
     own_points: int
     lost: tuple[float, float] | None
-    margin: float
-    tightest: tuple[float, float]
+    margin: PathMargin
+    outlines: tuple[Floats, ...]
 
     @property
     def length(self) -> float:
@@ -119,12 +121,19 @@ def _plan_path(
         own = len(leg) if own == 1 and number == 0 else own
         points.append(np.asarray(leg)[:, :2])
     line = np.concatenate(points if len(points) == 1 else points[1:])
-    dense = _densify(line, space.half_diagonal)
-    distances = space.distance_at(dense)
-    tight = dense[np.flatnonzero(distances <= distances.min() + 2 * space.half_diagonal)]
-    candidates = [(float(x), float(y)) for x, y in tight[:: max(1, len(tight) // MAX_TIGHT_POINTS)]]
-    margin, tightest = min((space.exact_distance(point) - inner, point) for point in candidates)
-    return PlannedPath(view.id, view.name, line, view.id in routes, own, lost, max(0.0, margin), tightest)
+    margin = path_margin(simulation, view, line, space)
+    return PlannedPath(view.id, view.name, line, view.id in routes, own, lost, margin, _outlines(view, margin))
+
+
+def _outlines(view: ObjectView, margin: PathMargin) -> tuple[Floats, ...]:
+    """Return the footprint at the least margin, and its outline enlarged by that margin; nothing for a round robot."""
+    if margin.nearest is None or getattr(view.record.shape, "name", "") == "circle":
+        return ()
+    x, y, heading = margin.pose
+    cos, sin = math.cos(heading), math.sin(heading)
+    body = affine_transform(view.original_geometry, (cos, -sin, sin, cos, x, y))
+    areas = [body, body.buffer(margin.distance)] if margin.distance > 0 else [body]
+    return tuple(np.asarray(area.exterior.coords) for area in areas if area.geom_type == "Polygon")
 
 
 def _shortest_path(
@@ -150,7 +159,9 @@ def _is_free(space: FreeSpace, path: Floats, radius: float) -> bool:
 def draw_plans(scene: Scene, paths: Sequence[PlannedPath]) -> None:
     """Add paths to a scene: solid where the behavior of the robot has planned them, dashed elsewhere.
 
-    A dotted straight line leads to a goal that cannot be reached, and the goal is labelled "no path".
+    The footprint of a robot that is not round is outlined where its margin is least, and round it a dotted outline at
+    the distance of that margin. A dotted straight line leads to a goal that cannot be reached; the goal is labelled
+    "no path".
 
     Args:
         scene: Scene to add to.
@@ -166,6 +177,9 @@ def draw_plans(scene: Scene, paths: Sequence[PlannedPath]) -> None:
         if len(rest) > 1:
             stroke = Stroke(color, _LINE_WIDTH_PT, style=_DASHES)
             scene.marks.append(Mark(path.robot, "plan", Line(rest), None, stroke, _ALPHA, _ZORDER))
+        for outline, style in zip(path.outlines, ("-", _NO_PATH_DASHES), strict=False):
+            stroke = Stroke(color, _OUTLINE_WIDTH_PT, style=style)
+            scene.marks.append(Mark(path.robot, "plan", Line(outline), None, stroke, _ALPHA, _ZORDER))
         if path.lost is not None:
             line = np.array([path.points[-1], path.lost])
             stroke = Stroke(_NO_PATH_COLOR, _LINE_WIDTH_PT, style=_NO_PATH_DASHES)

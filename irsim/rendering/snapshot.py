@@ -16,6 +16,7 @@ from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.scene.scene import Scene, region_extent
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.rendering.readability import make_legible
+from irsim.rendering.snapshot_details import add_details
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -109,6 +110,7 @@ def legible_scene(
         (x, y), right, up = scene.center, (x1 - x0) / 2, (y1 - y0) / 2
         scene.look_at((x - right, x + right, y - up, y + up))
     make_legible(scene, simulation, world)
+    add_details(scene, simulation, world)
     if extra is not None:
         extra(scene)
     return scene, pictures

@@ -76,8 +76,10 @@ class RobotPlan(Result):
     length: float
     """Length of the path, as far as one was found [m]."""
     margin: float | None
-    """Smallest distance, approximately, between a disc inside the robot's body and anything static [m]; None if
-    nothing is static."""
+    """Smallest distance between the footprint, placed along the path, and anything that stands, people included [m];
+    negative where they overlap, None if nothing stands."""
+    nearest: str | None
+    """Name of what is that near; None if nothing stands."""
     tightest: tuple[float, float]
     """Position of that smallest distance [m]."""
     lost: tuple[float, float] | None

@@ -85,6 +85,12 @@ class RobotResult(Result):
     there is nothing to hit, and in runs of more than two million poses."""
     nearest: str | None = None
     """Name of that nearest object."""
+    nearest_called: str | None = None
+    """That object in a sentence: its name in quotes, `the map` or `the walls round the world`."""
+    nearest_at: tuple[float, float] | None = None
+    """Where the robot was then, x and y [m]."""
+    heading_error: float | None = None
+    """Difference between its heading at the end and that of its goal [rad]; None where the heading does not count."""
     time_in_zone: float | None = None
     """Time in which its body touched a region of ``world.zones``, until it arrived [s]; None without regions."""
     zone_crossings: int | None = None
@@ -162,6 +168,8 @@ class RunResult(Result):
     """The first moving objects whose position left the world; ``world.boundary: walls`` keeps objects in."""
     jumped: list[str] = Field(default_factory=list)
     """The first objects that passed a goal within ``goal_threshold`` between two steps and did not arrive later."""
+    explored: float | None = None
+    """Share of the world that the robots have seen, from 0 to 1; None without `fog_map`."""
     human_contacts: int = 0
     """Number of contacts that began between two people: moving obstacles, or objects tagged ``pedestrian``."""
     zones: dict[str, ZoneResult] = Field(default_factory=dict)

@@ -6,7 +6,7 @@ from typing import Literal
 
 from irsim.results.base import Result
 
-__all__ = ["SceneRow", "SceneTable"]
+__all__ = ["LidarHits", "SceneRow", "SceneTable"]
 
 
 class SceneRow(Result):
@@ -25,14 +25,36 @@ class SceneRow(Result):
     """Shape and size in words."""
     poses: list[tuple[float, float, float]]
     """x, y [m] and heading [rad] at the start of the first objects."""
-    goals: list[tuple[float, float] | None]
-    """First goals [m] of the first objects; None without one that is written or drawn."""
+    goals: list[tuple[float, float] | tuple[float, float, float] | None]
+    """First goals of the first objects: x, y [m], and a heading [rad] where it counts for the arrival; None without
+    one that is written or drawn."""
+    waypoints: list[int]
+    """Number of goals of the first objects."""
+    ends_at: list[tuple[float, float] | tuple[float, float, float] | None]
+    """Last goals of the first objects, as in `goals`."""
+    sensors: list[str]
+    """Its sensors in words."""
+    appear_time: float
+    """Time at which its first object comes into the world [s]; 0 at the start."""
     vel_max: list[float]
     """Upper limits of the controls; empty for objects that never move."""
     starts: tuple[float, float, float, float] | None = None
     """x_min, x_max, y_min, y_max [m] of the starts of all its objects over all seeds; None if they are not random."""
     ends: tuple[float, float, float, float] | None = None
     """The same of their first goals."""
+
+
+class LidarHits(Result):
+    """Whom the beams of a lidar hit at the start."""
+
+    name: str
+    """Name of the object that carries the lidar."""
+    beams: int
+    """Number of its beams."""
+    hit: int
+    """Number of beams that hit something."""
+    hits: dict[str, int]
+    """Number of beams that hit each object, the most first."""
 
 
 class SceneTable(Result):
@@ -46,3 +68,7 @@ class SceneTable(Result):
     """Number of seeds, from 0 on, that were tried; 1 if places are not random."""
     crowded: list[int]
     """Those that leave no room for an object."""
+    overlapping_goals: int
+    """Number of those seeds in which the goals of two robots overlap, while those of some other seed do not."""
+    lidars: list[LidarHits]
+    """Whom the beams of the first lidars hit; empty if the scenario has very many beams."""

@@ -139,9 +139,10 @@ def _summarise(
     arrived = list(dict.fromkeys(e.object for e in events if e.kind == "arrival" and e.object in names))
     parked = [record.name for record in scenario.robots() if scenario.is_parked(record)]
     held = find_jammed(env.simulation, events)
-    stuck, count = _find_stuck(
-        env, trace, [row for row in robots if scenario.objects[row].name not in parked], events, held
-    )
+    moving = [row for row in robots if scenario.objects[row].name not in parked]
+    driven = [row for row in moving if not _is_undriven(scenario.objects[row])]
+    stuck, count = _find_stuck(env, trace, driven, events, held)
+    waiting, _ = _find_stuck(env, trace, [row for row in moving if row not in driven], events, held)
     left = find_exits(scenario, lambda row: trace.pose[:, row], steps)
     ended: Literal["done", "horizon", "budget"] = "budget"
     if bool(env.simulation.done()[0]):
@@ -172,7 +173,7 @@ def _summarise(
         collisions=[
             EventRecord(**{key: getattr(e, key) for key in EventRecord.model_fields}) for e in hits[:_MAX_LISTED]
         ],
-        stuck=stuck,
+        stuck=[*stuck, *waiting][:_MAX_LISTED],
         left=left[:MAX_LISTED_EXITS],
         parked=parked,
         jammed=list(held),
@@ -208,6 +209,12 @@ def _find_stuck(
     return found, count
 
 
+def _is_undriven(record: ObjectRecord) -> bool:
+    """Whether a robot that could move has no behavior, which a hint says (``no-behavior``)."""
+    movable = record.kinematics is not None and not record.static
+    return movable and record.behavior is None and record.group_behavior is None
+
+
 def _first_row_of_goal(trace: Trace, index: int) -> int:
     """First row from which on an object has the goal that it has at the end."""
     others = np.flatnonzero((trace.goal[:, index, :2] != trace.goal[-1, index, :2]).any(axis=1))
@@ -222,7 +229,7 @@ def _certain_cause(record: ObjectRecord, trace: Trace, index: int, events: Seque
             return f"it hit '{partner_of(hit, record.name)}' at {seconds(hit.time)}"
     if record.kinematics is None or record.static:
         return "it is static" if record.kinematics is not None else "it has no kinematics"
-    if record.behavior is None and record.group_behavior is None:
+    if _is_undriven(record):
         return "it has no behavior (not needed if it is meant to stay or a program drives it)"
     if not any(record.vel_max):
         return "its vel_max is zero"

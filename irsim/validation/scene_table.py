@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -16,6 +17,7 @@ from irsim.scenario.resolve.body_size import has_fixed_shape
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.simulation.build import build_world
+from irsim.validation.scene_sensors import lidar_hits, sensors_in_words
 
 __all__ = ["SEEDS", "scene_table"]
 
@@ -23,6 +25,8 @@ SEEDS = 20
 """Number of seeds that are tried if places are random."""
 _MAX_OBJECTS = 6_000
 """Number of objects in all these worlds together; larger scenarios are tried with fewer seeds, at least two."""
+_MAX_ROBOTS = 100
+"""Number of robots up to which goals that overlap are counted."""
 MAX_SHOWN = 6
 """Number of objects of an entry that are described one by one."""
 
@@ -57,7 +61,12 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None) -> SceneTab
     ]
     rows = [_row(scenario, entry, state, built.objects, shown, good if drawn & set(entry) else []) for entry in entries]
     return SceneTable(
-        rows=rows, random=random_parts(scenario), seeds=max(1, count), crowded=sorted(set(crowded) & set(range(count)))
+        rows=rows,
+        random=random_parts(scenario),
+        seeds=max(1, count),
+        crowded=sorted(set(crowded) & set(range(count))),
+        overlapping_goals=_overlapping_goals(scenario, state, built.objects, [w for w in good if w > 0]),
+        lidars=lidar_hits(scenario, seeds[shown]) if good else [],
     )
 
 
@@ -79,6 +88,7 @@ def _row(
     behavior: Any = first.behavior or first.group_behavior
     starts = [state.pose[w * objects + k][:2] for w in worlds for k in entry]
     ends = [goals[0][:2] for w in worlds for k in entry if (goals := state.goals(w * objects + k))]
+    ways = [_goals(scenario, scenario.objects[k], state.goals(shown * objects + k)) for k in some]
     return SceneRow(
         names=[scenario.objects[k].name for k in some],
         count=len(records),
@@ -87,7 +97,15 @@ def _row(
         behavior=None if first.static or behavior is None else behavior.name + first.wander * " wander" + _loops(first),
         footprint=footprint_of(first) + (", each its own" if _differ(records) else ""),
         poses=[_pose(state.pose[shown * objects + k]) for k in some],
-        goals=[_goal(scenario, scenario.objects[k], state.goals(shown * objects + k)) for k in some],
+        goals=[
+            None if not goals else _goal(scenario.objects[k], goals[0]) for k, goals in zip(some, ways, strict=True)
+        ],
+        waypoints=[len(goals) for goals in ways],
+        ends_at=[
+            None if not goals else _goal(scenario.objects[k], goals[-1]) for k, goals in zip(some, ways, strict=True)
+        ],
+        sensors=sensors_in_words(first.sensors),
+        appear_time=first.appear_time,
         vel_max=[] if first.static else list(first.vel_max),
         starts=_range(starts),
         ends=None if first.static else _range(ends),
@@ -128,10 +146,30 @@ def _pose(pose: Any) -> tuple[float, float, float]:
     return x, y, heading
 
 
-def _goal(scenario: ResolvedScenario, record: ObjectRecord, goals: Sequence[Any]) -> tuple[float, float] | None:
-    if record.static or not goals or scenario.is_parked(record):
-        return None
-    return float(goals[0][0]), float(goals[0][1])
+def _goals(scenario: ResolvedScenario, record: ObjectRecord, goals: Sequence[Any]) -> Sequence[Any]:
+    """The goals of an object; none for one that cannot move."""
+    return [] if record.static or scenario.is_parked(record) else goals
+
+
+def _goal(record: ObjectRecord, goal: Any) -> tuple[float, float] | tuple[float, float, float]:
+    x, y, *rest = (float(value) for value in goal)
+    return (x, y, rest[0]) if record.heading_counts(goal) else (x, y)
+
+
+def _overlapping_goals(scenario: ResolvedScenario, state: core.State, objects: int, worlds: Sequence[int]) -> int:
+    """Number of worlds in which the goals of two robots overlap; 0 if they do in all of them."""
+    rows = [k for k, record in enumerate(scenario.objects) if record.role == "robot" and not record.loop]
+    if len(rows) < 2 or len(rows) > _MAX_ROBOTS or not worlds:
+        return 0
+    count = 0
+    for world in worlds:
+        ends = [
+            (goals[-1][:2], state.radius[world * objects + k])
+            for k in rows
+            if (goals := state.goals(world * objects + k))
+        ]
+        count += any(math.dist(a, b) < r + q for (a, r), (b, q) in itertools.combinations(ends, 2))
+    return count if count < len(worlds) else 0
 
 
 def _range(places: Sequence[Any]) -> tuple[float, float, float, float] | None:

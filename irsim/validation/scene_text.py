@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from irsim.common.text import clean, listed
+from irsim.common.text import clean, listed, seconds
 
 __all__ = ["scene_lines"]
 
 _MAX_ROWS = 30
 """Number of entries that are shown."""
+_MAX_HITS = 5
+"""Number of objects that the line of a lidar names."""
 _MAX_SEEDS = 10
 """Number of seeds that a line names."""
 
@@ -28,6 +30,9 @@ def scene_lines(table: Mapping[str, Any], labels: Mapping[str, str], seed: int) 
     lines += [f"- {_row_text(row, labels, table['seeds'])}" for row in rows[:_MAX_ROWS]]
     if len(rows) > _MAX_ROWS:
         lines.append(f"- {len(rows) - _MAX_ROWS} more entries")
+    lines += [_hits_text(lidar) for lidar in table["lidars"]]
+    if table["overlapping_goals"]:
+        lines.append(f"Goals of robots overlap in {table['overlapping_goals']} of {table['seeds']} seeds")
     if table["crowded"]:
         count, named = len(table["crowded"]), listed([str(seed) for seed in table["crowded"]], _MAX_SEEDS)
         lines.append(
@@ -45,12 +50,15 @@ def _row_text(row: Mapping[str, Any], labels: Mapping[str, str], seeds: int) -> 
     if row["drive"]:
         facts.append(row["behavior"] or "no behavior")
         facts.append("vel_max [{}]".format(", ".join(f"{value:g}" for value in row["vel_max"])))
+    facts += row["sensors"]
+    if row["appear_time"]:
+        facts.append(f"appears at {seconds(row['appear_time'])}")
     if row["starts"]:
         ends = f", goals {_box(row['ends'])}" if row["ends"] else ""
         facts.append(f"over {seeds} seeds starts {_box(row['starts'])}{ends}")
     places = [
-        f"{_name(name, labels)} {_place(pose, goal)}"
-        for name, pose, goal in zip(row["names"], row["poses"], row["goals"], strict=True)
+        f"{_name(name, labels)} {_place(*at)}"
+        for name, *at in zip(row["names"], row["poses"], row["goals"], row["waypoints"], row["ends_at"], strict=True)
     ]
     more = count - len(places)
     return f"{', '.join(facts)}: {'; '.join(places)}{f'; {more} more' if more > 0 else ''}"
@@ -63,10 +71,24 @@ def _name(name: str, labels: Mapping[str, str]) -> str:
     return label if labels[name] == name else f"{label} {clean(name)!r}"
 
 
-def _place(pose: Sequence[float], goal: Sequence[float] | None) -> str:
+def _place(pose: Sequence[float], goal: Sequence[float] | None, waypoints: int, end: Sequence[float] | None) -> str:
     x, y, heading = pose
-    end = "" if goal is None else " goal ({:.2f}, {:.2f})".format(*goal)
-    return f"at ({x:.2f}, {y:.2f}) heading {heading:.2f}{end}"
+    way = "" if goal is None else f" goal {_goal(goal)}"
+    if end is not None and goal is not None and waypoints > 1:
+        way = f" {waypoints} waypoints, first {_goal(goal)}, last {_goal(end)}"
+    return f"at ({x:.2f}, {y:.2f}) heading {heading:.2f}{way}"
+
+
+def _goal(goal: Sequence[float]) -> str:
+    place = ", ".join(f"{value:.2f}" for value in goal)
+    return f"({place}), heading counts" if len(goal) > 2 else f"({place})"
+
+
+def _hits_text(lidar: Mapping[str, Any]) -> str:
+    """How many beams of a lidar hit something at the start, and whom."""
+    hits = [f"{clean(name)} {beams}" for name, beams in lidar["hits"].items()]
+    whom = f": {', '.join(hits[:_MAX_HITS])}{', ...' if len(hits) > _MAX_HITS else ''}" if hits else ""
+    return f"Lidar of {clean(lidar['name'])}: {lidar['hit']} of {lidar['beams']} beams hit{whom}"
 
 
 def _box(box: Sequence[float]) -> str:

@@ -27,7 +27,7 @@ Seed = Annotated[
     Field(
         ge=0,
         le=MAX_SEED,
-        description="Of all draws. Default: the scenario's, else drawn and reported.",
+        description="Default: the scenario's, else 0 to look, drawn to run.",
     ),
 ]
 

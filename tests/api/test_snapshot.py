@@ -88,7 +88,7 @@ def test_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_walls_and_a_map_are_no_obstacles() -> None:
     walled = snapshot(text=SCENE.replace("offset: [-1, 0]", "offset: [-1, 0], boundary: walls"), draw=False)
-    assert (walled.obstacles, walled.contents) == (1, "1 obstacle and the boundary")
+    assert (walled.obstacles, walled.contents) == (1, "1 obstacle, walls round the world")
     report = irsim.validate(text="world: {width: 50, height: 50, obstacle_map: cave.png}\n")
     assert "no obstacles, a map of 500 x 500 cells (25 % occupied)" in report.summary
     assert report.counts["obstacles"] == 0

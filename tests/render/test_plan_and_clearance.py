@@ -147,3 +147,50 @@ def test_templates(template: str) -> None:
     overlays = snapshot(str(scenario_file(template)), seed=1, overlays=["names", "clearance", "plan"], size=400)
     assert overlays.png != snapshot(str(scenario_file(template)), seed=1, overlays=["names"], size=400).png
     assert all(found.lost is None for found in overlays.plans)
+
+
+LANE = """\
+world: {{width: 20, height: 6}}
+robot:
+  - {{name: car, kinematics: {{name: acker}}, shape: {{name: rectangle, length: 4.4, width: 1.8, wheelbase: 2.6}},
+     state: [3, 3, 0, 0], goal: [15, 3, 0], behavior: {{name: dash}}}}
+obstacle:
+  - {{name: south, state: [10, 0.5], shape: {{name: rectangle, length: 30, width: 1}}}}
+  - {{name: north, state: [10, {north}], shape: {{name: rectangle, length: 30, width: 1}}}}
+"""
+
+
+def test_the_margin_of_a_car_beside_a_wall_is_that_of_its_side() -> None:
+    found = plan(LANE.format(north=5.2))
+    assert found["margin"] == pytest.approx(4.7 - 3 - 0.9, abs=1e-3)
+    assert found["nearest"] == "north"
+
+
+def test_the_margin_of_a_car_counts_its_bumper_at_the_goal() -> None:
+    wall = "  - {name: end, state: [19.5, 3], shape: {name: rectangle, length: 1, width: 2}}\n"
+    found = plan(LANE.format(north=5.9) + wall)
+    front = (4.4 - 2.6) / 2 + 2.6  # from the rear axle, about which the car is placed
+    assert found["nearest"] == "end"
+    assert found["margin"] == pytest.approx(19 - 15 + 0.1 - front, abs=0.08)  # it stops within the goal_threshold
+
+
+def test_the_outline_of_a_car_is_drawn_where_it_has_the_least_margin(tmp_path: Path) -> None:
+    from irsim.rendering.planned_paths import plan_paths
+
+    file = tmp_path / "lane.yaml"
+    file.write_text(LANE.format(north=5.2), encoding="utf-8")
+    env = make(str(file), headless=True, log_level="ERROR")
+    (path,) = plan_paths(env.simulation)
+    body, enlarged = path.outlines
+    assert np.ptp(body, axis=0) == pytest.approx([4.4, 1.8])
+    assert enlarged[:, 1].max() == pytest.approx(4.7, abs=1e-3)  # it touches the wall
+    env.end(ending_time=0.0)
+
+
+def test_the_least_margin_counts_people_who_stand() -> None:
+    ben = "  - {name: ben, state: [5, 5.4], shape: {name: circle, radius: 0.2}, tags: [pedestrian]}\n"
+    text = room(middle=1.0).replace("state: [1, 3], goal: [9, 3]", "state: [1, 4.5], goal: [9, 4.5]") + ben
+    found = plan(text)
+    assert found["margin"] == pytest.approx(0.9 - 0.3 - 0.2, abs=1e-3)
+    assert found["nearest"] == "ben"
+    assert found["tightest"] == pytest.approx((5, 4.5), abs=0.1)

@@ -169,3 +169,27 @@ def test_colors_of_arrows_survive_many_beams(make: Callable[..., Any]) -> None:
         colors = {color: count for count, color in image.convert("RGB").getcolors(100_000) or []}
     assert colors[0xF0, 0xE4, 0x42] > 20
     assert max(colors, key=lambda color: colors[color]) == (255, 255, 255)
+
+
+def test_names_of_obstacles_under_the_fog_are_hidden(tmp_path: Path) -> None:
+    from irsim.env import make
+    from irsim.rendering.snapshot import legible_scene
+
+    file = tmp_path / "fog.yaml"
+    file.write_text(
+        "world: {width: 10, height: 10, fog_map: true}\n"
+        "robot: {name: scout, kinematics: {name: omni_angular}, state: [1, 1, 0], goal: [9, 9, 1.57], "
+        "arrive_mode: state, sensors: [{name: lidar2d, range_max: 3}]}\n"
+        "obstacle: [{name: far, state: [8, 3]}, {name: near, state: [3, 2]}]\n",
+        encoding="utf-8",
+    )
+    env = make(str(file), headless=True, log_level="ERROR")
+    env.step()
+    scene, _ = legible_scene(env.simulation)
+    names = {label.text for label in scene.labels}
+    assert "scout" in names
+    assert "far" not in names
+    (robot,) = env.robot_list
+    pointers = [mark for mark in scene.marks if mark.part == "arrow" and mark.object == robot.id]
+    assert len(pointers) == 2  # one on the robot, one on its goal, whose heading counts
+    env.end(ending_time=0.0)

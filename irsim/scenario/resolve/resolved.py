@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
@@ -95,6 +96,10 @@ class ObjectRecord:
     def moves_from(self) -> float:
         """Time from which it may move [s]."""
         return max(self.start_time, self.appear_time)
+
+    def heading_counts(self, goal: Sequence[float]) -> bool:
+        """Whether it arrives at a goal (2 or 3 numbers; NaN: any heading) only with the heading of the goal."""
+        return self.arrive_mode == "state" and len(goal) > 2 and not math.isnan(goal[2])
 
 
 @dataclass(slots=True)

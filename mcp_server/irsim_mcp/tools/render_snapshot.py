@@ -108,6 +108,8 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
     table = scene_lines(answer["table"], labels, answer["scene"]["seed"])
     first = "If the picture is right" if not report.issues else "Fix what is not meant, then"
     report.next = f"{first}{',' if not report.issues else ''} run_episode {given}."
+    if any(issue.code == "no-behavior" for issue in report.issues):
+        report.next = f"{first}, drive it by a program, or compare policies with benchmark (policies=[...])."
     head, *findings, advice = text_of(report).splitlines()
     return "\n".join([_line(answer["scene"], run_id, brief=True), head, *findings, *table, advice])
 
@@ -170,7 +172,15 @@ def _plan(plan: dict[str, Any]) -> str:
     lost, margin = plan["lost"], plan["margin"]
     if lost is not None:
         return f"no path for {plan['label']} to ({lost[0]:.2f}, {lost[1]:.2f})"
-    tight = "" if margin is None else ", least margin {} at ({:.2f}, {:.2f})".format(metres(margin), *plan["tightest"])
+    tight = ""
+    if margin is not None:
+        to, (x, y) = f" to {clean(plan['nearest'])!r}", plan["tightest"]
+        least = (
+            f"overlaps{to.removeprefix(' to')} by {metres(-margin)}"
+            if margin < 0
+            else f"least margin {metres(margin)}{to}"
+        )
+        tight = f", {least} at ({x:.2f}, {y:.2f})"
     return f"{'its own plan' if plan['own'] else 'a path'} for {plan['label']}: {metres(plan['length'])}{tight}"
 
 

@@ -217,6 +217,7 @@ def _chosen(found: dict[str, Any], detailed: bool, most: int) -> list[dict[str, 
     kept = sorted(
         important, key=lambda event: (event["kind"] in sights, not robots & {event["object"], event["partner"]})
     )[:most]
+    kept += [event for event in events if event["kind"] == "waypoint"][: most - len(kept)]
     return sorted(kept, key=lambda event: int(event["step"]))  # a stable sort keeps the order within a step
 
 
@@ -238,7 +239,20 @@ def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
         path_length=_rounded(robot["path_length"]) if detailed else None,
         pose=[_rounded(value) for value in robot["pose"]] if detailed else None,
         **{key: _rounded(robot[key]) for key in _shown(detailed) if robot[key] is not None},
+        **_places(robot),
     )
+
+
+def _places(robot: dict[str, Any]) -> dict[str, Any]:
+    """What it came nearest to, in words, where that was, and the error of its heading, where these are defined."""
+    found: dict[str, Any] = {}
+    if robot["nearest_called"] is not None:
+        found["nearest_called"] = clean(robot["nearest_called"])
+    if robot["nearest_at"] is not None:
+        found["nearest_at"] = [_rounded(value) for value in robot["nearest_at"]]
+    if robot["heading_error"] is not None:
+        found["heading_error"] = _rounded(robot["heading_error"])
+    return found
 
 
 def _shown(detailed: bool) -> list[str]:
@@ -316,11 +330,17 @@ def _text(episode: Episode) -> str:
 def _robot_text(robot: Robot) -> str:
     facts = [f"{robot.name!r} {robot.outcome}"]
     if robot.time_to_goal is not None:
-        facts.append(f"arrived at {robot.time_to_goal:g} s")
+        off = "" if (error := getattr(robot, "heading_error", None)) is None else f", heading {error:.2f} rad off"
+        facts.append(f"arrived at {robot.time_to_goal:g} s{off}")
     if robot.distance_to_goal is not None:
         facts.append(f"{robot.distance_to_goal:g} m from its goal")
     if robot.min_clearance is not None:
-        facts.append(f"came as near as {robot.min_clearance + 0.0:g} m to {robot.nearest!r}, edge to edge")
+        place, other = getattr(robot, "nearest_at", None), getattr(robot, "nearest_called", repr(robot.nearest))
+        at = "" if place is None else " at ({:g}, {:g})".format(*place)
+        near = f"came as near as {robot.min_clearance + 0.0:g} m to {other}, edge to edge"
+        if robot.min_clearance < 0:
+            near = f"overlapped {other} by {-robot.min_clearance:g} m when they collided"
+        facts.append(near + at)
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
     if robot.infeasible_steps is not None:
         many = f"{robot.infeasible_steps} step{'s' * (robot.infeasible_steps != 1)}"

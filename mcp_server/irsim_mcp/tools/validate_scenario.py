@@ -157,7 +157,12 @@ def _dry_run_has_problems(found: dict[str, Any]) -> bool:
     if tried is None:
         return False
     late = len(tried["arrived"]) + len(tried["parked"]) < found["counts"]["robots"] and tried["ended"] != "budget"
-    return late or any(tried[key] for key in ("collisions", "stuck", "jammed", "left"))
+    return late or _concerns(tried)
+
+
+def _concerns(tried: dict[str, Any]) -> bool:
+    """Whether something happened in a dry run that is hardly intended."""
+    return any(tried[key] for key in ("collisions", "stuck", "jammed", "left"))
 
 
 def _dry_run_text(found: dict[str, Any] | None, detailed: bool) -> str | None:
@@ -170,6 +175,8 @@ def _dry_run_text(found: dict[str, Any] | None, detailed: bool) -> str | None:
     ]
     more += [f"'{item['name']}' left the world at {seconds(item['time'])}" for item in found["left"][1:]]
     seed = f"seed {found['seed']}, " if found["random"] else ""
+    if found["ended"] == "done":
+        seed += f"ran to its end{'' if _concerns(found) else ': success'}: "
     return clean("; ".join([seed + found["summary"], *(more if detailed else [])]), 1500)
 
 
