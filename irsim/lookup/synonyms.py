@@ -12,7 +12,7 @@ EVERYDAY: dict[str, str] = {
     "robot.sensors.fmcw_lidar2d": "lidar, fmcw, doppler, radar, velocity lidar, radial velocity",
     "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",
     "robot.sensors": "sensor, camera, depth camera, imu, gps",
-    "robot.sensors.fmcw_lidar2d.motion_compensate": "ego motion, ego-motion, own motion, motion compensation",
+    "robot.sensors.fmcw_lidar2d.motion_compensate": "ego motion, own motion",
     "robot.sensors.lidar2d.noise": "lidar noise, laser noise, sensor noise, measurement noise, noise",
     "robot.kinematics.diff.noise": "motion noise, actuator noise, odometry noise, noise",
     "robot.fov": "field of view, view angle, visual range, sees, seen, visible, visibility, surveillance, guard, "
@@ -61,7 +61,6 @@ EVERYDAY: dict[str, str] = {
     "robot.acce": "acceleration, acceleration limit, braking, brake, braking distance, stopping distance, deceleration",
     "robot.distribution": "random positions, random placement, random start, scatter, spread, placement",
     "robot.distribution.random": "random positions, random placement, random start, scatter",
-    "robot.distribution.circle": "circle distribution, distribution circle, on a circle, in a circle",
     "robot.distribution.circle_crossing": "crowdnav, circle crossing, random angles of a circle, opposite goals",
     "robot.distribution.square_crossing": "crowdnav, square crossing, opposite sides",
     "robot.color": "colour",
