@@ -83,9 +83,33 @@ GUIDES: dict[str, Guide] = {
         "return to their goals.",
         "behavior: {name: follow, local: {name: orca}}",
         (
-            *("avoid", "avoid each other", "obstacle avoidance", "collision avoidance", "avoiding", "limits of orca"),
-            *("acker orca", "orca acker", "car orca", "orca car", "cars orca", "avoidance limits", "limits of avoidance"),
+            *("avoid", "avoid each other", "obstacle avoidance", "collision avoidance", "avoiding"),
+            *("acker orca", "car orca", "orca car", "orca acker", "limits of orca"),
         ),
+    ),
+    "keep-out": Guide(
+        "an area that a planned path stays out of",
+        "No key names a forbidden area: `within` of follow names the area that the path stays in. Draw it as a polygon "
+        "that leaves the forbidden area out. It holds for the middle of the object, so leave its radius as a margin. "
+        "A zone of world.zones only watches: it is not solid, and events and metrics say who entered it.",
+        "behavior: {name: follow, within: {polygon: [[0, 0], [10, 0], [10, 3], [4, 3], [4, 10], [0, 10]]}}",
+        ("keep out", "keep away", "forbidden", "forbidden area", "no-go", "no-go area", "avoid area"),
+    ),
+    "exploration": Guide(
+        "driving through a world that is not known",
+        "fog_map: true covers the world with fog that sensors clear. Robots do not look for frontiers on their own: "
+        "give them waypoints, or leave out behavior and drive them by a program. Behaviors that plan use the whole "
+        "map, fog or not. Template: fog-exploration.",
+        "world: {width: 20, height: 15, fog_map: true, fog_map_resolution: 0.25}",
+        ("explore", "explored", "frontier", "frontiers", "frontier exploration", "unknown map", "coverage"),
+    ),
+    "standing-group": Guide(
+        "people who stand together and talk",
+        "An obstacle entry with number and the distribution circle, without behavior: its objects stand on a circle "
+        "and face its middle. Name the area between them in world.zones to see who walks through it.",
+        "obstacle:\n  - {number: 3, tags: [pedestrian], kinematics: {name: static}, shape: {name: circle, "
+        "radius: 0.25},\n     distribution: {name: circle, center: [6, 6], radius: 0.7}}",
+        ("conversation", "talking", "standing group", "group of people", "people talking", "standing people"),
     ),
     "dead-ends": Guide(
         "traps, and the behavior that gets out of them",

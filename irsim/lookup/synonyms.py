@@ -12,6 +12,7 @@ EVERYDAY: dict[str, str] = {
     "robot.sensors.fmcw_lidar2d": "lidar, fmcw, doppler, radar, velocity lidar, radial velocity",
     "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",
     "robot.sensors": "sensor, camera, depth camera, imu, gps",
+    "robot.sensors.fmcw_lidar2d.motion_compensate": "ego motion, own motion",
     "robot.sensors.lidar2d.noise": "lidar noise, laser noise, sensor noise, measurement noise, noise",
     "robot.kinematics.diff.noise": "motion noise, actuator noise, odometry noise, noise",
     "robot.fov": "field of view, view angle, visual range, sees, seen, visible, visibility, surveillance, guard, "

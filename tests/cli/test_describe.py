@@ -144,6 +144,11 @@ def test_json(irsim: Run) -> None:
         ("trap", "dead-ends: traps"),
         ("U-shape", "dead-ends: traps"),
         ("local minimum", "dead-ends: traps"),
+        ("forbidden area", "keep-out: an area"),
+        ("frontier exploration", "exploration: driving"),
+        ("explored", "exploration: driving"),
+        ("conversation", "standing-group: people"),
+        ("acker orca", "avoidance: what each behavior avoids"),
     ],
 )
 def test_guides_about_what_is_no_key(irsim: Run, words: str, title: str) -> None:

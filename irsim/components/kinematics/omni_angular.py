@@ -13,7 +13,10 @@ from irsim.options.units import Number
 
 
 class OmniAngular(KinematicsOptions):
-    """Omnidirectional base with rotation: controls are forward and lateral speed in the body frame, and yaw rate."""
+    """Omnidirectional base with rotation: controls are forward and lateral speed in the body frame, and yaw rate.
+
+    With `dash` it turns its front to the goal while it drives, and at the goal to the heading that the goal gives.
+    """
 
     control_rows: ClassVar[tuple[str, ...]] = ("forward", "lateral", "yaw_rate")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "m/s", "rad/s")

@@ -75,8 +75,8 @@ class FmcwLidar2d(VelocityColors, Lidar2d):
 
     name: Literal["fmcw_lidar2d"] = "fmcw_lidar2d"  # type: ignore[assignment]  # a lidar2d with another name
     motion_compensate: Bool = False
-    """Compensate ego-motion: report the radial velocity of the target itself instead of the relative one. Both are the
-    same for a sensor that stands still."""
+    """Report the radial velocity of the target itself instead of the relative one: the sensor's own motion
+    (ego-motion) is taken out. Of a sensor that stands still, both are the same."""
     velocity_noise_std: Annotated[MetersPerSecond, Field(ge=0)] = 0.0
     """Standard deviation of the noise of the radial velocity; it does not need `noise`."""
     plot: FmcwPlot = FmcwPlot()

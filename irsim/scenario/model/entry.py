@@ -149,9 +149,9 @@ class Entry(Options):
     goal_threshold: Annotated[Meters, Field(ge=0)] = 0.1
     """A goal counts as reached when it is nearer than this."""
     arrive_mode: Annotated[Any, PerObject(Literal["position", "state"])] = "position"
-    """What must match at the goal: `position` alone, or `state`, which includes the heading of the goal. With `state` an
-    object has arrived when sqrt(distance² + turn²) < `goal_threshold`, in m and rad: 0.3 allows 0.3 rad at the goal
-    itself."""
+    """What must match at the goal: `position` alone, or `state`, which includes the heading that a goal of three
+    numbers [x, y, heading] gives. `state` has no tolerance of its own: sqrt(dx^2 + dy^2 + turn^2), in metres and
+    radians, must be below `goal_threshold`, so 0.1 allows at most 0.1 rad."""
     group: Integer | None = None
     """Group number; objects with the same number form a group. Null gives each entry a number of its own."""
     group_name: Annotated[Any, PerObject(Text | None)] = None
