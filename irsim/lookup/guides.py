@@ -74,13 +74,12 @@ GUIDES: dict[str, Guide] = {
         "dash drives straight and avoids nothing. rvo, orca and sfm avoid other objects and walls (behavior, or "
         "group_behavior for orca and sfm), but find no path around walls: see dead-ends. follow plans a path and "
         "follows it with one of these: among walls, use follow with local: {name: orca}, for cars too. No behavior "
-        "guarantees success: crowds can jam. What is lost, by drive: diff brakes and turns before it can go "
-        "sideways; omni loses nothing; omni_angular keeps its heading while it avoids; acker cannot turn on the spot, so "
-        "it needs room beside it (a circle of radius wheelbase / tan(largest steering angle)). Each moving object is "
-        "treated as the circle around its footprint: a car of 1.8 x 0.9 m as a disc of radius 1.01 m about the middle of "
-        "its body. orca respects speed and turn rate but not acce; rvo turns at most at 1.5 rad/s and respects no acce "
-        "either. With walls, set timeHorizonObst of orca to 1 to 2 s. Robots that have arrived also give way, and "
-        "return to their goals.",
+        "guarantees success: crowds can jam. What is lost, by drive: diff brakes and turns before it can go sideways; "
+        "omni loses nothing; acker cannot turn on the spot, so it needs room beside it, a circle of radius wheelbase / "
+        "tan(largest steering angle). Each moving object counts as the circle around its footprint: a car of 1.8 x "
+        "0.9 m as a disc of radius 1.01 m about the middle of its body. orca respects speed and turn rate but not "
+        "acce; rvo turns at most at 1.5 rad/s and respects no acce either. With walls, set timeHorizonObst of orca to "
+        "1 to 2 s. Robots that have arrived also give way, and return to their goals.",
         "behavior: {name: follow, local: {name: orca}}",
         (
             *("avoid", "avoid each other", "obstacle avoidance", "collision avoidance", "avoiding"),
@@ -117,7 +116,6 @@ GUIDES: dict[str, Guide] = {
         "(a U, a corner, a long wall between them and the goal) they stay caught. In such a local minimum rvo, orca "
         "and sfm usually time out; dash drives into the obstacle, which is a collision (collision_mode stop), not a "
         "time-out. follow finds a path around it: it plans on the whole map, including what no sensor has seen. To "
-        "Nothing explores on its own (frontiers): give waypoints, or drive by a program. To "
         "test your own exploring behavior, leave out the key behavior and drive by a program. A car that circles its "
         "goal is another case: a goal inside its turning circle, of radius wheelbase / tan(largest steering angle), "
         "cannot be reached; raise goal_threshold. Template: u-trap.",
@@ -125,7 +123,6 @@ GUIDES: dict[str, Guide] = {
         (
             *("dead end", "dead-end", "trap", "traps", "trapped", "u-trap", "local minimum", "local minima", "u-shape"),
             *("u shape", "u-shaped", "concave", "cul-de-sac", "stuck", "caught", "turning circle", "circling"),
-            *("frontier", "frontier exploration", "explores", "exploring", "unknown map"),
         ),
     ),
     "limits": Guide(
@@ -158,16 +155,13 @@ GUIDES: dict[str, Guide] = {
         "rectangle. wall: rectangle, or linestring with state [0, 0, 0]; room: closed linestring. standing person: "
         "obstacle with a circle of 0.2 to 0.3 m and tags: [pedestrian]; walking person: also kinematics and behavior "
         "{name: orca, safe_radius: 0.1} (sfm looks more like people, who then touch now and then, whatever its "
-        "safety_radius). people who stand and talk: one entry without kinematics, number: 3 and distribution: {name: "
-        "circle, center: [6, 6], radius: 0.8}, who face the middle; keep a robot out of their circle with `within` of "
-        "follow, a polygon that leaves it out, since zones only watch. crowd: number 20 or more of them, about 0.3 persons per m2. "
+        "safety_radius). crowd: number 20 or more of them, about 0.3 persons per m2. "
         "start and goal of a robot: its keys state, goal.",
         "obstacle:\n  - number: 2\n    shape: {name: circle, radius: 0.25}\n    state: [[3, 3, 0], [4, 5, 0]]\n"
         "    tags: [pedestrian]",
         (
             *("post", "pillar", "column", "tree", "box", "crate", "table", "shelf", "rack", "wall", "room", "person"),
-            *("people", "pedestrian", "human", "crowd", "crowded", "conversation", "standing group", "people talking"),
-            *("keep out", "keep-out", "forbidden area", "no-go area", "personal space"),
+            *("people", "pedestrian", "human", "crowd", "crowded"),
         ),
     ),
     "outcomes": Guide(

@@ -60,8 +60,7 @@ EVERYDAY: dict[str, str] = {
     "robot.vel_max": "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity",
     "robot.acce": "acceleration, acceleration limit, braking, brake, braking distance, stopping distance, deceleration",
     "robot.distribution": "random positions, random placement, random start, scatter, spread, placement",
-    "robot.distribution.random": "random positions, random placement, random start, scatter, random start fixed goal, "
-    "random distribution",
+    "robot.distribution.random": "random positions, random placement, random start, scatter",
     "robot.distribution.circle_crossing": "crowdnav, circle crossing, random angles of a circle, opposite goals",
     "robot.distribution.square_crossing": "crowdnav, square crossing, opposite sides",
     "robot.color": "colour",
@@ -78,10 +77,6 @@ EVERYDAY: dict[str, str] = {
     "world.obstacle_map.perlin": "random map, forest, procedural",
     "world.zones": "zone, region, gate, finish line, trip wire, geofence, enters, crosses a line, restricted area, "
     "surveillance",
-    "world.fog_map": "explored, exploration, explored share, unknown area, fog of war, coverage, uncover",
-    "robot.sensors.fmcw_lidar2d.motion_compensate": "ego-motion, motion compensation",
-    "robot.distribution.circle": "circle distribution, ring, evenly on a circle",
-    "robot.arrive_mode": "heading at the goal, goal heading, heading tolerance, orientation at the goal, goal orientation",
     "world.plot.title": "title, caption, heading of the picture",
     "world.collision_mode": "collision, crash, hit, bump, collide, impact",
     "world.time_limit": "time limit, timeout, duration, horizon, episode length, max steps, deadline",

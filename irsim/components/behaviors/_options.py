@@ -34,8 +34,8 @@ class BehaviorOptions(Options):
     range_high: Pose | None = None
     """Upper corner of random goals, as `range_low`; null is the world's own."""
     target_roles: Literal["all", "robot", "obstacle"] = "all"
-    """Role of the other objects that the behavior reacts to: `robot` does not avoid people who are obstacles, `obstacle`
-    does not avoid other robots."""
+    """Role of the other objects that the behavior reacts to: with `robot` it does not avoid people who are obstacles,
+    with `obstacle` no other robots."""
 
 
 class CustomOptions(BehaviorOptions):

@@ -18,7 +18,6 @@ class Dash(BehaviorOptions):
     `diff` drives at its top speed times the cosine of the heading error: slower while it turns and, while the goal is
     more than 90 degrees off, backwards, or not at all if `vel_min` allows no reverse. A car never slows down, and it
     circles a goal inside its turning circle, of radius wheelbase / tan(largest steering angle): raise `goal_threshold`.
-    `omni` and `omni_angular` drive sideways if need be; the latter turns only at the goal, if its heading counts.
     It drives into anything in its way, so a blocked path ends in a collision and not in a time-out.
     """
 

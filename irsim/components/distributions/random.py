@@ -53,8 +53,8 @@ class RandomDistribution(DistributionOptions):
     Entries are placed in file order. Footprints at starts overlap neither objects with a fixed place nor starts drawn
     before; footprints at goals overlap neither static objects nor other goals of the entry, but may lie on starts.
     Static objects do not overlap goals that `circle_crossing` and `square_crossing` of entries before have drawn.
-    `state` and `goal` of the entry are ignored: for random starts with a fixed goal, write `state` and `goal` and vary the
-    start with `perturb` (position=1 is up to 1 m) of `irsim run` and `irsim benchmark`.
+    `state` and `goal` of the entry are ignored: for random starts with a fixed goal, write `state` and `goal` and vary
+    the start with `perturb` (position=1 is up to 1 m) of `irsim run` and `irsim benchmark`.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
