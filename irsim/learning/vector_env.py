@@ -56,6 +56,8 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
 
     metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}
 
+    _camera: Camera | None = None  # closed even if the arguments are refused
+
     def __init__(
         self,
         task: TaskSource,
@@ -82,7 +84,6 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         self._copy = copy
         self._over = np.zeros(self.worlds.n, dtype=bool)
         self._fresh = True
-        self._camera: Camera | None = None
 
     def reset(
         self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
