@@ -118,6 +118,6 @@ def frames_per_second(worlds: Worlds) -> int:
 
 
 def facts(result: Result, slot: int) -> dict[str, Any]:
-    """What a step has led to for one learner: ``arrived``, ``collided``, and the terms of the reward."""
+    """What a step has led to for one learner: whether it arrived, which is its success, and whether it collided."""
     arrived, collided = bool(result.arrived.reshape(-1)[slot]), bool(result.collided.reshape(-1)[slot])
     return {"arrived": arrived, "collided": collided, "is_success": arrived}

@@ -22,7 +22,7 @@ __all__ = ["ParallelEnv"]
 Agent = str
 
 
-class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):  # type: ignore[misc] # as above
+class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):  # type: ignore[misc] # as in gym_env
     """A task with any number of learners; each robot is an agent, by its name.
 
     An agent whose episode is over leaves ``agents`` after the step that says so; its robot stays in the world. When the

@@ -19,7 +19,7 @@ from torchrl.envs import EnvBase
 __all__ = ["TorchRLEnv"]
 
 
-class TorchRLEnv(EnvBase):  # type: ignore[misc]
+class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not read
     """``worlds`` worlds with A learners as an environment of the batch size (worlds * A,), locked.
 
     Learners of one world have neighboring entries. An entry whose episode is over before that of its world has the

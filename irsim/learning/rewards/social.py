@@ -28,7 +28,7 @@ class Social(RewardOptions):
     weight: Number = -1.0
     """Factor of the term; negative for a cost."""
     distance: Annotated[Meters, Field(gt=0)] = 0.2
-    """Gap from which on nobody is disturbed."""
+    """Smallest gap that disturbs no person."""
 
 
 @REWARDS.register(Social)

@@ -112,7 +112,7 @@ class Task(Options):
     ends: Ends = Ends()
     """When episodes are over."""
     horizon: Annotated[Seconds, Field(gt=0)] = 50.0
-    """Time after which an episode is cut off; this is no end of the task (`truncated`)."""
+    """Time after which an episode is cut off. Learners are then `truncated`, not `terminated`."""
     seeds: Seeds = Seeds()
     """Seeds of the worlds."""
 
