@@ -878,6 +878,7 @@ class Looking:
         neighbors: int,
         reach: float,
         statics: bool,
+        extents: bool,
         steered: Sequence[int],
         first_beam: Sequence[int],
         beams: int,
@@ -911,6 +912,8 @@ class SeenRows:
         radius: Floats,
         arrived: Flags,
         robot: Flags,
+        extent: Floats,
+        own_extent: Floats,
     ) -> None: ...
     def set_scan(self, ranges: Floats, range_max: float) -> None: ...
     def set_pictures(
@@ -948,13 +951,14 @@ def gaps(world: World, state: State, rows: NDArray[np.int64], kinds: Flags, reac
 
 def find_neighbors(
     world: World, state: State, looking: Looking, rows: NDArray[np.int64]
-) -> tuple[Flags, NDArray[np.int64], Floats, Floats, Floats, Floats, Flags, Flags]:
+) -> tuple[Flags, NDArray[np.int64], Floats, Floats, Floats, Floats, Flags, Flags, Floats, Floats]:
     """The nearest other objects of (B,) rows, sorted by the gap between bounding circles, then by index.
 
     Returns:
         (B, K) whether there is one, its index among the objects of the world (-1: none), (B, K, 2) position of the
         middle of its bounding circle [m], (B, K) heading [rad], (B, K, 2) velocity [m/s], (B, K) radius [m], whether it
-        is a robot that has reached its last goal, whether it is a robot.
+        is a robot that has reached its last goal, whether it is a robot, how far its footprint reaches toward the row
+        along the line between the centers [m], and how far that of the row reaches toward it; zeros unless measured.
     """
 
 # The phases for a single object; they depend neither on `given` of others nor on the clock

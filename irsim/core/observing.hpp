@@ -19,6 +19,8 @@ struct Neighbor {
   double arrived;   // 1 for a robot that has reached its last goal
   double is_robot;  // 1 for a robot
   bool present = true;
+  // how far both footprints reach toward each other along the line between the centres [m]
+  double extent = 0.0, own_extent = 0.0;
 };
 
 /// Static objects as a grid of nx * ny cells; cell (i, j) is at i * ny + j.

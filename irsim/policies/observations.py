@@ -30,6 +30,9 @@ class Neighbors:
         radius: (B, K) radius of the bounding circle [m].
         arrived: (B, K) whether the neighbor is a robot that has reached its last goal.
         robot: (B, K) whether the neighbor is a robot.
+        extent: (B, K) how far its footprint reaches from the center of its bounding circle toward the robot, along the
+            line between the centers [m]; None unless the policy asks for it.
+        own_extent: (B, K) how far that of the robot reaches toward the neighbor [m].
     """
 
     mask: NDArray[np.bool_]
@@ -40,6 +43,8 @@ class Neighbors:
     radius: Floats
     arrived: NDArray[np.bool_]
     robot: NDArray[np.bool_]
+    extent: Floats | None = None
+    own_extent: Floats | None = None
 
 
 @dataclass(frozen=True)

@@ -85,6 +85,7 @@ class Observer:
             neighbors=needs.neighbors,
             reach=needs.neighbor_range,
             statics=needs.static_neighbors,
+            extents=needs.neighbor_extents,
             steered=self._steered.tolist(),
             first_beam=self._first_beam.tolist(),
             beams=0 if beams is None else len(beams.angles),
@@ -127,10 +128,12 @@ class Observer:
     def _neighbors(self, rows: NDArray[np.int64]) -> Neighbors:
         simulation = self._simulation
         found = core.find_neighbors(simulation.world, simulation.state, self.looking, rows)
-        mask, index, position, heading, velocity, radius, arrived, robot = found
+        mask, index, position, heading, velocity, radius, arrived, robot, extent, own_extent = found
+        measured = self._needs.neighbor_extents
         return Neighbors(
-            mask.view(bool), index, position, heading, velocity, radius, arrived.view(bool), robot.view(bool)
-        )
+            mask.view(bool), index, position, heading, velocity, radius, arrived.view(bool), robot.view(bool),
+            extent=extent if measured else None, own_extent=own_extent if measured else None,
+        )  # fmt: skip
 
     def _scan(self, world: NDArray[np.int64], robot: NDArray[np.int64]) -> Scan:
         simulation, beams = self._simulation, self._beams

@@ -31,6 +31,7 @@ class Needs:
         neighbors: Number of nearest other objects; 0 for none.
         neighbor_range: Distance beyond which others are not seen [m], between bounding circles.
         static_neighbors: Whether static objects count as neighbors; each is then seen as its bounding circle.
+        neighbor_extents: Whether it needs to know how far footprints reach toward each other.
         scan: Whether it needs the ranges of a lidar; every robot must then carry one, with equal beams.
         beams: Number of beams that this lidar must have; None: any.
         map: Whether it needs the grid of static objects.
@@ -40,6 +41,7 @@ class Needs:
     neighbors: int = 0
     neighbor_range: float = float("inf")
     static_neighbors: bool = False
+    neighbor_extents: bool = False
     scan: bool = False
     beams: int | None = None
     map: bool = False

@@ -36,12 +36,26 @@ def test_bounding_circles_are_those_of_the_placed_shapes() -> None:
     np.testing.assert_allclose(found, [[1.0, 3.0, 0.2], [1.0, 2.0, math.sqrt(1.25)]], atol=1e-12)
 
 
+def test_extents_are_how_far_footprints_reach_toward_each_other() -> None:
+    long_one = robot(parts=[rectangle(2.0, 1.0)])
+    across = robot(parts=[rectangle(0.6, 0.4)], pose=[0.0, 4.0, 0.0])
+    ahead = robot(parts=[circle(0.3)], pose=[3.0, 0.0, 0.5])
+    world, state = scene(long_one, across, ahead)
+    none = [0] * 3
+    looking = core.Looking(2, math.inf, False, True, steered=none, first_beam=none, beams=0, range_max=0.0)
+    found = core.find_neighbors(world, state, looking, np.array([0]))
+    index, extent, own_extent = found[1], found[8], found[9]
+    assert index.tolist() == [[2, 1]]
+    np.testing.assert_allclose(extent, [[0.3, 0.2]], atol=1e-12)
+    np.testing.assert_allclose(own_extent, [[1.0, 0.5]], atol=1e-12)
+
+
 def found(
     world: core.World, state: core.State, rows: list[int], most: int, reach: float, statics: bool
 ) -> list[list[int]]:
     """Indices of the nearest objects of rows."""
     none = [0] * world.objects
-    looking = core.Looking(most, reach, statics, steered=none, first_beam=none, beams=0, range_max=0.0)
+    looking = core.Looking(most, reach, statics, extents=False, steered=none, first_beam=none, beams=0, range_max=0.0)
     return core.find_neighbors(world, state, looking, np.array(rows))[1].tolist()
 
 

@@ -52,7 +52,7 @@ struct SeenRows {
   std::size_t neighbors = 0;  // those of each robot; the arrays below have no memory without any
   Given<std::uint8_t, 2> present, neighbor_arrived, is_robot;
   Given<double, 3> position, neighbor_velocity;
-  Given<double, 2> heading, neighbor_radius;
+  Given<double, 2> heading, neighbor_radius, extent, own_extent;
   std::size_t beams = 0;
   Given<double, 2> ranges;
   double range_max = 0.0;
@@ -87,12 +87,13 @@ struct SeenRows {
   void set_neighbors(const Given<std::uint8_t, 2>& present_, const Given<double, 3>& position_,
                      const Given<double, 2>& heading_, const Given<double, 3>& velocity_,
                      const Given<double, 2>& radius_, const Given<std::uint8_t, 2>& arrived_,
-                     const Given<std::uint8_t, 2>& robot_) {
+                     const Given<std::uint8_t, 2>& robot_, const Given<double, 2>& extent_,
+                     const Given<double, 2>& own_extent_) {
     const std::size_t count = present_.shape(1);
     for (const auto* array : {&present_, &arrived_, &robot_}) {
       expect_fit(array->shape(0) == size() && array->shape(1) == count, kMember);
     }
-    for (const auto* array : {&heading_, &radius_}) {
+    for (const auto* array : {&heading_, &radius_, &extent_, &own_extent_}) {
       expect_fit(array->shape(0) == size() && array->shape(1) == count, kMember);
     }
     for (const auto* array : {&position_, &velocity_}) {
@@ -101,6 +102,7 @@ struct SeenRows {
     neighbors = count;
     present = present_, position = position_, heading = heading_, neighbor_velocity = velocity_;
     neighbor_radius = radius_, neighbor_arrived = arrived_, is_robot = robot_;
+    extent = extent_, own_extent = own_extent_;
   }
 
   void set_scan(const Given<double, 2>& ranges_, double range_max_) {
@@ -142,7 +144,7 @@ struct SeenRows {
       near.neighbors.push_back({vector_at(position.data(), k), heading.data()[k],
                                 vector_at(neighbor_velocity.data(), k), neighbor_radius.data()[k],
                                 neighbor_arrived.data()[k] ? 1.0 : 0.0, is_robot.data()[k] ? 1.0 : 0.0,
-                                present.data()[k] != 0});
+                                present.data()[k] != 0, extent.data()[k], own_extent.data()[k]});
     }
     seen.neighbors = near.neighbors.data(), seen.neighbor_count = neighbors;
     seen.beams = beams;
@@ -241,7 +243,7 @@ nb::object neighbors_of(World& world, BoundState& bound, const Looking& looking,
   std::vector<std::int64_t> index(count * most, -1);
   std::vector<std::uint8_t> present(count * most), arrived(count * most), robot(count * most);
   std::vector<double> position(2 * count * most), heading(count * most), velocity(2 * count * most),
-      radius(count * most);
+      radius(count * most), extent(count * most), own_extent(count * most);
   const Observer observer(world, state, looking);
   Near near;
   for (std::size_t b = 0; b < count; ++b) {
@@ -254,20 +256,22 @@ nb::object neighbors_of(World& world, BoundState& bound, const Looking& looking,
       position[2 * k] = other.position.x, position[2 * k + 1] = other.position.y;
       velocity[2 * k] = other.velocity.x, velocity[2 * k + 1] = other.velocity.y;
       heading[k] = other.heading, radius[k] = other.radius;
+      extent[k] = other.extent, own_extent[k] = other.own_extent;
     }
   }
   return nb::make_tuple(own(std::move(present), {count, most}), own(std::move(index), {count, most}),
                         own(std::move(position), {count, most, 2}), own(std::move(heading), {count, most}),
                         own(std::move(velocity), {count, most, 2}), own(std::move(radius), {count, most}),
-                        own(std::move(arrived), {count, most}), own(std::move(robot), {count, most}));
+                        own(std::move(arrived), {count, most}), own(std::move(robot), {count, most}),
+                        own(std::move(extent), {count, most}), own(std::move(own_extent), {count, most}));
 }
 
 }  // namespace
 
 void bind_observing(nb::module_& m) {
   nb::class_<Looking>(m, "Looking")
-      .def(nb::init<int, double, bool, std::vector<std::uint8_t>, std::vector<int>, int, double>(),
-           nb::arg("neighbors"), nb::arg("reach"), nb::arg("statics"), nb::arg("steered"), nb::arg("first_beam"),
+      .def(nb::init<int, double, bool, bool, std::vector<std::uint8_t>, std::vector<int>, int, double>(),
+           nb::arg("neighbors"), nb::arg("reach"), nb::arg("statics"), nb::arg("extents"), nb::arg("steered"), nb::arg("first_beam"),
            nb::arg("beams"), nb::arg("range_max"));
   nb::class_<SeenRows>(m, "SeenRows")
       .def(nb::init<const Given<double, 2>&, const Given<double, 1>&, const Given<double, 2>&, const Given<double, 1>&,
@@ -277,7 +281,8 @@ void bind_observing(nb::module_& m) {
            nb::arg("control"), nb::arg("low"), nb::arg("high"), nb::arg("goal"), nb::arg("goal_threshold"),
            nb::arg("radius"), nb::arg("arrived"))
       .def("set_neighbors", &SeenRows::set_neighbors, nb::arg("present"), nb::arg("position"), nb::arg("heading"),
-           nb::arg("velocity"), nb::arg("radius"), nb::arg("arrived"), nb::arg("robot"))
+           nb::arg("velocity"), nb::arg("radius"), nb::arg("arrived"), nb::arg("robot"),
+           nb::arg("extent"), nb::arg("own_extent"))
       .def("set_scan", &SeenRows::set_scan, nb::arg("ranges"), nb::arg("range_max"))
       .def("set_pictures", &SeenRows::set_pictures, nb::arg("pictures"), nb::arg("which"));
 #define IRSIM_LOOK(Type) m.def("look", &look<Type>, nb::arg("options"), nb::arg("rows"));

@@ -21,6 +21,9 @@ struct NeighborsOptions {
     kRadii,
     kDistance,
     kGap,
+    kExtent,
+    kOwnExtent,
+    kExtentGap,
     kNearness,
     kGoalDistance,
     kArrived,
@@ -42,7 +45,7 @@ struct NeighborsOptions {
     using O = NeighborsOptions;
     return std::make_tuple(
         choices("features", &O::features, "x", "y", "vx", "vy", "heading_cos", "heading_sin", "radius", "radii",
-                "distance", "gap", "nearness", "goal_distance", "arrived", "robot", "present"),
+                "distance", "gap", "extent", "own_extent", "extent_gap", "nearness", "goal_distance", "arrived", "robot", "present"),
         field("count", &O::count), field("range", &O::range), field("nearest_last", &O::nearest_last),
         choice("frame", &O::frame, "own", "goal", "world"), field("relative_velocity", &O::relative_velocity),
         field("distance_max", &O::distance_max), field("speed_max", &O::speed_max), field("radius_max", &O::radius_max),
@@ -89,6 +92,15 @@ inline void neighbor(const NeighborsOptions& o, const Seen& seen, const Neighbor
         break;
       case NeighborsOptions::kGap:
         *out++ = share(gap, o.distance_max, o.clip);
+        break;
+      case NeighborsOptions::kExtent:
+        *out++ = share(other.extent, o.radius_max, o.clip);
+        break;
+      case NeighborsOptions::kOwnExtent:
+        *out++ = share(other.own_extent, o.radius_max, o.clip);
+        break;
+      case NeighborsOptions::kExtentGap:
+        *out++ = share(norm(away) - other.extent - other.own_extent, o.distance_max, o.clip);
         break;
       case NeighborsOptions::kNearness:
         *out++ = networks::exponential(-std::max(gap, 0.0) / o.decay);

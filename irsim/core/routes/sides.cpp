@@ -15,15 +15,6 @@ void for_vertices(const Footprint& body, Visit&& visit) {
 
 }  // namespace
 
-double support(const Footprint& body, Vec2 direction) {
-  double most = -kInfinity;
-  for (int p = 0; p < body.count; ++p) {
-    const Part& part = body.parts[p];
-    for (int v = part.first; v <= part.last; ++v) most = std::max(most, dot(body.vertices[v], direction) + part.radius);
-  }
-  return most;
-}
-
 double widest_strip(const Footprint& a, const Footprint& b, Vec2& normal) {
   double widest = -kInfinity;
   const auto offer = [&](Vec2 across) {

@@ -3,7 +3,7 @@
 // using buffered Voronoi cells, 2017).
 #pragma once
 
-#include "geometry/shapes.hpp"
+#include "collision/support.hpp"
 
 namespace irsim {
 
@@ -12,9 +12,6 @@ struct Side {
   Vec2 normal;
   double offset;  // [m]
 };
-
-/// Largest dot product of a direction with a point of a footprint [m].
-double support(const Footprint& body, Vec2 direction);
 
 /// Find the widest strip between the convex hulls of two footprints.
 ///

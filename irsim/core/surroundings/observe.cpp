@@ -1,5 +1,6 @@
 #include "surroundings/observe.hpp"
 
+#include "collision/support.hpp"
 #include "world/state.hpp"
 #include "world/world.hpp"
 
@@ -15,6 +16,15 @@ Neighbor Observer::neighbor(int row) const {
   const Vec3& twist = state_.twist[row];
   const BoundingCircle& circle = circles_[row];
   return {circle.centre, state_.pose[row].theta, {twist[0], twist[1]}, circle.radius, arrived, robot};
+}
+
+void Observer::measure_extents(int row, Vec2 place, int other, Neighbor& neighbor) const {
+  const Vec2 away = neighbor.position - place;
+  const double distance = norm(away);
+  const Vec2 direction = distance > 0.0 ? away * (1.0 / distance) : Vec2{1.0, 0.0};
+  const int w = row / world_.objects;
+  neighbor.own_extent = reach_from(state_.footprint(world_, w, row % world_.objects), place, direction);
+  neighbor.extent = reach_from(state_.footprint(world_, w, other), neighbor.position, direction * -1.0);
 }
 
 Seen Observer::see(int row, Near& near) const {
@@ -35,7 +45,10 @@ Seen Observer::see(int row, Near& near) const {
   near.neighbors.clear();
   if (looking_.neighbors > 0) {
     nearest_objects(world_, state_, circles_, row, looking_.neighbors, looking_.reach, looking_.statics, near.nearest);
-    for (const int i : near.nearest.object) near.neighbors.push_back(neighbor(w * world_.objects + i));
+    for (const int i : near.nearest.object) {
+      near.neighbors.push_back(neighbor(w * world_.objects + i));
+      if (looking_.extents) measure_extents(row, seen.pose.position(), i, near.neighbors.back());
+    }
   }
   seen.neighbors = near.neighbors.data(), seen.neighbor_count = near.neighbors.size();
   if (looking_.beams > 0) {

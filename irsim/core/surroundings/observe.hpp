@@ -14,6 +14,7 @@ struct Looking {
   int neighbors;                      // number of nearest other objects
   double reach;                       // largest gap between bounding circles [m]
   bool statics;                       // whether static objects count
+  bool extents;                       // whether it is measured how far footprints reach toward each other
   std::vector<std::uint8_t> steered;  // (N,) whether the first extra state of an object is a steering angle
   std::vector<int> first_beam;        // (N,) first beam of the lidar of each object among those of its world
   int beams;                          // number of beams of a lidar, 0 if it is not observed
@@ -36,6 +37,7 @@ class Observer {
 
  private:
   Neighbor neighbor(int row) const;
+  void measure_extents(int row, Vec2 place, int other, Neighbor& neighbor) const;
 
   const World& world_;
   const State& state_;

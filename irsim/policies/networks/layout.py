@@ -63,6 +63,7 @@ def layout_needs(layout: Layout) -> Needs:
         neighbors=max((need.neighbors for need in needs), default=0),
         neighbor_range=max((need.neighbor_range for need in seeing), default=float("inf")),
         static_neighbors=any(need.static_neighbors for need in needs),
+        neighbor_extents=any(need.neighbor_extents for need in needs),
         scan=any(need.scan for need in needs),
         map=any(need.map for need in needs),
         map_resolution=min((need.map_resolution for need in needs if need.map), default=Needs.map_resolution),

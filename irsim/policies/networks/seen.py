@@ -28,7 +28,11 @@ def seen_rows(observations: Observations) -> core.SeenRows:
     )
     if (n := o.neighbors) is not None:
         arrived, robot = n.arrived.astype(flag), n.robot.astype(flag)
-        rows.set_neighbors(n.mask.astype(flag), n.position, n.heading, n.velocity, n.radius, arrived, robot)
+        zeros = np.zeros(n.mask.shape)
+        extent = zeros if n.extent is None else n.extent
+        own = zeros if n.own_extent is None else n.own_extent
+        mask = n.mask.astype(flag)
+        rows.set_neighbors(mask, n.position, n.heading, n.velocity, n.radius, arrived, robot, extent, own)
     if o.scan is not None:
         rows.set_scan(o.scan.ranges, o.scan.range_max)
     if o.maps is not None:

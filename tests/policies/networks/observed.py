@@ -39,6 +39,8 @@ def observations(count: int = 7, seed: int = 0, neighbors: int = 5) -> Observati
         radius=np.where(mask, rng.uniform(0.1, 0.5, (count, neighbors)), 0.0),
         arrived=mask & (rng.uniform(size=mask.shape) < 0.3),
         robot=mask & (rng.uniform(size=mask.shape) < 0.7),
+        extent=np.where(mask, rng.uniform(0.1, 0.5, mask.shape), 0.0),
+        own_extent=np.where(mask, rng.uniform(0.1, 0.5, mask.shape), 0.0),
     )
     maps = [Grid(rng.uniform(size=(60, 50)) < 0.1, (-3.0, -2.5), 0.1) for _ in range(2)]
     world = np.arange(count) % 2

@@ -170,6 +170,13 @@ def test_neighbors_relative_to_the_robot() -> None:
     assert last["neighbors"].mask.tolist() == [[False, False, True]]
     still = numbers(seen, "neighbors", features=["vx"], count=2, relative_velocity=False)
     np.testing.assert_allclose(still, [[[1], [0]]], atol=1e-15)
+    with pytest.raises(PolicyInputError, match="observes extents of neighbors"):
+        numbers(seen, "neighbors", features=["extent"], count=1)
+    extents = replace(others, extent=np.array([[0.2, 0.5, 0]]), own_extent=np.array([[0.1, 0.2, 0]]))
+    reaching = numbers(
+        replace(seen, neighbors=extents), "neighbors", features=["extent", "own_extent", "extent_gap"], count=2
+    )
+    np.testing.assert_allclose(reaching, [[[0.2, 0.1, 0.7 / 4], [0.5, 0.2, 2.3 / 4]]], atol=1e-15)
     with pytest.raises(PolicyInputError, match="observes 4 neighbors, not 3"):
         numbers(seen, "neighbors", count=4)
 

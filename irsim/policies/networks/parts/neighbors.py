@@ -18,10 +18,11 @@ from irsim.policies.observations import Observations
 from irsim.policies.policy import Needs
 
 Feature = Literal[
-    "x", "y", "vx", "vy", "heading_cos", "heading_sin", "radius", "radii", "distance", "gap", "nearness",
-    "goal_distance", "arrived", "robot", "present",
+    "x", "y", "vx", "vy", "heading_cos", "heading_sin", "radius", "radii", "distance", "gap", "extent",
+    "own_extent", "extent_gap", "nearness", "goal_distance", "arrived", "robot", "present",
 ]  # fmt: skip
 _ZERO_TO_ONE = ("radius", "radii", "distance", "goal_distance")
+_EXTENTS = ("extent", "own_extent", "extent_gap")
 _SHARES = ("nearness", "arrived", "robot", "present")
 
 
@@ -33,6 +34,9 @@ class NeighborsPart(PartOptions):
     - `heading_cos`, `heading_sin`: direction of the heading
     - `radius`: radius of the bounding circle / `radius_max`; `radii`: the sum of both radii / `radius_max`
     - `distance`: between the centers / `distance_max`; `gap`: between the bounding circles / `distance_max`
+    - `extent`: how far its footprint reaches toward the robot, along the line between the centers / `radius_max`;
+      `own_extent`: how far that of the robot reaches toward it; `extent_gap`: the distance between the centers without
+      both / `distance_max`, which is never larger than the true distance of convex bodies
     - `nearness`: exp(-gap / `decay`), 1 for circles that overlap
     - `goal_distance`: from the neighbor to the robot's own goal / `distance_max`; 0 without a goal
     - `arrived`: 1 for a robot that has reached its last goal; `robot`: 1 for a robot; `present`: 1
@@ -76,7 +80,12 @@ class NeighborsPart(PartOptions):
     def needs(self) -> Needs:
         """Neighbors."""
         reach = math.inf if self.range is None else self.range
-        return Needs(neighbors=self.count, neighbor_range=reach, static_neighbors=self.static)
+        return Needs(
+            neighbors=self.count,
+            neighbor_range=reach,
+            static_neighbors=self.static,
+            neighbor_extents=any(name in _EXTENTS for name in self.features),
+        )
 
     def channels(self) -> tuple[Channel, ...]:
         """One for each feature."""
@@ -91,6 +100,8 @@ class NeighborsPart(PartOptions):
         if there < self.count:
             what = f"the network observes {self.count} neighbors, not {there}"
             raise PolicyInputError(what, "observe what `needs` declares")
+        if self.needs().neighbor_extents and (observations.neighbors is None or observations.neighbors.extent is None):
+            raise PolicyInputError("the network observes extents of neighbors", "observe what `needs` declares")
 
 
 PARTS.register(NeighborsPart, kernel=core.NeighborsOptions)
