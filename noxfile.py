@@ -40,6 +40,8 @@ PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0
 UV = "uv>=0.9"
 TOOLS = ("pandas>=2.2", "duckdb>=1.1", "mcap-ros2-support>=0.5")
 """What opens exported runs in tests, and is no dependency."""
+VIDEOS = "moviepy>=2"
+"""With which Gymnasium's ``RecordVideo`` writes files."""
 FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster", "learn")
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
 """Tests of the core that are about Python and NumPy rather than arithmetic."""
@@ -272,7 +274,7 @@ def cluster(session: nox.Session) -> None:
 @nox.session(reuse_venv=True, python=find_python(NEWEST))
 def learn(session: nox.Session) -> None:
     """Environments of TorchRL and Stable-Baselines3, and training; torch takes minutes to install and gigabytes."""
-    install(session, "-e", ".[test,learn]")
+    install(session, "-e", ".[test,learn,onnx]", VIDEOS)
     timed(session, "tests of learning", "pytest", "-m", "learn", "-n", "2", "tests/learning/torch", *session.posargs)
 
 

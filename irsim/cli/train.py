@@ -15,7 +15,11 @@ __all__ = ["train"]
 def train(
     task: Annotated[
         Path | None,
-        typer.Argument(metavar="TASK", help="Task file; a resumed training has its own.", show_default=False),
+        typer.Argument(
+            metavar="TASK",
+            help="Task file, or the name of a bundled task; a resumed training has its own.",
+            show_default=False,
+        ),
     ] = None,
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the training.")] = Path(
         "training"

@@ -76,7 +76,13 @@ def test_all_problems_come_at_once(tmp_path: Path) -> None:
 def test_a_missing_file_and_an_unknown_template_are_said() -> None:
     with pytest.raises(TaskError, match="there is no task file"):
         open_task("nowhere.yaml")
+    with pytest.raises(TaskError, match="goal_lidar"):
+        open_task("goal_lida")
     data = task()
     del data["scenario"]
     with pytest.raises(TaskError, match="coridor"):
         Worlds({**data, "template": "coridor"})
+
+
+def test_bundled_tasks_are_opened_by_their_name() -> None:
+    assert open_task("goal_lidar") == open_task(bundled_task("goal_lidar"))

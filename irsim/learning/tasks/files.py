@@ -16,9 +16,10 @@ from irsim.bundled.templates.fill import fill
 from irsim.bundled.templates.metadata import TemplateError
 from irsim.bundled.templates.store import load
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.diagnostics.diagnostic import Diagnostic, suggestion
 from irsim.diagnostics.errors import CodedError
 from irsim.diagnostics.report import format_diagnostics
+from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
 from irsim.learning.tasks.task import Task
 from irsim.scenario.messages.translate import translate
 from irsim.scenario.open import or_raise
@@ -29,7 +30,7 @@ from irsim.scenario.yaml.document import Document, load_data, load_path, load_te
 __all__ = ["TaskError", "TaskSource", "open_task", "read_task", "task_scenario"]
 
 TaskSource = str | os.PathLike[str] | Mapping[str, Any] | Task
-"""A task, its data, or the path of its file."""
+"""A task, its data, the path of its file, or the name of a bundled task."""
 _MOST = 10
 """Largest number of problems that are listed."""
 
@@ -50,7 +51,7 @@ def open_task(source: TaskSource) -> tuple[Task, Path]:
     """A task, and the folder relative to which it names files.
 
     Args:
-        source: A task, its data, or the path of its file.
+        source: A task, its data, the path of its file, or the name of a bundled task.
 
     Raises:
         TaskError: There is no such file, or it is not valid.
@@ -60,8 +61,11 @@ def open_task(source: TaskSource) -> tuple[Task, Path]:
     if isinstance(source, Mapping):
         return _validated(load_data(source, "task")), Path()
     path = Path(source)
+    if not path.is_file() and str(source) in bundled_tasks():
+        path = bundled_task(str(source))
     if not path.is_file():
-        raise TaskError(f"there is no task file {clean(str(source), 200)!r}", "give the path of a task file")
+        fix = suggestion(str(source), bundled_tasks(), f"give a task file, or one of {', '.join(bundled_tasks())}")
+        raise TaskError(f"there is no task file {clean(str(source), 200)!r}", fix)
     return read_task(load_path(path)), path.parent
 
 

@@ -20,6 +20,7 @@ from irsim.learning.worlds import Worlds
 from irsim.policies.networks.document import PolicyDocument
 from irsim.policies.networks.files import save_network
 from irsim.policies.networks.network import Network, check_network, read_document
+from irsim.policies.networks.onnx.writing import save_onnx
 from irsim.policies.networks.values import Array
 
 require("learn", "torch", "stable_baselines3")
@@ -37,7 +38,7 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
 
     Args:
         folder: Folder of the training.
-        out: The file, ``.npz``.
+        out: The file, ``.npz``; or ``.onnx``, which other programs run, too.
         license: Licence of the weights, such as an SPDX identifier.
         description: What the policy does; by default the title of the task.
 
@@ -47,9 +48,10 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
     Raises:
         ArgumentError: The folder holds no finished round of a training.
         TargetError: The file has another suffix.
+        ExtraError: An ``.onnx`` file is asked for, and onnx is not installed.
     """
     target = Path(out)
-    check_suffix(target, [".npz"])
+    check_suffix(target, [".npz", ".onnx"])
     run = RunFolder(Path(folder))
     rounds = run.rounds()
     if not rounds or not run.best.is_file():
@@ -77,7 +79,10 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
         },
     }
     network = network_of(PPO.load(run.best, device="cpu").policy, file, card)
-    save_network(target, network)
+    if target.suffix == ".onnx":
+        save_onnx(target, network)
+    else:
+        save_network(target, network)
     write_atomically(target.with_suffix(".md"), _card_text(target, task, card))
     return target
 

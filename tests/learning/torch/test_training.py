@@ -135,6 +135,18 @@ def test_an_exported_policy_drives_as_in_its_environment(tmp_path: Path) -> None
         np.testing.assert_allclose(batch.pose[0], worlds.simulation.pose, atol=1e-4)
 
 
+def test_an_exported_onnx_model_decides_as_the_file_of_irsim(tmp_path: Path) -> None:
+    made = crowd(3, seeds=FEW)
+    train(made, tmp_path / "run", SMALL.model_copy(update={"steps": 1}))
+    files = [export_policy(tmp_path / "run", tmp_path / f"policy{suffix}") for suffix in (".npz", ".onnx")]
+    (tmp_path / "scene.yaml").write_text(yaml.safe_dump(made["scenario"]))
+    ours, theirs = (irsim.batch(tmp_path / "scene.yaml", 2, seeds=[5, 6], policy=str(file)) for file in files)
+    for _ in range(20):
+        ours.step()
+        theirs.step()
+        np.testing.assert_allclose(ours.pose, theirs.pose, atol=1e-3)
+
+
 def test_waiting_slots_are_not_learnt_from() -> None:
     env = SB3VecEnv(task({"state": [8.65, 5, 0]}, {"state": [1, 2, 0], "goal": [9, 2]}, protocol="freeze"), 1)
     buffer = MaskedRolloutBuffer(4, env.observation_space, env.action_space, device="cpu", n_envs=2)
