@@ -10,7 +10,7 @@ from typing import Any
 
 from irsim.diagnostics.errors import ArgumentError, PolicyError
 from irsim.policies.behavior import BehaviorPolicy
-from irsim.policies.catalog import names_file, open_policy
+from irsim.policies.catalog import is_network, open_policy
 from irsim.policies.policy import Policy
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 
@@ -90,7 +90,7 @@ def files_of(policies: Mapping[str, str], folders: Mapping[str, Path]) -> tuple[
     Returns:
         Name → text that opens it from any folder, and name → SHA-256 of its file; none of a policy that is no file.
     """
-    found = {name: open_policy(text, folder=folders.get(name)) for name, text in policies.items() if names_file(text)}
+    found = {name: open_policy(text, folder=folders.get(name)) for name, text in policies.items() if is_network(text)}
     return {name: str(one.source) for name, one in found.items()}, {
         name: str(one.digest) for name, one in found.items()
     }

@@ -19,6 +19,7 @@ from irsim.policies.function import FunctionPolicy
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Policy
 from irsim.policies.registry import POLICIES, RANDOM
+from irsim.policies.trained import trained_policies, trained_policy
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text, parse_behavior
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.yaml.rewrite import yaml_flow
@@ -30,7 +31,9 @@ __all__ = [
     "behavior_names",
     "file_of",
     "files_beside",
+    "is_network",
     "names_file",
+    "names_trained",
     "open_policy",
     "policy_names",
     "with_file",
@@ -57,7 +60,7 @@ def behavior_names() -> list[str]:
 
 def policy_names() -> list[str]:
     """Names of all policies that are not files, sorted."""
-    return sorted({*behavior_names(), RANDOM, *POLICIES.names()})
+    return sorted({*behavior_names(), RANDOM, *POLICIES.names(), *trained_policies()})
 
 
 def open_policy(source: PolicySource, *, folder: str | Path | None = None, root: str | Path | None = None) -> Policy:
@@ -65,8 +68,9 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
 
     Args:
         source: A policy object; a function ``f(observations)`` that returns controls; the name of a behavior
-            (``orca``), of ``as-written``, of ``random`` or of a plug-in; the path of an ``.npz`` or ``.onnx`` file; or
-            one of these names with options, as a mapping or as YAML text (``{name: orca, timeHorizon: 5}``).
+            (``orca``), of ``as-written``, of ``random``, of a trained policy that ships with irsim or of a plug-in; the
+            path of an ``.npz`` or ``.onnx`` file; or one of these names with options, as a mapping or as YAML text
+            (``{name: orca, timeHorizon: 5}``).
         folder: Folder that relative paths start from; default: the current one.
         root: Folder that files must lie in. With it only built-in policies and files are opened: no code runs that
             irsim does not have.
@@ -97,6 +101,10 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
         return _from_file(text, name, keys, folder, root)
     if name in behavior_names():
         return BehaviorPolicy(text)
+    if name in trained_policies() and name not in POLICIES.names():
+        trained = _network(trained_policy(name), text, name, keys)
+        trained.source = text
+        return trained
     if name == RANDOM:
         from irsim.policies.random import RandomPolicy
 
@@ -105,6 +113,24 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
     if maker is None:
         raise _unknown(name, root)
     return _named(_made(name, maker, keys), text)
+
+
+def names_trained(text: str) -> bool:
+    """Whether the text of a policy names one that was trained and ships with irsim.
+
+    Raises:
+        BenchmarkError: The text is not a policy.
+    """
+    return _parsed(text)[0] in trained_policies()
+
+
+def is_network(text: str) -> bool:
+    """Whether the text of a policy names a file, or a trained policy that ships with irsim, which is a file, too.
+
+    Raises:
+        BenchmarkError: The text is not a policy.
+    """
+    return names_file(text) or names_trained(text)
 
 
 def names_file(text: str) -> bool:
@@ -146,7 +172,7 @@ def _parsed(text: str) -> tuple[str, dict[str, Any]]:
 
 
 def _unknown(name: str, root: str | Path | None) -> UnknownPolicyError:
-    known = policy_names() if root is None else sorted({*behavior_names(), RANDOM})
+    known = policy_names() if root is None else sorted({*behavior_names(), RANDOM, *trained_policies()})
     near = nearest(name, known)
     fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}, or a file (.npz, .onnx)"
     if root is not None and name in POLICIES.names():
@@ -211,9 +237,7 @@ def _is_number(value: Any) -> bool:
 def _from_file(
     text: str, name: str, options: Mapping[str, Any], folder: str | Path | None, root: str | Path | None
 ) -> Policy:
-    """A network from a file."""
-    from irsim.policies.networks import open_network
-
+    """A network from a file of the user."""
     if root is not None and (why := why_outside(name, Path(root))) is not None:
         fix = "put the file into the workspace and name it relative to that"
         raise PolicyError("path-outside-workspace", f"{clean(name)!r} {why}", fix, where="policy")
@@ -227,6 +251,13 @@ def _from_file(
         raise UnknownPolicyError(f"there is no file {clean(name)!r}", fix)
     if path.stat().st_size > MAX_FILE_BYTES:
         raise PolicyError("over-limit", f"{clean(name)!r} has more than {MAX_FILE_BYTES:,} bytes", "use a smaller file")
+    return _network(path, text, name, options)
+
+
+def _network(path: Path, text: str, name: str, options: Mapping[str, Any]) -> Policy:
+    """A network; its only option is the time between two decisions."""
+    from irsim.policies.networks import open_network
+
     period = options.get("decision_dt")
     unknown = [key for key in options if key != "decision_dt"]
     if unknown or (period is not None and not (_is_number(period) and period > 0)):

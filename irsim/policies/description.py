@@ -10,11 +10,12 @@ from typing import Any
 
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS
 from irsim.policies.behavior import BehaviorPolicy
-from irsim.policies.catalog import behavior_names, names_file, open_policy
+from irsim.policies.catalog import behavior_names, names_file, names_trained, open_policy
 from irsim.policies.networks.network_policy import NetworkPolicy
 from irsim.policies.policy import Needs, Policy
 from irsim.policies.random import RandomPolicy
 from irsim.policies.registry import POLICIES, RANDOM
+from irsim.policies.trained import trained_policies
 from irsim.scenario.behavior_override import AS_WRITTEN
 
 __all__ = ["PolicyInfo", "describe_policy", "list_policies"]
@@ -28,7 +29,7 @@ class PolicyInfo:
 
     Attributes:
         name: What opens it.
-        kind: ``behavior``, ``built-in``, ``plug-in`` or ``file``.
+        kind: ``behavior``, ``built-in``, ``trained``, ``plug-in`` or ``file``.
         about: What it does.
         output: What it returns: ``control``, ``velocity``, or ``engine`` for a behavior.
         needs: What it observes besides the state and the goal of the robot.
@@ -57,6 +58,7 @@ def list_policies() -> list[PolicyInfo]:
     return [
         *map(_behavior, behaviors),
         _random(),
+        *map(describe_policy, trained_policies()),
         *(_plugin(name) for name in POLICIES.names()),
     ]
 
@@ -74,7 +76,15 @@ def describe_policy(text: str, folder: str | Path | None = None) -> PolicyInfo:
         return _behavior(policy.name)
     if text == RANDOM:
         return _random()
-    kind = "file" if names_file(text) else "built-in" if policy.name == RANDOM else "plug-in"
+    kind = (
+        "file"
+        if names_file(text)
+        else "trained"
+        if names_trained(text)
+        else "built-in"
+        if policy.name == RANDOM
+        else "plug-in"
+    )
     return _info(text, kind, policy, _about(policy), {})
 
 

@@ -14,6 +14,7 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.files import open_task, task_scenario
 from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.team import team_of
+from irsim.learning.training.curve import draw_curve
 from irsim.learning.training.extractor import PartColumns, columns_of
 from irsim.learning.training.run_folder import RunFolder
 from irsim.learning.worlds import Worlds
@@ -34,7 +35,7 @@ _ACTIVATIONS = {nn.ReLU: "relu", nn.Tanh: "tanh", nn.ELU: "elu", nn.SiLU: "silu"
 
 
 def export_policy(folder: str | Path, out: str | Path, *, license: str = "", description: str = "") -> Path:
-    """Write the best policy of a training to a file, and its card beside it (``.md``).
+    """Write the best policy of a training to a file, and beside it its card (``.md``) and learning curve (``.png``).
 
     Args:
         folder: Folder of the training.
@@ -84,6 +85,7 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
     else:
         save_network(target, network)
     write_atomically(target.with_suffix(".md"), _card_text(target, task, card))
+    draw_curve(rounds, task.title or task.task, target.with_suffix(".png"))
     return target
 
 
@@ -166,4 +168,5 @@ def _card_text(file: Path, task: Task, card: Mapping[str, Any]) -> str:
     }
     table = "\n".join(f"| {key} | {value} |" for key, value in rows.items())
     use = f"Use it: `irsim run SCENARIO --policy {file.name}`"
-    return f"# {file.stem}\n\n{card['description']}\n\n| | |\n|---|---|\n{table}\n\n{use}\n"
+    curve = f"![learning curve]({file.stem}.png)"
+    return f"# {file.stem}\n\n{card['description']}\n\n| | |\n|---|---|\n{table}\n\n{use}\n\n{curve}\n"
