@@ -271,8 +271,8 @@ nb::object neighbors_of(World& world, BoundState& bound, const Looking& looking,
 void bind_observing(nb::module_& m) {
   nb::class_<Looking>(m, "Looking")
       .def(nb::init<int, double, bool, bool, std::vector<std::uint8_t>, std::vector<int>, int, double>(),
-           nb::arg("neighbors"), nb::arg("reach"), nb::arg("statics"), nb::arg("extents"), nb::arg("steered"), nb::arg("first_beam"),
-           nb::arg("beams"), nb::arg("range_max"));
+           nb::arg("neighbors"), nb::arg("reach"), nb::arg("statics"), nb::arg("extents"), nb::arg("steered"),
+           nb::arg("first_beam"), nb::arg("beams"), nb::arg("range_max"));
   nb::class_<SeenRows>(m, "SeenRows")
       .def(nb::init<const Given<double, 2>&, const Given<double, 1>&, const Given<double, 2>&, const Given<double, 1>&,
                     const Given<double, 2>&, const Given<double, 2>&, const Given<double, 2>&, const Given<double, 2>&,
@@ -281,8 +281,8 @@ void bind_observing(nb::module_& m) {
            nb::arg("control"), nb::arg("low"), nb::arg("high"), nb::arg("goal"), nb::arg("goal_threshold"),
            nb::arg("radius"), nb::arg("arrived"))
       .def("set_neighbors", &SeenRows::set_neighbors, nb::arg("present"), nb::arg("position"), nb::arg("heading"),
-           nb::arg("velocity"), nb::arg("radius"), nb::arg("arrived"), nb::arg("robot"),
-           nb::arg("extent"), nb::arg("own_extent"))
+           nb::arg("velocity"), nb::arg("radius"), nb::arg("arrived"), nb::arg("robot"), nb::arg("extent"),
+           nb::arg("own_extent"))
       .def("set_scan", &SeenRows::set_scan, nb::arg("ranges"), nb::arg("range_max"))
       .def("set_pictures", &SeenRows::set_pictures, nb::arg("pictures"), nb::arg("which"));
 #define IRSIM_LOOK(Type) m.def("look", &look<Type>, nb::arg("options"), nb::arg("rows"));

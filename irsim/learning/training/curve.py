@@ -20,7 +20,6 @@ def draw_curve(rounds: Sequence[Mapping[str, Any]], title: str, file: Path) -> N
         title: Title of the picture.
         file: The PNG to write.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(6.4, 3.6), dpi=100, layout="constrained")
@@ -36,5 +35,5 @@ def draw_curve(rounds: Sequence[Mapping[str, Any]], title: str, file: Path) -> N
     axes.grid(alpha=0.3)
     axes.legend(loc="center right", fontsize="small")
     content = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(content, metadata={"Software": None})
+    figure.savefig(content, format="png", metadata={"Software": None})
     replace_bytes(file, content.getvalue(), mode=None)
