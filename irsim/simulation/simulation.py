@@ -48,6 +48,7 @@ class Simulation:
         seeds: (W,) one seed per world.
         threads: Number of threads that the worlds are distributed over; results do not depend on it.
         history: Store the poses of all steps, for trajectories.
+        check_room: Raise if the first scene has no room for all objects; else the caller draws others until one has.
 
     Attributes:
         world, state: Constant and changing part of the core.
@@ -89,6 +90,7 @@ class Simulation:
         *,
         threads: int = 1,
         history: bool = False,
+        check_room: bool = True,
     ) -> None:
         self.scenario = scenario
         self.threads = threads
@@ -113,7 +115,8 @@ class Simulation:
         self._views: dict[int, list[Any]] = {}
         self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
-        self._check_placement()
+        if check_room:
+            self._check_placement()
 
     def _bind(self, world: core.World, state: core.State) -> None:
         """Replace the world and the state of the core."""
@@ -339,7 +342,10 @@ class Simulation:
 
     def done(self) -> NDArray[np.bool_]:
         """(W,) whether every robot of a world has arrived or stopped; False without robots."""
-        ended = (self.arrived | self.stopped).astype(bool).reshape(self.copies, self.objects)[:, self.robots]
+        flags = self.arrived | self.stopped
+        if self.scenario.variation is not None:
+            flags |= self.state.takes_part == 0
+        ended = flags.astype(bool).reshape(self.copies, self.objects)[:, self.robots]
         if not ended.shape[1]:
             return np.zeros(self.copies, dtype=bool)
         return np.asarray(ended.all(axis=1))
