@@ -123,7 +123,9 @@ class _Column:
 
 def observed_names(task: Task) -> list[str]:
     """Names of the draws that learners observe, at all levels."""
-    return list(dict.fromkeys(name for level in task.levels for name in merged(task.randomize, level.randomize).observed))
+    return list(
+        dict.fromkeys(name for level in task.levels for name in merged(task.randomize, level.randomize).observed)
+    )
 
 
 def check_observed(task: Task, scene: Scene) -> None:

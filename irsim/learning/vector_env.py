@@ -158,7 +158,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         return seen.copy() if self._copy else seen, reward, terminated, truncated, info
 
     def _drawn(self) -> dict[str, Any]:
-        """What was drawn for the present episode of the world of each slot, and its level; empty if nothing is drawn."""
+        """What was drawn for the present episode of each slot's world, and its level; empty if nothing is drawn."""
         worlds = self.worlds
         if not worlds.varies:
             return {}

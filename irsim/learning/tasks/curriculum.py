@@ -21,8 +21,8 @@ class CurriculumLevel(Options):
     parameters: dict[str, Value] = {}
     """Values of parameters of the template."""
     values: dict[str, Any] = {}
-    """Values of the scenario by their paths, such as `robot[0].distribution.goal_distance: 2`: places, goals, shapes and
-    ranges. The paths must exist."""
+    """Values of the scenario by their paths, such as `robot[0].distribution.goal_distance: 2`: places, goals, shapes
+    and ranges. The paths must exist."""
     horizon: Annotated[Seconds, Field(gt=0)] | None = None
     """Time after which an episode is cut off; null: that of the task."""
 

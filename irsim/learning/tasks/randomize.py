@@ -58,8 +58,8 @@ class Randomize(Options):
     }
 
     number: dict[str, Whole] = {}
-    """How many of the objects take part; the others are absent, as before `appear_time`. Which ones is drawn, too. Robots
-    that learn and are absent are slots that wait."""
+    """How many of the objects take part; the others are absent, as before `appear_time`. Which ones is drawn, too.
+    Robots that learn and are absent are slots that wait."""
     size: dict[str, Factors] = {}
     """Factor on the footprint, about the origin of its body frame. Places are drawn for the scaled footprint; where the
     scenario gives them, scaled footprints may overlap."""

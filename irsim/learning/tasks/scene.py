@@ -169,7 +169,9 @@ def _set(data: Any, path: str, value: Any, where: tuple[str | int, ...]) -> None
         if not known:
             names = [str(key) for key in data] if isinstance(data, dict) else [f"[{i}]" for i in range(len(data or []))]
             what = f"the scenario has no {clean(path)!r}"
-            raise task_error(where, what, suggestion(str(part), names, f"there is {', '.join(names) or 'nothing'} here"))
+            raise task_error(
+                where, what, suggestion(str(part), names, f"there is {', '.join(names) or 'nothing'} here")
+            )
         if k == len(parts) - 1:
             data[part] = value
         else:
@@ -201,7 +203,9 @@ def _check_alike(base: ResolvedScenario, variant: ResolvedScenario, where: tuple
         raise task_error(where, what, "draw the number with `randomize: {number: …}`")
     for one, other in zip(base.objects, variant.objects, strict=True):
         for key in _differences(one, other):
-            what = f"{key!r} of {one.name!r} differs between variants, which may differ in places, goals and shapes only"
+            what = (
+                f"{key!r} of {one.name!r} differs between variants, which may differ in places, goals and shapes only"
+            )
             raise task_error(where, what, _FIXES.get(key, "leave it as it is"))
     ours, others = base.world.model_dump(exclude=_WORLD_MAY_VARY), variant.world.model_dump(exclude=_WORLD_MAY_VARY)
     for key, value in ours.items():

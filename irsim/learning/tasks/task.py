@@ -132,7 +132,9 @@ class Task(Options):
             what = "'parameters' belong to a template"
             raise problem("invalid-value", what, fix="write values of a scenario where they belong")
         drawn = [self.randomize, *(level.randomize for level in self.levels)]
-        if self.template is None and (any(one.parameters for one in drawn) or any(one.parameters for one in self.levels)):
+        if self.template is None and (
+            any(one.parameters for one in drawn) or any(one.parameters for one in self.levels)
+        ):
             what = "only a template has parameters that can be drawn"
             raise problem("invalid-value", what, fix="use a template, or change the scenario with `values` of a level")
         return self

@@ -122,9 +122,7 @@ class _Selection:
         raise task_error(where, what, suggestion(word, known, f"choose from {listed(known, 10)}"))
 
 
-def _quantities(
-    whole: Randomize, changed: Randomize, where: Where, selection: _Selection
-) -> tuple[DrawnQuantity, ...]:
+def _quantities(whole: Randomize, changed: Randomize, where: Where, selection: _Selection) -> tuple[DrawnQuantity, ...]:
     """What a level draws for objects, checked."""
     found = []
     for quantity in QUANTITIES:
