@@ -60,17 +60,11 @@ class Batch:
     """
 
     def __init__(
-        self,
-        scenario: ResolvedScenario,
-        seeds: Sequence[int],
-        threads: int,
-        policy: Policy | None = None,
-        *,
-        check_room: bool = True,
+        self, scenario: ResolvedScenario, seeds: Sequence[int], threads: int, policy: Policy | None = None
     ) -> None:
         self.scenario = scenario = with_policy(scenario, policy)
         self.seeds = [check_seed(seed) for seed in seeds]
-        self._simulation = Simulation(scenario, self.seeds, threads=threads, check_room=check_room)
+        self._simulation = Simulation(scenario, self.seeds, threads=threads)
         self._simulation.make_view = make_view
         attach_python(self._simulation)
         attach_policy(self._simulation, policy)

@@ -17,7 +17,7 @@ from irsim.learning.tasks.task import Task
 from irsim.scenario.resolve.variation import DrawnQuantity
 from irsim.simulation.simulation import Simulation
 
-__all__ = ["Draws", "check_observed"]
+__all__ = ["Draws", "check_observed", "observed_names"]
 
 _ARRAYS = {
     "number": "takes_part",

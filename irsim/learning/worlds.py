@@ -94,11 +94,10 @@ class Worlds:
         scene = open_scene(self.task, folder)
         check_observed(self.task, scene)
         self.scenario: ResolvedScenario = scene.scenario
-        varies = self.scenario.variation is not None
         self.n = n
         first = self.task.seeds.train if seed is None else seed
         seeds = [first + i for i in range(n)]
-        self._batch = Batch(self.scenario, seeds, threads, check_room=not varies)
+        self._batch = Batch(self.scenario, seeds, threads)
         self._simulation = simulation = self._batch.simulation
         self._threads = threads
         team = team_of(self.task, self.scenario)
@@ -127,7 +126,7 @@ class Worlds:
         self.drawn: dict[str, NDArray[Any]] = {}
         self._latency = None if self._draws.latency == 0 else Latency(self._draws.latency, n, self.learners)
         self.set_level((self.task.curriculum.start if self.task.curriculum else 0) if level is None else level)
-        self.reset(seeds=seeds if varies else None)
+        self.reset(seeds=seeds if self.varies else None)
 
     # episodes ---------------------------------------------------------------------------------------------------------
     def reset(self, mask: NDArray[np.bool_] | None = None, *, seeds: Sequence[int] | None = None) -> None:

@@ -11,6 +11,7 @@ from irsim.common.extras import require
 from irsim.common.files import check_suffix, write_atomically
 from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.draws import observed_names
 from irsim.learning.tasks.files import open_task
 from irsim.learning.tasks.scene import task_scenario
 from irsim.learning.tasks.task import Task
@@ -92,7 +93,7 @@ def network_of(policy: Any, source: Any, card: Mapping[str, Any] | None = None) 
         card: Where it comes from.
     """
     task, folder = open_task(source)
-    if any(one.randomize.observed for one in (task, *task.levels)):
+    if observed_names(task):
         what = "the policy observes what is drawn for each episode, which only a simulation knows"
         raise ArgumentError(what, "train without randomize.observed")
     team = team_of(task, task_scenario(task, folder))
