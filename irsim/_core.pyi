@@ -534,6 +534,21 @@ class Perturbation:
         attempts: int,
     ) -> None: ...
 
+class Variation:
+    """A quantity that is drawn for each scene from the stream `task`, uniformly.
+
+    A `number` says how many of the objects take part, `latency` is a whole number of steps, and the others are factors:
+    `size` (of the footprint about the origin of the body frame), `speed` and `acceleration` (of the limits) and
+    `sensor_noise` (of the standard deviations). Objects are drawn one by one, or with `same` together.
+    """
+
+    def __init__(self, *, quantity: str, objects: Sequence[int], low: float, high: float, same: bool) -> None: ...
+
+class Level:
+    """What is drawn at one level: `variations`, and one of `variants` variants from `first_variant` on."""
+
+    def __init__(self, *, variations: Sequence[Variation], first_variant: int, variants: int) -> None: ...
+
 class View:
     """The field of view of an object: a sector of `angle` [rad] about its heading and of `reach` [m].
 
@@ -593,6 +608,18 @@ class World:
     collision_mode: int  # may be set at run time
     after_arrival: int  # 0: arrived only while at the goal, 1: stands still for good, 2: arrived for good
     extent: tuple[float, float, float, float]  # x0, y0, x1, y1 [m] of the box in which paths are planned; may be set
+    def set_levels(self, levels: Sequence[Level], speeds: Sequence[Sequence[int]]) -> None:
+        """Let scenes vary; a state draws those of its `level`. Call it before a state is made.
+
+        Args:
+            levels: What is drawn at each level.
+            speeds: Controls of each object that are speeds.
+        """
+    def set_variants(self, variants: Sequence[World]) -> None:
+        """Set worlds of the same objects with other places, goals and shapes, from which levels choose.
+
+        Call it before `set_levels`.
+        """
     def scans(self) -> list[tuple[int, int, int]]:
         """(object, first beam, number of beams) of each native sensor of one world, in order.
 
@@ -635,6 +662,15 @@ class State:
     radius: Floats  # (R,) radius of the minimum bounding circle [m]
     vel_min: Floats  # (R, 3) lower limits of the controls in this scene
     vel_max: Floats  # (R, 3) upper limits likewise
+    acce: Floats  # (R, 3) limits of their changes [per s] in this scene
+    takes_part: Flags  # (R,) 0: the object is absent in this scene, see Variation
+    size_scale: Floats  # (R,) factors of this scene on the footprint,
+    speed_scale: Floats  # (R,) on the limits of speeds, which `pace` contains,
+    acceleration_scale: Floats  # (R,) on the limits of accelerations,
+    noise_scale: Floats  # (R,) and on the standard deviations of sensors
+    latency: NDArray[np.int32]  # (R,) steps after which the caller is asked to execute an action
+    level: NDArray[np.int32]  # (W,) level of the scenes drawn from now on; may be set
+    variant: NDArray[np.int32]  # (W,) index among the variants of the world in this scene; -1 without any
     pace: Floats  # (R,) factor on the speeds of the object in this scene
     start_step: NDArray[np.int64]  # (R,) steps for which the object stands still at its start in this scene
     appeared: NDArray[np.int64]  # (R,) step in which the object came into the world; -1 while it is absent
@@ -1113,4 +1149,4 @@ def attention(
 
 STREAMS: dict[
     str, int
-]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user, perturbation, policy
+]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user, perturbation, policy, task

@@ -26,6 +26,8 @@ struct Sensing {
   BeamBuffers& buffers;
 
   Draws draws() const { return Draws(state.key(w), sensor_stream(mount.index), world.number[mount.object]); }
+  /// Factor on the standard deviations of the sensors of the carrier.
+  double noise() const { return state.noise_scale[w * world.objects + mount.object]; }
   std::uint64_t scan_number() const { return static_cast<std::uint64_t>(state.count[w]); }
 };
 

@@ -20,6 +20,7 @@ void step(const World& world, State& state, int w, Workspace& work, bool externa
 bool done(const World& world, const State& state, int w) {
   const int first = w * world.objects;
   for (const int i : world.robots) {
+    if (!state.takes_part[first + i]) continue;
     if (!state.arrived[first + i] && !state.stopped[first + i]) return false;
   }
   return !world.robots.empty();

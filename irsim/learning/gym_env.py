@@ -62,15 +62,24 @@ class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # type
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Start an episode: the first scene of ``seed``, or the next scene."""
+        """Start an episode: the first scene of ``seed``, or the next scene.
+
+        Args:
+            seed: Seed.
+            options: ``level``: level of the curriculum, from now on.
+
+        Raises:
+            ArgumentError: There is no such level.
+        """
         super().reset(seed=seed)
-        if seed is not None:
-            self.worlds.reset(seeds=[seed])
-        elif not self._fresh:
-            self.worlds.reset()
+        begin(self.worlds, seed, options, fresh=self._fresh)
         self._fresh = False
         self._show()
-        return self.worlds.observe()[0], {}
+        return self.worlds.observe()[0], drawn_facts(self.worlds)
+
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum of the episodes that start from now on."""
+        self.worlds.set_level(level)
 
     def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Advance by one period.
@@ -80,7 +89,7 @@ class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # type
         """
         result = self.worlds.step(np.asarray(action)[None])
         self._show()
-        info = facts(result, 0)
+        info = facts(result, 0) | drawn_facts(self.worlds)
         return (
             self.worlds.observe()[0],
             float(result.reward[0, 0]),
@@ -100,6 +109,31 @@ class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # type
     def close(self) -> None:
         """Close the window."""
         self._camera.close()
+
+
+def begin(worlds: Worlds, seed: int | None, options: dict[str, Any] | None, *, fresh: bool) -> None:
+    """Start an episode in the only world of an environment.
+
+    Args:
+        worlds: The world.
+        seed: Its new seed; None: the next scene.
+        options: Options of the reset, such as ``level``.
+        fresh: Whether the episode that the world was made with has not been used; it is, unless something changes.
+    """
+    level = (options or {}).get("level")
+    if level is not None:
+        worlds.set_level(level)
+    if seed is not None or (fresh and level is not None):
+        worlds.reset(seeds=worlds.seeds if seed is None else [seed])
+    elif not fresh:
+        worlds.reset()
+
+
+def drawn_facts(worlds: Worlds) -> dict[str, Any]:
+    """What was drawn for the episode of one world, and its level, for the info of a step; empty if nothing is drawn."""
+    if not worlds.varies:
+        return {}
+    return {"drawn": {name: values[0] for name, values in worlds.drawn.items()}, "level": int(worlds.level[0])}
 
 
 def check_render_mode(mode: str | None) -> None:

@@ -14,6 +14,7 @@ from irsim.policies.networks.layout import Layout, layout_bounds, layout_needs, 
 from irsim.policies.observe import Observer
 
 if TYPE_CHECKING:
+    from irsim.learning.draws import Draws
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Eyes"]
@@ -30,17 +31,21 @@ class Eyes:
         layout: The parts.
         indices: (A,) indices of the learners in a world.
         threads: Number of threads.
+        draws: Draws that are observed at the end.
 
     Attributes:
         size: Number of numbers of an observation, D.
         parts: Label of each part -> its columns, and its shape.
+        drawn: Columns of the draws that are observed.
         low, high: (D,) bounds.
 
     Raises:
         TaskError: A learner lacks the lidar that a part needs.
     """
 
-    def __init__(self, simulation: Simulation, layout: Layout, indices: NDArray[np.int64], threads: int) -> None:
+    def __init__(
+        self, simulation: Simulation, layout: Layout, indices: NDArray[np.int64], threads: int, draws: Draws
+    ) -> None:
         self._simulation, self._layout, self._threads = simulation, layout, threads
         needs = layout_needs(layout)
         problem = lidar_problem(needs, simulation, indices.tolist())
@@ -61,7 +66,14 @@ class Eyes:
             if kernel is not None and part.name != "map":
                 native.append((kernel, column))
             column += size
-        self.size = column
+        self._draws, self._facts = draws, np.zeros((0, 0), dtype=np.float32)
+        self.drawn = slice(column, column + draws.size)
+        starts = np.arange(simulation.copies, dtype=np.int64)[:, None] * simulation.objects
+        self._slot = np.zeros(simulation.copies * simulation.objects, dtype=np.int64)
+        self._slot[(starts + indices).reshape(-1)] = np.arange(simulation.copies * len(indices))
+        low.append(np.zeros(draws.size))
+        high.append(np.ones(draws.size))
+        self.size = column + draws.size
         self.low = np.concatenate(low).astype(np.float32)
         self.high = np.concatenate(high).astype(np.float32)
         self._native = native
@@ -79,13 +91,25 @@ class Eyes:
         core.observe_rows(simulation.world, simulation.state, looking, self._native, rows, seen, self._threads)
         if not self._all_native:
             self._observe_others(rows, seen)
+        if self._draws.size:
+            seen[:, self.drawn] = self._facts[self._slot[rows]]
         return seen
+
+    def read_draws(self) -> None:
+        """Find out what was drawn for the present episodes."""
+        if self._draws.size:
+            self._facts = self._draws.observed()
 
     def _observe_others(self, rows: NDArray[np.int64], seen: NDArray[np.float32]) -> None:
         """Parts that the core does not observe in bulk: pictures of maps, and parts in Python."""
         done = {column for _, column in self._native}
+        there = self._simulation.appeared[rows] >= 0
+        rows = rows[there]
         first, world = np.zeros(len(rows), dtype=bool), rows // self._simulation.objects
-        found = observe(self._layout, self._observer.observe(rows, first, world))
+        found = observe(self._layout, self._observer.observe(rows, first, world)) if len(rows) else {}
         for label, (columns, _) in self.parts.items():
-            if columns.start not in done:
-                seen[:, columns] = found[label].flat()
+            if columns.start in done:
+                continue
+            seen[~there, columns] = 0.0
+            if found:
+                seen[there, columns] = found[label].flat()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.extras import require
-from irsim.learning.gym_env import RENDER_MODES, check_render_mode, facts, frames_per_second
+from irsim.learning.gym_env import RENDER_MODES, begin, check_render_mode, drawn_facts, facts, frames_per_second
 from irsim.learning.pictures import Camera
 from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskSource
@@ -70,15 +70,28 @@ class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):  # t
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[Agent, NDArray[np.float32]], dict[Agent, dict[str, Any]]]:
-        """Start an episode: the first scene of ``seed``, or the next scene."""
-        if seed is not None:
-            self.worlds.reset(seeds=[seed])
-        elif not self._fresh:
-            self.worlds.reset()
+        """Start an episode: the first scene of ``seed``, or the next scene. Its agents are the robots that take part.
+
+        Args:
+            seed: Seed.
+            options: ``level``: level of the curriculum, from now on.
+
+        Raises:
+            ArgumentError: There is no such level.
+        """
+        begin(self.worlds, seed, options, fresh=self._fresh)
         self._fresh = False
-        self.agents = list(self.possible_agents)
+        here = self.worlds.present[0]
+        self.agents = [agent for agent, slot in self._slots.items() if here[slot]]
         seen = self.worlds.observe()
-        return {agent: seen[slot] for agent, slot in self._slots.items()}, {agent: {} for agent in self.agents}
+        return (
+            {agent: seen[self._slots[agent]] for agent in self.agents},
+            {agent: drawn_facts(self.worlds) for agent in self.agents},
+        )
+
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum of the episodes that start from now on."""
+        self.worlds.set_level(level)
 
     def step(
         self, actions: dict[Agent, Any]
@@ -115,7 +128,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):  # t
             {agent: reward[slot] for agent, slot in slots.items()},
             {agent: ended[slot] for agent, slot in slots.items()},
             {agent: cut[slot] for agent, slot in slots.items()},
-            {agent: facts(result, slot) for agent, slot in slots.items()},
+            {agent: facts(result, slot) | drawn_facts(self.worlds) for agent, slot in slots.items()},
         )
 
     def render(self) -> Any:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.ladder import Ladder
 from irsim.learning.pictures import Camera
 from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskSource
@@ -37,6 +38,7 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     Attributes:
         worlds: The worlds behind it.
         active: (num_envs,) whether the last step counted for a slot; it does not for those that waited.
+        ladder: What moves the worlds through the levels of the curriculum of the task; None without one.
 
     Raises:
         TaskError: The task is not valid, or does not fit its scenario.
@@ -48,6 +50,8 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
         slots = self.worlds.n * self.worlds.learners
         self.render_mode = "rgb_array"
         self._camera = Camera(self.worlds)
+        curriculum = self.worlds.task.curriculum
+        self.ladder = None if curriculum is None else Ladder(self.worlds, curriculum)
         self._actions: Any = None
         self._fresh = True
         self._length = np.zeros(slots, dtype=np.int64)
@@ -64,6 +68,8 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
             self.worlds.reset()
         self._fresh = False
         self._reset_seeds()
+        if self.ladder is not None:
+            self.ladder.begin_episodes()
         self._length[:], self._return[:], self.active[:] = 0, 0.0, True
         self.reset_infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         return self.worlds.observe()
@@ -92,11 +98,19 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
         for slot in np.flatnonzero(done).tolist():
             infos[slot]["terminal_observation"] = seen[slot].copy()
         self._length[done], self._return[done] = 0, 0.0
+        if self.ladder is not None:
+            self.ladder.watch(result)
         if over.any():
             worlds.reset(result.over)
             slots = np.flatnonzero(over)
             seen[slots] = worlds.eyes.observe(worlds.rows[slots])
         return seen, reward.astype(np.float32), done, infos
+
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum of the episodes that start from now on, as the ladder does when it moves."""
+        self.worlds.set_level(level)
+        if self.ladder is not None:
+            self.ladder.restore({"level": level, "recent": ""})
 
     def close(self) -> None:
         """Close the window."""

@@ -70,7 +70,7 @@ class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not rea
         if mask is not None or not self._fresh:
             self.worlds.reset(mask)
         self._fresh = False
-        active = np.ones(self.batch_size[0], dtype=bool)
+        active = self.worlds.present.reshape(-1)
         return self._dict(active=active)
 
     def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
@@ -92,6 +92,10 @@ class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not rea
         columns = {name: torch.as_tensor(flag).reshape(-1, 1) for name, flag in flags.items()}
         made = {"observation": seen, **columns}
         return TensorDict(made, batch_size=self.batch_size).to(self.device)
+
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum of the episodes that start from now on."""
+        self.worlds.set_level(level)
 
     def _set_seed(self, seed: int | None) -> None:
         first = 0 if seed is None else seed

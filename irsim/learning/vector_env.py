@@ -84,6 +84,8 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         self._copy = copy
         self._over = np.zeros(self.worlds.n, dtype=bool)
         self._fresh = True
+        self._told: dict[str, NDArray[Any]] | None = None
+        self._facts: dict[str, Any] = {}
 
     def reset(
         self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
@@ -93,13 +95,18 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         Args:
             seed: Seed of the first world, the next one has the next number; or one seed for each world. They start with
                 the first scene of their seed. None: the next scene.
-            options: ``reset_mask``: (num_envs,) bool; only worlds of slots that are True start an episode.
+            options: ``reset_mask``: (num_envs,) bool; only worlds of slots that are True start an episode. ``level``:
+                level of the curriculum, from now on.
 
         Raises:
-            ArgumentError: There is not one seed for each world, or the mask is none.
+            ArgumentError: There is not one seed for each world, the mask is none, or there is no such level.
         """
         super().reset(seed=seed if isinstance(seed, int) else None)
         mask = self._mask((options or {}).get("reset_mask"))
+        level = (options or {}).get("level")
+        if level is not None:
+            self.worlds.set_level(level)
+            seed = self.worlds.seeds if self._fresh and seed is None else seed
         if seed is not None:
             seeds = [seed + i for i in range(self.worlds.n)] if isinstance(seed, int) else list(seed)
             if len(seeds) != self.worlds.n:
@@ -110,7 +117,11 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         self._fresh = False
         self._over[slice(None) if mask is None else mask] = False
         seen = self.worlds.observe(self._observed)
-        return seen.copy() if self._copy else seen, {}
+        return seen.copy() if self._copy else seen, self._drawn()
+
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum of the episodes that start from now on."""
+        self.worlds.set_level(level)
 
     def step(self, actions: Any) -> tuple[NDArray[np.float32], NDArray[np.float64], Flags, Flags, dict[str, Any]]:
         """Advance all worlds by one period.
@@ -134,7 +145,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         if self._mode is AutoresetMode.NEXT_STEP and before.any():
             worlds.reset(before)  # these worlds were over before the step, which did not count
             begun = np.repeat(before, worlds.learners)
-            info["active"] |= begun
+            info["active"] |= begun & worlds.present.reshape(-1)
         seen = worlds.observe(self._observed)
         if self._mode is AutoresetMode.SAME_STEP and over.any():
             slots = np.flatnonzero(np.repeat(over, worlds.learners))
@@ -143,7 +154,19 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
             seen[slots] = worlds.eyes.observe(worlds.rows[slots])
             over[:] = False
         self._over = over
+        info |= self._drawn()
         return seen.copy() if self._copy else seen, reward, terminated, truncated, info
+
+    def _drawn(self) -> dict[str, Any]:
+        """What was drawn for the present episode of each slot's world, and its level; empty if nothing is drawn."""
+        worlds = self.worlds
+        if not worlds.varies:
+            return {}
+        if self._told is not worlds.drawn:  # a new episode has begun somewhere
+            self._told = worlds.drawn
+            arrays = {name: np.repeat(values, worlds.learners, axis=0) for name, values in worlds.drawn.items()}
+            self._facts = {"drawn": arrays, "level": np.repeat(worlds.level, worlds.learners)}
+        return dict(self._facts)
 
     def render(self) -> tuple[Any, ...] | None:
         """A picture of the first world."""

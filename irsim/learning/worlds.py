@@ -13,10 +13,13 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError, PlacementError
 from irsim.env.batch import Batch
+from irsim.learning.draws import Draws, check_observed
 from irsim.learning.features import REWARDS
+from irsim.learning.latency import Latency
 from irsim.learning.moment import Moment
 from irsim.learning.observing import Eyes
-from irsim.learning.tasks.files import TaskSource, open_task, task_scenario
+from irsim.learning.tasks.files import TaskSource, open_task
+from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
 from irsim.metrics.roles import kinds_of
 from irsim.policies.networks.output import Present, decide
@@ -65,6 +68,7 @@ class Worlds:
         n: Number of worlds.
         seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
         threads: Number of threads.
+        level: Level of the curriculum; None: the one that it starts with.
 
     Attributes:
         task: The task.
@@ -73,29 +77,41 @@ class Worlds:
         names: Names of the learners of a world.
         eyes: What they observe.
         width: Number of numbers of an action; 1 for the number of a choice.
+        present: (n, A) whether the learner takes part in the present episode.
+        level: (n,) level of the curriculum of the present episode.
+        drawn: What was drawn for the present episodes, see :meth:`irsim.learning.draws.Draws.values`.
 
     Raises:
         TaskError: The task is not valid, or does not fit its scenario.
         ScenarioError: The scenario cannot be used.
+        ArgumentError: There is no such level.
     """
 
-    def __init__(self, task: TaskSource, n: int = 1, *, seed: int | None = None, threads: int = 1) -> None:
+    def __init__(
+        self, task: TaskSource, n: int = 1, *, seed: int | None = None, threads: int = 1, level: int | None = None
+    ) -> None:
         self.task, folder = open_task(task)
-        self.scenario: ResolvedScenario = task_scenario(self.task, folder)
+        scene = open_scene(self.task, folder)
+        check_observed(self.task, scene)
+        self.scenario: ResolvedScenario = scene.scenario
         self.n = n
         first = self.task.seeds.train if seed is None else seed
-        self._batch = Batch(self.scenario, [first + i for i in range(n)], threads)
+        seeds = [first + i for i in range(n)]
+        self._batch = Batch(self.scenario, seeds, threads)
         self._simulation = simulation = self._batch.simulation
         self._threads = threads
         team = team_of(self.task, self.scenario)
         self.names, self.learners, self._meaning = team.names, len(team.indices), self.task.action.meaning()
         starts = np.arange(n, dtype=np.int64) * simulation.objects
         self.rows = (starts[:, None] + team.indices).reshape(-1)
-        self.eyes = Eyes(simulation, self.task.layout, team.indices, threads)
+        self._draws = Draws(self.task, scene, simulation, team.indices)
+        self.eyes = Eyes(simulation, self.task.layout, team.indices, threads, self._draws)
         self.width = team.action_width
         self._controls = team.controls
         self._kinds = kinds_of(self.scenario.objects)
-        self._horizon = max(1, round(self.task.horizon / self.scenario.world.step_time))
+        step_time = self.scenario.world.step_time
+        horizons = [max(1, round(self.task.horizon_of(k) / step_time)) for k in range(len(self.task.levels))]
+        self._horizons = np.array(horizons, dtype=np.int64)
         self._terms = [(REWARDS.get(term.name), term) for term in self.task.reward]
         self._shape = (n, self.learners)
         self._begun = np.zeros(n, dtype=bool)
@@ -105,7 +121,12 @@ class Worlds:
         self._collided = np.zeros(self._shape, dtype=bool)
         self._low: Floats = np.zeros((len(self.rows), 3))
         self._high: Floats = np.zeros((len(self.rows), 3))
-        self.reset()
+        self.present = np.ones(self._shape, dtype=bool)
+        self.level = np.zeros(n, dtype=np.int64)
+        self.drawn: dict[str, NDArray[Any]] = {}
+        self._latency = None if self._draws.latency == 0 else Latency(self._draws.latency, n, self.learners)
+        self.set_level((self.task.curriculum.start if self.task.curriculum else 0) if level is None else level)
+        self.reset(seeds=seeds if self.varies else None)
 
     # episodes ---------------------------------------------------------------------------------------------------------
     def reset(self, mask: NDArray[np.bool_] | None = None, *, seeds: Sequence[int] | None = None) -> None:
@@ -130,12 +151,48 @@ class Worlds:
                 self._draw(these, next_scene or seeds is not None)
         self._begun[chosen] = True
         self._over[chosen] = False
-        self._ended[chosen] = False
         state = self._simulation.state
+        if self._draws.varies:
+            self._read_draws(chosen)
+        self._ended[chosen] = ~self.present[chosen]
         self._low, self._high = state.vel_min[self.rows], state.vel_max[self.rows]
         flags = self._simulation
         self._arrived[chosen] = flags.arrived[self.rows].reshape(self._shape)[chosen] != 0
         self._collided[chosen] = flags.collided[self.rows].reshape(self._shape)[chosen] != 0
+
+    def set_level(self, level: int) -> None:
+        """Set the level of the curriculum of the episodes that start from now on.
+
+        Raises:
+            ArgumentError: There is no such level.
+        """
+        if isinstance(level, bool) or not 0 <= level < len(self.task.levels):
+            last = len(self.task.levels) - 1
+            what = f"there is no level {level!r}"
+            raise ArgumentError(what, f"give a level from 0 to {last}" if last else "the task has no curriculum")
+        self._simulation.state.level[:] = level
+        self._simulation.revision += 1  # what is kept for the scene of a seed belongs to a level
+
+    @property
+    def varies(self) -> bool:
+        """Whether the task draws more for each episode than its scenario does."""
+        return self._draws.varies
+
+    @property
+    def seeds(self) -> list[int]:
+        """(n,) present seeds."""
+        seeds: list[int] = self._simulation.state.seed.tolist()
+        return seeds
+
+    def _read_draws(self, chosen: NDArray[np.bool_]) -> None:
+        """Find out what was drawn for the episodes that begin."""
+        state = self._simulation.state
+        self.present = (state.takes_part[self.rows] != 0).reshape(self._shape)
+        self.level = np.where(chosen, state.level, self.level)
+        self.drawn = self._draws.values()
+        self.eyes.read_draws()
+        if self._latency is not None:
+            self._latency.steps = self._draws.latencies()
 
     @property
     def simulation(self) -> Simulation:
@@ -198,6 +255,8 @@ class Worlds:
         )
         terms = np.stack([self._value(feature, options, moment) for feature, options in self._terms])
         terms *= active
+        if not self.present.all():
+            terms[:, ~self.present] = 0.0  # their places are not numbers
         return self._close(terms, active, came, hit)
 
     def _close(self, terms: Floats, active: Any, came: Any, hit: Any) -> Result:
@@ -211,7 +270,7 @@ class Worlds:
         done = self._simulation.done()
         terminated = active & (terminated | done[:, None])
         self._ended |= terminated
-        over = self._over | self._ended.all(axis=1) | done | (self._simulation.count >= self._horizon)
+        over = self._over | self._ended.all(axis=1) | done | (self._simulation.count >= self._horizons[self.level])
         if ends.world == "any":
             over |= terminated.any(axis=1)
         elif ends.world == "collision":
@@ -262,10 +321,15 @@ class Worlds:
     def _impose(self, numbers: Floats, pose: Floats, goal: Floats) -> None:
         """Command the learners whose episodes go on; the others stand still."""
         simulation, rows = self._simulation, self.rows
+        held = None
+        if self._latency is not None:
+            numbers, held = self._latency.pass_on(numbers, simulation.count)
         velocity = simulation.twist[rows, :2]
         present = Present(pose, goal, velocity, simulation.control[rows], self._low, self._high)
         wanted = decide(self._meaning, numbers, present)
         wanted[self._ended.reshape(-1)] = 0.0
+        if held is not None:
+            wanted[held] = 0.0
         simulation.given[rows] = 1
         if self._meaning.returns == "velocity":
             core.follow_rows(simulation.world, simulation.state, rows, wanted)

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario
+    from irsim.scenario.resolve.variation import Variation
 
 __all__ = [
     "COLLISION_MODES",
@@ -287,11 +288,35 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
     world.after_arrival = AFTER_ARRIVAL[scenario.world.after_arrival]
     x0, y0, x1, y1 = scenario.world.bounds
     world.extent = x0, y0, x1, y1
+    if scenario.variation is not None:
+        speeds = [[k for k in speed_controls(record) if k < _CORE_CONTROLS] for record in scenario.objects]
+        _let_vary(world, scenario.variation, row, speeds)
     return world
+
+
+def _let_vary(world: core.World, variation: Variation, row: dict[int, int], speeds: Sequence[Sequence[int]]) -> None:
+    """Set what is drawn for each scene."""
+    world.set_variants([build_world(variant) for variant in variation.variants])
+    levels = []
+    for level in variation.levels:
+        drawn = [
+            core.Variation(
+                quantity=one.quantity,
+                objects=[row[number] for number in one.objects if number in row],
+                low=one.low,
+                high=one.high,
+                same=one.same,
+            )
+            for one in level.drawn
+        ]
+        levels.append(core.Level(variations=drawn, first_variant=level.first_variant, variants=level.variants))
+    world.set_levels(levels, speeds)
 
 
 def static_shapes_are_random(scenario: ResolvedScenario) -> bool:
     """Return whether the shape of a static object is drawn for each scene."""
+    if scenario.variation is not None:
+        return True
     return any(_is_drawn(record.shape) for record in scenario.objects if record.static)
 
 

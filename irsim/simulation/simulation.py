@@ -113,7 +113,8 @@ class Simulation:
         self._views: dict[int, list[Any]] = {}
         self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
-        self._check_placement()
+        if scenario.variation is None:  # else the caller resets all worlds, at the level that it wants
+            self._check_placement()
 
     def _bind(self, world: core.World, state: core.State) -> None:
         """Replace the world and the state of the core."""
@@ -339,10 +340,9 @@ class Simulation:
 
     def done(self) -> NDArray[np.bool_]:
         """(W,) whether every robot of a world has arrived or stopped; False without robots."""
-        ended = (self.arrived | self.stopped).astype(bool).reshape(self.copies, self.objects)[:, self.robots]
-        if not ended.shape[1]:
-            return np.zeros(self.copies, dtype=bool)
-        return np.asarray(ended.all(axis=1))
+        flags = self.arrived | self.stopped | (self.state.takes_part ^ 1)
+        ended = flags.astype(bool).reshape(self.copies, self.objects)[:, self.robots]
+        return np.asarray(ended.all(axis=1) & (ended.shape[1] > 0))
 
     def reset(self, mask: NDArray[np.bool_] | None = None, *, next_scene: bool = False) -> None:
         """Return worlds to their initial state.
@@ -378,9 +378,8 @@ class Simulation:
     @property
     def rng(self) -> np.random.Generator:
         """A NumPy generator for user code; each reset restarts it from the key of the first world."""
-        key = self.key()
-        if self._rng is None or self._rng[0] != key:
-            self._rng = key, generator(*key, stream="user", object_id=self.user)
+        if self._rng is None or self._rng[0] != self.key():
+            self._rng = self.key(), generator(*self.key(), stream="user", object_id=self.user)
         return self._rng[1]
 
     def set_rng(self, rng: np.random.Generator) -> None:

@@ -88,7 +88,7 @@ inline void dash(const DashOptions& options, const Decision& decision, Intent* i
     const Vec2 way = goal.position() - pose.position();
     const Dasher dasher{norm(way),     std::atan2(way.y, way.x), pose.theta,
                         goal.theta,    world.goal_threshold[i],  decision.state.vel_max[row],
-                        world.acce[i], world.step_time,          options.angle_tolerance};
+                        decision.state.acce[row], world.step_time, options.angle_tolerance};
     intents[k] = std::visit([&](const auto& drive) { return dash_law(drive, dasher); }, world.drive[i]);
   }
 }

@@ -171,7 +171,7 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
     turning.tolerance = kTolerance;
     turning.guarantee_time = dt;
     turning.max_rate =
-        std::min(decision.state.vel_max[ego.row][1], decision.state.control[ego.row][1] + world.acce[ego.id][1] * dt);
+        std::min(decision.state.vel_max[ego.row][1], decision.state.control[ego.row][1] + decision.state.acce[ego.row][1] * dt);
     intents[k] = Intent::of_velocity(velocity, turning);
   }
 }

@@ -50,6 +50,15 @@ void BoundState::expose() {
   radius = view<double>(state.radius.memory, {rows});
   vel_min = view<double>(state.vel_min.memory, {rows, 3});
   vel_max = view<double>(state.vel_max.memory, {rows, 3});
+  acce = view<double>(state.acce.memory, {rows, 3});
+  takes_part = view<std::uint8_t>(state.takes_part.memory, {rows});
+  size_scale = view<double>(state.size_scale.memory, {rows});
+  speed_scale = view<double>(state.speed_scale.memory, {rows});
+  acceleration_scale = view<double>(state.acceleration_scale.memory, {rows});
+  noise_scale = view<double>(state.noise_scale.memory, {rows});
+  latency = view<std::int32_t>(state.latency.memory, {rows});
+  level = view<std::int32_t>(state.level.memory, {worlds});
+  variant = view<std::int32_t>(state.variant.memory, {worlds});
   pace = view<double>(state.pace.memory, {rows});
   start_step = view<std::int64_t>(state.start_step.memory, {rows});
   appeared = view<std::int64_t>(state.appeared.memory, {rows});

@@ -202,8 +202,13 @@ void observe_rows(World& world, BoundState& bound, const Looking& looking, const
     std::vector<double> numbers(most);
     std::vector<std::uint8_t> mask(most_members);
     for (std::size_t b = first; b < last; ++b) {
-      const Seen seen = observer.see(static_cast<int>(rows.data()[b]), near);
       float* const row = out.data() + b * out.shape(1);
+      if (state.absent(static_cast<int>(rows.data()[b]))) {  // it sees nothing
+        for (const auto& [part, column] : parts)
+          std::fill_n(row + column, std::visit([](const auto& o) { return numbers_of(o); }, part), 0.0F);
+        continue;
+      }
+      const Seen seen = observer.see(static_cast<int>(rows.data()[b]), near);
       for (const auto& [part, column] : parts) {
         with(part, [&, column = column](const auto& o) {
           run(o, seen, numbers.data(), mask.data());

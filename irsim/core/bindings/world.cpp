@@ -13,6 +13,8 @@ void bind_world(nb::module_& m) {
   bind_fields<CircleCrossing>(m, "CircleCrossing");
   bind_fields<SquareCrossing>(m, "SquareCrossing");
   bind_fields<Perturbation>(m, "Perturbation");
+  bind_fields<Variation>(m, "Variation");
+  bind_fields<Level>(m, "Level");
   bind_fields<View>(m, "View");
   bind_fields<Fog>(m, "Fog");
   nb::class_<World>(m, "World")
@@ -36,6 +38,8 @@ void bind_world(nb::module_& m) {
       .def_rw("collision_mode", &World::collision_mode)
       .def_rw("after_arrival", &World::after_arrival)
       .def_rw("extent", &World::extent)
+      .def("set_levels", &World::set_levels, nb::arg("levels"), nb::arg("speeds"))
+      .def("set_variants", &World::set_variants, nb::arg("variants"))
       .def_ro("beams_per_world", &World::beams_per_world)
       .def_ro("velocities_per_world", &World::velocities_per_world)
       .def("scans",

@@ -114,14 +114,15 @@ std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shap
     bodies->begin.push_back(static_cast<int>(bodies->pieces.size()));
     Vec2 centre = whole.size > 0.0 ? whole.moment * (1.0 / whole.size) : shapes.centre[i];
     const std::vector<double>& given = world.specs[i].centroid;
-    if (given.size() >= 2) centre = {given[0], given[1]};
+    const double scale = shapes.scale_of(i);
+    if (given.size() >= 2) centre = Vec2{given[0], given[1]} * scale;
     bodies->centroid.push_back(centre);
     const BodyDynamics& dynamics = world.dynamics[i];
     bodies->inverse_mass.push_back(dynamics.pushable ? 1.0 / dynamics.mass : 0.0);
     double per_mass = 0.5 * shapes.radius[i] * shapes.radius[i];
     const bool polygon = parts == 1 && shapes.parts[shapes.body[i].part].kind == Kind::polygon && whole.size > 0.0;
     if (polygon) per_mass = whole.polar / whole.size - squared(centre);
-    if (given.size() == 3) per_mass = given[2];
+    if (given.size() == 3) per_mass = given[2] * scale * scale;
     bodies->gyration2.push_back(per_mass);
     const double inertia = std::isnan(dynamics.inertia) ? dynamics.mass * per_mass : dynamics.inertia;
     bodies->inverse_inertia.push_back(dynamics.pushable && inertia > 0.0 ? 1.0 / inertia : 0.0);

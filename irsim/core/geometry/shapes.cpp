@@ -63,6 +63,7 @@ void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
     }
     for (const Vec2& v : outline.vertices) discs.push_back({v, outline.radius});
   }
+  if (!scale.empty()) scale.push_back(1.0);
   const PlainDisc around = enclosing_circle(discs);
   centre.push_back(around.centre);
   centroid.push_back(centroid_of(outlines, around.centre));
@@ -82,7 +83,26 @@ void Shapes::copy(const Shapes& other, int object, bool fixed) {
   centre.push_back(other.centre[object]);
   centroid.push_back(other.centroid[object]);
   radius.push_back(other.radius[object]);
+  if (!scale.empty() || other.scale_of(object) != 1.0) {
+    scale.resize(objects() - 1, 1.0);
+    scale.push_back(other.scale_of(object));
+  }
   close(body.back(), fixed);
+}
+
+std::shared_ptr<const Shapes> Shapes::scaled(const double* factors) const {
+  auto out = std::make_shared<Shapes>(*this);
+  out->scale.resize(objects());
+  for (int i = 0; i < objects(); ++i) {
+    const double factor = is_map(i) ? 1.0 : factors[i];
+    out->scale[i] = scale_of(i) * factor;
+    for (int p = body[i].part; p < body[i + 1].part; ++p) out->parts[p].radius *= factor;
+    for (int v = body[i].vertex; v < body[i + 1].vertex; ++v) out->vertices[v] = vertices[v] * factor;
+    out->centre[i] = centre[i] * factor;
+    out->centroid[i] = centroid[i] * factor;
+    out->radius[i] *= factor;
+  }
+  return out;
 }
 
 /// Give the last object, which begins at `first`, its slot among the moving or the static objects.

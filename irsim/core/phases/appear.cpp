@@ -16,7 +16,7 @@ void appear(const World& world, State& state, int w) {
   const int first = w * world.objects;
   std::vector<int> due;
   for (const int i : world.latecomers) {
-    if (!state.absent(first + i)) continue;
+    if (!state.absent(first + i) || !state.takes_part[first + i]) continue;
     if (!std::isnan(state.pose[first + i].x)) {  // the caller has put it somewhere
       state.appeared[first + i] = state.count[w];
     } else if (state.count[w] >= world.specs[i].appear_step) {

@@ -24,7 +24,7 @@ void face_goal(const World& world, const State& state, int row, int object, Vec3
   const double error = wrap(goal.theta - state.pose[row].theta), dt = world.step_time;
   const double turn = std::fabs(control[2]) * dt, enough = std::sqrt(threshold * threshold - gap * gap);
   if (turn > kRestingTurn && turn <= std::fabs(error) + enough) return;
-  const double acce = world.acce[object][2];
+  const double acce = state.acce[row][2];
   double rate = std::fabs(error) / dt;
   if (std::isfinite(acce) && acce > 0.0) {  // the turn must be able to stop at the wanted heading
     const double change = acce * dt;

@@ -22,7 +22,7 @@ void limit(const World& world, State& state, int w, int object) {
   const Vec3& wanted = state.command[row];
   Vec3 next;
   for (int c = 0; c < 3; ++c) {
-    const double change = world.acce[object][c] * world.step_time;
+    const double change = state.acce[row][c] * world.step_time;
     next[c] =
         clip(wanted[c], std::max(state.vel_min[row][c], u[c] - change), std::min(state.vel_max[row][c], u[c] + change));
   }

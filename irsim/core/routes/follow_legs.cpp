@@ -70,7 +70,7 @@ bool Follower::slow_down_on_leg(Vec3& u) {
 }
 
 double Follower::stopping_speed(double left, int control, double most) const {
-  const double acce = world_.acce[object_][control];
+  const double acce = state_.acce[row_][control];
   double speed = std::min(most, left / world_.step_time);
   if (std::isfinite(acce) && acce > 0.0) {
     const double change = acce * world_.step_time;

@@ -18,7 +18,7 @@ constexpr double kRounding = 1e-9;    // [m]
 void Follower::find_sides() {
   std::vector<Side>& sides = work_.sides;
   sides.clear();
-  const Vec3 &top = state_.vel_max[row_], &acce = world_.acce[object_];
+  const Vec3 &top = state_.vel_max[row_], &acce = state_.acce[row_];
   const double dt = world_.step_time, speed = std::max(std::fabs(top[0]), std::fabs(state_.vel_min[row_][0]));
   const double braking = std::isfinite(acce[0]) && acce[0] > 0.0 ? 0.5 * speed * speed / acce[0] : 0.0;
   const double reach = 2.0 * (2.0 * speed * dt + braking) + kReachSlack;

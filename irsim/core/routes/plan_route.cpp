@@ -58,7 +58,7 @@ Vec2 way_in(const Space& space, Vec2 from) {
 }  // namespace
 
 Box Follower::bounds() const {
-  const auto& b = world_.extent;
+  const auto& b = variant_of(world_, state_, w_).extent;
   Box box{b[0], b[1], b[2], b[3]};
   box.include(position());
   box.include(state_.goal[row_].position());

@@ -21,7 +21,7 @@ void Follower::steer_to_corner(Vec3& u) {
   const Vec2 way = target.position() - pose.position();
   if (last && norm(way) < world_.goal_threshold[object_]) return;
   const double error = wrap(std::atan2(way.y, way.x) - pose.theta);
-  const Vec3 &top = state_.vel_max[row_], &acce = world_.acce[object_];
+  const Vec3 &top = state_.vel_max[row_], &acce = state_.acce[row_];
   const double left = norm(route_.path[route_.next] - pose.position());
   double most = kInfinity;
   if (!last) {
@@ -158,7 +158,7 @@ bool Follower::clear_after(const Vec3& command) {
   for (int k = 0; k < kMaxBrakingSteps; ++k) {
     bool moves = false;
     for (int c = 0; c < 3; ++c) {
-      const double change = world_.acce[object_][c] * world_.step_time;
+      const double change = state_.acce[row_][c] * world_.step_time;
       control[c] = clip(wanted[c], std::max(state_.vel_min[row_][c], control[c] - change),
                         std::min(state_.vel_max[row_][c], control[c] + change));
       moves = moves || control[c] != 0.0;

@@ -45,7 +45,7 @@ Fan cast_beams(const Options& options, const Sensing& s, std::uint64_t first_err
   if (options.noise && options.angle_std > 0.0) {
     NormalDraws normal(s.draws());
     for (int i = 0; i < n; ++i) {
-      const double error = options.angle_std * normal(first_error + i);
+      const double error = s.noise() * options.angle_std * normal(first_error + i);
       fan.widen(error);
       fan.aim(i, rotate(unit(s.mount.angle[i] + error), heading));
     }

@@ -46,7 +46,7 @@ inline void fmcw_lidar2d(const FmcwLidar2dOptions& options, const Sensing& s) {
   for (int i = 0; i < n; ++i) {
     const int hit = fan.hit(i);
     double range = hit < 0 ? options.range_max : fan.range(i);
-    if (hit >= 0 && noisy) range += options.std * range_error(first_draw + i);
+    if (hit >= 0 && noisy) range += s.noise() * options.std * range_error(first_draw + i);
     const bool valid = hit >= 0 && range >= options.range_min && range <= options.range_max;
     s.ranges[i] = clip(range, options.range_min, options.range_max);
     s.hits[i] = hit;
@@ -54,7 +54,7 @@ inline void fmcw_lidar2d(const FmcwLidar2dOptions& options, const Sensing& s) {
     double receding = 0.0;
     if (valid) {
       receding = dot(s.object_velocities[hit] - own, fan.beam(i));
-      if (shaky) receding += options.velocity_noise_std * velocity_error(first_draw + 2 * n + i);
+      if (shaky) receding += s.noise() * options.velocity_noise_std * velocity_error(first_draw + 2 * n + i);
     }
     s.velocities[i] = receding;
   }

@@ -40,7 +40,7 @@ inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
   for (int i = 0; i < n; ++i) {
     const int hit = fan.hit(i);
     double range = hit < 0 ? options.range_max : fan.range(i);
-    if (hit >= 0 && noisy) range += options.std * normal(first_draw + i);
+    if (hit >= 0 && noisy) range += s.noise() * options.std * normal(first_draw + i);
     s.ranges[i] = clip(range, options.range_min, options.range_max);
     s.hits[i] = hit;
     s.valid[i] = hit >= 0 && range >= options.range_min && range <= options.range_max;

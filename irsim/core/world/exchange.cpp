@@ -24,6 +24,12 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.goals[row] = from.goals[old_row];
   to.infeasible[row] = from.infeasible[old_row];
   to.pace[row] = from.pace[old_row];
+  to.takes_part[row] = from.takes_part[old_row];
+  to.size_scale[row] = from.size_scale[old_row];
+  to.speed_scale[row] = from.speed_scale[old_row];
+  to.acceleration_scale[row] = from.acceleration_scale[old_row];
+  to.noise_scale[row] = from.noise_scale[old_row];
+  to.latency[row] = from.latency[old_row];
   to.start_step[row] = from.start_step[old_row];
   to.appeared[row] = from.appeared[old_row];
   to.before[row] = from.before[old_row];
@@ -123,6 +129,8 @@ void continue_from(const World& world, State& state, const World& world_before, 
   state.count[0] = before.count[0];
   state.scene_index[0] = before.scene_index[0];
   state.noise[0] = before.noise[0];
+  state.level[0] = before.level[0];
+  state.variant[0] = before.variant[0];
   state.seed[0] = before.seed[0];
   state.fresh[0] = before.fresh[0];
   state.event_count[0] = before.event_count[0];

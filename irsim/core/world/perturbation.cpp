@@ -32,6 +32,7 @@ class Starts {
     std::vector<std::uint8_t> moved(world.objects, 0);
     for (const Perturbation& each : world.perturbations) moved[each.object] = each.moves();
     for (int i = 0; i < world.objects; ++i) {
+      if (!state.takes_part[first_ + i]) continue;
       const Pose& pose = state.initial_pose[first_ + i];
       written_.add(i, pose);
       if (!moved[i]) add(i, pose);
@@ -107,14 +108,14 @@ void perturb(const World& world, State& state, int w) {
   for (const Perturbation& spread : world.perturbations) {
     const int row = w * world.objects + spread.object;
     const auto u = Draws(key, Stream::perturbation, world.number[spread.object]).uniforms(0);
-    state.pace[row] = 1.0 + symmetric(u[0], spread.speed);
+    state.pace[row] *= 1.0 + symmetric(u[0], spread.speed);
     state.start_step[row] += static_cast<std::int64_t>(std::ceil(u[1] * spread.delay / world.step_time));
   }
   const auto moves = [](const Perturbation& spread) { return spread.moves(); };
   if (std::none_of(world.perturbations.begin(), world.perturbations.end(), moves)) return;
   Starts starts(world, state, w);
   for (const Perturbation& spread : world.perturbations) {
-    if (!spread.moves()) continue;
+    if (!spread.moves() || !state.takes_part[w * world.objects + spread.object]) continue;
     if (starts.draw(spread, Draws(key, Stream::perturbation, world.number[spread.object]))) continue;
     state.failed_placement[w] = spread.object;
     return;  // a scene in which an object does not fit is not used

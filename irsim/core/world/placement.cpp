@@ -141,7 +141,7 @@ void place_randomly(const World& world, State& state, int w) {
     if (placed.ends && world.is_static[object]) placed.ends->add(object, start);
   };
   for (int i = 0; i < world.objects; ++i) {
-    if (random[i]) continue;
+    if (random[i] || !state.takes_part[first + i]) continue;
     add_start(i);
     const std::vector<Goal>& goals = state.goals[first + i].initial;
     if (!placed.ends || !travels(i) || goals.empty()) continue;
@@ -151,13 +151,14 @@ void place_randomly(const World& world, State& state, int w) {
   }
   std::vector<std::uint8_t> known(world.objects, 0);
   for (int i = 0; i < world.objects; ++i) known[i] = !random[i];
-  const auto is_known = [&](int object) { return known[object] != 0; };
+  const auto is_known = [&](int object) { return known[object] != 0 && state.takes_part[first + object] != 0; };
   PlacedFootprints anywhere(world, shapes);  // in which footprints are compared with areas to keep clear of
   const auto place_starts = [&](const RandomPlacement& entry) {
     Spread spread(entry.min_distance);
     KeptClear kept(entry, state, shapes, first, is_known);
     const FarGoals far(entry);
     for (const int i : entry.objects) {
+      if (!state.takes_part[first + i]) continue;
       Pose& pose = state.initial_pose[first + i];
       // what stands still must not stand on goals that are known already
       const auto fits = [&] {
@@ -171,6 +172,7 @@ void place_randomly(const World& world, State& state, int w) {
   };
   const auto place_crossing = [&](const auto& entry) {
     for (const int i : entry.objects) {
+      if (!state.takes_part[first + i]) continue;
       const bool goes = travels(i);
       const Crossing drawn = draw_crossing(entry, draws(i), attempts(entry), i, goes, placed);
       if (!drawn.fits) failed(i);
@@ -196,7 +198,9 @@ void place_randomly(const World& world, State& state, int w) {
   }
 
   PlacedFootprints still(world, shapes);
-  for (const int i : world.fixed_objects) still.add(i, state.initial_pose[first + i]);
+  for (const int i : world.fixed_objects) {
+    if (state.takes_part[first + i]) still.add(i, state.initial_pose[first + i]);
+  }
   for (const Placement& placement : world.placements) {
     const auto* entry = std::get_if<RandomPlacement>(&placement);
     if (entry == nullptr) continue;
@@ -205,7 +209,7 @@ void place_randomly(const World& world, State& state, int w) {
     KeptClear kept(*entry, state, shapes, first, is_known);
     const FarGoals far(*entry);
     for (const int i : entry->objects) {
-      if (world.wander[i]) continue;  // their goals are drawn at every reset
+      if (world.wander[i] || !state.takes_part[first + i]) continue;  // their goals are drawn at every reset
       Goal goal;
       if (!travels(i)) {  // these objects never reach a goal, but IR-SIM gives them one
         const auto u = draws(i).uniforms(kGoalDraws);

@@ -1,5 +1,7 @@
 #include "world/state.hpp"
 
+#include <algorithm>
+
 #include "phases.hpp"
 #include "world/features.hpp"
 #include "world/spec.hpp"
@@ -29,7 +31,7 @@ void set_initial_values(const World& world, State& state, int w) {
     const ObjectSpec& spec = world.specs[i];
     const int row = w * world.objects + i;
     const auto at = [](const std::vector<double>& v, std::size_t k) { return k < v.size() ? v[k] : 0.0; };
-    state.pace[row] = 1.0;
+    state.pace[row] = state.speed_scale[row];
     state.start_step[row] = spec.start_step;
     state.initial_pose[row] = {at(spec.pose, 0), at(spec.pose, 1), at(spec.pose, 2)};
     state.initial_control[row] = {{at(spec.control, 0), at(spec.control, 1), at(spec.control, 2)}};
@@ -67,9 +69,16 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       radius(rows),
       vel_min(rows),
       vel_max(rows),
+      acce(rows),
       pace(rows, 1.0),
       start_step(rows),
       appeared(rows),
+      takes_part(rows, 1),
+      size_scale(rows, 1.0),
+      speed_scale(rows, 1.0),
+      acceleration_scale(rows, 1.0),
+      noise_scale(rows, 1.0),
+      latency(rows),
       infeasible(rows),
       goal(rows, {kNone, kNone, kNone}),
       ranges(static_cast<std::size_t>(worlds) * world.beams_per_world),
@@ -81,6 +90,8 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       count(worlds),
       scene_index(worlds),
       noise(worlds),
+      level(worlds),
+      variant(worlds, -1),
       seed(worlds),
       failed_placement(worlds, -1),
       direction(rows),
@@ -118,8 +129,9 @@ void place_fixed(const World& world, State& state, int w) {
     return fixed && std::equal(poses.begin(), poses.end(), fixed->poses.begin(), fixed->poses.end(), same_pose);
   };
   if (is_current(scene.fixed)) return;
-  if (scene.shapes == world.shapes && is_current(world.fixed)) {
-    scene.fixed = world.fixed;
+  const World& from = variant_of(world, state, w);
+  if (scene.shapes == from.shapes && is_current(from.fixed)) {
+    scene.fixed = from.fixed;
   } else {
     scene.fixed = make_fixed(world, *scene.shapes, std::move(poses));
   }
@@ -129,7 +141,9 @@ void set_limits(const World& world, State& state, int row) {
   const int object = row % world.objects;
   state.vel_min[row] = world.vel_min[object];
   state.vel_max[row] = world.vel_max[object];
+  state.acce[row] = world.acce[object];
   for (int c = 0; c < 3; ++c) {
+    state.acce[row][c] *= state.acceleration_scale[row];
     if (!world.paced[object][c]) continue;
     state.vel_min[row][c] *= state.pace[row];
     state.vel_max[row][c] *= state.pace[row];
@@ -141,7 +155,7 @@ void restart_row(const World& world, State& state, int row) {
   const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
   state.pose[row] = state.initial_pose[row];
   state.appeared[row] = 0;
-  if (state.count[w] < world.specs[i].appear_step) leave_world(state, row);
+  if (!state.takes_part[row] || state.count[w] < world.specs[i].appear_step) leave_world(state, row);
   std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
   state.before[row] = state.pose[row].position();
   state.control[row] = state.start_step[row] > 0 ? Vec3{} : state.initial_control[row];
@@ -180,15 +194,20 @@ void restart(const World& world, State& state, int w) {
 
 void draw_scene(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
-  set_initial_values(world, state, w);
-  scene.shapes = world.shapes ? world.shapes : make_shapes(world, make_key(state.seed[w], state.scene_index[w], 0));
+  vary(world, state, w);
+  const World& from = variant_of(world, state, w);
+  set_initial_values(from, state, w);
+  scene.shapes = from.shapes ? from.shapes : make_shapes(from, make_key(state.seed[w], state.scene_index[w], 0));
+  const double* scales = state.size_scale.data + w * world.objects;
+  if (std::any_of(scales, scales + world.objects, [](double scale) { return scale != 1.0; }))
+    scene.shapes = scene.shapes->scaled(scales);
   scene.moving.resize(scene.shapes->size[0]);
   scene.sweep.reset(world.moving);
   scene.fixed = nullptr;
   scene.bodies = nullptr;
   state.failed_placement[w] = -1;
-  if (!world.placements.empty()) place_randomly(world, state, w);
-  if (!world.perturbations.empty() && state.failed_placement[w] < 0) perturb(world, state, w);
+  if (!from.placements.empty()) place_randomly(from, state, w);
+  if (!from.perturbations.empty() && state.failed_placement[w] < 0) perturb(from, state, w);
   for (int i = 0; i < world.objects; ++i) set_limits(world, state, w * world.objects + i);
   restart(world, state, w);
 }
@@ -227,7 +246,8 @@ void draw_wander_goal(const World& world, State& state, int w, int object) {
   const int row = w * world.objects + object;
   const Draws draws(state.key(w), Stream::goal, world.number[object]);
   const std::uint64_t first = 3 * static_cast<std::uint64_t>(state.goal_draws[row]++);
-  const Pose &low = world.range_low[object], &high = world.range_high[object];
+  const World& from = variant_of(world, state, w);
+  const Pose &low = from.range_low[object], &high = from.range_high[object];
   state.goals[row].set({{draws.uniform(first, low.x, high.x), draws.uniform(first + 1, low.y, high.y),
                          draws.uniform(first + 2, low.theta, high.theta)}});
   state.sync_goal(row);
@@ -236,7 +256,8 @@ void draw_wander_goal(const World& world, State& state, int w, int object) {
 const Bodies& bodies_of(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
   if (!scene.bodies) {
-    scene.bodies = world.bodies && scene.shapes == world.shapes ? world.bodies : make_bodies(world, *scene.shapes);
+    const World& from = variant_of(world, state, w);
+    scene.bodies = from.bodies && scene.shapes == from.shapes ? from.bodies : make_bodies(from, *scene.shapes);
   }
   return *scene.bodies;
 }

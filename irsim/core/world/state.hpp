@@ -52,9 +52,14 @@ struct State {
   Array<std::uint8_t> touching;  // bit 0: in contact in the last step, bit 1: in the one before
   Array<double> radius;
   Array<Vec3> vel_min, vel_max;    // limits of the controls in this scene
+  Array<Vec3> acce;                // limits of their changes [per s]
   Array<double> pace;              // factor on the speeds of the object in this scene
   Array<std::int64_t> start_step;  // steps that the object stands still at its start
   Array<std::int64_t> appeared;    // step in which the object came into the world; negative while it is absent
+  // what varies between scenes, see world/variation.hpp
+  Array<std::uint8_t> takes_part;  // 0: the object is absent in this scene
+  Array<double> size_scale, speed_scale, acceleration_scale, noise_scale;
+  Array<std::int32_t> latency;     // steps after which the caller is asked to execute an action
   Array<std::int32_t> infeasible;  // steps of this episode in which no velocity avoided every collision
   Array<Goal> goal;                // head of the queue; x is NaN without a goal
   // (W * beams_per_world,)
@@ -66,6 +71,8 @@ struct State {
   // (W,) for each world
   Array<std::int64_t> count;
   Array<std::uint32_t> scene_index, noise;
+  Array<std::int32_t> level;    // of the scenes drawn from now on
+  Array<std::int32_t> variant;  // index among `World::variants` in this scene; -1 without any
   Array<std::uint64_t> seed;
   Array<std::int32_t> failed_placement;
 
@@ -90,10 +97,10 @@ struct State {
 
   /// Key of the random draws of the present episode of world w.
   Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
-  /// Whether a row is not in the world yet. Its x and y are NaN, so that nothing meets, sees or avoids it.
+  /// Whether a row is not in the world, or not yet. Its x and y are NaN, so that nothing meets, sees or avoids it.
   bool absent(int row) const { return appeared[row] < 0; }
   /// Whether a row stands still because its start is delayed, or is absent.
-  bool waits(int row) const { return start_step[row] > 0 && (count[row / objects] < start_step[row] || absent(row)); }
+  bool waits(int row) const { return absent(row) || (start_step[row] > 0 && count[row / objects] < start_step[row]); }
   /// Point that the behavior of a row heads for: its goal, or a point of its route.
   const Goal& destination(int row) const { return target.empty() ? goal[row] : target[row]; }
   /// The route that a row follows; null without one. Routes avoid static objects; behaviors only keep

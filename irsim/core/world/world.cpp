@@ -215,6 +215,35 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
 
 World::~World() = default;
 
+void World::set_levels(std::vector<Level> given, const std::vector<std::vector<int>>& speeds) {
+  if (speeds.size() != static_cast<std::size_t>(objects))
+    throw std::invalid_argument("there must be one list of speeds for each object");
+  for (const Level& level : given) {
+    for (const Variation& v : level.variations) {
+      for (const int i : v.objects) {
+        if (i < 0 || i >= objects) throw std::invalid_argument("a variation names an object that does not exist");
+        for (const int c : speeds[i]) {
+          if (c < 0 || c > 2) throw std::invalid_argument("a speed is a control that does not exist");
+          if (v.quantity == Quantity::speed) paced[i][c] = true;
+        }
+      }
+    }
+    const int last = level.first_variant + level.variants;
+    if (level.variants < 0 || level.first_variant < 0 || last > static_cast<int>(variants.size()))
+      throw std::invalid_argument("a level names a variant that does not exist");
+  }
+  levels = std::move(given);
+}
+
+void World::set_variants(std::vector<std::shared_ptr<World>> given) {
+  for (const std::shared_ptr<World>& one : given) {
+    if (!one || one->objects != objects || one->is_static != is_static || one->beams_per_world != beams_per_world ||
+        one->extra_rows != extra_rows)
+      throw std::invalid_argument("a variant has other objects");
+  }
+  variants = std::move(given);
+}
+
 double World::cell(const Shapes& of, const std::vector<int>& ids) const {
   if (ids.empty()) return 1.0;
   std::vector<double> radii;

@@ -13,6 +13,7 @@
 #include "kinematics.gen.hpp"
 #include "sensing/fog.hpp"
 #include "world/scene.hpp"
+#include "world/variation.hpp"
 #include "world/zones.hpp"
 
 namespace irsim {
@@ -83,7 +84,7 @@ struct World {
   std::vector<Vec3> vel_min, vel_max, acce;
   std::vector<double> angle_low, angle_high, goal_threshold;
   std::vector<Pose> range_low, range_high;
-  std::vector<std::array<bool, 3>> paced;  // whether a control is a speed that a perturbation changes
+  std::vector<std::array<bool, 3>> paced;  // whether a control is a speed that perturbation or variation changes
   std::vector<ObjectSpec> specs;           // as given: initial values, shapes, sensors
 
   // object ids
@@ -97,6 +98,8 @@ struct World {
   std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion
   std::vector<Placement> placements;
   std::vector<Perturbation> perturbations;  // of different objects, static ones first
+  std::vector<Level> levels;                // what varies between scenes; empty if nothing does
+  std::vector<std::shared_ptr<World>> variants;  // the same objects at other places, with other shapes and goals
   Zones zones;                              // what objects enter or cross
   std::vector<View> views;                  // fields of view that are watched
   std::vector<std::uint8_t> is_target;      // (N,) whether it is watched who sees an object
@@ -104,6 +107,11 @@ struct World {
   std::shared_ptr<const Shapes> shapes;  // null if some are drawn for each scene
   std::shared_ptr<const Bodies> bodies;  // rigid bodies of `shapes`; null until they are needed
   std::shared_ptr<const Fixed> fixed;    // at the poses of the template; null if these poses or shapes are drawn
+
+  /// Let scenes vary. `speeds`: controls of each object that are speeds.
+  void set_levels(std::vector<Level> levels, const std::vector<std::vector<int>>& speeds);
+  /// Set the variants that levels choose from.
+  void set_variants(std::vector<std::shared_ptr<World>> variants);
 
   /// Cell size of a grid that suits most of these objects [m].
   double cell(const Shapes& of, const std::vector<int>& ids) const;

@@ -1,33 +1,26 @@
-"""Reads and checks task files, and opens the scenarios of tasks."""
+"""Reads and checks task files."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import yaml
 from pydantic import ValidationError
 
-from irsim.bundled.templates.fill import fill
-from irsim.bundled.templates.metadata import TemplateError
-from irsim.bundled.templates.store import load
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import Diagnostic, suggestion
+from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
+from irsim.diagnostics.diagnostic import Path as Path_
 from irsim.diagnostics.errors import CodedError
 from irsim.diagnostics.report import format_diagnostics
 from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
 from irsim.learning.tasks.task import Task
 from irsim.scenario.messages.translate import translate
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
-from irsim.scenario.resolve.resolved import ResolvedScenario
-from irsim.scenario.yaml.document import Document, load_data, load_path, load_text
+from irsim.scenario.yaml.document import Document, load_data, load_path
 
-__all__ = ["TaskError", "TaskSource", "open_task", "read_task", "task_scenario"]
+__all__ = ["TaskError", "TaskSource", "located", "open_task", "read_task", "task_error"]
 
 TaskSource = str | os.PathLike[str] | Mapping[str, Any] | Task
 """A task, its data, the path of its file, or the name of a bundled task."""
@@ -45,6 +38,18 @@ class TaskError(CodedError, ValueError):
     def __init__(self, message: str, fix: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
         self.diagnostics = list(diagnostics)
         super().__init__("bad-task", message, fix)
+
+
+def task_error(path: Path_, message: str, fix: str) -> TaskError:
+    """The error about one key of a task.
+
+    Args:
+        path: The key.
+        message: One sentence.
+        fix: What to write instead.
+    """
+    whole = f"{format_path(path)}: {message}"
+    return TaskError(whole, fix, [Diagnostic("invalid-value", "error", path, message, fix=fix)])
 
 
 def open_task(source: TaskSource) -> tuple[Task, Path]:
@@ -86,10 +91,11 @@ def _validated(document: Document) -> Task:
         return Task.model_validate(document.data)
     except ValidationError as failure:
         found = [item.diagnostic for item in translate(failure, document.data, document, _MOST, Task)]
-        raise _error(document, [_located(item, document) for item in found]) from None
+        raise _error(document, [located(item, document) for item in found]) from None
 
 
-def _located(item: Diagnostic, document: Document) -> Diagnostic:
+def located(item: Diagnostic, document: Document) -> Diagnostic:
+    """A problem with the line on which its key is."""
     mark = document.mark((*document.prefix, *item.path), key=item.code in ("unknown-key", "missing-key"))
     if mark is None or item.line is not None:
         return replace(item, file=document.name)
@@ -100,36 +106,3 @@ def _error(document: Document, found: Sequence[Diagnostic]) -> TaskError:
     name = clean(document.name or "the task", 200)
     text = format_diagnostics(found, document.text)
     return TaskError(f"{name} is not a valid task\n{text}", "`irsim describe task` lists the keys of a task", found)
-
-
-def task_scenario(task: Task, folder: Path) -> ResolvedScenario:
-    """The scenario of a task under its protocol.
-
-    Args:
-        task: The task.
-        folder: Where the file of its scenario is found.
-
-    Raises:
-        TaskError: The template does not exist, or does not take these parameters.
-        ScenarioError: The scenario cannot be used.
-    """
-    document = _document(task, folder)
-    data = document.data
-    if task.protocol != "as-written" and isinstance(data, Mapping):
-        changed = {**data, "world": {**(data.get("world") or {}), "after_arrival": task.protocol}}
-        document = load_text(yaml.safe_dump(changed, sort_keys=False), name=task.task, path=str(folder / "scene.yaml"))
-    scenario, _ = or_raise(read(document, strict=True))
-    return scenario
-
-
-def _document(task: Task, folder: Path) -> Document:
-    if task.file is not None:
-        return load_path(folder / task.file)
-    if task.template is not None:
-        try:
-            text = fill(load(task.template), task.parameters)
-        except TemplateError as error:
-            raise TaskError(f"task {task.task!r}: {error.message}", error.fix or "") from None
-    else:
-        text = yaml.safe_dump(deepcopy(task.scenario), sort_keys=False)
-    return load_text(text, name=task.task, path=str(folder / "scenario.yaml"))

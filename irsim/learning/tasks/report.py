@@ -8,7 +8,9 @@ from pathlib import Path
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import ScenarioError
 from irsim.episodes.episode import as_finding
-from irsim.learning.tasks.files import TaskError, open_task, task_scenario
+from irsim.learning.draws import check_observed
+from irsim.learning.tasks.files import TaskError, located, open_task
+from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
 from irsim.results.validation import ValidationReport
 from irsim.scenario.yaml.document import load_path
@@ -33,14 +35,22 @@ def task_report(file: str) -> ValidationReport:
     """
     try:
         task, folder = open_task(file)
-        team = team_of(task, task_scenario(task, folder))
+        scene = open_scene(task, folder)
+        team = team_of(task, scene.scenario)
+        check_observed(task, scene)
     except TaskError as error:
         whole = Diagnostic("invalid-value", "error", (), error.message, fix=error.fix)
-        return _report(file, list(error.diagnostics) or [whole])
+        document = load_path(file)
+        return _report(file, [located(item, document) for item in error.diagnostics] or [whole])
     except ScenarioError as error:
         wrong = [item for item in error.diagnostics if item.severity == "error"]
         return _report(file, [_of_scenario(item) for item in wrong])
     learners = f"{len(team.names)} learner{'s' * (len(team.names) != 1)} ({team.drive})"
+    variation = scene.scenario.variation
+    if variation is not None and variation.variants:
+        learners += f", {len(variation.variants)} variants"
+    if task.curriculum is not None:
+        learners += f", {len(task.levels)} levels"
     return ValidationReport(
         file=file,
         valid=True,

@@ -25,6 +25,8 @@ from pydantic import Field, model_validator
 
 from irsim.learning.features import REWARDS
 from irsim.learning.rewards._options import RewardOptions
+from irsim.learning.tasks.curriculum import Curriculum, CurriculumLevel
+from irsim.learning.tasks.randomize import Randomize, Value
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
 from irsim.options.units import Bool, Integer, Seconds
@@ -36,7 +38,6 @@ from irsim.policies.networks.parts._options import PartOptions
 __all__ = ["Action", "Ends", "Seeds", "Task"]
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_.-]{0,63}$")]
-Value = bool | int | float | str
 
 
 class Action(Meaning):
@@ -115,6 +116,10 @@ class Task(Options):
     """Time after which an episode is cut off. Learners are then `truncated`, not `terminated`."""
     seeds: Seeds = Seeds()
     """Seeds of the worlds."""
+    randomize: Randomize = Randomize()
+    """What is drawn for each episode, besides the places that the scenario draws."""
+    curriculum: Curriculum | None = None
+    """Levels from easy to hard, through which a training rises; null: the task as it is."""
 
     @model_validator(mode="after")
     def _has_one_source(self) -> Task:
@@ -126,7 +131,23 @@ class Task(Options):
         if self.parameters and self.template is None:
             what = "'parameters' belong to a template"
             raise problem("invalid-value", what, fix="write values of a scenario where they belong")
+        drawn = [self.randomize, *(level.randomize for level in self.levels)]
+        if self.template is None and (
+            any(one.parameters for one in drawn) or any(one.parameters for one in self.levels)
+        ):
+            what = "only a template has parameters that can be drawn"
+            raise problem("invalid-value", what, fix="use a template, or change the scenario with `values` of a level")
         return self
+
+    @property
+    def levels(self) -> list[CurriculumLevel]:
+        """The levels of the curriculum; without one, the task as it is."""
+        return [CurriculumLevel()] if self.curriculum is None else self.curriculum.levels
+
+    def horizon_of(self, level: int) -> float:
+        """Time after which an episode of a level is cut off [s]."""
+        own = self.levels[level].horizon
+        return self.horizon if own is None else own
 
     @property
     def layout(self) -> Layout:

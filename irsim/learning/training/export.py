@@ -11,7 +11,9 @@ from irsim.common.extras import require
 from irsim.common.files import check_suffix, write_atomically
 from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError
-from irsim.learning.tasks.files import open_task, task_scenario
+from irsim.learning.draws import observed_names
+from irsim.learning.tasks.files import open_task
+from irsim.learning.tasks.scene import task_scenario
 from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.team import team_of
 from irsim.learning.training.curve import draw_curve
@@ -98,6 +100,9 @@ def network_of(policy: Any, source: Any, card: Mapping[str, Any] | None = None) 
         card: Where it comes from.
     """
     task, folder = open_task(source)
+    if observed_names(task):
+        what = "the policy observes what is drawn for each episode, which only a simulation knows"
+        raise ArgumentError(what, "train without randomize.observed")
     team = team_of(task, task_scenario(task, folder))
     columns = columns_of(Worlds(source, 1).eyes, task.observation)
     made = _Layers()

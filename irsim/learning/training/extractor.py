@@ -41,7 +41,7 @@ class PartColumns:
 
 
 def columns_of(eyes: Eyes, parts: Sequence[Any]) -> tuple[PartColumns, ...]:
-    """The columns of the parts of a task.
+    """The columns of the parts of a task, and those of the draws that it observes.
 
     Args:
         eyes: What its learners observe.
@@ -54,6 +54,8 @@ def columns_of(eyes: Eyes, parts: Sequence[Any]) -> tuple[PartColumns, ...]:
         features = list(getattr(part, "features", []))
         present = features.index("present") if members is not None and "present" in features else None
         found.append(PartColumns(part.key, columns.start, columns.stop, members, present))
+    if eyes.drawn.start < eyes.drawn.stop:
+        found.append(PartColumns("drawn", eyes.drawn.start, eyes.drawn.stop, None, None))
     return tuple(found)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.learning.tasks.files import TaskSource
+from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.worlds import Worlds
 
 __all__ = ["Success", "measure_success"]
@@ -37,7 +37,7 @@ class Success:
 
 
 def measure_success(task: TaskSource, decide: Decide, *, seed: int, count: int, threads: int = 1) -> Success:
-    """Run the first episode of each seed.
+    """Run the first episode of each seed, at the last level of a curriculum.
 
     Args:
         task: The task.
@@ -46,7 +46,9 @@ def measure_success(task: TaskSource, decide: Decide, *, seed: int, count: int, 
         count: Number of seeds.
         threads: Number of threads.
     """
-    worlds = Worlds(task, count, seed=seed, threads=threads)
+    opened, _ = open_task(task)
+    worlds = Worlds(task, count, seed=seed, threads=threads, level=len(opened.levels) - 1)
+    there = worlds.present  # learners that take part in these episodes
     shape = (worlds.n, worlds.learners)
     arrived, collided = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     reward, seconds = np.zeros(shape), np.zeros(worlds.n)
@@ -61,9 +63,9 @@ def measure_success(task: TaskSource, decide: Decide, *, seed: int, count: int, 
         going &= ~result.over
     good = arrived & ~collided
     return Success(
-        worlds=float(good.all(axis=1).mean()),
-        learners=float(good.mean()),
-        collided=float(collided.mean()),
-        reward=float(reward.mean()),
+        worlds=float((good | ~there).all(axis=1).mean()),
+        learners=float(good[there].mean()),
+        collided=float(collided[there].mean()),
+        reward=float(reward[there].mean()),
         time=float(seconds.mean()),
     )

@@ -121,6 +121,8 @@ def train(
     model.set_logger(configure(str(run.path / "tensorboard"), ["tensorboard"]))
     per_round = settings.rollout * env.num_envs * settings.round_updates
     rounds = max(1, -(-settings.steps // per_round))
+    if env.ladder is not None and done:
+        env.ladder.restore(done[-1])
     best = max((one["learners"] for one in done), default=-1.0)
     steps, before = (done[-1]["steps"], done[-1]["seconds"]) if done else (0, 0.0)
     for number in range(len(done) + 1, rounds + 1):
@@ -139,6 +141,9 @@ def train(
         better = success.learners > best
         best = max(best, success.learners)
         facts = {"round": number, "steps": steps, "seconds": round(before, 2), **asdict(success)}
+        if env.ladder is not None:
+            facts |= env.ladder.facts()
+            model.logger.record("curriculum/level", env.ladder.level)
         run.save(model, facts, best=better)
         done.append(facts)
         for name, value in asdict(success).items():

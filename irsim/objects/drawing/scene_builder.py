@@ -222,7 +222,7 @@ class SceneBuilder:
             scene.grids.append(self._grid(view))
             return
         style, absent = self.style(view, overrides), self.simulation.appeared[view.row] < 0
-        if absent and not self.ghosts:
+        if absent and not (self.ghosts and self.simulation.state.takes_part[view.row]):
             return
         if absent:
             x, y, heading = self.simulation.state.initial_state(view.row)[:3].tolist()

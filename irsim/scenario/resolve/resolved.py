@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from irsim.components.maps._grid import MapGrid
     from irsim.diagnostics.diagnostic import Path
     from irsim.scenario.model.scenario import Gui, ObjectPlot, WorldModel
+    from irsim.scenario.resolve.variation import Variation
 
 __all__ = ["ObjectRecord", "Placement", "ResolvedScenario", "Spreads"]
 
@@ -170,6 +171,7 @@ class ResolvedScenario:
     text: str | None = None
     grid: MapGrid | None = None  # the map, whether or not any cell is occupied
     map_files: dict[str, str] = field(default_factory=dict)  # name in the scenario -> path of the map file
+    variation: Variation | None = None  # what a task draws for each scene
 
     def robots(self) -> Sequence[ObjectRecord]:
         """The robots, in id order."""

@@ -185,3 +185,34 @@ def test_the_commands_train_and_export(tmp_path: Path) -> None:
     assert json.loads(described.output)["drives"] == ["diff"]
     wrong = run.invoke(app, ["train", "-o", folder])
     assert wrong.exit_code == 2
+
+
+def test_a_training_rises_through_the_levels_and_resumes_on_its_level(tmp_path: Path) -> None:
+    levels = [{"horizon": 1}, {"horizon": 2, "randomize": {"number": {"learners": [1, 2]}}}, {}]
+    curriculum = {"levels": levels, "up": 0.02, "episodes": 60}
+    made = task({"state": [8.55, 5, 0]}, {"state": [8.5, 3, 0], "goal": [9, 3]}, horizon=2, seeds=FEW)
+    made |= {"curriculum": curriculum, "randomize": {"speed": {"learners": [0.5, 1.0]}}}
+    reached = []
+
+    def kill(done: Any) -> None:
+        reached.append(done.number)
+        if done.number == 2:
+            raise RuntimeError
+
+    train(made, tmp_path / "whole", SMALL)
+    with pytest.raises(RuntimeError):
+        train(made, tmp_path / "killed", SMALL, on_round=kill)
+    train("", tmp_path / "killed", resume=True)
+    whole = results(tmp_path / "whole")
+    assert whole == results(tmp_path / "killed")
+    assert len({one["level"] for one in whole}) > 1
+    assert {one["level"] for one in whole} <= {0, 1, 2}
+    a, b = (weights(tmp_path / name / "latest.zip") for name in ("whole", "killed"))
+    assert all(torch.equal(a[key], b[key]) for key in a)
+
+
+def test_a_policy_that_observes_draws_is_trained_and_not_exported(tmp_path: Path) -> None:
+    made = crowd(3, seeds=FEW, randomize={"latency": {"learners": [0, 2]}, "observed": ["latency"]})
+    train(made, tmp_path / "run", SMALL.model_copy(update={"steps": 256}))
+    with pytest.raises(ArgumentError, match=r"only a simulation knows.*without randomize.observed"):
+        export_policy(tmp_path / "run", tmp_path / "a.npz")

@@ -1,0 +1,191 @@
+"""Which objects a task draws something for, and what."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from irsim.common.text import clean, listed
+from irsim.components.maps._grid import MapCells, Walls
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.learning.tasks.files import task_error
+from irsim.learning.tasks.randomize import QUANTITIES, Randomize, Value, merged
+from irsim.learning.tasks.task import Task
+from irsim.learning.tasks.team import team_of
+from irsim.metrics.roles import HUMAN, kinds_of
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+from irsim.scenario.resolve.variation import DrawnQuantity
+from irsim.simulation.random_streams import generator
+
+__all__ = ["LevelDraws", "drawn_values", "level_draws"]
+
+_ENTRY = re.compile(r"^(robot|obstacle)\[(\d+)\]$")
+_DIGITS = 6
+"""Decimals of a drawn parameter, as a template writes numbers."""
+Where = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class LevelDraws:
+    """What a level draws.
+
+    Attributes:
+        drawn: Quantities of objects.
+        parameters: Name of each drawn parameter of the template -> its range or values.
+        variants: Number of variants that are made with them.
+    """
+
+    drawn: tuple[DrawnQuantity, ...]
+    parameters: dict[str, list[Value]]
+    variants: int
+
+
+def level_draws(task: Task, scenario: ResolvedScenario) -> tuple[LevelDraws, ...]:
+    """What each level of a task draws; a task without a curriculum has one level.
+
+    Raises:
+        TaskError: A word names no object, or what is drawn would have no effect.
+    """
+    own = [level.randomize for level in task.levels]
+    if not task.randomize.model_fields_set and not any(one.model_fields_set for one in own):
+        return tuple(LevelDraws((), {}, 0) for _ in own)
+    learners = team_of(task, scenario).indices.tolist()
+    selection = _Selection(scenario, learners)
+    found = []
+    for number, change in enumerate(own):
+        where = ("randomize",) if task.curriculum is None else ("curriculum", "levels", number, "randomize")
+        whole = merged(task.randomize, change)
+        changed = change if task.curriculum is not None else task.randomize
+        drawn = _quantities(whole, changed, where, selection)
+        fixed = set(task.levels[number].parameters) - set(change.parameters)
+        parameters = {name: values for name, values in whole.parameters.items() if name not in fixed}
+        found.append(LevelDraws(drawn, parameters, whole.variants))
+    return tuple(found)
+
+
+def drawn_values(name: str, given: Sequence[Value], kind: str, count: int) -> list[Value]:
+    """Values of a parameter for each variant: spread evenly over its range or list, in an order of its own.
+
+    Args:
+        name: Name of the parameter.
+        given: Low and high, or values.
+        kind: Type of the parameter.
+        count: Number of variants.
+    """
+    order = generator(zlib.crc32(name.encode()), 0, 0, "task").permutation(count).tolist()
+    if kind not in ("number", "integer"):
+        return [given[k % len(given)] for k in order]
+    low, high = float(given[0]), float(given[1])
+    spread = np.linspace(low, high, count) if count > 1 else np.array([(low + high) / 2])
+    values = [round(float(value), _DIGITS) for value in spread]
+    return [round(values[k]) if kind == "integer" else values[k] for k in order]
+
+
+class _Selection:
+    """Finds objects by words."""
+
+    def __init__(self, scenario: ResolvedScenario, learners: Sequence[int]) -> None:
+        self.records = [record for record in scenario.objects if record.path[0] != "world"]
+        self.learners = [scenario.objects[i] for i in learners]
+        kinds = kinds_of(self.records)
+        self._common = {
+            "learners": self.learners,
+            "robots": [record for record in self.records if record.role == "robot"],
+            "obstacles": [record for record in self.records if record.role == "obstacle"],
+            "people": [r for r, kind in zip(self.records, kinds, strict=True) if kind == HUMAN and r.role != "robot"],
+        }
+        self._entries: dict[str, list[ObjectRecord]] = {}
+        for record in self.records:
+            index = record.path[1] if len(record.path) > 1 else 0
+            self._entries.setdefault(f"{record.role}[{index}]", []).append(record)
+
+    def find(self, word: str, where: Where) -> list[ObjectRecord]:
+        """The objects of a word.
+
+        Raises:
+            TaskError: There are none.
+        """
+        own = [record for record in self.records if record.name == word]
+        own = own or [r for r in self.records if word in r.tags or word == r.group_name]
+        if own or (own := self._entries.get(word, []) or self._common.get(word, [])):
+            return own
+        names = [tag for r in self.records for tag in (r.name, r.group_name, *r.tags)]
+        known = list(dict.fromkeys([*self._entries, *self._common, *names]))
+        if word in self._common:
+            raise task_error(where, f"the scenario has no {word}", f"choose from {listed(list(self._entries), 8)}")
+        what = f"no object has the name, the tag or the entry {clean(word)!r}"
+        raise task_error(where, what, suggestion(word, known, f"choose from {listed(known, 10)}"))
+
+
+def _quantities(whole: Randomize, changed: Randomize, where: Where, selection: _Selection) -> tuple[DrawnQuantity, ...]:
+    """What a level draws for objects, checked."""
+    found = []
+    for quantity in QUANTITIES:
+        taken: dict[int, str] = {}
+        for word, (low, high) in getattr(whole, quantity).items():
+            here = (*(where if word in getattr(changed, quantity) else ("randomize",)), quantity, word)
+            records = selection.find(word, here)
+            for record in records:
+                if record.id in taken:
+                    what = f"{record.name!r} belongs to {clean(taken[record.id])!r} as well"
+                    raise task_error(here, what, "let words of one quantity name different objects")
+                taken[record.id] = word
+            _check(quantity, word, records, high, here, selection)
+            ids = tuple(record.id for record in records)
+            found.append(DrawnQuantity(quantity, word, ids, float(low), float(high), quantity in whole.same))
+    _check_learners(found, where, selection)
+    return tuple(found)
+
+
+def _check(
+    quantity: str, word: str, records: Sequence[ObjectRecord], high: float, where: Where, selection: _Selection
+) -> None:
+    """Refuse what would have no effect.
+
+    Raises:
+        TaskError: It would have none.
+    """
+    objects = f"{len(records)} object{'s' * (len(records) != 1)}"
+    if quantity == "number" and high > len(records):
+        what = f"up to {high:g} take part, and {clean(word)!r} names {objects}"
+        raise task_error(where, what, f"give at most {len(records)}, or raise `number` of the entry in the scenario")
+    if quantity == "latency" and any(record not in selection.learners for record in records):
+        raise task_error(where, "only robots that learn get actions", "name learners, such as `learners`")
+    if quantity == "speed" and not all(record.kinematics is not None and not record.static for record in records):
+        raise task_error(where, f"{clean(word)!r} names objects that cannot move", "name objects with a drive")
+    if quantity == "acceleration" and not any(np.isfinite(record.acce).any() for record in records):
+        what = f"the accelerations of {clean(word)!r} are not limited"
+        raise task_error(where, what, "give these objects `acce` in the scenario")
+    if quantity == "sensor_noise" and not any(_is_noisy(sensor) for r in records for sensor in r.sensors):
+        what = f"no sensor of {clean(word)!r} is noisy"
+        raise task_error(where, what, "give a sensor `noise: true` and a `std` in the scenario")
+    if quantity == "size" and any(isinstance(record.shape, (MapCells, Walls)) for record in records):
+        raise task_error(where, "maps and walls around the world have no size", "name other objects")
+
+
+def _is_noisy(sensor: Any) -> bool:
+    noisy = bool(getattr(sensor, "noise", False)) and (sensor.std > 0 or sensor.angle_std > 0)
+    return noisy or getattr(sensor, "velocity_noise_std", 0) > 0
+
+
+def _check_learners(drawn: Sequence[DrawnQuantity], where: Where, selection: _Selection) -> None:
+    """Refuse numbers that may leave no learner.
+
+    Raises:
+        TaskError: There may be none.
+    """
+    learners = {record.id for record in selection.learners}
+    rest, sure = set(learners), 0
+    for one in drawn:
+        if one.quantity == "number":
+            rest -= set(one.objects)
+            sure += max(0, int(one.low) - len(set(one.objects) - learners))
+    if not rest and sure < 1:
+        word = next(one.word for one in drawn if one.quantity == "number" and learners & set(one.objects))
+        what = "an episode may have no robot that learns"
+        raise task_error((*where, "number", word), what, "let at least one learner take part")
