@@ -222,6 +222,12 @@ OBJECTS: dict[str, Code] = {
         "Under `within` the path of `follow` stays in a region. To a goal outside it there is no path, and the object "
         "stays where it is.",
     ),
+    "ends-in-zone": Code(
+        "start or goal in a zone that follow avoids",
+        "The zones that `avoid` of `follow` names are solid for the object. To a goal in one of them there is no path, "
+        "and the object stays where it is; from a start in one of them it drives out first. The whole body counts: its "
+        "radius must fit between the place and the zone.",
+    ),
     "keep-clear": Code(
         "keep_clear that cannot be kept",
         "A random place can keep clear of points, and of objects whose place is known before: those with a fixed "
