@@ -230,8 +230,9 @@ OBJECTS: dict[str, Code] = {
     ),
     "keep-clear": Code(
         "keep_clear that cannot be kept",
-        "A random place can keep clear of points, and of objects whose place is known before: those with a fixed "
-        "place, and those of random entries before this one. Robots are placed before obstacles.",
+        "A random place can keep clear of points, and of the starts and goals of objects of other entries. Objects of "
+        "circle_crossing and square_crossing make way for nobody, so their entries must come first; robots are placed "
+        "before obstacles.",
     ),
     "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),
     "outside-world": Code(
