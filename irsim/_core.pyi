@@ -179,10 +179,17 @@ class RouteOptions(_Options):
     """How an object plans a path for its behavior to follow; 0 switches `replan` or `lookahead` off.
 
     `within` are the corners x, y of an area that the path does not leave [m]; without any, it may go everywhere.
+    `avoid` are the indices of the zones of the world that are solid for the object.
     """
 
     def __init__(
-        self, *, planner: object, replan: float, lookahead: float, within: Sequence[Sequence[float]]
+        self,
+        *,
+        planner: object,
+        replan: float,
+        lookahead: float,
+        within: Sequence[Sequence[float]],
+        avoid: Sequence[int],
     ) -> None: ...
 
 class Terrain:

@@ -178,7 +178,7 @@ def _show(table: RunTable, out: object) -> None:
     for row in table.rows:
         shown.add_row(*(_cell(value) for value in row))
     out.print(shown)
-    if not table.rows:
+    if not (table.rows or table.notes):
         out.print("no such events in these steps")
     steps = f"steps {table.from_step} to {table.to_step}"
     if table.every > 1:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim.common.text import listed, quoted, seconds
@@ -76,11 +76,15 @@ def zone_results(env: Env, events: Sequence[Event]) -> dict[str, ZoneResult]:
     for event in events:
         if event.zone is not None:
             first[event.zone].setdefault(event.object, event.time)
-    return {zone.name: _zone_result(zone, first[zone.name], of) for zone in zones}
+    robots = {view.name for view in env.robot_list}
+    return {zone.name: _zone_result(zone, first[zone.name], of, robots) for zone in zones}
 
 
 def _zone_result(
-    zone: Zone, first: dict[str, float], of: Mapping[str, Mapping[str, Mapping[str, float]]]
+    zone: Zone,
+    first: dict[str, float],
+    of: Mapping[str, Mapping[str, Mapping[str, float]]],
+    robots: Collection[str],
 ) -> ZoneResult:
     """The result of a zone.
 
@@ -88,6 +92,7 @@ def _zone_result(
         zone: The zone.
         first: Time of the first event of each object at the zone, by its name, in order.
         of: Metrics of all zones by the name of the object.
+        robots: Names of all robots.
     """
 
     def total(key: str) -> float:
@@ -96,6 +101,7 @@ def _zone_result(
     return ZoneResult(
         objects=len(first),
         names=list(first)[:_MAX_NAMES],
+        robots=[name for name in first if name in robots][:_MAX_NAMES],
         first_time=next(iter(first.values()), None),
         entries=None if zone.is_line else int(total("zone_crossings")),
         time_in_zone=None if zone.is_line else total("time_in_zone"),
@@ -112,6 +118,8 @@ def zones_message(zones: Mapping[str, ZoneResult]) -> str | None:
 
 def _zone_message(name: str, zone: ZoneResult) -> str:
     first = f"first {quoted(zone.names[0])} at {seconds(zone.first_time or 0.0)}"
+    if zone.robots and zone.robots[0] != zone.names[0]:
+        first += f", the robot {quoted(zone.robots[0])} later"
     if zone.time_in_zone is not None:
         objects = "1 object" if zone.objects == 1 else f"{zone.objects} objects"
         return f"{quoted(name)}: {objects} for {seconds(zone.time_in_zone)} ({first})"

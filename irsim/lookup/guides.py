@@ -87,12 +87,14 @@ GUIDES: dict[str, Guide] = {
         ),
     ),
     "keep-out": Guide(
-        "an area that a planned path stays out of",
-        "No key names a forbidden area: `within` of follow names the area that the path stays in. Draw it as a polygon "
-        "that leaves the forbidden area out. It holds for the middle of the object, so leave its radius as a margin. "
-        "A zone of world.zones only watches: it is not solid, and events and metrics say who entered it.",
-        "behavior: {name: follow, within: {polygon: [[0, 0], [10, 0], [10, 3], [4, 3], [4, 10], [0, 10]]}}",
-        ("keep out", "keep away", "forbidden", "forbidden area", "no-go", "no-go area", "avoid area"),
+        "an area that a robot stays out of",
+        "Name the area in world.zones, and the zone under `avoid` of follow: the zone is then solid for this robot "
+        "alone, and the run says who else entered it. For people who must keep their distance, make the circle larger. "
+        "A zone that nobody avoids only watches. `within` of follow is the opposite: the area that the path stays in. "
+        "Random objects keep clear of a point or an object with `keep_clear` of the distribution random.",
+        "world: {zones: [{name: talk, circle: {center: [6, 6], radius: 1.2}}]}\n"
+        "robot: {state: [6, 1, 1.57], goal: [6, 11], behavior: {name: follow, local: {name: orca}, avoid: [talk]}}",
+        ("keep out", "keep away", "forbidden", "forbidden area", "no-go", "no-go area", "avoid area", "personal space"),
     ),
     "exploration": Guide(
         "driving through a world that is not known",
@@ -105,7 +107,9 @@ GUIDES: dict[str, Guide] = {
     "standing-group": Guide(
         "people who stand together and talk",
         "An obstacle entry with number and the distribution circle, without behavior: its objects stand on a circle "
-        "and face its middle. Name the area between them in world.zones to see who walks through it.",
+        "and face its middle. Name the area that they take in world.zones to see who walks through it; a robot with "
+        "behavior follow goes around it if its `avoid` names it. Template: talking-group.",
+        "world: {zones: [{name: talk, circle: {center: [6, 6], radius: 1.2}}]}\n"
         "obstacle:\n  - {number: 3, tags: [pedestrian], kinematics: {name: static}, shape: {name: circle, "
         "radius: 0.25},\n     distribution: {name: circle, center: [6, 6], radius: 0.7}}",
         ("conversation", "talking", "standing group", "group of people", "people talking", "standing people"),

@@ -112,6 +112,8 @@ class ZoneResult(Result):
     """Number of objects that were in the region, or crossed the line."""
     names: list[str]
     """The first ten of them, in order of time."""
+    robots: list[str] = []
+    """The first ten robots among them, in order of time."""
     first_time: float | None
     """When the first of them was there [s]; None if there was none."""
     entries: int | None = None

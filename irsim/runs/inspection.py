@@ -19,7 +19,7 @@ from irsim.runs.reading import Run, open_run
 from irsim.runs.resimulation import scenario_of
 from irsim.runs.selection import chosen_objects
 from irsim.runs.tables import Cell, Field, Question, Table, paged, rounded
-from irsim.runs.watching import sight_view, zone_view
+from irsim.runs.watching import sight_empty_message, sight_view, zone_view, zones_empty_message
 from irsim.scenario.limits import Limits
 from irsim.simulation.trace import Trace
 
@@ -110,7 +110,7 @@ def inspect_run(
         from_step=from_step,
         to_step=last,
         next_cursor=str(shown) if shown < found.total else None,
-        notes=[*opened.notes, *_beyond(opened, end, to_step)],
+        notes=[*opened.notes, *_beyond(opened, end, to_step), *_empty(question, view, found)],
     )
 
 
@@ -119,6 +119,12 @@ def _beyond(run: Run, end: int, to_step: int | None) -> list[str]:
     if to_step is None or to_step <= end:
         return []
     return [f"step {to_step} is beyond the end of the episode: {run.extent}"]
+
+
+def _empty(question: Question, view: View, found: Table) -> list[str]:
+    """A note that says why a table has no rows."""
+    message = _EMPTY_MESSAGES.get(view)
+    return [] if found.total or message is None else [message(question)]
 
 
 # request --------------------------------------------------------------------------------------------------------------
@@ -279,6 +285,7 @@ VIEWS: dict[str, Callable[[Question], Table]] = {
     "zones": zone_view,
     "sight": sight_view,
 }
+_EMPTY_MESSAGES: dict[str, Callable[[Question], str]] = {"zones": zones_empty_message, "sight": sight_empty_message}
 
 
 # numbers --------------------------------------------------------------------------------------------------------------

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from irsim.common.text import listed, quoted
 from irsim.runs.tables import Cell, Question, Table, paged, rounded
 from irsim.simulation.events import Event
 
-__all__ = ["sight_view", "zone_view"]
+__all__ = ["sight_empty_message", "sight_view", "zone_view", "zones_empty_message"]
 
+_MAX_NAMES = 5
+"""Number of zones or objects that a note names."""
 _TIMES = ["step", "time", "to_step", "duration", "x", "y"]
 
 
@@ -46,6 +49,36 @@ def sight_view(asked: Question) -> Table:
         for begin, end in _within(asked, _spans(events, "sight_end"))
     ]
     return paged(asked, ["observer", "seen", *_TIMES], rows)
+
+
+def zones_empty_message(asked: Question) -> str:
+    """Why the view of zones has no rows."""
+    zones = [str(zone["name"]) for zone in asked.run.resolved["world"].get("zones") or ()]
+    if not zones:
+        return "the scenario has no world.zones, so no zone is watched"
+    by = f" by {_chosen(asked)}" if asked.named else ""
+    return f"none of the zones {_named(zones)} was entered or crossed{by} in {_span_of(asked)}"
+
+
+def sight_empty_message(asked: Question) -> str:
+    """Why the view of sights has no rows."""
+    if not any(item.get("watches") for item in asked.run.resolved["objects"]):
+        return "no object of the scenario has a fov, so no field of view is watched"
+    chosen = f" by or with {_chosen(asked)}" if asked.named else ""
+    return f"there is no sight{chosen} in {_span_of(asked)}"
+
+
+def _chosen(asked: Question) -> str:
+    return _named(sorted(asked.named or ()))
+
+
+def _named(names: Sequence[str]) -> str:
+    return listed([quoted(name) for name in names], _MAX_NAMES)
+
+
+def _span_of(asked: Question) -> str:
+    first, last = asked.steps
+    return f"steps {first} to {last}"
 
 
 def _spans(events: Iterable[Event], last: str) -> list[_Span]:

@@ -122,6 +122,7 @@ def build_object(
     *,
     step_time: float,
     contact: bool = False,
+    zones: Sequence[str] = (),
 ) -> core.ObjectSpec:
     """Build one object of the core.
 
@@ -130,6 +131,7 @@ def build_object(
         group_behavior: Behavior that drives its group (:func:`group_behaviors`); it replaces the object's own.
         step_time: Period of a step [s].
         contact: Whether the core resolves contacts, which needs the centroid of compounds.
+        zones: Names of the zones of the world.
     """
     if isinstance(record.shape, (MapCells, Walls)):
         parts = record.shape.parts()
@@ -150,7 +152,7 @@ def build_object(
     behavior = route = None
     options: Any = record.behavior if group_behavior is None else group_behavior
     if isinstance(options, Follow):
-        route, options = build_route(options), options.local
+        route, options = build_route(options, zones), options.local
     if (
         options is not None
         and record.kinematics is not None
@@ -196,14 +198,15 @@ def build_object(
     )
 
 
-def build_route(options: Follow) -> core.RouteOptions:
-    """Build the options of the path of an object with the behavior ``follow``."""
+def build_route(options: Follow, zones: Sequence[str]) -> core.RouteOptions:
+    """Build the options of the path of an object with the behavior ``follow`` in a world with these zones."""
     resolved = {"resolution": getattr(options.planner, "resolution", None) or 0.0}
     return core.RouteOptions(
         planner=kernel_options(PLANNERS, options.planner, **resolved),
         replan=options.replan or 0.0,
         lookahead=options.lookahead or 0.0,
         within=[] if options.within is None else options.within.points,
+        avoid=[zones.index(name) for name in dict.fromkeys(options.avoid) if name in zones],
     )
 
 
@@ -242,6 +245,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
     """
     groups = group_behaviors(scenario.objects)
     contact, step_time = scenario.world.collision_mode == "contact", scenario.world.step_time
+    zones = [zone.name for zone in scenario.world.zones]
     row = {record.id: index for index, record in enumerate(scenario.objects)}
     before = {} if built is None else built
     now: Built = {}
@@ -249,7 +253,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
         group_behavior = groups.get(record.group) if record.joined else None
         known = before.get(id(record))
         if known is None or known[0] is not record or known[1] is not group_behavior or known[3] != step_time:
-            spec = build_object(record, group_behavior, step_time=step_time, contact=contact)
+            spec = build_object(record, group_behavior, step_time=step_time, contact=contact, zones=zones)
             known = record, group_behavior, spec, step_time
         now[id(record)] = known
     if built is not None:

@@ -24,6 +24,7 @@ from irsim.episodes.stuck import (
     jam_message,
     no_progress_since,
 )
+from irsim.episodes.watching import zone_results, zones_message
 from irsim.results.run import EventRecord
 from irsim.results.validation import DryRun, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
@@ -165,6 +166,7 @@ def _summarise(
                         others_arrived_message(scenario, events),
                         jam_message(env.simulation, held),
                         exits_message(scenario, left),
+                        zones_message(zone_results(env, events)),
                     ),
                 ),
             ]

@@ -206,3 +206,35 @@ def test_a_goal_that_was_jumped_over_stays_so_in_a_zone() -> None:
     arrival = Event("arrival", 1.2, 12, "rover", None, 1.0, 1.0)
     assert find_incidents([], [jump, visit]).jumps == {"rover": jump}
     assert find_incidents([], [jump, visit, arrival]).jumps == {}
+
+
+def notes_of(text: str, view: Any, **asked: Any) -> list[str]:
+    result = irsim.run(text=text, seed=0, record=True)
+    table = inspect_run(str(result.run_id), view=view, **asked)
+    assert table.rows == []
+    return table.notes
+
+
+FAR = ROOM.replace("[[6, 4], [6, 6]]", "[[1, 1], [2, 1]]").replace("[3, 4, 4, 6]", "[1, 8, 2, 9]")
+FAR = FAR.replace("center: [8.5, 5]", "center: [11, 1]").replace("fov_radius: 9", "fov_radius: 1")
+
+
+def test_an_empty_table_of_zones_or_sights_says_why(workspace: Path) -> None:
+    assert notes_of(FAR, "zones") == ["none of the zones 'door', 'box', 'end' was entered or crossed in steps 0 to 29"]
+    assert notes_of(FAR, "zones", robot="rover") == [
+        "none of the zones 'door', 'box', 'end' was entered or crossed by 'rover' in steps 0 to 29"
+    ]
+    assert notes_of(FAR, "sight") == ["there is no sight in steps 0 to 29"]
+
+
+def test_a_scenario_without_zones_or_fov_has_none_to_show(workspace: Path) -> None:
+    text = "robot: {state: [1, 1, 0], goal: [4, 1], behavior: {name: dash}, kinematics: {name: omni}}"
+    assert notes_of(text, "zones") == ["the scenario has no world.zones, so no zone is watched"]
+    assert notes_of(text, "sight") == ["no object of the scenario has a fov, so no field of view is watched"]
+
+
+def test_the_command_says_why_the_table_is_empty(workspace: Path) -> None:
+    irsim.run(text=FAR, seed=0, record=True)
+    printed = CliRunner().invoke(app, ["inspect", "last", "--view", "zones"]).stdout
+    assert "none of the zones 'door', 'box', 'end' was entered" in printed
+    assert "no such events" not in printed

@@ -37,6 +37,7 @@ class Follow(BehaviorOptions):
         "examples": [
             {"name": "follow", "planner": "astar", "local": "dash"},
             {"name": "follow", "within": {"rectangle": [0, 4, 20, 6]}},
+            {"name": "follow", "avoid": ["people_talking"]},
         ]
     }
     also_called: ClassVar[dict[str, str]] = {
@@ -45,6 +46,13 @@ class Follow(BehaviorOptions):
         "inside": "within",
         "bounds": "within",
         "corridor": "within",
+        "avoid_zones": "avoid",
+        "keep_out": "avoid",
+        "keep_clear": "avoid",
+        "forbidden": "avoid",
+        "no_go": "avoid",
+        "exclude": "avoid",
+        "zones": "avoid",
     }
 
     name: Literal["follow"] = "follow"
@@ -62,6 +70,9 @@ class Follow(BehaviorOptions):
     within: Region | None = None
     """Area that the path stays in, so that it does not go around through the open ends of a corridor or outside a
     building. It holds for the middle of the object; one that is pushed out comes back. Null sets no limit."""
+    avoid: list[Annotated[str, Field(strict=True, min_length=1)]] = []
+    """Names of zones of `world.zones` that are solid for this object alone: its path leads around them, and its body
+    does not enter them, not even to give way. One that starts in a zone or is pushed into it leaves it."""
 
 
 BEHAVIORS.register(Follow, kernel=core.RouteOptions)

@@ -41,18 +41,19 @@ class KeepClear(Options):
     point: Point | None = None
     """A place of the world: [x, y]."""
     object: Annotated[str, Field(strict=True, min_length=1)] | None = None
-    """Name of an object, or of a group for all its members. Objects that are random themselves must be of an entry
-    before this one."""
+    """Name of an object of another entry, or of a group for all its members. Its start counts and, if it drives, its
+    goals, too, also where they are random. Order matters only for `circle_crossing` and `square_crossing`, whose
+    entries must come before this one."""
     radius: Annotated[Meters, Field(gt=0)]
-    """Smallest distance from the footprint to the point, or to the footprint of the object."""
+    """Smallest distance from the footprint to the point, or to the footprint of the object at its start and goals."""
 
 
 class RandomDistribution(DistributionOptions):
     """Draw starts, then goals, uniformly at random for every scene.
 
     Entries are placed in file order. Footprints at starts overlap neither objects with a fixed place nor starts drawn
-    before; footprints at goals overlap neither static objects nor other goals of the entry, but may lie on starts.
-    Static objects do not overlap goals that `circle_crossing` and `square_crossing` of entries before have drawn.
+    before; footprints at goals overlap neither static objects nor other goals, but may lie on starts. Static objects
+    do not overlap goals that `circle_crossing` and `square_crossing` of entries before have drawn.
     `state` and `goal` of the entry are ignored: for random starts with a fixed goal, write `state` and `goal` and vary
     the start with `perturb` (position=1 is up to 1 m) of `irsim run` and `irsim benchmark`.
     """

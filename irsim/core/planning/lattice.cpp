@@ -1,5 +1,7 @@
 #include "planning/lattice.hpp"
 
+#include <algorithm>
+
 namespace irsim {
 namespace {
 
@@ -47,7 +49,9 @@ bool OpenCells::clear_around(int i, int j) const {
   bool clear = true;
   space_.blockers.grid.query(
       around, [&](int id) { clear = clear && (!space_.blockers.counts(id) || own_cells(space_.blockers.shapes, id)); });
-  return clear;
+  if (!clear || space_.blockers.others == nullptr) return clear;
+  const std::vector<Footprint>& others = *space_.blockers.others;
+  return std::none_of(others.begin(), others.end(), [&](const Footprint& other) { return around.meets(other.box); });
 }
 
 void OpenCells::find(int i, int j) {

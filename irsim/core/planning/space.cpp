@@ -24,6 +24,10 @@ double Blockers::gap(const Footprint& body, double most) const {
   grid.query(around, [&](int id) {
     if (counts(id)) least = std::min(least, distance(body, outlines.footprint(shapes, id)));
   });
+  if (others == nullptr) return least;
+  for (const Footprint& other : *others) {
+    if (around.meets(other.box)) least = std::min(least, distance(body, other));
+  }
   return least;
 }
 

@@ -23,6 +23,8 @@ class Follower {
         shapes_(*state.scenes[w].shapes),
         blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data(), nullptr} {
     if (!options_.within.empty()) within_.emplace(options_.within);
+    for (const int zone : options_.avoid) avoided_.push_back(world.zones.footprint(zone));
+    mind_avoided(true);
   }
 
   /// Plan where that is due, go on along the route, and note the progress.
@@ -38,6 +40,10 @@ class Follower {
   Vec2 position() const;
   Box bounds() const;
   const Region* region() const { return within_ ? &*within_ : nullptr; }
+  /// Whether the zones that the object avoids are solid from now on.
+  void mind_avoided(bool solid) { blockers_.others = solid && !avoided_.empty() ? &avoided_ : nullptr; }
+  /// Whether the object is in a zone that it avoids, into which it was pushed or in which it starts.
+  bool is_in_avoided() const;
   /// Whether one of the bodies of the route can move straight between two points.
   bool sees(std::size_t body, Vec2 from, Vec2 to);
   /// Go on to the next corner where it is reached or the one after it is in sight.
@@ -53,6 +59,8 @@ class Follower {
   void report_if_stuck();
   /// Plan poses for a drive that cannot move sideways and cannot turn everywhere.
   bool find_legs(double reach, int most = kMaxPoses);
+  /// A place near where a path may go, for an object that has left its region or is in a zone that it avoids.
+  Vec2 way_back(const Space& space, bool left_region) const;
   /// Plan a path on which `wide` fits; `tight` is the body for which corners must stay in sight. Without `search` only
   /// the straight line is tried.
   bool attempt(const Body& wide, const Body& tight, bool search);
@@ -112,8 +120,9 @@ class Follower {
   const Fixed& fixed_;
   const Shapes& shapes_;
   Blockers blockers_;
-  double gap_ = 0.0;              // gap to static objects that the next command must keep [m]
-  std::optional<Region> within_;  // area that the path must not leave
+  double gap_ = 0.0;                // gap to static objects that the next command must keep [m]
+  std::optional<Region> within_;    // area that the path must not leave
+  std::vector<Footprint> avoided_;  // zones that are solid for this object
 };
 
 }  // namespace irsim

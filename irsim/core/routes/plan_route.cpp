@@ -15,7 +15,7 @@ constexpr int kMaxTries = 10;             // plans attempted with a planner that
 constexpr double kSteeringShare = 0.9;    // share of the largest steering angle with which poses are planned
 constexpr double kRestingDistance = 0.1;  // an object that moves less than this counts as resting [m]
 constexpr double kStuckTime = 5.0;        // resting this long on a path that may be too narrow counts as stuck [s]
-constexpr int kEntries = 40;              // places along x and along y at which an object may come back into its region
+constexpr int kEntries = 40;              // places along x and along y at which an object may come back to its way
 constexpr std::uint64_t kDrawsPerPlan = std::uint64_t{1} << 40;  // blocks of draws reserved for each plan
 
 bool draws_samples(const Planner& planner) {
@@ -38,10 +38,9 @@ std::optional<Lattice> lattice_of_map(const World& world, const Shapes& shapes, 
   return std::nullopt;
 }
 
-/// The nearest of many places in the region of a space to which the body can move straight from a point outside;
-/// without one, the point itself.
-Vec2 way_in(const Space& space, Vec2 from) {
-  const Box box = space.region->box();
+/// The nearest of many places in a box, free in a space, to which the body can move straight through another space from
+/// a point that is not free; without one, the point itself.
+Vec2 way_in(const Space& space, const Space& through, const Box& box, Vec2 from) {
   Vec2 best = from;
   double nearest = kInfinity;
   for (int i = 0; i < kEntries; ++i) {
@@ -49,7 +48,7 @@ Vec2 way_in(const Space& space, Vec2 from) {
       const Vec2 p{box.x0 + (box.x1 - box.x0) * (i + 0.5) / kEntries,
                    box.y0 + (box.y1 - box.y0) * (j + 0.5) / kEntries};
       const double away = norm(p - from);
-      if (away < nearest && space.free(p) && space.clear(from, p)) best = p, nearest = away;
+      if (away < nearest && space.free(p) && through.clear(from, p)) best = p, nearest = away;
     }
   }
   return best;
@@ -177,6 +176,22 @@ bool Follower::find_legs(double reach, int most) {
   return true;
 }
 
+Vec2 Follower::way_back(const Space& space, bool left_region) const {
+  Box box;
+  if (left_region) {
+    box = within_->box();
+  } else {
+    for (const Footprint& zone : avoided_) {
+      if (state_.scenes[w_].moving.footprint(shapes_, object_).box.meets(zone.box)) box.include(zone.box);
+    }
+    const double beyond = 2.0 * space.body.reach();
+    box = {box.x0 - beyond, box.y0 - beyond, box.x1 + beyond, box.y1 + beyond};
+  }
+  Blockers solid = blockers_;
+  solid.others = nullptr;
+  return way_in(space, Space{solid, space.body, space.bounds, false, space.region}, box, position());
+}
+
 bool Follower::attempt(const Body& wide, const Body& tight, bool search) {
   route_.bodies.assign({wide, tight});
   const Vec2 start = position(), goal = route_.goal;
@@ -188,8 +203,8 @@ bool Follower::attempt(const Body& wide, const Body& tight, bool search) {
     return true;
   }
   if (!search) return false;
-  const bool outside = within_ && !within_->holds(start);
-  const Vec2 from = outside ? way_in(space, start) : start;
+  const bool left = within_ && !within_->holds(start), outside = left || is_in_avoided();
+  const Vec2 from = outside ? way_back(space, left) : start;
   const std::optional<Lattice> own = lattice_of_map(world_, shapes_, box);
   const int tries = draws_samples(options_.planner) ? kMaxTries : 1;
   for (int k = 0; k < tries && route_.path.empty(); ++k) {

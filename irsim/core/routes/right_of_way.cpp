@@ -144,7 +144,7 @@ void Follower::forget_retreat() {
 }
 
 bool Follower::plan_among_others() {
-  std::vector<Footprint> others;
+  std::vector<Footprint> others = avoided_;
   for (const int i : world_.moving) {
     if (i != object_ && !world_.unobstructed[i] && !state_.absent(w_ * world_.objects + i))
       others.push_back(state_.scenes[w_].moving.footprint(shapes_, i));
@@ -154,7 +154,7 @@ bool Follower::plan_among_others() {
   route_.path.clear();
   route_.next = 1;
   const bool found = find_legs(extent_of(shapes_, object_).reach, kMaxPosesAmongOthers);
-  blockers_.others = nullptr;
+  mind_avoided(true);
   if (!found) {
     route_ = before;
     return false;

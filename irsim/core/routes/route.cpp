@@ -1,5 +1,6 @@
 #include "routes/route.hpp"
 
+#include "collision/touch.hpp"
 #include "routes/follower.hpp"
 #include "routes/right_of_way.hpp"
 #include "world/features.hpp"
@@ -50,6 +51,7 @@ void Follower::adjust_command() {
     u = {};
     return;
   }
+  mind_avoided(!is_in_avoided());
   measure_gap();
   if (!route_.legs.empty()) {
     follow_legs(u);
@@ -65,8 +67,20 @@ void Follower::adjust_command() {
 
 Vec2 Follower::position() const { return state_.pose[row_].position(); }
 
+bool Follower::is_in_avoided() const {
+  if (avoided_.empty()) return false;
+  const Footprint body = state_.scenes[w_].moving.footprint(shapes_, object_);
+  return std::any_of(avoided_.begin(), avoided_.end(),
+                     [&](const Footprint& zone) { return body.box.meets(zone.box) && touch(body, zone); });
+}
+
 bool Follower::sees(std::size_t body, Vec2 from, Vec2 to) {
-  return Space{blockers_, route_.bodies[body], bounds(), false, region()}.clear(from, to);
+  if (Space{blockers_, route_.bodies[body], bounds(), false, region()}.clear(from, to)) return true;
+  if (body != 1 || !is_in_avoided()) return false;
+  // Whoever is in a zone that it avoids heads on for its corner, which lies outside.
+  Blockers solid = blockers_;
+  solid.others = nullptr;
+  return Space{solid, route_.bodies[body], bounds(), false, region()}.clear(from, to);
 }
 
 void Follower::advance() {

@@ -13,6 +13,11 @@ namespace {
 constexpr std::uint64_t kGoalDraws = std::uint64_t{1}
                                      << 40;  // first block of draws for goals; draws for states start at 0
 
+/// Whether an object has a goal that it could reach; objects that wander get theirs at every reset.
+bool travels(const World& world, int object) {
+  return !world.is_static[object] && world.dynamics[object].driven && !world.wander[object];
+}
+
 /// Points of one entry that keep a minimum distance from each other.
 class Spread {
  public:
@@ -32,35 +37,64 @@ class Spread {
   std::vector<Vec2> points_;
 };
 
+/// What is known of a scene while its objects are placed.
+struct Known {
+  const World& world;
+  const State& state;
+  const Shapes& shapes;
+  int first;                                // row of the first object
+  std::vector<std::uint8_t> starts, goals;  // (N,) whether the start, or the goals, of an object are known
+};
+
 /// Areas that the footprints of one entry keep clear of.
 class KeptClear {
  public:
-  /// `known`: whether the start of an object is known.
-  template <class Known>
-  KeptClear(const RandomPlacement& entry, const State& state, const Shapes& shapes, int first, Known&& known) {
+  KeptClear(const RandomPlacement& entry, const Known& known) {
     for (const std::vector<double>& point : entry.keep_points)
-      areas_.emplace_back(Body::disc(point[2]), Vec2{point[0], point[1]});
-    for (std::size_t k = 0; k < entry.keep_objects.size(); ++k) {
-      const int object = entry.keep_objects[k];
-      if (!known(object)) continue;
-      const Pose& start = state.initial_pose[first + object];
-      add(shapes, object, start, entry.keep_radii[k]);
-      for (const Goal& goal : state.goals[first + object].initial) {
-        add(shapes, object, {goal.x, goal.y, std::isnan(goal.theta) ? start.theta : goal.theta}, entry.keep_radii[k]);
+      areas_.push_back({Body::disc(point[2]), Vec2{point[0], point[1]}, kAll});
+    for (std::size_t k = 0; k < entry.keep_objects.size(); ++k)
+      add_places(known, entry.keep_objects[k], entry.keep_radii[k], kAll);
+    // Objects of another entry that keep clear of one of this entry: the distance holds both ways.
+    for (const Placement& placement : known.world.placements) {
+      const auto* other = std::get_if<RandomPlacement>(&placement);
+      if (other == nullptr || other == &entry) continue;
+      for (std::size_t k = 0; k < other->keep_objects.size(); ++k) {
+        const int mine = other->keep_objects[k];
+        if (std::find(entry.objects.begin(), entry.objects.end(), mine) == entry.objects.end()) continue;
+        for (const int object : other->objects) add_places(known, object, other->keep_radii[k], mine);
       }
     }
   }
   /// Whether the object may be at a pose. `places` is where its footprint is put.
   bool allow(int object, const Pose& pose, PlacedFootprints& places) {
-    return std::none_of(areas_.begin(), areas_.end(),
-                        [&](auto& area) { return places.meets(object, pose, area.first.at(area.second)); });
+    return std::none_of(areas_.begin(), areas_.end(), [&](Area& area) {
+      return (area.object == kAll || area.object == object) && places.meets(object, pose, area.body.at(area.place));
+    });
   }
 
  private:
-  void add(const Shapes& shapes, int object, const Pose& pose, double radius) {
-    areas_.emplace_back(Body::of(shapes, object, pose.theta, radius), pose.position());
+  static constexpr int kAll = -1;
+  struct Area {
+    Body body;
+    Vec2 place;
+    int object;  // object of the entry that keeps clear of it, or all
+  };
+
+  /// Add the start of an object, and the goals that it could reach, as far as they are known.
+  void add_places(const Known& known, int object, double radius, int kept_by) {
+    if (!known.starts[object]) return;
+    const Pose& start = known.state.initial_pose[known.first + object];
+    add(known.shapes, object, start, radius, kept_by);
+    if (!known.goals[object] || !travels(known.world, object)) return;
+    for (const Goal& goal : known.state.goals[known.first + object].initial) {
+      add(known.shapes, object, {goal.x, goal.y, std::isnan(goal.theta) ? start.theta : goal.theta}, radius, kept_by);
+    }
   }
-  std::vector<std::pair<Body, Vec2>> areas_;
+  void add(const Shapes& shapes, int object, const Pose& pose, double radius, int kept_by) {
+    areas_.push_back({Body::of(shapes, object, pose.theta, radius), pose.position(), kept_by});
+  }
+
+  std::vector<Area> areas_;
 };
 
 /// From which starts of one entry goals can be found that are far enough.
@@ -122,10 +156,6 @@ void place_randomly(const World& world, State& state, int w) {
     return state.failed_placement[w] < 0 ? std::max(1, entry.attempts) : 1;
   };
   const auto draws = [&](int object) { return Draws(key, Stream::placement, world.number[object]); };
-  // Whether an object has a goal that it could reach; objects that wander get theirs at every reset.
-  const auto travels = [&](int object) {
-    return !world.is_static[object] && world.dynamics[object].driven && !world.wander[object];
-  };
 
   std::vector<std::uint8_t> random(world.objects, 0);
   bool crossings = false;
@@ -144,25 +174,26 @@ void place_randomly(const World& world, State& state, int w) {
     if (random[i] || !state.takes_part[first + i]) continue;
     add_start(i);
     const std::vector<Goal>& goals = state.goals[first + i].initial;
-    if (!placed.ends || !travels(i) || goals.empty()) continue;
+    if (!placed.ends || !travels(world, i) || goals.empty()) continue;
     Pose last = goals.back();
     if (std::isnan(last.theta)) last.theta = state.initial_pose[first + i].theta;
     placed.ends->add(i, last);
   }
-  std::vector<std::uint8_t> known(world.objects, 0);
-  for (int i = 0; i < world.objects; ++i) known[i] = !random[i];
-  const auto is_known = [&](int object) { return known[object] != 0 && state.takes_part[first + object] != 0; };
+  const auto takes_part = [&](int object) { return state.takes_part[first + object] != 0; };
+  Known known{world, state, shapes, first, {}, {}};
+  for (int i = 0; i < world.objects; ++i) known.starts.push_back(!random[i] && takes_part(i));
+  known.goals = known.starts;
   PlacedFootprints anywhere(world, shapes);  // in which footprints are compared with areas to keep clear of
   const auto place_starts = [&](const RandomPlacement& entry) {
     Spread spread(entry.min_distance);
-    KeptClear kept(entry, state, shapes, first, is_known);
+    KeptClear kept(entry, known);
     const FarGoals far(entry);
     for (const int i : entry.objects) {
-      if (!state.takes_part[first + i]) continue;
+      if (!takes_part(i)) continue;
       Pose& pose = state.initial_pose[first + i];
       // what stands still must not stand on goals that are known already
       const auto fits = [&] {
-        return kept.allow(i, pose, anywhere) && (!travels(i) || far.exist(pose.position())) &&
+        return kept.allow(i, pose, anywhere) && (!travels(world, i) || far.exist(pose.position())) &&
                placed.starts.fits(i, pose) && (!placed.goals || !world.is_static[i] || placed.goals->fits(i, pose));
       };
       if (!draw_pose(entry, attempts(entry), draws(i), 0, spread, pose, fits)) failed(i);
@@ -172,8 +203,8 @@ void place_randomly(const World& world, State& state, int w) {
   };
   const auto place_crossing = [&](const auto& entry) {
     for (const int i : entry.objects) {
-      if (!state.takes_part[first + i]) continue;
-      const bool goes = travels(i);
+      if (!takes_part(i)) continue;
+      const bool goes = travels(world, i);
       const Crossing drawn = draw_crossing(entry, draws(i), attempts(entry), i, goes, placed);
       if (!drawn.fits) failed(i);
       state.initial_pose[first + i] = drawn.start;
@@ -194,24 +225,35 @@ void place_randomly(const World& world, State& state, int w) {
             place_crossing(entry);
         },
         placement);
-    for (const int i : placed_objects(placement)) known[i] = 1;
+    const bool crossing = !std::holds_alternative<RandomPlacement>(placement);
+    for (const int i : placed_objects(placement)) {
+      known.starts[i] = takes_part(i);
+      known.goals[i] = crossing && takes_part(i);
+    }
   }
 
-  PlacedFootprints still(world, shapes);
+  // Goals keep clear of what stands still, and of the goals that are known before them.
+  PlacedFootprints goals(world, shapes);
   for (const int i : world.fixed_objects) {
-    if (state.takes_part[first + i]) still.add(i, state.initial_pose[first + i]);
+    if (takes_part(i)) goals.add(i, state.initial_pose[first + i]);
+  }
+  for (int i = 0; i < world.objects; ++i) {
+    const std::vector<Goal>& own = state.goals[first + i].initial;
+    if (!known.goals[i] || !travels(world, i) || own.empty()) continue;
+    Pose last = own.back();
+    if (std::isnan(last.theta)) last.theta = state.initial_pose[first + i].theta;
+    goals.add(i, last);
   }
   for (const Placement& placement : world.placements) {
     const auto* entry = std::get_if<RandomPlacement>(&placement);
     if (entry == nullptr) continue;
     Spread spread(entry->min_distance);
-    PlacedFootprints goals = still;  // objects of different entries may have the same goal
-    KeptClear kept(*entry, state, shapes, first, is_known);
+    KeptClear kept(*entry, known);
     const FarGoals far(*entry);
     for (const int i : entry->objects) {
-      if (world.wander[i] || !state.takes_part[first + i]) continue;  // their goals are drawn at every reset
+      if (world.wander[i] || !takes_part(i)) continue;  // their goals are drawn at every reset
       Goal goal;
-      if (!travels(i)) {  // these objects never reach a goal, but IR-SIM gives them one
+      if (!travels(world, i)) {  // these objects never reach a goal, but IR-SIM gives them one
         const auto u = draws(i).uniforms(kGoalDraws);
         const auto &low = entry->range_low, &high = entry->range_high;
         state.goals[first + i].initial = {{low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1],
@@ -227,6 +269,7 @@ void place_randomly(const World& world, State& state, int w) {
       goals.add(i, goal);
       state.goals[first + i].initial = {goal};
     }
+    for (const int i : entry->objects) known.goals[i] = takes_part(i);
   }
 }
 

@@ -170,6 +170,9 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
   for (int i = 0; i < objects; ++i) {
     const ObjectSpec& s = specs[i];
     check(s);
+    if (s.route && std::any_of(s.route->avoid.begin(), s.route->avoid.end(),
+                               [&](int zone) { return zone < 0 || zone >= zones.count(); }))
+      throw std::invalid_argument("an object avoids a zone that does not exist");
     random_shapes = random_shapes || is_random(s);
     is_robot.push_back(s.role == 0);
     is_static.push_back(s.is_static);

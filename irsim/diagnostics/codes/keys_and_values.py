@@ -109,5 +109,6 @@ KEYS_AND_VALUES: dict[str, Code] = {
     "unknown-map": Code("unknown map generator", "No map generator of that name is built in or registered."),
     "unknown-planner": Code("unknown planner", "No path planner of that name is built in or registered."),
     "unknown-object": Code("unknown object", "No object of the scenario has that name."),
+    "unknown-zone": Code("unknown zone", "No zone of 'world.zones' has that name."),
 }
 """Codes of a key or value that the language does not have."""

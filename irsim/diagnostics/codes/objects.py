@@ -222,10 +222,17 @@ OBJECTS: dict[str, Code] = {
         "Under `within` the path of `follow` stays in a region. To a goal outside it there is no path, and the object "
         "stays where it is.",
     ),
+    "ends-in-zone": Code(
+        "start or goal in a zone that follow avoids",
+        "The zones that `avoid` of `follow` names are solid for the object. To a goal in one of them there is no path, "
+        "and the object stays where it is; from a start in one of them it drives out first. The whole body counts: its "
+        "radius must fit between the place and the zone.",
+    ),
     "keep-clear": Code(
         "keep_clear that cannot be kept",
-        "A random place can keep clear of points, and of objects whose place is known before: those with a fixed "
-        "place, and those of random entries before this one. Robots are placed before obstacles.",
+        "A random place can keep clear of points, and of the starts and goals of objects of other entries. Objects of "
+        "circle_crossing and square_crossing make way for nobody, so their entries must come first; robots are placed "
+        "before obstacles.",
     ),
     "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),
     "outside-world": Code(

@@ -61,10 +61,13 @@ def _empty_ranges(context: Context, path: Path) -> Iterator[Finding]:
 
 
 def _keep_clear(context: Context, path: Path, options: Any) -> Iterator[Finding]:
-    """Items of `keep_clear` with nothing, or two things, to keep clear of, or with an object that is placed later."""
+    """Items of `keep_clear` with nothing, or two things, to keep clear of, or an object that cannot make way."""
     placements = context.resolved.placements
     own = next((index for index, placement in enumerate(placements) if placement.path == path), None)
-    later = set() if own is None else {number for placement in placements[own:] for number in placement.objects}
+    unknown = set() if own is None else set(placements[own].objects)
+    for placement in placements[own or 0 :]:
+        if placement.distribution != "random":
+            unknown.update(placement.objects)
     for index, item in enumerate(options.keep_clear):
         where = (*path, "distribution", "keep_clear", index)
         if (item.point is None) == (item.object is None):
@@ -72,10 +75,10 @@ def _keep_clear(context: Context, path: Path, options: Any) -> Iterator[Finding]
             message = "'point' and 'object' exclude each other" if both else "there is nothing to keep clear of"
             yield error("keep-clear", where, message, fix="give either 'point: [x, y]' or 'object: NAME'")
         elif item.object is not None:
-            yield from _kept_object(context, (*where, "object"), item.object, later)
+            yield from _kept_object(context, (*where, "object"), item.object, unknown)
 
 
-def _kept_object(context: Context, path: Path, name: str, later: set[int]) -> Iterator[Finding]:
+def _kept_object(context: Context, path: Path, name: str, unknown: set[int]) -> Iterator[Finding]:
     records = named(context.entry_objects, name)
     if not records:
         known = {word: None for record in context.entry_objects for word in (record.name, record.group_name)}
@@ -89,14 +92,15 @@ def _kept_object(context: Context, path: Path, name: str, later: set[int]) -> It
             fix=f"object: {near}" if near else None,
             edit=Edit("replace", path, near) if near else None,
         )
-    elif any(record.id in later for record in records):
-        yield error(
-            "keep-clear",
-            path,
-            f"'{name}' is placed at random together with this entry or after it, so its place is not known yet",
-            given=name,
-            fix=f"give '{name}' a 'state', or write its entry before this one",
-        )
+    elif blocking := [record for record in records if record.id in unknown]:
+        own = blocking[0].path == path[: len(blocking[0].path)]
+        if own:
+            message = f"'{name}' is placed by this same entry: keep_clear is about other entries"
+            fix = "min_distance: its objects keep this distance from each other"
+        else:
+            message = f"'{name}' is placed after this entry, on its circle or square, and cannot make way for it"
+            fix = f"write the entry of '{name}' before this one, or give it 'distribution: {{name: random}}'"
+        yield error("keep-clear", path, message, given=name, fix=fix)
 
 
 def _third_number(path: Path, options: Any) -> Iterator[Finding]:

@@ -1,16 +1,26 @@
-"""Checks `within` of the behavior ``follow``: one outline that encloses an area, with start and goals in it."""
+"""Checks `within` and `avoid` of the behavior ``follow``.
+
+`within` is one outline that encloses an area, with start and goals in it. `avoid` names zones, in which neither start
+nor goals are.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from irsim.components.behaviors.follow import Follow
-from irsim.diagnostics.diagnostic import Path
+from irsim.diagnostics.diagnostic import Edit, Path, nearest
 from irsim.options.regions import OUTLINES, Region
 from irsim.scenario.checks._areas import check_polygon, check_rectangle
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, error, warning
+from irsim.scenario.model.zones import OUTLINES as ZONE_OUTLINES
+from irsim.scenario.model.zones import Zone
 from irsim.scenario.resolve.resolved import ObjectRecord
+
+_MAX_NAMES = 12
+"""Largest number of names that a message lists."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -19,11 +29,75 @@ def check(context: Context) -> Iterator[Finding]:
     for record in context.entry_objects:
         for key in ("behavior", "group_behavior"):
             options = getattr(record, key)
-            if isinstance(options, Follow) and options.within is not None:
-                path = (*context.entry_path(record, key), "within")
+            if not isinstance(options, Follow):
+                continue
+            entry_path, known = context.entry_path(record, key), record.id not in random
+            if options.within is not None:
+                path = (*entry_path, "within")
                 found = list(_outline(path, options.within))
-                known = record.id not in random
                 yield from distinct(found or (_ends(path, record, options.within) if known else ()))
+            yield from _avoided(context, (*entry_path, "avoid"), record, options, known)
+
+
+def _avoided(context: Context, path: Path, record: ObjectRecord, options: Follow, known: bool) -> Iterator[Finding]:
+    """Zones that do not exist, and zones in which an object starts or has a goal."""
+    zones = {zone.name: zone for zone in context.scenario.world.zones}
+    for index, name in enumerate(options.avoid):
+        where = (*path, index)
+        if name not in zones:
+            near = nearest(name, zones)
+            yield error(
+                "unknown-zone",
+                where,
+                f"no zone is called '{name}'" + ("" if zones else ": world.zones has none"),
+                given=name,
+                allowed=list(zones)[:_MAX_NAMES] or None,
+                fix=f"write '{near}'"
+                if near
+                else f"world: {{zones: [{{name: {name}, circle: {{center: [x, y], radius: r}}}}]}} makes it",
+                edit=Edit("replace", where, near) if near else None,
+            )
+        elif known:
+            yield from _ends_in_zone(where, record, zones[name])
+
+
+def _ends_in_zone(path: Path, record: ObjectRecord, zone: Zone) -> Iterator[Finding]:
+    """A start or goal in a zone that the object avoids: there is no path to such a goal."""
+    if len([key for key in ZONE_OUTLINES if getattr(zone, key) is not None]) != 1:
+        return  # another check reports it
+    radius = record.shape.radius if record.shape.name == "circle" else 0.0
+    for what, place in (("start", record.state), *(("goal", goal) for goal in record.goals)):
+        if (what == "goal" and record.wander) or _distance(zone, place[0], place[1]) > radius:
+            continue
+        yield warning(
+            "ends-in-zone",
+            path,
+            f"'{record.name}' avoids the zone '{zone.name}', but "
+            + (
+                "starts in it" if what == "start" else f"its goal ({place[0]:g}, {place[1]:g}) is in it: it has no path"
+            ),
+            fix=f"move the {what} or the zone apart, or leave '{zone.name}' out of 'avoid'",
+        )
+        return
+
+
+def _distance(zone: Zone, x: float, y: float) -> float:
+    """Distance of a point from a zone [m]; 0 or less inside."""
+    if zone.circle is not None:
+        return math.dist(zone.circle.center, (x, y)) - zone.circle.radius
+    points = zone.points
+    if not zone.is_line and _is_inside(points, x, y):
+        return 0.0
+    ends = points[1:] if zone.is_line else [*points[1:], points[0]]
+    return min(_distance_to_segment(a, b, x, y) for a, b in zip(points, ends, strict=False))
+
+
+def _distance_to_segment(a: Sequence[float], b: Sequence[float], x: float, y: float) -> float:
+    along = (b[0] - a[0], b[1] - a[1])
+    length = along[0] ** 2 + along[1] ** 2
+    share = ((x - a[0]) * along[0] + (y - a[1]) * along[1]) / length if length else 0.0
+    share = min(max(share, 0.0), 1.0)
+    return math.dist((a[0] + share * along[0], a[1] + share * along[1]), (x, y))
 
 
 def _outline(path: Path, region: Region) -> Iterator[Finding]:
