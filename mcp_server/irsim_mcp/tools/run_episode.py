@@ -272,14 +272,16 @@ def _advice(found: dict[str, Any], given: str) -> str:
     """What to do next; ``given`` is the argument that gives the scenario again."""
     run = f" run_id={found['run_id']}"
     if found["run_id"] is None:
-        run = f" seed={found['seed']}" if found["random"] else ""
+        run = f" {given}" + (f" seed={found['seed']}" if found["random"] else "")
     held = set(found["jammed"])
     if found["outcome"] == "success" and not held:
         name = given.removeprefix("scenario_path=")
         more = f"; try other seeds with benchmark scenarios=[{name!r}]" if found["random"] else ""
         return f"See it with render_snapshot{run} {_STRIP}{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
-        return "Nothing to change if it is meant to stay or a program drives it; to try the layout: policy=dash."
+        return (
+            f"Nothing to change if a program drives it or it stays; to try the layout: run_episode {given} policy=dash."
+        )
     late = [robot["name"] for robot in found["robots"] if robot["outcome"] != "success"]
     if late and set(late) <= set(found["parked"]) and not held:
         return f"Nothing to change if it is meant to stay; see it with render_snapshot{run} {_STRIP}."
