@@ -10,11 +10,11 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean
 from irsim_mcp.json_answer import Found, json_answer
-from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_STEPS
+from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_SEED, MAX_STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.replay_page import PAGE
 from irsim_mcp.run_resources import uri
-from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services, is_command
+from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services, is_command
 from irsim_mcp.tool import StrictTool, strict
 
 __all__ = ["Episode", "tool"]
@@ -111,7 +111,9 @@ def tool(services: Services) -> StrictTool:
         ctx: Context[Any, Any],
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
-        seed: Seed = None,
+        seed: Annotated[
+            int | None, Field(ge=0, le=MAX_SEED, description="Default: the scenario's, else drawn.")
+        ] = None,
         policy: Annotated[str | None, Field(max_length=500, description="Of all robots, as in benchmark.")] = None,
         perturb: Annotated[str | None, Field(max_length=500, description="As in benchmark.")] = None,
         max_steps: Annotated[
