@@ -22,11 +22,11 @@ from irsim_mcp.tools.validate_scenario import report_of, text_of
 __all__ = ["tool"]
 
 _DESCRIPTION = """
-    Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading; omni:
-    where it moves), goals (pale), names, lidar beams, paths. Use it after every edit and after a failed run. At step 0
-    the text has what validate_scenario finds, and a table of all objects: drive, footprint, pose, goal, limits, ranges
-    over seeds (r0 is a robot, G-r0 its goal). An invalid scenario gives only its errors. Writes no file. Next: edit
-    and look again, or run_episode.
+    Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading;
+    omni: where it moves), goals (pale), names, lidar beams, paths. Use it after every edit and after a failed run.
+    At step 0 the text has what validate_scenario finds, and a table of all objects: drive, footprint, pose, goal,
+    limits, ranges over seeds, narrowest passages (r0 is a robot, G-r0 its goal). An invalid scenario gives only its
+    errors. Writes no file. Next: edit and look again, or run_episode.
 """
 _OVERLAYS = (
     "Default: names, goals, paths, zones. clearance: shaded where a robot's middle can't be; plan: paths to goals."
