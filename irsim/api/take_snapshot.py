@@ -102,8 +102,12 @@ def snapshot_of(
     progress: Progress | None = None,
     imports: Sequence[str] = (),
     out: str | Path = "snapshot.png",
+    tries: Iterable[int] | None = None,
 ) -> SnapshotResult:
-    """Like :func:`snapshot`, for a scenario already read, with its warnings; ``path`` is only used in the result."""
+    """Like :func:`snapshot`, for a scenario already read, with its warnings; ``path`` is only used in the result.
+
+    Without a seed the first of ``tries`` that leaves room for every object counts; by default they are drawn.
+    """
     if region is not None:
         from irsim.graphics.scene.scene import region_extent
 
@@ -112,7 +116,7 @@ def snapshot_of(
     chosen_seed = seed_of(scenario, seed)
     env, _ = first_with_room(
         lambda drawn: Env(scenario, seed=drawn, headless=True, log_level="ERROR"),
-        (fresh_seed() for _ in range(MAX_TRIES)) if chosen_seed is None else [chosen_seed],
+        (tries or (fresh_seed() for _ in range(MAX_TRIES))) if chosen_seed is None else [chosen_seed],
     )
     if strip is not None:
         moments_of(0, strip)

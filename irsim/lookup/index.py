@@ -12,6 +12,7 @@ from irsim.lookup.answer import Answer, Key
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.metrics import METRIC_TOPICS
 from irsim.lookup.schema_walk import mappings, yaml_text
+from irsim.lookup.text import first_sentence
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
 
@@ -122,9 +123,11 @@ def codes_answer() -> Answer:
 
 
 def templates_answer() -> Answer:
-    """List the templates."""
-    lines = [Key(name=template.name, text=template.purpose) for template in templates.load_all()]
-    return Answer(topic="templates", kind="index", title="Templates", groups={"templates": lines})
+    """List the templates, each with the first sentence of its purpose; the answer about one has the rest."""
+    lines = [
+        Key(name=template.name, text=first_sentence(template.purpose).rstrip(".")) for template in templates.load_all()
+    ]
+    return Answer(topic="templates", kind="index", title="Templates: whole scenarios", groups={"templates": lines})
 
 
 def template_answer(template: Template) -> Answer:

@@ -52,6 +52,12 @@ def metric_line(metric: Metric) -> str:
     return f"[{metric.unit}] {metric.text}{better}"
 
 
+def _listed(metric: Metric) -> str:
+    """Describe a metric as a line of the list: unit, a sign for what is better, meaning."""
+    sign = {"more": " +", "less": " -", None: ""}[metric.better]
+    return f"[{metric.unit}]{sign} {metric.text}"
+
+
 def all_metrics() -> Answer:
     """Return the topic that lists all metrics."""
     groups = {
@@ -64,9 +70,10 @@ def all_metrics() -> Answer:
         kind="index",
         title="Metrics of episodes, which `irsim benchmark` computes",
         text="The metrics of a robot cover the time until it arrives; a metric without a meaning in an episode is "
-        "undefined. L*: length of the shortest path, T: time to goal.",
+        "undefined. L*: length of the shortest path, T: time to goal. After the unit, + says that more is better, - "
+        "that less is.",
         groups={
-            name: [Key(name=metric_topic(metric.key), text=metric_line(metric)) for metric in metrics]
+            name: [Key(name=metric_topic(metric.key), text=_listed(metric)) for metric in metrics]
             for name, metrics in groups.items()
         },
         example="irsim benchmark scenario.yaml --json",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -227,6 +228,8 @@ def _values(option: Node) -> list[Any]:
 
 def _range(option: Node) -> str:
     bounds = [(words, option[bound]) for bound, words in _NUMBER_BOUNDS.items() if bound in option]
+    if option.get("exclusiveMinimum", -math.inf) >= option.get("minimum", math.inf):
+        bounds = [(words, bound) for words, bound in bounds if words != _NUMBER_BOUNDS["minimum"]]
     return ", ".join(f"{words} {bound:g}" for words, bound in bounds if abs(bound) < MAX_MEANINGFUL_BOUND)
 
 

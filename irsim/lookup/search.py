@@ -11,6 +11,7 @@ from irsim.bundled import templates
 from irsim.common.text import clean
 from irsim.lookup import full_text
 from irsim.lookup.answer import Answer, Key, TopicError
+from irsim.lookup.examples import example_of
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.index import all_codes, code_answer
 from irsim.lookup.metrics import METRIC_TOPICS, metric_line
@@ -49,7 +50,7 @@ def search_answer(schema: Node, topic: str, words: list[str]) -> Answer:
     keys.sort(key=lambda found: len(found[0].name))
     same = [hit for hit, _ in keys if _last(hit) == wanted]
     if same:
-        return _hits_answer(wanted, same[:_MAX_NAMESAKES], f"{len(same)} keys are called '{clean(wanted)}'")
+        return _namesakes_answer(clean(wanted), same)
     code = next((name for name in all_codes() if sorted(name.split("-")) == sorted(re.split(r"[\s_-]+", wanted))), None)
     if code is not None:
         return code_answer(code)
@@ -71,6 +72,39 @@ def search_answer(schema: Node, topic: str, words: list[str]) -> Answer:
         f"{len(hits)} topics fit '{clean(wanted)}' best" if len(hits) > 1 else f"About '{clean(wanted)}'",
         unknown,
     )
+
+
+def _namesakes_answer(wanted: str, same: list[Key]) -> Answer:
+    """Answer with the keys of one name: one line for each meaning, and the example of the first."""
+    meanings: dict[str, list[str]] = {}
+    for hit in same:
+        meanings.setdefault(hit.text, []).append(hit.name)
+    lines, examples = [], []
+    for text, names in meanings.items():
+        used = {name: example_of(tuple(name.split("."))) for name in names}
+        known = [name for name in names if used[name] and name.startswith("robot.")]
+        first = next((name for name in names if name in EVERYDAY), next(iter(known), names[0]))
+        lines.append(Key(name=first, text=f"{text}{_also(first, names)}"))
+        examples += [example for example in [used[first]] if example]
+    count = f"{len(lines)} meanings, {len(same)} places" if len(lines) > 1 else f"{len(same)} places"
+    return Answer(
+        topic=wanted,
+        kind="search",
+        title=f"key '{wanted}': {count}",
+        groups={"topics": lines[:_MAX_NAMESAKES]},
+        example=examples[0] if examples else None,
+    )
+
+
+def _also(first: str, names: Sequence[str]) -> str:
+    """Say in which other places a key has the same meaning, by the parts of their paths that differ."""
+    start = first.split(".")
+    others = []
+    for name in names:
+        words = name.split(".")
+        shared = next((k for k, (a, b) in enumerate(zip(words, start, strict=False)) if a != b), len(start) - 1)
+        others += [".".join(words[shared:-1]) or ".".join(words[:-1])] if name != first else []
+    return f" The same key of {', '.join(others)}." if others else ""
 
 
 def _hits_answer(wanted: str, hits: list[Key], title: str, unknown: Sequence[str] = ()) -> Answer:

@@ -8,7 +8,7 @@ from irsim.lookup.schema_walk import Node, alternatives, component_name, mapping
 
 __all__ = ["BETTER", "small_example"]
 
-BETTER = ("fov", "fov_radius", "fov_occlusion", "show_fov")
+BETTER = ("arrive_mode", "fov", "fov_radius", "fov_occlusion", "goal_threshold", "show_fov")
 """Keys whose small example says more than those of templates, because they need each other."""
 
 _VALUES: dict[str, Any] = {
@@ -32,6 +32,8 @@ _VALUES: dict[str, Any] = {
     "fov_radius": 4,
     "fractal": 2,
     "gaze_vision_angle": 1.5,
+    "arrive_mode": "state",
+    "goal_threshold": 0.3,
     "goal_color": "green",
     "group_repulsion_threshold": 0.6,
     "irregularity_range": [0, 0.5],
@@ -89,6 +91,7 @@ _TOGETHER: dict[str, dict[str, Any]] = {
     **{key: {"noise": True} for key in ("alpha", "std", "angle_std")},
     **{key: {"wander": True} for key in ("range_low", "range_high")},
     **{key: {"random_shape": True} for key in (*_OUTLINE, "radius_range", "is_convex")},
+    "arrive_mode": {"goal": [9, 4, 3.14159], "goal_threshold": 0.1},
     "fov": {"fov_radius": 4, "fov_occlusion": True, "plot": {"show_fov": True}},
     "fov_radius": {"fov": 1.5708, "plot": {"show_fov": True}},
     "fov_occlusion": {"fov": 1.5708, "fov_radius": 4},

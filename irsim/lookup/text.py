@@ -10,6 +10,8 @@ __all__ = ["as_brief_text", "as_text", "facts", "first_sentence"]
 
 _MAX_BRIEF_KEYS = 8
 """Number of keys that a brief answer describes; further ones are only named."""
+_MAX_BRIEF_LIST = 3500
+"""Number of characters up to which a brief answer repeats a list of topics; of longer ones it has only the names."""
 _MIN_BRIEF_TEXT = 200
 """Number of characters from which on the next sentence ends the text of a brief answer."""
 
@@ -32,15 +34,20 @@ def as_text(answer: Answer) -> str:
 def as_brief_text(answer: Answer) -> str:
     """Return the essence of an answer: first sentences, its own keys, and the example.
 
-    Keys that a component has in common with its siblings, and those beyond the first ones, are only named.
+    Keys that a component has in common with its siblings, and those beyond the first ones, are only named. A list of
+    topics is whole, or has only names.
     """
     lines = [answer.title]
     if answer.text:
         lines.append(answer.text if answer.kind == "guide" else first_sentence(answer.text, least=_MIN_BRIEF_TEXT))
     if answer.about is not None:
         lines.append(facts(answer.about))
+    most = _MAX_BRIEF_KEYS
+    if answer.kind == "index":
+        listed = sum(len(_line(key)) for keys in answer.groups.values() for key in keys)
+        most = len(max(answer.groups.values(), key=len)) if listed <= _MAX_BRIEF_LIST else 0
     for heading, keys in answer.groups.items():
-        shown = [] if "in common" in heading or heading == "keys of all" else keys[:_MAX_BRIEF_KEYS]
+        shown = [] if "in common" in heading or heading == "keys of all" else keys[:most]
         lines += [_brief_line(key) for key in shown]
         if rest := [_with_default(key) for key in keys[len(shown) :]]:
             lines.append(f"- {'also' if shown else heading}: {', '.join(rest)}")

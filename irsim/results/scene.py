@@ -6,7 +6,7 @@ from typing import Literal
 
 from irsim.results.base import Result
 
-__all__ = ["LidarHits", "SceneRow", "SceneTable"]
+__all__ = ["LidarHits", "ScenePassage", "SceneRow", "SceneTable"]
 
 
 class SceneRow(Result):
@@ -57,6 +57,19 @@ class LidarHits(Result):
     """Number of beams that hit each object, the most first."""
 
 
+class ScenePassage(Result):
+    """The narrowest place on the shortest way of robots to one of their goals."""
+
+    names: list[str]
+    """Names of the robots."""
+    width: float
+    """Their width [m]: the diameter of the largest disc inside one of them."""
+    gap: float
+    """Free distance between what stands left and what stands right of the way [m]."""
+    places: list[tuple[float, float]]
+    """Middle of each gap of this width on their ways: x, y [m]."""
+
+
 class SceneTable(Result):
     """The objects of a scenario, and what changes from seed to seed."""
 
@@ -72,3 +85,5 @@ class SceneTable(Result):
     """Number of those seeds in which the goals of two robots overlap, while those of some other seed do not."""
     lidars: list[LidarHits]
     """Whom the beams of the first lidars hit; empty if the scenario has very many beams."""
+    passages: list[ScenePassage] = []
+    """Narrowest passages on the ways of robots, the tightest first, without those much wider than the robots."""

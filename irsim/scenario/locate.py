@@ -31,8 +31,8 @@ def locate(name: str | os.PathLike[str] | None = None) -> str:
         the running script.
 
     Raises:
-        ScenarioNotFoundError: None of them exists; the message lists the places searched and files with similar
-            names.
+        ScenarioNotFoundError: None of them exists; the message lists the places searched, files with similar
+            names, and the template of that name.
     """
     wanted = os.fspath(name) if name is not None else default_name()
     places = _places()
@@ -57,8 +57,15 @@ def _unique(items: Iterable[str]) -> list[str]:
 
 
 def _message(wanted: str, searched: list[str]) -> str:
+    from irsim.bundled import templates
+
     lines = [f"no scenario file '{wanted}'. Searched:"]
     lines += [f"  {place}" for place in searched]
+    template = templates.meant(wanted)
+    if template is not None:
+        lines.append(
+            f"'{template}' is a template: `irsim new {template}` writes {template}.yaml, which can then be used."
+        )
     near = _near(wanted, searched)
     if near:
         lines.append("Did you mean " + " or ".join(f"'{path}'" for path in near) + "?")

@@ -17,6 +17,7 @@ from irsim.scenario.resolve.body_size import has_fixed_shape
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.simulation.build import build_world
+from irsim.validation.scene_passages import find_passages
 from irsim.validation.scene_sensors import lidar_hits, sensors_in_words
 
 __all__ = ["SEEDS", "scene_table"]
@@ -67,6 +68,7 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None) -> SceneTab
         crowded=sorted(set(crowded) & set(range(count))),
         overlapping_goals=_overlapping_goals(scenario, state, built.objects, [w for w in good if w > 0]),
         lidars=lidar_hits(scenario, seeds[shown]) if good else [],
+        passages=find_passages(scenario, state, shown) if good else [],
     )
 
 

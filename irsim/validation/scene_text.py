@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from irsim.common.text import clean, listed, seconds
+from irsim.common.text import clean, listed, metres, seconds
 
 __all__ = ["scene_lines"]
 
@@ -13,6 +13,10 @@ _MAX_ROWS = 30
 """Number of entries that are shown."""
 _MAX_HITS = 5
 """Number of objects that the line of a lidar names."""
+_MAX_PASSAGES = 4
+"""Number of narrow passages that are shown."""
+_MAX_NAMED = 6
+"""Number of robots, and of places, that the line of a passage names."""
 _MAX_SEEDS = 10
 """Number of seeds that a line names."""
 
@@ -31,6 +35,7 @@ def scene_lines(table: Mapping[str, Any], labels: Mapping[str, str], seed: int) 
     if len(rows) > _MAX_ROWS:
         lines.append(f"- {len(rows) - _MAX_ROWS} more entries")
     lines += [_hits_text(lidar) for lidar in table["lidars"]]
+    lines += [_passage_text(passage, labels) for passage in table["passages"][:_MAX_PASSAGES]]
     if table["overlapping_goals"]:
         lines.append(f"Goals of robots overlap in {table['overlapping_goals']} of {table['seeds']} seeds")
     if table["crowded"]:
@@ -89,6 +94,17 @@ def _hits_text(lidar: Mapping[str, Any]) -> str:
     hits = [f"{clean(name)} {beams}" for name, beams in lidar["hits"].items()]
     whom = f": {', '.join(hits[:_MAX_HITS])}{', ...' if len(hits) > _MAX_HITS else ''}" if hits else ""
     return f"Lidar of {clean(lidar['name'])}: {lidar['hit']} of {lidar['beams']} beams hit{whom}"
+
+
+def _passage_text(passage: Mapping[str, Any], labels: Mapping[str, str]) -> str:
+    """How wide the narrowest passage on the way of some robots is, and how wide these are."""
+    names = [clean(labels.get(name, name)) for name in passage["names"]]
+    who = "the robot is" if len(names) == 1 else "the robots are"
+    places = [f"({x:.2f}, {y:.2f})" for x, y in passage["places"]]
+    return (
+        f"Narrowest passage on the way of {listed(names, _MAX_NAMED)}: {metres(passage['gap'])} at "
+        f"{listed(places, _MAX_NAMED)}; {who} {metres(passage['width'])} wide"
+    )
 
 
 def _box(box: Sequence[float]) -> str:

@@ -140,6 +140,7 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
 
     from irsim.api.take_snapshot import snapshot_of
     from irsim.episodes.episode import read_scenario
+    from irsim.episodes.room import MAX_TRIES
 
     arguments, limits = job["arguments"], _limits(job)
     path, text = arguments.pop("path", None), arguments.pop("text", None)
@@ -159,7 +160,8 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
         import irsim.rendering.snapshot  # noqa: F401
 
         os.chdir(job["workspace"])
-    result = snapshot_of(scenario, path, warnings=warnings, strict=True, limits=limits, progress=progress, **arguments)
+    arguments |= {"warnings": warnings, "strict": True, "limits": limits, "progress": progress}
+    result = snapshot_of(scenario, path, tries=range(MAX_TRIES), **arguments)
     png = base64.b64encode(result.png).decode()
     if checked:
         from irsim.validation.scene_table import scene_table

@@ -120,13 +120,19 @@ class Workspace:
         return found.relative_to(self.root).as_posix() if inside else None
 
     def _advice(self, target: Path, argument: str) -> str:
-        """A fix that suggests scenario files of the workspace."""
+        """A fix that suggests scenario files of the workspace, or the template that is meant."""
+        from irsim.bundled import templates
+
         there = self.scenarios()
+        text = "pass the text as scenario_yaml" if argument == "scenario_path" else "give its text"
         near = difflib.get_close_matches(target.relative_to(self.root).as_posix(), there, _MAX_NAMED, 0.5)
+        template = templates.meant(str(target.relative_to(self.root)))
+        if template is not None:
+            other = f", or did you mean {' or '.join(map(repr, map(clean, near)))}?" if near else ""
+            return f"{template!r} is a template: lookup topic={template!r} returns its YAML; {text}{other}"
         if near:
             return f"did you mean {' or '.join(map(repr, map(clean, near)))}?"
         some = ", ".join(repr(clean(name)) for name in there[:_MAX_NAMED])
-        text = "pass the text as scenario_yaml" if argument == "scenario_path" else "give its text"
         return f"the workspace has {some}" if some else f"write the file first, or {text}"
 
     def scenarios(self) -> list[str]:

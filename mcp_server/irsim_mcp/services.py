@@ -12,25 +12,16 @@ from irsim.common.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.json_answer import Found
-from irsim_mcp.limits import MAX_SEED, ServerLimits
+from irsim_mcp.limits import ServerLimits
 from irsim_mcp.recent_texts import RecentTexts
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.suites import suite_of
 from irsim_mcp.worker import Progress, Workers
 
-__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "is_command", "line_of"]
+__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Services", "is_command", "line_of"]
 
 ScenarioPath = Annotated[str | None, Field(description="Workspace file, or id of a text.")]
 ScenarioYaml = Annotated[str | None, Field(description="Or its YAML text (at most 256 KiB).")]
-Seed = Annotated[
-    int | None,
-    Field(
-        ge=0,
-        le=MAX_SEED,
-        description="Default: the scenario's, else 0 to look, drawn to run.",
-    ),
-]
-
 
 RunId = Annotated[str, Field(max_length=100, description="Of run_episode, or a job_id.")]
 

@@ -74,3 +74,53 @@ def test_seeds_in_which_goals_overlap_are_counted(tmp_path: Path) -> None:
     found = lines(SWAP, tmp_path)
     (line,) = [line for line in found.splitlines() if "overlap" in line]
     assert 0 < int(line.split(" in ")[1].split(" of ")[0]) < 20
+
+
+DOORS = """\
+world: {width: 12, height: 8, boundary: walls}
+robot:
+  - {name: slim, kinematics: {name: omni}, shape: {name: circle, radius: 0.25}, state: [2, 2], goal: [10, 6],
+     behavior: {name: dash}}
+  - {name: long, kinematics: {name: diff}, shape: {name: rectangle, length: 1.2, width: 0.6}, state: [2, 6, 0],
+     waypoints: [[10, 1], [2, 1]], behavior: {name: dash}}
+  - {name: homebody, kinematics: {name: omni}, shape: {name: circle, radius: 0.1}, state: [1, 7], goal: [3, 7],
+     behavior: {name: dash}}
+obstacle:
+  - {shape: {name: rectangle, length: 0.2, width: 2.55}, state: [6, 1.275]}
+  - {shape: {name: rectangle, length: 0.2, width: 4.55}, state: [6, 5.725]}
+"""
+
+
+def test_the_narrowest_passage_on_the_way_of_each_robot_is_told(tmp_path: Path) -> None:
+    told = [line for line in lines(DOORS, tmp_path).splitlines() if "passage" in line]
+    assert [line.partition(" at ")[0] for line in told] == [
+        "Narrowest passage on the way of long: 0.9 m",
+        "Narrowest passage on the way of slim: 0.9 m",
+    ]
+    assert "; the robot is 0.6 m wide" in told[0]
+    assert "3.00)" in told[1]
+
+
+def test_the_passage_is_where_the_way_leads_and_not_beside_it(tmp_path: Path) -> None:
+    corridor = """\
+world: {width: 14, height: 10}
+robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.25}, state: [0.5, 5], goal: [13.5, 5]}
+obstacle:
+  - {shape: {name: linestring, vertices: [[0, 4.2], [14, 4.2]]}, state: [0, 0, 0]}
+  - {shape: {name: linestring, vertices: [[0, 5.8], [14, 5.8]]}, state: [0, 0, 0]}
+"""
+    assert "Narrowest passage on the way of robot_0: 1.6 m" in lines(corridor, tmp_path)
+    assert "passage" not in lines(corridor.replace("5.8", "8.8"), tmp_path)
+
+
+def test_a_passage_in_a_map_and_one_that_is_too_narrow(tmp_path: Path) -> None:
+    cells = "world: {width: 6, height: 6, obstacle_map: door.png}\n"
+    robot = "robot: {kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [1, 3], goal: [5, 3]}\n"
+    from PIL import Image
+
+    picture = Image.new("L", (60, 60), 255)
+    picture.paste(0, (29, 0, 31, 25))
+    picture.paste(0, (29, 35, 31, 60))
+    picture.save(tmp_path / "door.png")
+    assert "Narrowest passage on the way of robot_0: 1 m at (3" in lines(cells + robot, tmp_path)
+    assert "passage" not in lines((cells + robot).replace("radius: 0.3", "radius: 0.6"), tmp_path)

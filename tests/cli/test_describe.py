@@ -6,7 +6,7 @@ import pytest
 
 from irsim.bundled import templates
 from irsim.diagnostics.codes import CODES, TOOL_CODES
-from irsim.lookup import lookup
+from irsim.lookup import as_brief_text, as_text, lookup
 from irsim.metrics import EPISODE_METRICS, METRICS
 from irsim.options.registry import REGISTRIES
 from tests.cli.conftest import Run, parsed
@@ -83,6 +83,8 @@ def test_metrics_are_explained(irsim: Run) -> None:
     assert "the greatest time_to_goal" in " ".join(shown.split())
     assert "Less is better" in shown
     assert "[s]" in shown
+    assert "spl: [0-1] + success" in as_text(lookup("metrics"))
+    assert "is better" not in as_text(lookup("metrics")).replace("more is better, -", "")
     listed = [key.name for keys in lookup("metrics").groups.values() for key in keys]
     assert len(listed) == len(METRICS) + len(EPISODE_METRICS)
     for name in listed:
@@ -100,6 +102,24 @@ def test_a_key_alone_is_found_wherever_it_is() -> None:
     several = lookup("radius")
     assert several.kind == "search"
     assert "robot.shape.circle.radius" in {key.name for keys in several.groups.values() for key in keys}
+
+
+def test_a_key_of_many_places_has_one_line_for_each_meaning() -> None:
+    lines = lookup("wheelbase").groups["topics"]
+    assert [line.name for line in lines] == ["robot.shape.rectangle.wheelbase", "robot.kinematics.diff.wheelbase"]
+    assert "The same key of circle, polygon, compound, linestring, compound.parts.circle" in lines[0].text
+    assert "omni_angular" in lines[1].text
+    assert lookup("wheelbase").example == "wheelbase: 2.6"
+    assert len(as_text(lookup("wheelbase"))) < 600
+
+
+def test_the_list_of_templates_is_short_and_whole_also_among_other_topics() -> None:
+    answer = lookup("templates")
+    assert len(as_text(answer)) < 3500
+    assert as_brief_text(answer).count("\n") == len(templates.names())
+    for line in answer.groups["templates"]:
+        assert 20 < len(line.text) < 80
+        assert templates.load(line.name).purpose.startswith(line.text)
 
 
 def test_other_words_are_searched_for(irsim: Run) -> None:

@@ -101,6 +101,16 @@ def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
             {"scenario_path": "nothing-like-it"},
             "file-not-found: there is no file 'nothing-like-it' ",
         ),
+        (
+            "run_episode",
+            {"scenario_path": "doorway"},
+            "Fix: 'doorway' is a template: lookup topic='doorway' returns its YAML; pass the text as scenario_yaml",
+        ),
+        (
+            "benchmark",
+            {"scenarios": ["templates/maze.yaml"]},
+            "Fix: 'maze' is a template: lookup topic='maze' returns its YAML; give its text",
+        ),
         ("validate_scenario", {"scenario_path": "folder"}, "not-a-file: 'folder' is a folder"),
         (
             "validate_scenario",

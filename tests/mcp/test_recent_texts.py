@@ -28,6 +28,18 @@ async def test_a_text_is_sent_once(workspace: Path) -> None:
         assert data_of(await client.call_tool("validate_scenario", edited))["changes"]
 
 
+async def test_next_names_the_id_of_a_text_and_never_the_text(workspace: Path) -> None:
+    drawn = "robot: {distribution: {name: random}, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}"
+    async with connected(workspace) as client:
+        for text, arguments, said in (
+            (drawn + ", behavior: {name: dash}}\n", {}, "benchmark scenarios=['{}']"),
+            (drawn + "}\n", {"max_steps": 5}, "run_episode scenario_path={} policy=dash."),
+        ):
+            ran = data_of(await client.call_tool("run_episode", {"scenario_yaml": text, **arguments}))
+            assert said.format(RecentTexts().remember(text)) in ran["next"]
+            assert "distribution" not in ran["next"]
+
+
 async def test_an_unknown_id_says_what_to_do(workspace: Path) -> None:
     async with connected(workspace) as client:
         for tool, arguments in (

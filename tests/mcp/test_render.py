@@ -140,6 +140,24 @@ async def test_ranges_over_seeds_and_seeds_without_room_are_named(empty: Path) -
     assert "over 20 seeds starts x 1." in text
 
 
+async def test_every_look_takes_the_first_seed_with_room_and_a_strip_of_a_run_that_of_the_run(workspace: Path) -> None:
+    async with connected(workspace) as client:
+
+        async def seed_of(**arguments: object) -> str:
+            looked = text_of(await client.call_tool("render_snapshot", {"return_image": False, **arguments}))
+            return looked.partition("seed ")[2].partition(")")[0]
+
+        shown = {
+            await seed_of(scenario_yaml=RANDOM, **arguments)
+            for arguments in ({}, {"strip": 3}, {"step": 4}, {"step": -1}, {"step": 4, "strip": 2})
+        }
+        assert len(shown) == 1
+        assert int(shown.pop()) < 20
+        ran = data_of(await client.call_tool("run_episode", {"scenario_yaml": RANDOM, "max_steps": 20}))
+        assert f"render_snapshot run_id={ran['run_id']} strip=6" in ran["next"]
+        assert await seed_of(run_id=ran["run_id"], strip=6) == str(ran["seed"])
+
+
 async def test_a_later_step_is_only_drawn(empty: Path) -> None:
     async with connected(empty) as client:
         text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "step": 5}))

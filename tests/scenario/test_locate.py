@@ -69,3 +69,14 @@ def test_a_forgotten_extension_is_a_near_match(places: dict[str, Path]) -> None:
 
 def test_a_directory_is_left_to_the_reader(places: dict[str, Path]) -> None:
     assert locate(places["here"]) == str(places["here"])
+
+
+@pytest.mark.parametrize("wanted", ["doorway", "doorway.yaml", "templates/doorway", "templates/doorway/scenario.yaml"])
+def test_the_name_of_a_template_says_how_to_make_a_file_of_it(places: dict[str, Path], wanted: str) -> None:
+    with pytest.raises(ScenarioNotFoundError) as caught:
+        locate(wanted)
+    last = str(caught.value).splitlines()[-1]
+    assert last == "'doorway' is a template: `irsim new doorway` writes doorway.yaml, which can then be used."
+    with pytest.raises(ScenarioNotFoundError) as caught:
+        locate("doorways")
+    assert "irsim new" not in str(caught.value)

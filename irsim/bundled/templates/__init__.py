@@ -7,7 +7,7 @@ is; ``template.yaml`` gives its purpose, its parameters, and the values of the s
 
 from irsim.bundled.templates.fill import fill, parse_settings
 from irsim.bundled.templates.metadata import Parameter, Template, TemplateError
-from irsim.bundled.templates.store import find, load, load_all, names, picture_file, scenario_file
+from irsim.bundled.templates.store import find, load, load_all, meant, names, picture_file, scenario_file
 
 __all__ = [
     "Parameter",
@@ -17,6 +17,7 @@ __all__ = [
     "find",
     "load",
     "load_all",
+    "meant",
     "names",
     "parse_settings",
     "picture_file",

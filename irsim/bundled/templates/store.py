@@ -3,18 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from irsim.bundled.templates.metadata import Template, TemplateError
 from irsim.common import data_files as resources
 from irsim.diagnostics.diagnostic import suggestion
 
-__all__ = ["find", "load", "load_all", "names", "picture_file", "scenario_file"]
+__all__ = ["find", "load", "load_all", "meant", "names", "picture_file", "scenario_file"]
 
 
 def names() -> list[str]:
     """Names of all templates, sorted."""
     return sorted(path.parent.name for path in resources.templates_directory().glob("*/template.yaml"))
+
+
+def meant(path: str) -> str | None:
+    """Name of the template that the path of a missing file means: ``doorway``, ``doorway.yaml``, ``templates/doorway``.
+
+    Args:
+        path: The path as the user wrote it.
+    """
+    parts = PurePosixPath(path.replace("\\", "/")).parts
+    if len(parts) > 1 and parts[-1] == "scenario.yaml":
+        parts = parts[:-1]
+    name = parts[-1].removesuffix(".yaml").removesuffix(".yml").lower() if parts else ""
+    return name if name in names() else None
 
 
 def load(name: str) -> Template:

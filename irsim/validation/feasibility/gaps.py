@@ -20,7 +20,7 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.validation.feasibility.scenes import Scene
 
-__all__ = ["Gaps", "Opening", "find_gaps"]
+__all__ = ["Gaps", "Opening", "find_gaps", "outlines_of"]
 
 Point = tuple[float, float]
 Shapes = NDArray[np.object_]
@@ -164,7 +164,7 @@ def find_gaps(scene: Scene, *, most: float, open_edge: bool) -> Gaps | None:
         for part in parts:
             if isinstance(part, core.GridCells) and part.grid.count > _MAX_CELLS:
                 return None
-            new = list(_lines(part, pose))
+            new = list(outlines_of(part, pose))
             lines += new
             count += sum(len(points) - 1 for points, _ in new)
             if count > _MAX_FEATURES:
@@ -192,7 +192,7 @@ def find_gaps(scene: Scene, *, most: float, open_edge: bool) -> Gaps | None:
     return Gaps(a, b, radius, i[near], j[near], p[near], q[near], width[near])
 
 
-def _lines(part: core.Part, pose: list[float]) -> Iterator[tuple[Floats, float]]:
+def outlines_of(part: core.Part, pose: list[float]) -> Iterator[tuple[Floats, float]]:
     """Return the polylines of a part in the world frame, each with its radius; a disc has one segment of length 0."""
     if isinstance(part, core.GridCells):
         for ring in part.grid.outline():

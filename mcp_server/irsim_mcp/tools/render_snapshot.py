@@ -12,21 +12,21 @@ from irsim.api.film_strip import MAX_MOMENTS, MIN_MOMENTS
 from irsim.common.text import clean, metres
 from irsim.validation.scene_text import scene_lines
 from irsim_mcp.errors import failure
-from irsim_mcp.limits import MAX_STEPS
+from irsim_mcp.limits import MAX_SEED, MAX_STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.run_resources import uri
-from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services, is_command
+from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services, is_command
 from irsim_mcp.tool import StrictTool, strict
 from irsim_mcp.tools.validate_scenario import report_of, text_of
 
 __all__ = ["tool"]
 
 _DESCRIPTION = """
-    Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading; omni:
-    where it moves), goals (pale), names, lidar beams, paths. Use it after every edit and after a failed run. At step 0
-    the text has what validate_scenario finds, and a table of all objects: drive, footprint, pose, goal, limits, ranges
-    over seeds (r0 is a robot, G-r0 its goal). An invalid scenario gives only its errors. Writes no file. Next: edit
-    and look again, or run_episode.
+    Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading;
+    omni: where it moves), goals (pale), names, lidar beams, paths. Use it after every edit and after a failed run.
+    At step 0 the text has what validate_scenario finds, and a table of all objects: drive, footprint, pose, goal,
+    limits, ranges over seeds, narrowest passages (r0 is a robot, G-r0 its goal). An invalid scenario gives only its
+    errors. Writes no file. Next: edit and look again, or run_episode.
 """
 _OVERLAYS = (
     "Default: names, goals, paths, zones. clearance: shaded where a robot's middle can't be; plan: paths to goals."
@@ -50,7 +50,10 @@ def tool(services: Services) -> StrictTool:
             int | None,
             Field(ge=MIN_MOMENTS, le=MAX_MOMENTS, description="Moments on one sheet, from 0 to `step` (0: the end)."),
         ] = None,
-        seed: Seed = None,
+        seed: Annotated[
+            int | None,
+            Field(ge=0, le=MAX_SEED, description="Default: the scenario's, else the first from 0 with room."),
+        ] = None,
         size_px: Annotated[int, Field(ge=200, le=1024, description="Longer side; 600 px cost about 480 tokens.")] = 600,
         overlays: Annotated[
             list[Literal["names", "goals", "paths", "sensors", "zones", "clearance", "plan"]] | None,

@@ -10,11 +10,11 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean
 from irsim_mcp.json_answer import Found, json_answer
-from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_STEPS
+from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_SEED, MAX_STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.replay_page import PAGE
 from irsim_mcp.run_resources import uri
-from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services, is_command
+from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services, is_command
 from irsim_mcp.tool import StrictTool, strict
 
 __all__ = ["Episode", "tool"]
@@ -111,7 +111,9 @@ def tool(services: Services) -> StrictTool:
         ctx: Context[Any, Any],
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
-        seed: Seed = None,
+        seed: Annotated[
+            int | None, Field(ge=0, le=MAX_SEED, description="Default: the scenario's, else drawn.")
+        ] = None,
         policy: Annotated[str | None, Field(max_length=500, description="Of all robots, as in benchmark.")] = None,
         perturb: Annotated[str | None, Field(max_length=500, description="As in benchmark.")] = None,
         max_steps: Annotated[
@@ -272,14 +274,16 @@ def _advice(found: dict[str, Any], given: str) -> str:
     """What to do next; ``given`` is the argument that gives the scenario again."""
     run = f" run_id={found['run_id']}"
     if found["run_id"] is None:
-        run = f" seed={found['seed']}" if found["random"] else ""
+        run = f" {given}" + (f" seed={found['seed']}" if found["random"] else "")
     held = set(found["jammed"])
     if found["outcome"] == "success" and not held:
         name = given.removeprefix("scenario_path=")
         more = f"; try other seeds with benchmark scenarios=[{name!r}]" if found["random"] else ""
         return f"See it with render_snapshot{run} {_STRIP}{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
-        return "Nothing to change if it is meant to stay or a program drives it; to try the layout: policy=dash."
+        return (
+            f"Nothing to change if a program drives it or it stays; to try the layout: run_episode {given} policy=dash."
+        )
     late = [robot["name"] for robot in found["robots"] if robot["outcome"] != "success"]
     if late and set(late) <= set(found["parked"]) and not held:
         return f"Nothing to change if it is meant to stay; see it with render_snapshot{run} {_STRIP}."
