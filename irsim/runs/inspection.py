@@ -121,7 +121,7 @@ def _beyond(run: Run, end: int, to_step: int | None) -> list[str]:
     return [f"step {to_step} is beyond the end of the episode: {run.extent}"]
 
 
-def _empty(question: Question, view: View, found: Table) -> list[str]:
+def _empty(question: Question, view: str, found: Table) -> list[str]:
     """A note that says why a table has no rows."""
     message = _EMPTY_MESSAGES.get(view)
     return [] if found.total or message is None else [message(question)]
