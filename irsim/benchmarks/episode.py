@@ -30,6 +30,7 @@ from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
 from irsim.simulation.events import Event, first_collisions, first_events, partner_of, read_events
+from irsim.simulation.explored import explored_share
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import Trace, cut_trace, record
 
@@ -246,6 +247,7 @@ def measure(
         trace, events = cut_trace(trace, slice(last + 1)), [event for event in events if event.step <= last]
     steps = int(trace.step[-1])
     measured, incidents = episode_metrics(trace, scene.simulation, events, ways=ways), find_incidents(records, events)
+    measured.episode["explored"] = _explored(task, episode, simulation, steps)
     measured.episode["pedestrian_delay"] = _pedestrian_delay(task, episode, scene, simulation)
     robots = measured.robots
     outcome: Outcome = "timeout"
@@ -272,6 +274,18 @@ def measure(
         "metrics": measured.episode,
         "zones": measured.zones,
     }
+
+
+def _explored(task: Task, episode: Episode, simulation: Simulation, steps: int) -> float:
+    """``explored``; an episode that was cut short at a collision is run again to that step."""
+    share = explored_share(simulation, episode.world)
+    if share is None or steps == int(episode.trace.step[-1]):
+        return math.nan if share is None else share
+    again = environment_of(task.job, task.seed)
+    again.simulation.advance(steps)
+    share = explored_share(again.simulation)
+    again.end(ending_time=0.0)
+    return math.nan if share is None else share
 
 
 def _first_hits(scene: Env, events: list[Event]) -> dict[str, Event]:

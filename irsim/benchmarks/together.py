@@ -13,6 +13,7 @@ from irsim.metrics.geodesic import Geodesics
 from irsim.policies.driver import PolicyDriver, attach_policy, driver_of
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import read_events
+from irsim.simulation.explored import explored_share
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import Trace, record_worlds
 
@@ -97,6 +98,7 @@ def _scene(job: Job, seeds: Sequence[int]) -> tuple[Env | None, dict[int, int]]:
 def _fit_together(simulation: Simulation) -> bool:
     """Whether worlds of a scenario that are stepped together do what they do alone, and gain by it."""
     others = simulation.measurements or simulation.drives is not None or simulation.hooks is not None
+    others = others or explored_share(simulation) is not None  # fog goes on after the end of an episode
     policies = [part.policy for part in simulation.decisions if isinstance(part, PolicyDriver)]
     return not others and len(policies) == len(simulation.decisions) and all(one.batch_invariant for one in policies)
 

@@ -284,9 +284,14 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
 
 
 def _obstruction_message(env: Env, view: ObjectView, held: dict[str, Event]) -> str:
-    """Say which object stopped by a collision is in the way of a robot; empty if there is none."""
-    near = find_obstruction(env.simulation, view.row, held) if held else None
-    return f", and {near.message}" if near is not None and near.held else ""
+    """Say what is in the way of a robot: an object stopped by a collision, or one that its behavior cannot get around.
+
+    Empty if there is no such object.
+    """
+    near = find_obstruction(env.simulation, view.row, held)
+    if near is None or not (near.held or near.advice):
+        return ""
+    return f", and {near.message}" + (f" ({near.advice})" if near.advice else "")
 
 
 def _circling_message(env: Env, view: ObjectView, events: Sequence[Event]) -> str | None:

@@ -29,6 +29,7 @@ __all__ = [
     "is_moving_obstacle",
     "jam_message",
     "no_progress_since",
+    "reactive_behavior",
     "stalled_since",
 ]
 
@@ -44,6 +45,10 @@ _TO_AND_FRO_SHARE = 0.5
 """Share of the way driven in the window below which the net movement means driving to and fro."""
 _MAX_OBSTRUCTION_DISTANCE = 0.5
 """Distance [m] up to which an object obstructs one that makes no progress."""
+_MAX_WALL_DISTANCE = 2.0
+"""Distance [m] up to which something static obstructs a car that plans no path."""
+_REACTIVE = ("rvo", "orca", "sfm")
+"""Behaviors that avoid obstacles without planning a path."""
 _MAX_JAM_DISTANCE = 2.0
 """Distance [m] up to which a jammed obstacle obstructs an object, as some behaviors keep this far from people."""
 _MIN_CIRCLE_RADIUS = 0.05
@@ -82,10 +87,12 @@ class Obstruction:
     Attributes:
         message: Its name and distance, and the time of the collision that stopped it, if one did.
         held: Whether a collision stopped it.
+        advice: What the scenario should say instead, None if that is not known.
     """
 
     message: str
     held: bool
+    advice: str | None = None
 
 
 def is_moving_obstacle(record: ObjectRecord) -> bool:
@@ -193,11 +200,16 @@ def find_obstruction(
     """
     poses = simulation.pose[: simulation.objects] if pose is None else pose
     [found] = approaches(poses[None], simulation, [index], 1)
-    close = [
-        near
-        for near in found
-        if near.distance < (_MAX_JAM_DISTANCE if near.partner in held else _MAX_OBSTRUCTION_DISTANCE)
-    ]
+    record = simulation.scenario.objects[index]
+    still = {other.name for other in simulation.scenario.objects if other.static}
+    car = getattr(record.kinematics, "steered", False) and reactive_behavior(record) is not None
+
+    def most(partner: str) -> float:
+        if partner in held:
+            return _MAX_JAM_DISTANCE
+        return _MAX_WALL_DISTANCE if car and partner in still else _MAX_OBSTRUCTION_DISTANCE
+
+    close = [near for near in found if near.distance < most(near.partner)]
     if not close:
         return None
     near = next((near for near in close if near.partner in held), close[0])
@@ -205,7 +217,22 @@ def find_obstruction(
     if near.partner in held:
         since = seconds(held[near.partner].time)
         return Obstruction(f"{where} and has been stopped since a collision at {since}", held=True)
-    return Obstruction(where, held=False)
+    name = reactive_behavior(record)
+    if name is None or near.partner not in still:
+        return Obstruction(where, held=False)
+    lacks = ", and a car cannot turn on the spot" if car else ""
+    return Obstruction(
+        where,
+        held=False,
+        advice=f"{name} plans no path{lacks}: use behavior: {{name: follow, local: {{name: {name}}}}}",
+    )
+
+
+def reactive_behavior(record: ObjectRecord) -> str | None:
+    """The behavior of an object, or of its group, if it avoids obstacles without planning a path; else None."""
+    options = record.behavior if record.group_behavior is None else record.group_behavior
+    name = str(getattr(options, "name", ""))
+    return name if name in _REACTIVE else None
 
 
 def heading_message(record: ObjectRecord, pose: NDArray[np.float64], goal: NDArray[np.float64]) -> str | None:

@@ -175,5 +175,12 @@ EPISODE_METRICS: tuple[Metric, ...] = (
         "max",
         better="less",
     ),
+    Metric(
+        "explored",
+        "0-1",
+        "share of the cells of the fog that the robots had seen at the end; undefined without world.fog_map",
+        canonical=False,
+        better="more",
+    ),
 )
 """Metrics that only a whole episode has."""

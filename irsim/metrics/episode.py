@@ -147,6 +147,7 @@ def _of_episode(robots: list[dict[str, float]]) -> dict[str, float]:
     found["pedestrian_delay"] = math.nan  # needs a second run without robots, which irsim.benchmark makes
     times = [robot["time_to_goal"] for robot in robots]
     found["aggregated_time"] = max(times) if times and not any(map(math.isnan, times)) else math.nan
+    found["explored"] = math.nan  # needs the fog at the end of the run, which irsim.benchmark has
     return found
 
 

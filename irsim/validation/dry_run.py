@@ -245,7 +245,9 @@ def _likely_cause(env: Env, trace: Trace, index: int, held: dict[str, Event]) ->
     near = find_obstruction(env.simulation, index, held, trace.pose[-1])
     if near is None:
         return "its behavior keeps it where it is"
-    return near.message if near.held else f"{near.message}, in the way of its behavior"
+    if near.held:
+        return near.message
+    return f"{near.message}, in the way of its behavior" + (f" ({near.advice})" if near.advice else "")
 
 
 def _progress_message(

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import irsim
 from irsim.env import Env
 from irsim.scenario.read import read
 from irsim.validation.feasibility.check import feasibility_findings
@@ -192,3 +193,58 @@ def test_a_wall_stops_nobody_who_gets_around_its_end() -> None:
     for low, expected in ((4.75, []), (4.0, ["needs-planning"])):
         wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 9 - low}, "state": [6, (low + 9) / 2, 0]}
         assert codes(scenario(ROBOT, wall)) == expected, low
+
+
+HALL = """
+world: {width: 20, height: 10, boundary: walls}
+robot: {name: car, kinematics: {name: acker, wheelbase: 1.0}, shape: {name: rectangle, length: 1.6, width: 0.8},
+  state: [2, 5, 0], goal: %s, goal_threshold: 0.3, vel_max: [1.5, 0.6], vel_min: [-1, -0.6], behavior: %s}
+"""
+
+
+@pytest.mark.parametrize(
+    ("goal", "behavior", "outcome", "advised"),
+    [
+        ("[18, 5]", "{name: orca}", "timeout", True),
+        ("[18, 5]", "{name: follow, local: {name: orca}}", "success", False),
+        ("[15, 5]", "{name: orca}", "success", False),
+    ],
+)
+def test_a_car_that_plans_nothing_near_walls_should_follow(
+    goal: str, behavior: str, outcome: str, advised: bool
+) -> None:
+    text = HALL % (goal, behavior)
+    told = [f for f in irsim.validate(text=text).findings if f.code == "needs-planning"]
+    assert [f.fix for f in told] == ["behavior: {name: follow, local: {name: orca}}"] * advised
+    result = irsim.run(text=text, seed=1)
+    assert result.outcome == outcome
+    assert ("use behavior: {name: follow, local: {name: orca}}" in str(result.reason)) is advised
+
+
+def test_a_car_before_an_obstacle_should_follow() -> None:
+    shelf = "obstacle: {shape: {name: rectangle, length: 0.3, width: 6}, state: [10, 2.2, 0]}\n"
+    [told] = [
+        f for f in irsim.validate(text=HALL % ("[15, 5]", "{name: rvo}") + shelf).findings if f.code == "needs-planning"
+    ]
+    assert "cannot turn on the spot" in told.message
+    assert told.fix == "behavior: {name: follow, local: {name: rvo}}"
+
+
+@pytest.mark.parametrize("behavior", ["rvo", "orca"])
+def test_a_robot_that_stands_before_a_box_says_what_to_change(behavior: str) -> None:
+    text = f"""
+world: {{width: 12, height: 8}}
+robot: {{name: r, kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.3}}, state: [1, 4, 0], goal: [11, 4],
+  behavior: {{name: {behavior}}}}}
+obstacle: {{name: box, shape: {{name: rectangle, length: 1, width: 3}}, state: [6, 4, 0]}}
+"""
+    advice = f"{behavior} plans no path: use behavior: {{name: follow, local: {{name: {behavior}}}}}"
+    result = irsim.run(text=text, seed=1)
+    assert result.outcome == "timeout"
+    assert "'box' is 0." in str(result.reason)
+    assert advice in str(result.reason)
+    tried = irsim.validate(text=text, simulate=True).dry_run
+    assert tried is not None
+    assert advice in tried.summary
+    mended = text.replace(f"{{name: {behavior}}}", f"{{name: follow, local: {{name: {behavior}}}}}")
+    assert irsim.run(text=mended, seed=1).outcome == "success"

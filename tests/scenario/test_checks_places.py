@@ -119,3 +119,15 @@ def test_fixes_name_numbers() -> None:
     assert "mdownsample" in str(fix({"world": thinned}))
     follows = read(robot(behavior={"name": "follow", "local": "follow"}), strict=True).errors[0]
     assert follows.message == "'follow' is a behavior, but it cannot be used here"
+
+
+def test_a_goal_at_which_the_body_reaches_over_the_edge() -> None:
+    wide = {"shape": {"name": "circle", "radius": 0.3}}
+    over = ("hint", "outside-world", ("robot", 0, "goal"))
+    assert over in findings(robot(goal=[9.9, 4], **wide))
+    assert over not in findings(robot(goal=[9.7, 4], **wide))
+    walls = {**robot(goal=[9.9, 4], **wide), "world": {"width": 10, "height": 10, "boundary": "walls"}}
+    assert over not in findings(walls), "another finding says that it does not fit"
+    [told] = [d for d in read(robot(goal=[9.9, 4], **wide)).diagnostics if d.code == "outside-world"]
+    assert "reaches 0.2 m over the edge of the world" in told.message
+    assert "x from 0.3 to 9.7" in str(told.fix)

@@ -237,7 +237,8 @@ OBJECTS: dict[str, Code] = {
     "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),
     "outside-world": Code(
         "start or goal outside the world",
-        "Objects do not stop at the edge; check the numbers of 'state', 'goal' or the 'distribution'. With "
+        "Objects do not stop at the edge; check the numbers of 'state', 'goal' or the 'distribution'. A goal nearer to "
+        "the edge than the radius of the body is inside, but the body then reaches over the edge. With "
         "'world.boundary: walls' there are walls at the edge, which keep everything inside.",
     ),
     "zone-outside-world": Code(

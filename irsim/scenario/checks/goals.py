@@ -23,6 +23,8 @@ from irsim.scenario.yaml.formatting import flow
 
 _MAX_HEADING = 6.3
 """Largest heading that is surely in radians: a full turn, rounded up [rad]."""
+_MAX_BEYOND = 0.05
+"""Share of its radius by which a round body may reach over the edge of the world at its goal without a hint."""
 _MAX_THRESHOLD_RATIO = 0.5
 """Share of a rectangle's diagonal within which more than half of all pairs of its points lie."""
 
@@ -352,3 +354,27 @@ def _outside_world(context: Context, records: list[ObjectRecord]) -> Iterator[Fi
                     fix=f"use x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, or a larger world",
                 )
                 break
+            over = _over_the_edge(context, record) if key == "goal" and context.is_given(record, "goal") else None
+            if over is not None and not lost:
+                yield over
+                break
+
+
+def _over_the_edge(context: Context, record: ObjectRecord) -> Finding | None:
+    """A hint at the first goal where a round body reaches over an open edge of the world; walls are another matter."""
+    if context.scenario.world.boundary == "walls" or record.shape.name != "circle" or record.wander:
+        return None
+    x0, y0, x1, y1 = context.scenario.world.bounds
+    r = record.shape.radius
+    for index, goal in enumerate(record.goals):
+        x, y = goal[:2]
+        beyond = r - min(x - x0, x1 - x, y - y0, y1 - y)
+        if beyond > _MAX_BEYOND * r and x0 + r <= x1 - r and y0 + r <= y1 - r:
+            return hint(
+                "outside-world",
+                _goal_path(context, record, "goal", index),
+                f"at its goal ({x:g}, {y:g}) the body of '{record.name}' reaches {metres(beyond)} over the edge of "
+                "the world: nothing stops it there, and pictures show only a part of it",
+                fix=f"use x from {x0 + r:g} to {x1 - r:g} and y from {y0 + r:g} to {y1 - r:g}, or a larger world",
+            )
+    return None

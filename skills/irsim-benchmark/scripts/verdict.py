@@ -25,7 +25,7 @@ MIN_PAIRS = 10
 SHARES = ("success", "goal_reached", "timeout", "group_collision_rate", "left_world", "collision")
 MORE = """
     success goal_reached spl velocity_avg clearing_distance_min clearing_distance_avg space_compliance
-    distance_to_human_min stl barn_score crowdnav_reward min_clearance
+    distance_to_human_min stl barn_score crowdnav_reward min_clearance explored
 """.split()  # noqa: SIM905
 LESS = """
     collision_count collision_steps wall_collisions agent_collisions human_collisions timeout
