@@ -22,6 +22,7 @@ from irsim.benchmarks.policies import digests_of, job_keys, label_of, listed_pol
 from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from, seeds_text
 from irsim.benchmarks.timing import timing_report
+from irsim.benchmarks.unequal_limits import Limit, limits_of, unequal_note
 from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
@@ -141,6 +142,7 @@ def benchmark(
     warnings: dict[str, list[Finding]] = {}
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
     periods, chances, changes = dict[str, float](), dict[str, list[str]](), dict[str, list[str]]()
+    unequal: dict[str, str] = {}
     for name, source in zip(names, given, strict=True):
         document = _document(source, limits)
         scenario, warnings[name] = read_document(document, strict=strict)
@@ -148,6 +150,7 @@ def benchmark(
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
         if texts:
             changes[name] = perturbed_message(scenario)
+        limits_under: dict[str, dict[str, Limit]] = {}
         for number, (policy, behavior) in enumerate(zip(opened, wanted, strict=True)):
             if policy.stochastic and "policy" not in chances[name]:
                 chances[name].append("policy")
@@ -166,8 +169,12 @@ def benchmark(
             )
             with naming(where, number):
                 check_policy(job)
-                chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
+                driven = scenario_of(job)
+            chances[name] += [part for part in random_parts(driven) if part not in chances[name]]
+            limits_under[behavior] = limits_of(driven, own=isinstance(policy, BehaviorPolicy))
             jobs.append((name, behavior, job, chosen))
+        if (note := unequal_note(limits_under)) is not None:
+            unequal[name] = note
     plan = [
         (name, behavior, Task(job, seed))
         for name, behavior, job, every in jobs
@@ -185,6 +192,7 @@ def benchmark(
         step_time=periods,
         perturb=list(texts),
         perturbed=changes,
+        unequal=unequal,
         random=chances,
         rows=[],
         episodes=[],

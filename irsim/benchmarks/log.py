@@ -145,5 +145,6 @@ def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> Benc
     """A copy of a result with its episodes and with the rows and notes that follow from them."""
     rows = rows_of(episodes, head.scenarios, head.behaviors, head.random, protocols_of(head.scenarios))
     notes = perturbation_notes(head.perturbed) + notes_of(episodes, head.random, head.seeds)
+    notes += [f"{name}: {note}" for name, note in head.unequal.items()]
     found = {"episodes": list(episodes), "rows": rows, "notes": notes, "incidents": incident_messages(episodes)}
     return head.model_copy(update=found)

@@ -40,6 +40,8 @@ MAX_LABEL_CANDIDATES = 60
 """Number of points of a line that are tried as the position of its label."""
 MIN_EDGE_SHARE = 0.05
 """Smallest distance of a label from the edge of the picture, as a share of the longer side of the picture."""
+MAX_EDGE_SHARE = 0.25
+"""The same for very flat pictures, as a share of the shorter side."""
 _UNREACHABLE_COLOR = "#e8590c"
 _LINE_COLOR = "#1c7ed6"
 _TEXT_COLOR = "#1864ab"
@@ -176,7 +178,7 @@ def _label_line(scene: Scene, text: str, lines: list[Floats], color: str) -> Non
     inside = np.minimum(
         np.minimum(points[:, 0] - x0, x1 - points[:, 0]), np.minimum(points[:, 1] - y0, y1 - points[:, 1])
     )
-    points = points[inside > MIN_EDGE_SHARE * max(x1 - x0, y1 - y0)]
+    points = points[inside > min(MIN_EDGE_SHARE * max(x1 - x0, y1 - y0), MAX_EDGE_SHARE * min(x1 - x0, y1 - y0))]
     if not len(points):
         return
     taken = np.array([label.anchor for label in scene.labels]).reshape(-1, 2)

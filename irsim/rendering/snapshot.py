@@ -7,13 +7,15 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from irsim.common.files import replacing
 from irsim.graphics.encoding.gif import reduce_colors
 from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.figure.figure import SceneFigure, fitting_size
 from irsim.graphics.figure.layers import opaque_colors
 from irsim.graphics.figure.pictures import Pictures
-from irsim.graphics.scene.scene import Scene, region_extent
+from irsim.graphics.scene.scene import Line, Mark, Scene, Stroke, region_extent
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.rendering.readability import make_legible
 from irsim.rendering.snapshot_details import add_details
@@ -28,6 +30,13 @@ __all__ = ["Extra", "legible_scene", "png_of", "render_scene"]
 Extra = Callable[[Scene], None]
 """Callback that adds marks or labels to a scene."""
 _DPI = 100.0
+MIN_HEIGHT_SHARE = 0.2
+"""Smallest height of what is shown, as a share of its width."""
+MIN_WIDTH_SHARE = 0.25
+"""Smallest width of what is shown, as a share of its height; names are wide."""
+_EDGE_COLOR = "#868e96"
+_NO_OBJECT = -1000
+"""Object id of marks that belong to no object."""
 MAX_COLORS = 255
 """Number of colours of a snapshot, which keeps its file small."""
 
@@ -113,7 +122,19 @@ def legible_scene(
     add_details(scene, simulation, world)
     if extra is not None:
         extra(scene)
+    _leave_room_for_names(scene)
     return scene, pictures
+
+
+def _leave_room_for_names(scene: Scene) -> None:
+    """Show a margin beside a very flat or narrow area, with a line at its edge, so that names do not cover another."""
+    x0, x1, y0, y1 = scene.extent
+    width, height = x1 - x0, y1 - y0
+    right, up = max(0.0, MIN_WIDTH_SHARE * height - width) / 2, max(0.0, MIN_HEIGHT_SHARE * width - height) / 2
+    if right > 0 or up > 0:
+        edge = Line(np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)]))
+        scene.marks.append(Mark(_NO_OBJECT, "field", edge, None, Stroke(_EDGE_COLOR, 0.8), 1.0, 0.0))
+        scene.look_at((x0 - right, x1 + right, y0 - up, y1 + up))
 
 
 def png_of(image: Image.Image, kept: Sequence[tuple[int, int, int]]) -> bytes:

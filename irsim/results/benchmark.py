@@ -133,6 +133,8 @@ class BenchmarkResult(Result):
     """Perturbations of starts, speeds and delays, as on the command line."""
     perturbed: dict[str, list[str]] = Field(default_factory=dict)
     """What they change in each scenario, in words; empty without a perturbation."""
+    unequal: dict[str, str] = Field(default_factory=dict)
+    """Which limits of robots differ between the policies, in words, by scenario; empty if all are equal."""
     random: dict[str, list[str]]
     """What the seed decides in each scenario; a scenario in which it decides nothing runs with the first seed only."""
     rows: list[BenchmarkRow]

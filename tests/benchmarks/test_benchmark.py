@@ -338,3 +338,29 @@ def test_the_command(files) -> None:
     assert table[0]["distance_to_human_min"] == ""
     for wrong in (["--seeds", "x"], ["--seeds", "9-2"], ["--seeds", "0"], ["--json", "--csv"], ["--behaviors", ","]):
         assert runner.invoke(app, ["benchmark", files[0], *wrong]).exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("policies", "said"),
+    [
+        (["dash", "orca"], None),
+        (
+            ["dash", "sfm"],
+            "drives at most 2 m/s under dash, 1.5 m/s under sfm; equal speeds need vmax of sfm or a lower",
+        ),
+        (["{name: follow, local: {name: rvo}}", "{name: orca, maxSpeed: 1}"], "1 m/s under {name: orca, maxSpeed: 1}"),
+        (["{name: rvo, vxmax: 2, vymax: 2}", "dash"], "turns at most 1.5 rad/s under {name: rvo, vxmax: 2, vymax: 2}"),
+        (["as-written", "random"], None),
+    ],
+)
+def test_a_note_says_in_one_sentence_which_limits_of_the_policies_are_unequal(tmp_path, policies, said) -> None:
+    file = tmp_path / "fast.yaml"
+    fast = ALONE.replace("behavior:", "vel_max: [2, 3], vel_min: [-2, -3], name: scout, behavior:")
+    file.write_text("world: {time_limit: 1}\n" + fast)
+    found = irsim.benchmark([str(file)], policies, seeds=1)
+    (*_, note) = [*found.notes, ""] if said is None else found.notes
+    assert found.unequal == ({} if said is None else {str(file): note.removeprefix(f"{file}: ")})
+    if said is not None:
+        assert note.startswith(f"{file}: limits are unequal, so times are not fair: 'scout' ")
+        assert said in note
+        assert ". " not in note.removeprefix(str(file))

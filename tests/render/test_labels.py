@@ -12,7 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.transforms import Bbox
 
+from irsim.graphics.figure.figure import SceneFigure, fitting_size
 from irsim.graphics.scene.labels import free_places
+from irsim.rendering.snapshot import legible_scene
 
 Make = Callable[..., Any]
 VIEW = np.array([0.0, 0.0, 600.0, 600.0])
@@ -103,3 +105,30 @@ def test_walls_round_the_world_have_no_label(make: Make) -> None:
     env = make("world: {boundary: walls}\nobstacle: {state: [5, 5, 0], shape: {name: circle, radius: 0.3}}")
     env.render(mode="all", show_text=True)
     assert set(shown_boxes(env)) == {"o0"}
+
+
+FLAT = """
+world: {{width: {width}, height: {height}, boundary: walls}}
+robot:
+  - {{name: eastbound, kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.25}}, state: {a}, goal: {b}}}
+  - {{name: westbound, kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.25}}, state: {b}, goal: {a}}}
+obstacle: {{name: crate, shape: {{name: rectangle, length: 0.5, width: 0.5}}, state: {c}}}
+"""
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_names_in_a_very_flat_world_can_be_read(make: Make, turned: bool) -> None:
+    places = {"a": [1, 1, 0], "b": [39, 1, 0], "c": [20, 0.4, 0], "width": 40, "height": 2}
+    if turned:
+        places = {"a": [1, 1, 0], "b": [1, 39, 0], "c": [0.4, 20, 0], "width": 2, "height": 40}
+    scene, pictures = legible_scene(make(FLAT.format(**places)).simulation)
+    x0, x1, y0, y1 = scene.extent
+    assert (x1 - x0, y1 - y0) == pytest.approx((10, 40) if turned else (40, 8))
+    figure = SceneFigure(fitting_size(x1 - x0, y1 - y0, 600, 100), 100, pictures=pictures, halo=True)
+    figure.show(scene, "0.00 s")
+    figure.pixels(tight=False)
+    renderer = figure.figure.canvas.get_renderer()
+    boxes = {t.get_text(): t.get_window_extent(renderer) for t in figure.ax.texts if t.get_visible() and t.get_text()}
+    assert {"eastbound", "westbound", "G-eastbound", "G-westbound", "crate"} <= set(boxes)
+    for one, other in combinations(boxes.values(), 2):
+        assert Bbox.intersection(one, other) is None or min(Bbox.intersection(one, other).size) < 1.0
