@@ -28,8 +28,9 @@ enum class Stream : std::uint64_t {
   policy,
   task
 };
-constexpr std::array<const char*, 12> kStreamNames = {
-    "placement", "shape", "goal", "motion", "sensor", "behavior", "planner", "map", "user", "perturbation", "policy", "task"};
+constexpr std::array<const char*, 12> kStreamNames = {"placement", "shape",        "goal",    "motion",
+                                                      "sensor",    "behavior",     "planner", "map",
+                                                      "user",      "perturbation", "policy",  "task"};
 
 /// The stream of sensor number `index` of an object.
 inline std::uint64_t sensor_stream(int index) {

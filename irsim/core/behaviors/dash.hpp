@@ -86,9 +86,15 @@ inline void dash(const DashOptions& options, const Decision& decision, Intent* i
     }
     const Pose& pose = decision.state.pose[row];
     const Vec2 way = goal.position() - pose.position();
-    const Dasher dasher{norm(way),     std::atan2(way.y, way.x), pose.theta,
-                        goal.theta,    world.goal_threshold[i],  decision.state.vel_max[row],
-                        decision.state.acce[row], world.step_time, options.angle_tolerance};
+    const Dasher dasher{norm(way),
+                        std::atan2(way.y, way.x),
+                        pose.theta,
+                        goal.theta,
+                        world.goal_threshold[i],
+                        decision.state.vel_max[row],
+                        decision.state.acce[row],
+                        world.step_time,
+                        options.angle_tolerance};
     intents[k] = std::visit([&](const auto& drive) { return dash_law(drive, dasher); }, world.drive[i]);
   }
 }

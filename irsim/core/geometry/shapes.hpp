@@ -60,7 +60,7 @@ struct Shapes {
   std::vector<double> radius;  // (N,)
   std::vector<Slot> placed;    // (N,) slots in the `Outlines` of the moving or of the static objects
   Slot size[2];                // sizes of these two
-  std::vector<double> scale;                                // (N,) factor of each object; empty if all are 1
+  std::vector<double> scale;   // (N,) factor of each object; empty if all are 1
   std::vector<std::shared_ptr<const OccupancyGrid>> grids;  // keeps the cells of maps alive
 
   int objects() const { return static_cast<int>(centre.size()); }
@@ -70,7 +70,8 @@ struct Shapes {
   void add(const std::vector<Outline>& outlines, bool fixed);
   /// Add a copy of an object of `other`.
   void copy(const Shapes& other, int object, bool fixed);
-  /// The same shapes, each scaled about the origin of its body frame by its entry of (N,) factors; maps stay as they are.
+  /// The same shapes, each scaled about the origin of its body frame by its entry of (N,) factors; maps stay as they
+  /// are.
   std::shared_ptr<const Shapes> scaled(const double* factors) const;
   double scale_of(int object) const { return scale.empty() ? 1.0 : scale[object]; }
 

@@ -30,12 +30,23 @@ void choose(const World& world, State& state, int w, const Variation& v, double 
 
 void set(State& state, int row, Quantity quantity, double value) {
   switch (quantity) {
-    case Quantity::number: break;
-    case Quantity::size: state.size_scale[row] = value; break;
-    case Quantity::speed: state.speed_scale[row] = value; break;
-    case Quantity::acceleration: state.acceleration_scale[row] = value; break;
-    case Quantity::sensor_noise: state.noise_scale[row] = value; break;
-    case Quantity::latency: state.latency[row] = static_cast<std::int32_t>(value); break;
+    case Quantity::number:
+      break;
+    case Quantity::size:
+      state.size_scale[row] = value;
+      break;
+    case Quantity::speed:
+      state.speed_scale[row] = value;
+      break;
+    case Quantity::acceleration:
+      state.acceleration_scale[row] = value;
+      break;
+    case Quantity::sensor_noise:
+      state.noise_scale[row] = value;
+      break;
+    case Quantity::latency:
+      state.latency[row] = static_cast<std::int32_t>(value);
+      break;
   }
 }
 

@@ -97,12 +97,12 @@ struct World {
   std::optional<Fog> fog;
   std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion
   std::vector<Placement> placements;
-  std::vector<Perturbation> perturbations;  // of different objects, static ones first
-  std::vector<Level> levels;                // what varies between scenes; empty if nothing does
+  std::vector<Perturbation> perturbations;       // of different objects, static ones first
+  std::vector<Level> levels;                     // what varies between scenes; empty if nothing does
   std::vector<std::shared_ptr<World>> variants;  // the same objects at other places, with other shapes and goals
-  Zones zones;                              // what objects enter or cross
-  std::vector<View> views;                  // fields of view that are watched
-  std::vector<std::uint8_t> is_target;      // (N,) whether it is watched who sees an object
+  Zones zones;                                   // what objects enter or cross
+  std::vector<View> views;                       // fields of view that are watched
+  std::vector<std::uint8_t> is_target;           // (N,) whether it is watched who sees an object
 
   std::shared_ptr<const Shapes> shapes;  // null if some are drawn for each scene
   std::shared_ptr<const Bodies> bodies;  // rigid bodies of `shapes`; null until they are needed
