@@ -14,7 +14,7 @@ from irsim.learning.tasks.files import task_error
 from irsim.learning.tasks.randomize import QUANTITIES, merged
 from irsim.learning.tasks.scene import Scene
 from irsim.learning.tasks.task import Task
-from irsim.scenario.resolve.variation import DrawnQuantity
+from irsim.scenario.resolve.resolved import DrawnQuantity
 from irsim.simulation.simulation import Simulation
 
 __all__ = ["Draws", "check_observed", "observed_names"]

@@ -49,7 +49,7 @@ def task_answer(words: Sequence[str]) -> Answer | None:
         text=_ABOUT if not words else _text(node) if about is None else about.text,
         about=about,
         groups={name: keys for name, keys in groups.items() if keys},
-        example=_EXAMPLE if not words else _example(node),
+        example=_EXAMPLE if not words else _example(schema, node),
         see=["policies", "suites"] if not words else ["task"],
     )
 
@@ -71,9 +71,9 @@ def _text(node: Node) -> str:
     return " ".join(str(node.get("description", "")).split())
 
 
-def _example(node: Node) -> str | None:
-    examples = node.get("examples")
-    return yaml_text(examples[0]) if examples else None
+def _example(schema: Node, node: Node) -> str | None:
+    found = [option["examples"] for option in (node, *mappings(schema, node)) if option.get("examples")]
+    return yaml_text(found[0][0]) if found else None
 
 
 _EXAMPLE = """\

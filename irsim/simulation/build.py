@@ -30,8 +30,7 @@ from irsim.simulation.watching import build_targets, build_views, build_zones
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
-    from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario
-    from irsim.scenario.resolve.variation import Variation
+    from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario, Variation
 
 __all__ = [
     "COLLISION_MODES",

@@ -40,3 +40,10 @@ def lidar_among_boxes(**keys: Any) -> dict[str, Any]:
     parts = [{"name": "scan", "sectors": 9}, *PARTS]
     robot = {"distribution": {**RANDOM, "goal_distance": 3}, "sensors": [LIDAR]}
     return task(robot, obstacles=[boxes], observation=parts, **keys)
+
+
+def corridor(**keys: Any) -> dict[str, Any]:
+    """Two robots in a corridor whose width is drawn."""
+    made = task(**{"randomize": {"parameters": {"width": [1.3, 3.3]}, "variants": 5}, **keys})
+    del made["scenario"]
+    return {**made, "template": "corridor-passing"}

@@ -31,7 +31,7 @@ class Curriculum(Options):
     """Levels from easy to hard. A training rises when it succeeds, and its success is measured on the last level."""
 
     schema_extra: ClassVar[dict[str, Any]] = {
-        "examples": [{"levels": [{"randomize": {"number": {"obstacle[0]": [0, 2]}}}, {}], "up": 0.8, "episodes": 200}]
+        "examples": [{"levels": [{"randomize": {"number": {"obstacles": [0, 2]}}}, {}], "up": 0.8, "episodes": 200}]
     }
     also_called: ClassVar[dict[str, str]] = {"stages": "levels", "threshold": "up", "window": "episodes"}
 

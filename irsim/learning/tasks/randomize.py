@@ -40,7 +40,7 @@ class Randomize(Options):
 
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [
-            {"number": {"obstacle[0]": [2, 8]}, "size": {"obstacle[0]": [0.7, 1.3]}, "latency": {"learners": [0, 2]}}
+            {"number": {"obstacles": [2, 8]}, "size": {"obstacles": [0.7, 1.3]}, "latency": {"learners": [0, 2]}}
         ]
     }
     also_called: ClassVar[dict[str, str]] = {

@@ -22,8 +22,7 @@ from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.variation import LevelDraws, drawn_values, level_draws
 from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
-from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
-from irsim.scenario.resolve.variation import Variation, VariedLevel
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Variation, VariedLevel
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
 __all__ = ["Scene", "open_scene", "task_scenario"]
@@ -209,7 +208,7 @@ def _check_alike(base: ResolvedScenario, variant: ResolvedScenario, where: tuple
             raise task_error(where, what, _FIXES.get(key, "leave it as it is"))
     ours, others = base.world.model_dump(exclude=_WORLD_MAY_VARY), variant.world.model_dump(exclude=_WORLD_MAY_VARY)
     for key, value in ours.items():
-        if key not in others or (value != others[key] and value == value):
+        if value != others.get(key):
             what = f"'world.{key}' differs between variants, which may differ in places, goals and shapes only"
             raise task_error(where, what, "leave it as it is")
 

@@ -117,7 +117,9 @@ class Task(Options):
     seeds: Seeds = Seeds()
     """Seeds of the worlds."""
     randomize: Randomize = Randomize()
-    """What is drawn for each episode, besides the places that the scenario draws."""
+    """What is drawn for each episode, besides the places that the scenario draws: ranges [low, high] under words that
+    name objects, as in `size: {"obstacle[0]": [0.7, 1.3]}`. A word is the name, tag or group of objects, an entry of
+    the scenario such as `robot[1]`, or one of `learners`, `robots`, `obstacles` and `people` (obstacles that move)."""
     curriculum: Curriculum | None = None
     """Levels from easy to hard, through which a training rises; null: the task as it is."""
 

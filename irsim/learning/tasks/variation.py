@@ -18,8 +18,7 @@ from irsim.learning.tasks.randomize import QUANTITIES, Randomize, Value, merged
 from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.team import team_of
 from irsim.metrics.roles import HUMAN, kinds_of
-from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
-from irsim.scenario.resolve.variation import DrawnQuantity
+from irsim.scenario.resolve.resolved import DrawnQuantity, ObjectRecord, ResolvedScenario
 from irsim.simulation.random_streams import generator
 
 __all__ = ["LevelDraws", "drawn_values", "level_draws"]

@@ -13,9 +13,8 @@ if TYPE_CHECKING:
     from irsim.components.maps._grid import MapGrid
     from irsim.diagnostics.diagnostic import Path
     from irsim.scenario.model.scenario import Gui, ObjectPlot, WorldModel
-    from irsim.scenario.resolve.variation import Variation
 
-__all__ = ["ObjectRecord", "Placement", "ResolvedScenario", "Spreads"]
+__all__ = ["DrawnQuantity", "ObjectRecord", "Placement", "ResolvedScenario", "Spreads", "Variation", "VariedLevel"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +149,43 @@ class Placement:
         """How to make that area larger, in words."""
         keys = {"circle_crossing": "raise radius or noise", "square_crossing": "raise width"}
         return keys.get(self.distribution, "widen range_low/range_high")
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnQuantity:
+    """A quantity that is drawn for each scene, uniformly; see ``Variation`` in ``irsim/_core.pyi``.
+
+    Attributes:
+        quantity: number, size, speed, acceleration, sensor_noise or latency.
+        word: Name of the objects in the task.
+        objects: Their ids.
+        low, high: Range.
+        same: Whether all objects share one draw.
+    """
+
+    quantity: str
+    word: str
+    objects: Sequence[int]
+    low: float
+    high: float
+    same: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class VariedLevel:
+    """What is drawn at one level of a curriculum: quantities, and one of some variants of the scenario."""
+
+    drawn: Sequence[DrawnQuantity] = ()
+    first_variant: int = 0
+    variants: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Variation:
+    """What is drawn at each level, and the variants of all levels: the same objects elsewhere, of other shapes."""
+
+    levels: Sequence[VariedLevel]
+    variants: Sequence[ResolvedScenario] = ()
 
 
 @dataclass(slots=True)
