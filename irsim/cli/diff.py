@@ -85,7 +85,7 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
     from rich.text import Text
 
     from irsim.cli.output import console
-    from irsim.common.text import clean, names_if_different, shorten_pair
+    from irsim.common.text import clean, names_if_different, rounded_pair, shorten_pair
     from irsim.scenario.yaml.rewrite import yaml_flow
     from irsim.validation.diff.keys import place
 
@@ -112,7 +112,7 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
         line(
             fact.change,
             " ".join(filter(None, (fact.object or "world", fact.key))),
-            *names_if_different(fact.before, fact.after),
+            *rounded_pair(*names_if_different(fact.before, fact.after)),
         )
     for comment in found.comments_lost:
         out.print(Text.assemble(("comment lost", "red"), f"  {clean(comment, MAX_VALUE_LENGTH)}"), soft_wrap=True)

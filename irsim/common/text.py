@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-__all__ = ["clean", "listed", "metres", "names_if_different", "quoted", "seconds", "shorten_pair"]
+__all__ = ["clean", "listed", "metres", "names_if_different", "quoted", "rounded_pair", "seconds", "shorten_pair"]
 
 MAX_NAME = 40
 """Number of characters of a name that a message shows."""
+_DECIMALS = 3
+"""Decimals of numbers in lists of differences."""
 _MOST_DECIMALS = 6
 """Number of decimals of a length at which two lengths count as equal."""
 
@@ -44,6 +46,25 @@ def names_if_different(before: object, after: object) -> tuple[object, object]:
     if options and names[0] != names[1] and all(isinstance(value, Mapping) and "name" in value for value in options):
         return names[0], names[1]
     return before, after
+
+
+def rounded_pair(before: object, after: object) -> tuple[object, object]:
+    """Two values with their numbers rounded to millimetres and milliradians, as they are if that made them equal.
+
+    Args:
+        before: First value, as JSON types.
+        after: Second value.
+    """
+    short = _rounded(before), _rounded(after)
+    return (before, after) if short[0] == short[1] else short
+
+
+def _rounded(value: object) -> object:
+    if isinstance(value, float):
+        return round(value, _DECIMALS) + 0.0
+    if isinstance(value, Mapping):
+        return {key: _rounded(item) for key, item in value.items()}
+    return [_rounded(item) for item in value] if isinstance(value, list) else value
 
 
 def seconds(time: float) -> str:

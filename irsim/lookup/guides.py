@@ -90,7 +90,7 @@ GUIDES: dict[str, Guide] = {
         "an area that a robot stays out of",
         "Name the area in world.zones, and the zone under `avoid` of follow: the zone is then solid for this robot "
         "alone, and the run says who else entered it. For people who must keep their distance, make the circle larger. "
-        "A zone that nobody avoids only watches. `within` of follow is the opposite: the area that the path stays in. "
+        "Without `avoid` a zone only watches. `within` of follow is the opposite: the area that the path stays in. "
         "Random objects keep clear of a point or an object with `keep_clear` of the distribution random.",
         "world: {zones: [{name: talk, circle: {center: [6, 6], radius: 1.2}}]}\n"
         "robot: {state: [6, 1, 1.57], goal: [6, 11], behavior: {name: follow, local: {name: orca}, avoid: [talk]}}",

@@ -8,7 +8,7 @@ from irsim.lookup.schema_walk import Node, alternatives, component_name, mapping
 
 __all__ = ["BETTER", "small_example"]
 
-BETTER = ("arrive_mode", "fov", "fov_radius", "fov_occlusion", "goal_threshold", "show_fov")
+BETTER = ("arrive_mode", "avoid", "fov", "fov_radius", "fov_occlusion", "goal_threshold", "show_fov")
 """Keys whose small example says more than those of templates, because they need each other."""
 
 _VALUES: dict[str, Any] = {
@@ -18,6 +18,7 @@ _VALUES: dict[str, Any] = {
     "angle_tolerance": 0.05,
     "attenuation": 2,
     "avg_radius_range": [0.3, 0.8],
+    "avoid": ["people_talking"],
     "center": [0.1, 0],
     "center_range": [0, 0, 0, 0],
     "approach_time": 0.5,
@@ -73,6 +74,7 @@ _VALUES: dict[str, Any] = {
     "safety_radius": 0.2,
     "social_groups": [[0, 1], [2, 3]],
     "spikeyness_range": [0, 0.3],
+    "start_time": 5,
     "std": 0.05,
     "text_position": [0.3, 0.3],
     "tau": 0.2,
@@ -82,6 +84,9 @@ _VALUES: dict[str, Any] = {
     "vertices": [[0, 0], [1, 0], [0, 1]],
     "viewpoint": "robot_0",
     "wheelbase": 0.5,
+    "within": {"rectangle": [0, 4, 20, 6]},
+    "within.polygon": [[0, 0], [20, 0], [20, 6], [0, 6]],
+    "within.rectangle": [0, 4, 20, 6],
     "width": 8,
 }
 """Values that say more than the default does, by the last words of a path."""

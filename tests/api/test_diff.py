@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from typer.testing import CliRunner
 import irsim
 from irsim.bundled import templates
 from irsim.cli.app import app
-from irsim.common.text import names_if_different, shorten_pair
+from irsim.common.text import names_if_different, rounded_pair, shorten_pair
 
 BASE = """\
 world: {width: 10, height: 8, seed: 3}   # the hall
@@ -384,3 +385,23 @@ def test_a_finding_of_an_entry_that_has_moved_is_known_from_the_base() -> None:
     known = [(finding.path, finding.in_base) for finding in report.findings if "slow" in finding.message]
     assert known
     assert all(path.startswith("robot[1]") and in_base for path, in_base in known)
+
+
+def test_numbers_are_rounded_unless_that_hides_the_difference() -> None:
+    assert rounded_pair([1.45963036, -0.0000001], {"pose": 2.0}) == ([1.46, 0.0], {"pose": 2.0})
+    assert rounded_pair(1.00001, 1.00002) == (1.00001, 1.00002)
+    assert rounded_pair(None, {"goals": [[10.93251619, 5]]}) == (None, {"goals": [[10.933, 5]]})
+
+
+def test_drawn_places_are_printed_to_the_millimetre(tmp_path: Path) -> None:
+    text = """
+world: {width: 12, height: 12}
+robot: {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, behavior: {name: dash},
+  distribution: {name: random, range_low: [1, 1, -3]}}
+"""
+    before, after = tmp_path / "a.yaml", tmp_path / "b.yaml"
+    before.write_text(text)
+    after.write_text(text.replace("[1, 1, -3]", "[1.5, 1, -3]"))
+    printed = CliRunner().invoke(app, ["diff", str(before), str(after)]).stdout
+    assert re.search(r"robot_0 pose  \[[\d., -]+\] -> \[", printed)
+    assert not re.search(r"\d\.\d{4}", printed)

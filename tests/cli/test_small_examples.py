@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,6 +16,7 @@ from irsim.lookup.small_examples import BETTER, small_example
 from irsim.scenario.model.json_schema import json_schema
 from irsim.scenario.read import read
 
+ROOT = Path(__file__).parents[2]
 SCHEMA = json_schema()
 PATHS = [path for path, _ in paths(SCHEMA) if path[0] != "obstacle" and len(path) > 1]
 MADE = {
@@ -28,7 +31,7 @@ ROBOT = {
     "goal": [8, 8],
     "behavior": {"name": "dash"},
 }
-ELSEWHERE = ("map-not-found", "keep-clear", "unknown-object")
+ELSEWHERE = ("map-not-found", "keep-clear", "unknown-object", "unknown-zone")
 """Errors about a file, or another object, that is not part of the example."""
 LESS_TELLING = ("name", "type", "_linewidth", "marker_size", "edge_width")
 
@@ -68,3 +71,23 @@ def test_every_random_key_has_an_example(word: str) -> None:
 
 def test_the_example_of_a_field_of_view_has_what_it_needs() -> None:
     assert lookup("fov").example == "fov: 1.5708, fov_radius: 4, fov_occlusion: true, plot: {show_fov: true}"
+
+
+KEYS_OF_OUR_OWN = {
+    "robot.start_time": "start_time: 5",
+    "robot.appear_time": "appear_time: [",
+    "robot.behavior.follow.within": "within: {rectangle:",
+    "robot.behavior.follow.avoid": "behavior: {name: follow, avoid: [",
+    "robot.distribution.random.keep_clear": "keep_clear: [{",
+    "robot.distribution.random.goal_distance": "goal_distance: ",
+    "robot.distribution.circle.start_angle": "start_angle: ",
+    "robot.sensors.lidar2d.endpoint": "endpoint: false",
+}
+
+
+@pytest.mark.parametrize("topic", KEYS_OF_OUR_OWN)
+def test_a_key_of_our_own_has_an_example_and_is_used_in_a_template_or_worked_example(topic: str) -> None:
+    assert KEYS_OF_OUR_OWN[topic] in str(lookup(topic).example)
+    key = re.compile(rf"\b{topic.rpartition('.')[2]}: ")
+    used = [*ROOT.glob("templates/*/scenario.yaml"), *ROOT.glob("skills/*/examples/*/scenario.yaml")]
+    assert any(key.search(path.read_text(encoding="utf-8")) for path in used)

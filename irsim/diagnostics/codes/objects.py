@@ -231,7 +231,7 @@ OBJECTS: dict[str, Code] = {
     "keep-clear": Code(
         "keep_clear that cannot be kept",
         "A random place can keep clear of points, and of the starts and goals of objects of other entries. Objects of "
-        "circle_crossing and square_crossing make way for nobody, so their entries must come first; robots are placed "
+        "circle_crossing and square_crossing do not make way, so their entries must come first; robots are placed "
         "before obstacles.",
     ),
     "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),

@@ -111,7 +111,7 @@ class Entry(Options):
     """Time from which the object moves. Until then it stands at its start, where others see it and collide with it,
     and follows neither its behavior nor commands. A list of numbers is one time per object."""
     appear_time: Annotated[Any, PerObject(Delay, "number")] = 0.0
-    """Time at which the object comes into the world. Until then nobody senses it, collides with it or sees it in
+    """Time at which the object comes into the world. Until then it does not exist for sensors, other objects and
     pictures, and its x and y are NaN. If its place is taken then, it waits until there is room. A list of numbers is
     one time per object."""
     velocity: Annotated[Any, PerObject(Control | None, "vector")] = None

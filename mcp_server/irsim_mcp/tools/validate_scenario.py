@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.common.text import clean, names_if_different, seconds, shorten_pair
+from irsim.common.text import clean, names_if_different, rounded_pair, seconds, shorten_pair
 from irsim.validation.diff.keys import place
 from irsim_mcp.json_answer import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
@@ -188,7 +188,7 @@ def _changes(found: dict[str, Any] | None, detailed: bool) -> list[str] | None:
     lines = [f"{item['change']} {place(item['change'], item['path'])}: {_values(item)}" for item in found["keys"]]
     facts = [item for item in found["world"] or [] if not item["direct"]]
     for item in facts:
-        before, after = names_if_different(item["before"], item["after"])
+        before, after = rounded_pair(*names_if_different(item["before"], item["after"]))
         values = _values(item | {"before": before, "after": after})
         lines.append(f"in the world: {item['change']} {_fact(item)}: {values}")
     lines += [f"comment lost: {comment}" for comment in found["comments_lost"]]
