@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.diagnostics.errors import ArgumentError
@@ -12,12 +14,26 @@ from irsim.diagnostics.errors import ArgumentError
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
     from irsim.env import Env
+    from irsim.rendering.clearance_map import Footprint
     from irsim.rendering.planned_paths import PlannedPath
     from irsim.rendering.snapshot import Extra
     from irsim.results.picture import RobotPlan
 
-__all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_results", "plot_keys", "requested_plans"]
+__all__ = [
+    "OVERLAYS",
+    "Overlay",
+    "additions",
+    "footprint_of",
+    "overlays_from",
+    "plan_results",
+    "plot_keys",
+    "requested_plans",
+]
 
+_MAX_POSES = 2000
+"""Greatest number of poses along a path."""
+_POSE_STEP_M = 0.05
+"""Distance between poses along a path, unless that takes too many [m]."""
 Overlay = Literal["names", "goals", "paths", "sensors", "zones", "clearance", "plan"]
 OVERLAYS: dict[Overlay, tuple[str, ...]] = {
     "names": ("show_text", "show_goal_text"),
@@ -74,12 +90,31 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
 
     def add(scene: Scene) -> None:
         if overlays and "clearance" in overlays:
-            draw_clearance(scene, env.simulation)
+            draw_clearance(scene, env.simulation, footprint=footprint_of(env, ways))
         if overlays is None or "zones" in overlays:
             draw_zones(env.scenario.world.zones, Palette().zone, scene.extent).add_to(scene)
         draw_plans(scene, ways)
 
     return add
+
+
+def footprint_of(env: Env, ways: list[PlannedPath]) -> Footprint | None:
+    """The smallest robot along its path, for the overlay ``clearance``; None if it is round or has no path."""
+    from irsim.rendering.clearance_map import Footprint, smallest_robot
+    from irsim.rendering.path_margin import poses_along
+    from irsim.rendering.planned_paths import plan_paths
+
+    row = smallest_robot(env.simulation)
+    view = next((view for view in env.robot_list if view.row == row), None)
+    if view is None or view.shape == "circle" or view.original_geometry.geom_type != "Polygon":
+        return None
+    found = ways or plan_paths(env.simulation, routes=_routes(env))
+    line = next((way.points for way in found if way.robot == view.id and len(way.points) > 1), None)
+    if line is None:
+        return None
+    length = float(np.hypot(*np.diff(line, axis=0).T).sum())
+    poses = poses_along(view, line, max(length / _MAX_POSES, _POSE_STEP_M))
+    return Footprint(np.asarray(view.original_geometry.exterior.coords)[:, :2], poses)
 
 
 def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:

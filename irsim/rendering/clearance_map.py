@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from contourpy import FillType, LineType, contour_generator
@@ -20,7 +20,7 @@ from irsim.navigation.outlines import placed_parts
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["FreeSpace", "draw_clearance"]
+__all__ = ["Footprint", "FreeSpace", "draw_clearance", "smallest_robot"]
 
 MAX_CELLS = 120_000
 """Largest number of cells."""
@@ -42,6 +42,12 @@ MIN_EDGE_SHARE = 0.05
 """Smallest distance of a label from the edge of the picture, as a share of the longer side of the picture."""
 MAX_EDGE_SHARE = 0.25
 """The same for very flat pictures, as a share of the shorter side."""
+MAX_EDGE_POINTS = 100
+"""Number of points on the outline of a body, besides its corners, at which its distance is measured at most."""
+MAX_INNER_POINTS = 30
+"""Number of points inside it, so that obstacles inside the outline count."""
+_TOUCHES = "touches"
+"""Label of the area in which a footprint touches an obstacle."""
 _UNREACHABLE_COLOR = "#e8590c"
 _LINE_COLOR = "#1c7ed6"
 _TEXT_COLOR = "#1864ab"
@@ -125,16 +131,40 @@ class FreeSpace:
         return np.concatenate([[first], found[1:-1], [last]]) if len(found) else None
 
 
-def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0) -> None:
-    """Add the clearance map to a scene: the area that the smallest robot cannot enter, and lines of equal distance.
+class Footprint(NamedTuple):
+    """A robot that is not round, and where it points.
+
+    Attributes:
+        outline: (K, 2) outline of its body, body frame [m].
+        poses: (P, 3) x, y [m] and heading [rad] along its path.
+    """
+
+    outline: Floats
+    poses: Floats
+
+
+def smallest_robot(simulation: Simulation, world: int = 0) -> int | None:
+    """Return the row of the robot with the smallest inscribed disc, which the map is about; None without robots."""
+    rows = (world * simulation.objects + np.flatnonzero(simulation.robots)).tolist()
+    sizes = {row: inscribed_radius(simulation, row) for row in rows}
+    return min((row for row in rows if sizes[row] > 0), key=lambda row: sizes[row], default=None)
+
+
+def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0, *, footprint: Footprint | None = None) -> None:
+    """Add the clearance map to a scene: where the middle of the smallest robot cannot be, and lines of equal distance.
+
+    The lines have the distance of the middle of the robot to obstacles. With a footprint everything is about that body,
+    which points everywhere as it does on the nearest part of its path; lines then have the distance of the body.
 
     Args:
         scene: The scene; its extent is the area that the picture shows.
         simulation: The simulation that the scene shows.
         world: Index of the world.
+        footprint: The smallest robot, if it is not round and has a path.
     """
     x0, x1, y0, y1 = scene.extent
-    radius = _smallest_robot_radius(simulation, world)
+    row = smallest_robot(simulation, world)
+    radius = 0.0 if row is None else inscribed_radius(simulation, row)
     margin = _MARGIN_SHARE * max(x1 - x0, y1 - y0)
     box = x0 - margin, y0 - margin, x1 + margin, y1 + margin
     space = FreeSpace(simulation, world, box, max(radius, 0.02))
@@ -142,6 +172,8 @@ def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0) -> None
     if not math.isfinite(float(distance.min())):
         return
     x, y = space.cell_centers
+    if footprint is not None:
+        distance, radius = _body_distance(space, footprint), space.half_diagonal
     inside = (x[:, None] > x0) & (x[:, None] < x1) & (y > y0) & (y < y1)
     max_distance = float(distance[inside].max())
     levels: Any = contour_generator(x, y, distance.T, fill_type=FillType.OuterOffset, line_type=LineType.Separate)
@@ -151,7 +183,8 @@ def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0) -> None
             rings = [np.asarray(corners[a:b]) for a, b in itertools.pairwise(starts)]
             stroke, region = Stroke(_UNREACHABLE_COLOR, 0.8), Region(rings)
             scene.marks.append(Mark(_NO_OBJECT, "field", region, _UNREACHABLE_COLOR, stroke, _FILL_ALPHA, _ZORDER))
-        _label_line(scene, metres(radius), levels.lines(radius), _UNREACHABLE_COLOR)
+        text = metres(radius) if footprint is None else _TOUCHES
+        _label_line(scene, text, levels.lines(radius), _UNREACHABLE_COLOR)
     shown, last = 0, radius
     for level in _LINE_DISTANCES_M:
         if last * MIN_LINE_RATIO < level < max_distance and shown < MAX_LINES:
@@ -163,11 +196,32 @@ def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0) -> None
             shown, last = shown + 1, level
 
 
-def _smallest_robot_radius(simulation: Simulation, world: int) -> float:
-    """Return the radius of the inscribed disc of the smallest robot [m]; 0 without robots."""
-    rows = world * simulation.objects + np.flatnonzero(simulation.robots)
-    found = [inscribed_radius(simulation, int(row)) for row in rows]
-    return min((radius for radius in found if radius > 0), default=0.0)
+def _body_distance(space: FreeSpace, footprint: Footprint) -> Floats:
+    """(nx, ny) distance of a body at each cell to obstacles [m], pointing as on the nearest part of its path."""
+    import shapely
+
+    x, y = space.cell_centers
+    points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+    places = np.asarray(shapely.points(footprint.poses[:, :2]), dtype=object)
+    nearest = shapely.STRtree(places).nearest(shapely.points(points))
+    cos, sin = np.cos(footprint.poses[nearest, 2]), np.sin(footprint.poses[nearest, 2])
+    least = np.full(len(points), math.inf)
+    for bx, by in _samples(footprint.outline, 2 * space.half_diagonal):
+        least = np.minimum(least, space.distance_at(points + np.stack([cos * bx - sin * by, sin * bx + cos * by], 1)))
+    return least.reshape(len(x), len(y))
+
+
+def _samples(outline: Floats, step: float) -> Floats:
+    """(K, 2) points on an outline, about ``step`` apart or farther if there would be too many, and some inside [m]."""
+    from shapely import MultiPoint, Polygon
+
+    body = Polygon(outline)
+    edge = np.asarray(body.exterior.segmentize(max(step, body.length / MAX_EDGE_POINTS)).coords)
+    x0, y0, x1, y1 = body.bounds
+    apart = math.sqrt((x1 - x0) * (y1 - y0) / MAX_INNER_POINTS)
+    grid = MultiPoint([(x, y) for x in np.arange(x0 + apart / 2, x1, apart) for y in np.arange(y0, y1, apart)])
+    inner = np.asarray([(p.x, p.y) for p in grid.geoms if body.contains(p)]).reshape(-1, 2)
+    return np.concatenate([edge, inner])
 
 
 def _label_line(scene: Scene, text: str, lines: list[Floats], color: str) -> None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["PathMargin", "path_margin"]
+__all__ = ["PathMargin", "path_margin", "poses_along"]
 
 _MAX_TURN_RAD = 0.1
 """Largest difference between two headings of the footprint at a corner of the path [rad]."""
@@ -56,7 +56,7 @@ def path_margin(simulation: Simulation, view: ObjectView, line: Floats, space: F
         line: (K, 2) corners of the path [m].
         space: Distances to everything that stands.
     """
-    poses = _poses(view, line, space.half_diagonal)
+    poses = poses_along(view, line, space.half_diagonal)
     away = np.hypot(*(poses[:, :2] - line[-1]).T)
     outside = np.flatnonzero(away > view.record.goal_threshold)
     poses = poses[: 1 if view.record.static or not outside.size else int(outside[-1]) + 1]
@@ -76,7 +76,7 @@ def path_margin(simulation: Simulation, view: ObjectView, line: Floats, space: F
     return PathMargin(distance, (x, y, heading), simulation.scenario.objects[int(partners[best])].name)
 
 
-def _poses(view: ObjectView, line: Floats, step: float) -> Floats:
+def poses_along(view: ObjectView, line: Floats, step: float) -> Floats:
     """Return the (P, 3) poses of a robot along a path, at most ``step`` apart [m]."""
     drive = getattr(view.record.kinematics, "name", "")
     heading = float(view.state[2, 0])

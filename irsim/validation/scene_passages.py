@@ -154,6 +154,8 @@ def _narrowest(line: Floats, obstacles: Any, width: float) -> tuple[float, Point
             continue
         (ax, ay), (bx, by) = shapely.get_coordinates(shapely.shortest_line(left, right)).tolist()
         gap = math.dist((ax, ay), (bx, by))
+        if gap > 2 * reach:  # they do not face each other
+            continue
         measured = (1 - 1 / _CELLS_PER_RADIUS) * width < gap <= _WIDE * width
         return (gap, ((ax + bx) / 2, (ay + by) / 2)) if measured else None
     return None

@@ -35,7 +35,7 @@ def scene_lines(table: Mapping[str, Any], labels: Mapping[str, str], seed: int) 
     if len(rows) > _MAX_ROWS:
         lines.append(f"- {len(rows) - _MAX_ROWS} more entries")
     lines += [_hits_text(lidar) for lidar in table["lidars"]]
-    lines += [_passage_text(passage, labels) for passage in table["passages"][:_MAX_PASSAGES]]
+    lines += [_passage_text(passage) for passage in table["passages"][:_MAX_PASSAGES]]
     if table["overlapping_goals"]:
         lines.append(f"Goals of robots overlap in {table['overlapping_goals']} of {table['seeds']} seeds")
     if table["crowded"]:
@@ -70,10 +70,9 @@ def _row_text(row: Mapping[str, Any], labels: Mapping[str, str], seeds: int) -> 
 
 
 def _name(name: str, labels: Mapping[str, str]) -> str:
-    if name not in labels:
-        return repr(clean(name))
-    label = clean(labels[name])
-    return label if labels[name] == name else f"{label} {clean(name)!r}"
+    """The name of an object, and its label in the picture if that is another: ``'robot_0' (r0)``."""
+    label = labels.get(name, name)
+    return repr(clean(name)) if label == name else f"{clean(name)!r} ({clean(label)})"
 
 
 def _place(pose: Sequence[float], goal: Sequence[float] | None, waypoints: int, end: Sequence[float] | None) -> str:
@@ -91,14 +90,14 @@ def _goal(goal: Sequence[float]) -> str:
 
 def _hits_text(lidar: Mapping[str, Any]) -> str:
     """How many beams of a lidar hit something at the start, and whom."""
-    hits = [f"{clean(name)} {beams}" for name, beams in lidar["hits"].items()]
+    hits = [f"{clean(name)!r} {beams}" for name, beams in lidar["hits"].items()]
     whom = f": {', '.join(hits[:_MAX_HITS])}{', ...' if len(hits) > _MAX_HITS else ''}" if hits else ""
-    return f"Lidar of {clean(lidar['name'])}: {lidar['hit']} of {lidar['beams']} beams hit{whom}"
+    return f"Lidar of {clean(lidar['name'])!r}: {lidar['hit']} of {lidar['beams']} beams hit{whom}"
 
 
-def _passage_text(passage: Mapping[str, Any], labels: Mapping[str, str]) -> str:
+def _passage_text(passage: Mapping[str, Any]) -> str:
     """How wide the narrowest passage on the way of some robots is, and how wide these are."""
-    names = [clean(labels.get(name, name)) for name in passage["names"]]
+    names = [repr(clean(name)) for name in passage["names"]]
     who = "the robot is" if len(names) == 1 else "the robots are"
     places = [f"({x:.2f}, {y:.2f})" for x, y in passage["places"]]
     return (

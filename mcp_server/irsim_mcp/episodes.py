@@ -75,16 +75,11 @@ def policy_names(result: Mapping[str, Any]) -> dict[str, str]:
 
 
 def call_to_repeat(result: Mapping[str, Any], episode: Mapping[str, Any]) -> str:
-    """The call that runs an episode again; a placeholder stands for a scenario that was given as text."""
+    """The call that runs an episode again; a scenario that was given as text is named by its id."""
     name, behavior = episode["scenario"], episode["behavior"]
     name = f"{result['suite']}/{name}" if result.get("suite") else name
     steps = re.search(r" --steps (\d+)", result["reproduce"])
-    text = re.fullmatch(r"\(text(?: (\d+))?\)", name)
-    if text is None:
-        given = f"scenario_path={clean(name, 200)!r}"
-    else:
-        given = "scenario_yaml=<the same text>" if text[1] is None else f"scenario_yaml=<text {text[1]} of scenarios>"
-    words = ["run_episode", given, f"seed={episode['seed']}"]
+    words = ["run_episode", f"scenario_path={clean(name, 200)!r}", f"seed={episode['seed']}"]
     words += [f"policy={clean(behavior, 500)!r}"] if behavior != "as-written" else []
     words += [f"perturb={'; '.join(result['perturb'])!r}"] if result["perturb"] else []
     words += [f"max_steps={steps[1]}"] if steps else []

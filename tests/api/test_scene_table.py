@@ -57,8 +57,8 @@ def lines(text: str, tmp_path: Path) -> str:
 def test_sensors_and_their_beams_are_told(tmp_path: Path) -> None:
     found = lines(WATCH, tmp_path)
     assert "fmcw_lidar2d 120 deg, 10 m, 241 beams, motion_compensate, velocity noise 0.05" in found
-    (line,) = [line for line in found.splitlines() if line.startswith("Lidar of watcher")]
-    hit, box = int(line.split(": ")[1].split(" of ")[0]), int(line.split("box ")[1].split(",")[0])
+    (line,) = [line for line in found.splitlines() if line.startswith("Lidar of 'watcher'")]
+    hit, box = int(line.split(": ")[1].split(" of ")[0]), int(line.split("'box' ")[1].split(",")[0])
     assert 0 < box <= hit < 241
     assert abs(box - 241 * 2 * 23.96 / 120) < 3  # the box is seen under atan(2 / 4.5) to both sides
 
@@ -97,8 +97,8 @@ obstacle:
 def test_the_narrowest_passage_on_the_way_of_each_robot_is_told(tmp_path: Path) -> None:
     told = [line for line in lines(DOORS, tmp_path).splitlines() if "passage" in line]
     assert [line.partition(" at ")[0] for line in told] == [
-        "Narrowest passage on the way of long: 0.9 m",
-        "Narrowest passage on the way of slim: 0.9 m",
+        "Narrowest passage on the way of 'long': 0.9 m",
+        "Narrowest passage on the way of 'slim': 0.9 m",
     ]
     assert "; the robot is 0.6 m wide" in told[0]
     assert "3.00)" in told[1]
@@ -112,7 +112,7 @@ obstacle:
   - {shape: {name: linestring, vertices: [[0, 4.2], [14, 4.2]]}, state: [0, 0, 0]}
   - {shape: {name: linestring, vertices: [[0, 5.8], [14, 5.8]]}, state: [0, 0, 0]}
 """
-    assert "Narrowest passage on the way of robot_0: 1.6 m" in lines(corridor, tmp_path)
+    assert "Narrowest passage on the way of 'robot_0': 1.6 m" in lines(corridor, tmp_path)
     assert "passage" not in lines(corridor.replace("5.8", "8.8"), tmp_path)
 
 
@@ -125,5 +125,5 @@ def test_a_passage_in_a_map_and_one_that_is_too_narrow(tmp_path: Path) -> None:
     picture.paste(0, (29, 0, 31, 25))
     picture.paste(0, (29, 35, 31, 60))
     picture.save(tmp_path / "door.png")
-    assert "Narrowest passage on the way of robot_0: 1 m at (3" in lines(cells + robot, tmp_path)
+    assert "Narrowest passage on the way of 'robot_0': 1 m at (3" in lines(cells + robot, tmp_path)
     assert "passage" not in lines((cells + robot).replace("radius: 0.3", "radius: 0.6"), tmp_path)

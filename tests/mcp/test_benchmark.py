@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import irsim
+from irsim_mcp.recent_texts import RecentTexts
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
 
 pytestmark = pytest.mark.anyio
@@ -42,7 +43,8 @@ async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pyt
     found = data_of(result)
     assert (found["status"], found["done"], found["total"]) == ("finished", 10, 10)
     monkeypatch.chdir(workspace)
-    same = irsim.benchmark(["random.yaml", ROOM], ["dash", "rvo"], 4, strict=True, limits=None)
+    sources = {"random.yaml": "random.yaml", RecentTexts().remember(ROOM): ROOM}
+    same = irsim.benchmark(sources, ["dash", "rvo"], 4, strict=True, limits=None)
     kept = json.loads((workspace / found["artifact"]).read_text())
     assert kept["episodes"] == json.loads(same.model_dump_json())["episodes"]
     assert [(row["scenario"], row["behavior"], row["episodes"]) for row in found["rows"]] == [
@@ -54,7 +56,7 @@ async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pyt
     ]
     assert "diff" in found["rows"][1]
     assert any("nothing is random" in note for note in found["notes"])
-    assert found["reproduce"].startswith("irsim benchmark random.yaml scenario.yaml --policies dash,rvo")
+    assert "reproduce" not in found  # no file has the text
     for row in found["rows"]:
         assert f"{row['success'][0]:g} [" in text_of(result)
     assert len(json.dumps(found)) < 6000
@@ -144,6 +146,7 @@ async def test_limits(workspace: Path) -> None:
                     f"run_episode takes (first_seed). Fix: give at most {2**53 - 10}."
                 ),
             ),
+            ({"scenarios": [ROOM, ROOM]}, "bad-argument: the scenario 'text-"),
             ({"scenarios": ["../x.yaml"]}, "path-outside-workspace"),
             ({"scenarios": ["none.yaml"]}, "file-not-found"),
             ({"scenarios": ["#\n" * 200_000]}, "file-too-large"),
@@ -214,10 +217,12 @@ async def test_episodes_are_read_by_inspect_run(workspace: Path) -> None:
         assert all(name in row["failed"] for name in episode["failures"])
     ends = [row["outcome"] == "success" for row in rows]
     assert ends == sorted(ends)
-    assert "(text 1), dash, 0, collision, 2.2, 22" in text_of(first)
+    crash, room = RecentTexts().remember(CRASH), RecentTexts().remember(ROOM)
+    assert f"{crash}, dash, 0, collision, 2.2, 22" in text_of(first)
+    assert {row["scenario"] for row in rows} == {crash, "random.yaml", room}
     assert "rover: collision with 'crate'" in text_of(first)
     assert f"orca #2 is {long}" in text_of(first)
-    call = "run_episode scenario_yaml=<text 1 of scenarios> seed=0 policy='dash' max_steps=90"
+    call = f"run_episode scenario_path={crash!r} seed=0 policy='dash' max_steps=90"
     assert call in text_of(first)
     assert call in data_of(result)["next"]
     assert "cursor=5" in pages[0]["next"]

@@ -20,7 +20,7 @@ async def test_line_and_picture(workspace: Path) -> None:
     text = text_of(result)
     line = text.splitlines()[0]
     assert "t=0 s (step 0, nothing is random); world x 0..8 m, y 0..6 m" in line
-    assert ": rover at (1.00, 1.00) heading 0.00 goal (7.00, 1.00)" in text
+    assert ": 'rover' at (1.00, 1.00) heading 0.00 goal (7.00, 1.00)" in text
     assert "- diff, circle r 0.3, dash, vel_max [" in text
     assert "- static obstacle, circle r 0.5: 'crate' at (4.00, 1.00)" in text
     assert "dash-into-obstacle" in text
@@ -40,7 +40,7 @@ async def test_line_and_picture(workspace: Path) -> None:
 
 async def test_later_moments_and_no_picture(empty: Path) -> None:
     async with connected(empty) as client:
-        for step, said in ((10, "(step 10,"), (-1, "rover arrived")):
+        for step, said in ((10, "(step 10,"), (-1, "'rover' arrived")):
             arguments = {"scenario_yaml": ROOM, "step": step, "return_image": False}
             result = await client.call_tool("render_snapshot", arguments)
             assert said in text_of(result)
@@ -79,7 +79,7 @@ async def test_plans_in_words(empty: Path) -> None:
         given = {"scenario_yaml": ROOM, "overlays": ["plan", "clearance"], "size_px": 300}
         result = await client.call_tool("render_snapshot", given)
         refused = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "strip": 13})
-    assert "a path for rover: " in text_of(result)
+    assert "a path for 'rover': " in text_of(result)
     assert "(strip)" in error_of(refused)
     assert "2 to 12" in error_of(refused)
 
@@ -136,7 +136,7 @@ async def test_ranges_over_seeds_and_seeds_without_room_are_named(empty: Path) -
         text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": RANDOM, "seed": 1}))
     assert "Objects with seed 1 (random: placement)" in text
     assert "- 5 x diff, circle r 0.3, dash" in text
-    assert text.count("r4 'robot_4' at") == 1
+    assert text.count("'robot_4' (r4) at") == 1
     assert "over 20 seeds starts x 1." in text
 
 
@@ -156,6 +156,36 @@ async def test_every_look_takes_the_first_seed_with_room_and_a_strip_of_a_run_th
         ran = data_of(await client.call_tool("run_episode", {"scenario_yaml": RANDOM, "max_steps": 20}))
         assert f"render_snapshot run_id={ran['run_id']} strip=6" in ran["next"]
         assert await seed_of(run_id=ran["run_id"], strip=6) == str(ran["seed"])
+
+
+FLEET = """\
+world: {width: 12, height: 8, boundary: walls}
+robot:
+  - {number: 2, kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [[1, 4], [11, 4]],
+     goal: [[11, 4], [1, 4]], behavior: {name: dash}, sensors: [{name: lidar2d, number: 5}]}
+  - {name: blue car, kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 1, 0], goal: [11, 1],
+     behavior: {name: dash}}
+obstacle: {shape: {name: rectangle, length: 0.2, width: 7}, state: [6, 6]}
+"""
+
+
+async def test_robots_have_one_name_in_all_answers(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        arguments = {"overlays": ["names", "plan"], "return_image": False}
+        looked = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": FLEET, **arguments}))
+        ran = await client.call_tool("run_episode", {"scenario_yaml": FLEET})
+        later = {"run_id": data_of(ran)["run_id"], "step": 5, "return_image": False}
+        seen = text_of(await client.call_tool("render_snapshot", later))
+        near = {"run_id": data_of(ran)["run_id"], "view": "closest"}
+        listed = text_of(await client.call_tool("inspect_run", near))
+    for name, label in (("robot_0", " (r0)"), ("robot_1", " (r1)"), ("blue car", "")):
+        assert f"'{name}'{label} at (" in looked
+        assert f"path for '{name}'" in looked
+        assert "Narrowest passage on the way of 'robot_0', 'robot_1', 'blue car': 2.5 m at (5.90, 1.25)" in looked
+        assert f"- '{name}' " in text_of(ran)
+        assert f"'{name}'{label} at (" in seen
+        assert f"\n{name}, " in listed
+    assert "Lidar of 'robot_0': " in looked
 
 
 async def test_a_later_step_is_only_drawn(empty: Path) -> None:

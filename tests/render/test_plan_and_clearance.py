@@ -7,8 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shapely import Point, Polygon, union_all
+from shapely.affinity import rotate, translate
 
 from irsim.api import snapshot
+from irsim.api.overlays import footprint_of, requested_plans
+from irsim.bundled.templates import scenario_file
 from irsim.env import make
 from irsim.graphics.scene.scene import Line, Region, Scene
 from irsim.rendering import SceneBuilder
@@ -142,8 +146,6 @@ def test_nothing_stands_nothing_is_drawn(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("template", ["maze", "perlin-forest", "car-park", "crowd", "mixed-fleet", "shape-gallery"])
 def test_templates(template: str) -> None:
-    from irsim.bundled.templates import scenario_file
-
     overlays = snapshot(str(scenario_file(template)), seed=1, overlays=["names", "clearance", "plan"], size=400)
     assert overlays.png != snapshot(str(scenario_file(template)), seed=1, overlays=["names"], size=400).png
     assert all(found.lost is None for found in overlays.plans)
@@ -194,3 +196,36 @@ def test_the_least_margin_counts_people_who_stand() -> None:
     assert found["margin"] == pytest.approx(0.9 - 0.3 - 0.2, abs=1e-3)
     assert found["nearest"] == "ben"
     assert found["tightest"] == pytest.approx((5, 4.5), abs=0.1)
+
+
+def test_the_room_of_a_car_is_that_of_its_footprint_along_its_path() -> None:
+    env = make(str(scenario_file("car-park")), headless=True, log_level="ERROR")
+    ways = requested_plans(env, ["plan"])
+    footprint = footprint_of(env, ways)
+    assert footprint is not None
+    shaded = {}
+    for name, given in (("disc", None), ("body", footprint)):
+        scene = SceneBuilder(env.simulation).build()
+        draw_clearance(scene, env.simulation, footprint=given)
+        shaded[name] = union_all(
+            [Polygon(m.geometry.rings[0], m.geometry.rings[1:]) for m in scene.marks if isinstance(m.geometry, Region)
+             and m.part == "field"]
+        )  # fmt: skip
+        touching = [label.text for label in scene.labels if label.part == "field" and label.text == "touches"]
+        assert bool(touching) == (given is not None)
+    for point in ((13.5, 11.2), (8.0, 11.9), (17.0, 9.8), (13.0, 9.0)):
+        nearest = footprint.poses[np.hypot(*(footprint.poses[:, :2] - point).T).argmin(), 2]
+        body = translate(rotate(Polygon(footprint.outline), nearest, (0, 0), use_radians=True), *point)
+        hit = any(body.intersects(other.geometry) for other in env.obstacle_list)
+        assert shaded["body"].contains(Point(point)) == hit, point
+    assert shaded["body"].contains(Point(13.5, 11.2)), "the disc fits there and the car does not"
+    assert not shaded["disc"].contains(Point(13.5, 11.2))
+    on_the_way = footprint.poses[[0, len(footprint.poses) // 3, len(footprint.poses) // 2]]
+    assert not any(shaded["body"].contains(Point(x, y)) for x, y, _ in on_the_way)
+    env.end(ending_time=0.0)
+
+
+def test_a_round_robot_needs_no_footprint() -> None:
+    env = make(str(scenario_file("maze")), headless=True, log_level="ERROR")
+    assert footprint_of(env, requested_plans(env, ["plan"])) is None
+    env.end(ending_time=0.0)

@@ -27,6 +27,7 @@ from irsim_mcp.limits import (
     MAX_WAIT_SECONDS,
 )
 from irsim_mcp.progress import reporter
+from irsim_mcp.recent_texts import RecentTexts
 from irsim_mcp.services import Services, line_of
 from irsim_mcp.suites import suite_of
 from irsim_mcp.tool import StrictTool, strict
@@ -112,7 +113,7 @@ def tool(services: Services) -> StrictTool:
             chosen = policies or ["as-written"]
             _check(scenarios, chosen, seeds, first_seed)
             arguments = {
-                "files": [services.scenario_source(item) for item in scenarios],
+                "files": _named(services, scenarios),
                 "policies": chosen,
                 "seeds": list(range(first_seed, first_seed + seeds)),
                 "perturb": perturb,
@@ -133,6 +134,23 @@ def tool(services: Services) -> StrictTool:
         benchmark, title="Compare policies", description=_DESCRIPTION, read_only=False, idempotent=True,
         former_names={"behaviors": "policies"},
     )  # fmt: skip
+
+
+def _named(services: Services, scenarios: Sequence[str]) -> dict[str, str]:
+    """Name of each scenario in the result -> its source; a text has its id, under which other tools take it.
+
+    Raises:
+        ToolError: A path is refused, a text is too large, or a scenario is given twice.
+    """
+    named: dict[str, str] = {}
+    for item in scenarios:
+        source = services.scenario_source(item)
+        name = services.texts.remember(item) if "\n" in item else item if RecentTexts.is_id(item) else source
+        if name in named:
+            what = f"the scenario {clean(name)!r} is given twice"
+            raise failure("bad-argument", what, where="scenarios", fix="give each once")
+        named[name] = source
+    return named
 
 
 async def _suite(
@@ -234,7 +252,7 @@ def _fill(found: Benchmark, result: dict[str, Any], file: str, detailed: bool) -
     found.notes = [clean(note, 300) for note in notes[:_MAX_NOTES]]
     found.artifact = f".irsim/jobs/{found.job_id}/{file}"
     command = clean(result["reproduce"], 1000)
-    found.reproduce = None if all(row["scenario"].startswith("(text") for row in result["rows"]) else command
+    found.reproduce = None if any(RecentTexts.is_id(name) for name in result["scenarios"]) else command
     lost = [e for e in result["episodes"] if e["outcome"] not in ("success", CROWDED)]
     if not lost:
         done = any(e["outcome"] == "success" for e in result["episodes"])

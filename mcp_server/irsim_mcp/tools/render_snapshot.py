@@ -25,8 +25,8 @@ _DESCRIPTION = """
     Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading;
     omni: where it moves), goals (pale), names, lidar beams, paths. Use it after every edit and after a failed run.
     At step 0 the text has what validate_scenario finds, and a table of all objects: drive, footprint, pose, goal,
-    limits, ranges over seeds, narrowest passages (r0 is a robot, G-r0 its goal). An invalid scenario gives only its
-    errors. Writes no file. Next: edit and look again, or run_episode.
+    limits, ranges over seeds, narrowest passages (r0 is 'robot_0', G-r0 its goal). An invalid scenario gives only
+    its errors. Writes no file. Next: edit and look again, or run_episode.
 """
 _OVERLAYS = (
     "Default: names, goals, paths, zones. clearance: shaded where a robot's middle can't be; plan: paths to goals."
@@ -174,7 +174,7 @@ def _moving(item: dict[str, Any]) -> str:
 def _plan(plan: dict[str, Any]) -> str:
     lost, margin = plan["lost"], plan["margin"]
     if lost is not None:
-        return f"no path for {plan['label']} to ({lost[0]:.2f}, {lost[1]:.2f})"
+        return f"no path for {clean(plan['name'])!r} to ({lost[0]:.2f}, {lost[1]:.2f})"
     tight = ""
     if margin is not None:
         to, (x, y) = f" to {clean(plan['nearest'])!r}", plan["tightest"]
@@ -184,12 +184,12 @@ def _plan(plan: dict[str, Any]) -> str:
             else f"least margin {metres(margin)}{to}"
         )
         tight = f", {least} at ({x:.2f}, {y:.2f})"
-    return f"{'its own plan' if plan['own'] else 'a path'} for {plan['label']}: {metres(plan['length'])}{tight}"
+    return f"{'its own plan' if plan['own'] else 'a path'} for {clean(plan['name'])!r}: {metres(plan['length'])}{tight}"
 
 
 def _robot(robot: dict[str, Any]) -> str:
     x, y, heading = robot["pose"]
-    name = "" if robot["name"] == robot["label"] else f" {clean(robot['name'])!r}"
+    label = "" if robot["name"] == robot["label"] else f" ({clean(robot['label'])})"
     goal = "no goal" if robot["goal"] is None else "goal ({:.2f}, {:.2f})".format(*robot["goal"])
     status = "" if robot["status"] == "under way" else f" {robot['status']}"
-    return f"{robot['label']}{name}{status} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad, {goal}"
+    return f"{clean(robot['name'])!r}{label}{status} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad, {goal}"

@@ -4,7 +4,7 @@ import { inMetres, toPixels, toWorld } from "./camera.js";
 import { cellImage } from "./cells.js";
 import { opposite, rgbOf, seen } from "./colors.js";
 import { makeLayer, showLayer, showTrails } from "./layer.js";
-import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, isAbsent, poseAt, rowOfTime, waits } from "./run.js";
+import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, isAbsent, isMover, poseAt, rowOfTime, waits } from "./run.js";
 import { scanAt } from "./scan.js";
 
 const DENSE = 2.5; // pixels between points of a trail
@@ -67,7 +67,7 @@ function drawGround(context, drawing, run, camera, colors, ratio) {
   context.lineWidth = 1.5 / camera.scale;
   context.strokeRect(left, bottom, right - left, top - bottom);
   for (const object of run.objects) {
-    if (object.track < 0 && object.role !== "robot" && object.shape >= 0 && !object.from) {
+    if (!isMover(object) && object.shape >= 0 && !object.from) {
       paintShape(context, run, object, poseAt(run, object.index, 0), camera, ratio, seen(colors, object.color), 1);
     }
   }
@@ -327,7 +327,7 @@ function drawNames(context, run, at, camera, colors, ratio) {
   }
   context.fillStyle = colors.ink;
   for (const object of run.objects) {
-    if ((object.track < 0 && object.role !== "robot") || isAbsent(run, object, at)) continue;
+    if (!isMover(object) || isAbsent(run, object, at)) continue;
     const pose = poseAt(run, object.index, at), [x, y] = toPixels(camera, pose.x, pose.y);
     if (x < 0 || y < 0 || x > camera.width || y > camera.height) continue;
     const away = 0.75 * object.radius * camera.scale + 2;

@@ -35,7 +35,7 @@ export function makeRun({ head, columns }) {
     object.track ??= -1;
     if (object.role === "robot") run.robots.push(index);
   });
-  const moving = run.objects.filter(({ track, role }) => track >= 0 || role === "robot");
+  const moving = run.objects.filter(isMover);
   run.movers = moving.sort((one, other) => (one.role === "robot") - (other.role === "robot")); // robots on top
   for (const lidar of head.lidars) {
     lidar.ranges = lidar.scan ? columns[lidar.scan] : null;
@@ -112,6 +112,9 @@ export function poseAt(run, object, at, out = {}) {
   out.heading = run.heading[i] + share * (run.heading[j] - run.heading[i]);
   return out;
 }
+
+/** Whether an object is drawn anew for each moment: what moves, robots, and what waits, which is pale until it may. */
+export const isMover = ({ track, role, until = 0 }) => track >= 0 || role === "robot" || until > 0;
 
 /** Whether an object has not come into the world at a moment. */
 export const isAbsent = (run, { from = 0 }, at) => from > 0 && run.step[Math.min(Math.floor(at), run.rows - 1)] < from;
