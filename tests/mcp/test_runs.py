@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -215,5 +216,5 @@ async def test_what_cannot_be_recorded_runs_all_the_same(workspace: Path) -> Non
     data = data_of(result)
     assert data["outcome"] == "collision"
     assert "run_id" not in data
-    assert "render_snapshot strip=6 step=" in data["next"]
+    assert re.search(r"render_snapshot scenario_path=\S+ strip=6 step=", data["next"])
     assert "Record: none" in text_of(result)

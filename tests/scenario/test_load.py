@@ -62,9 +62,15 @@ def test_data_is_that_of_the_safe_loader(data: Any, block: bool) -> None:
 def test_aliases_and_merge_keys_as_the_safe_loader_has_them() -> None:
     text = (
         "custom:\n  base: &b {x: 1, y: 2}\n  more: &m {y: 3, z: 4}\n  one: {<<: *b, y: 9}\n"
-        "  two: {<<: [*b, *m], w: 0}\n  three: {w: 0, <<: *m, <<: *b}\n  same: *b\n"
+        "  two: {<<: [*b, *m], w: 0}\n  same: *b\n"
     )
     assert compose(text, DEFAULT_LIMITS).data == yaml.safe_load(text)
+
+
+def test_of_two_merge_keys_the_last_one_wins() -> None:
+    # PyYAML lets the first one win since version 6.0.4.
+    text = "custom:\n  base: &b {x: 1, y: 2}\n  more: &m {y: 3, z: 4}\n  three: {w: 0, <<: *m, <<: *b}\n"
+    assert compose(text, DEFAULT_LIMITS).data["custom"]["three"] == {"w": 0, "x": 1, "y": 2, "z": 4}
 
 
 def test_without_libyaml(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,6 +29,8 @@ def syntax_problem(error: yaml.YAMLError, text: str, path: Path) -> Diagnostic:
         before = text[:position]
         line, column = before.count("\n") + 1, position - before.rfind("\n")
         message = "a character that YAML does not allow"
+    if "exceeded maximum nesting depth" in message:  # PyYAML has a limit of its own since version 6.0.4
+        return Diagnostic("too-deep", "error", path, "nested too deeply", line=line, column=column)
     fix = None
     if "cannot start any token" in message and _character(text, line, column) == "\t":
         message, fix = "a tab is used for indentation", "indent with spaces"
