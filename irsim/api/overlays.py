@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.diagnostics.errors import ArgumentError
@@ -112,6 +110,8 @@ def footprint_of(env: Env, ways: list[PlannedPath]) -> Footprint | None:
     line = next((way.points for way in found if way.robot == view.id and len(way.points) > 1), None)
     if line is None:
         return None
+    import numpy as np  # here, so that --help does not load it
+
     length = float(np.hypot(*np.diff(line, axis=0).T).sum())
     poses = poses_along(view, line, max(length / _MAX_POSES, _POSE_STEP_M))
     return Footprint(np.asarray(view.original_geometry.exterior.coords)[:, :2], poses)

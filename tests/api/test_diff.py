@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
@@ -391,17 +390,3 @@ def test_numbers_are_rounded_unless_that_hides_the_difference() -> None:
     assert rounded_pair([1.45963036, -0.0000001], {"pose": 2.0}) == ([1.46, 0.0], {"pose": 2.0})
     assert rounded_pair(1.00001, 1.00002) == (1.00001, 1.00002)
     assert rounded_pair(None, {"goals": [[10.93251619, 5]]}) == (None, {"goals": [[10.933, 5]]})
-
-
-def test_drawn_places_are_printed_to_the_millimetre(tmp_path: Path) -> None:
-    text = """
-world: {width: 12, height: 12}
-robot: {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, behavior: {name: dash},
-  distribution: {name: random, range_low: [1, 1, -3]}}
-"""
-    before, after = tmp_path / "a.yaml", tmp_path / "b.yaml"
-    before.write_text(text)
-    after.write_text(text.replace("[1, 1, -3]", "[1.5, 1, -3]"))
-    printed = CliRunner().invoke(app, ["diff", str(before), str(after)]).stdout
-    assert re.search(r"robot_0 pose  \[[\d., -]+\] -> \[", printed)
-    assert not re.search(r"\d\.\d{4}", printed)
