@@ -40,7 +40,7 @@ async def test_from_a_template_to_a_run(workspace: Path, era: str) -> None:
         jsonschema.validate(result.structured_content, tools["validate_scenario"].output_schema or {})
 
         picture = await client.call_tool("render_snapshot", {**source, "seed": 7})
-        assert "nurse at (1.00, 2.40)" in text_of(picture)
+        assert "'nurse' at (1.00, 2.40)" in text_of(picture)
         with Image.open(io.BytesIO(base64.b64decode(image_of(picture).data))) as image:
             assert (image.format, image.mode, max(image.size)) == ("PNG", "P", 600)
 
@@ -54,5 +54,5 @@ async def test_from_a_template_to_a_run(workspace: Path, era: str) -> None:
         end = text_of(
             await client.call_tool("render_snapshot", {**source, "seed": 7, "step": -1, "return_image": False})
         )
-        assert "nurse arrived" in end
+        assert "'nurse' arrived" in end
     assert sorted(path.name for path in workspace.iterdir()) == [".irsim", "mine.yaml"]

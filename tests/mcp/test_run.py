@@ -45,7 +45,7 @@ async def test_collision_names_both_the_place_and_the_step_to_look_at(empty: Pat
             assert said in text
         assert "reproduce" not in data  # the command would need a file
         look = {"scenario_yaml": CRASH, "seed": 3, "step": hit["step"], "return_image": False}
-        assert "rover collided" in text_of(await client.call_tool("render_snapshot", look))
+        assert "'rover' collided" in text_of(await client.call_tool("render_snapshot", look))
 
 
 async def test_events_of_robots_are_told_first_but_in_order(empty: Path) -> None:
@@ -192,7 +192,7 @@ async def test_another_behavior_for_all_robots(workspace: Path) -> None:
     assert "behavior" not in data_of(plain)
     assert (data_of(driven)["outcome"], data_of(driven)["behavior"]) == ("success", "dash")
     assert "with behavior dash for all robots" in text_of(driven)
-    assert "rover arrived at (4.0" in text_of(picture)
+    assert "'rover' arrived at (4.0" in text_of(picture)
     assert data_of(options)["outcome"] == "success"
     assert error_of(wrong) == "unknown-policy: there is no policy 'dahs' (policy). Fix: did you mean dash?"
 
