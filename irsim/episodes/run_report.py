@@ -147,7 +147,7 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
     watched = watched_metrics(env, events, arrivals)
     visible = goal_visibility(env, arrivals) if small else {}
     for view in env.robot_list:
-        approach = nearest.get(view.row)
+        approach, approach_place = nearest.get(view.row, (None, None))
         ended = outcomes[view.name]
         goal = None if view.name in parked else view.goal
         arrival = arrivals.get(view.name)
@@ -164,7 +164,7 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
                 min_clearance=None if approach is None else approach.distance,
                 nearest=None if approach is None else approach.partner,
                 nearest_called=None if approach is None else called(env.scenario, approach.partner),
-                nearest_at=None if approach is None else _place(env, view.row, approach.row),
+                nearest_at=approach_place,
                 heading_error=None if goal is None else _heading_error(view.record, goal[:, 0], float(place[2])),
                 goal_visible_ratio=visible.get(view.name),
                 **watched[view.name],
@@ -174,8 +174,11 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
     return robots
 
 
-def _approaches(env: Env, arrivals: dict[str, Event]) -> dict[int, Approach | None]:
-    """Find what each robot, by row, came nearest to until it arrived; empty if objects came or went."""
+def _approaches(env: Env, arrivals: dict[str, Event]) -> dict[int, tuple[Approach | None, tuple[float, float] | None]]:
+    """Find what each robot, by row, came nearest to until it arrived, and where it was then.
+
+    Empty if objects came or went.
+    """
     from irsim.metrics.clearances import least
 
     rows, steps = [view.row for view in env.robot_list], int(env.simulation.count[0])
@@ -183,16 +186,11 @@ def _approaches(env: Env, arrivals: dict[str, Event]) -> dict[int, Approach | No
     if poses is None:
         return {}
     ends = [arrivals[view.name].step + 1 if view.name in arrivals else steps + 1 for view in env.robot_list]
-    return dict(zip(rows, least(poses, env.simulation, rows, ends), strict=True))
-
-
-def _place(env: Env, row: int, step: int) -> tuple[float, float]:
-    """Where an object was after a step [m]; step 0 is the start."""
-    state = env.simulation.state
-    track = state.trajectory(row)
-    before = int(env.simulation.count[0]) - len(track) + 1  # step of the first row of the track
-    x, y = (state.initial_state(row) if step < before else track[step - before])[:2].tolist()
-    return float(x), float(y)
+    found: dict[int, tuple[Approach | None, tuple[float, float] | None]] = {}
+    for row, approach in zip(rows, least(poses, env.simulation, rows, ends), strict=True):
+        place = None if approach is None else (float(poses[approach.row, row, 0]), float(poses[approach.row, row, 1]))
+        found[row] = approach, place
+    return found
 
 
 def _heading_error(record: ObjectRecord, goal: Floats, heading: float) -> float | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import yaml
 
 from irsim.api import run, validate
 from irsim.results.run import RunResult
@@ -66,3 +67,18 @@ def test_a_dry_run_does_not_repeat_the_hint_about_behaviors() -> None:
     assert report.dry_run is not None
     assert "stands since" not in report.dry_run.summary
     assert report.dry_run.stuck[0].why.startswith("it has no behavior")
+
+
+def test_the_place_of_a_collision_is_right_though_others_drive_on() -> None:
+    # Robots that have stopped leave no track, so the track does not tell in which step they stopped.
+    robots = [("a", [1, 5, 0], [9, 5]), ("b", [9, 5, 3.1416], [1, 5]), ("c", [1, 1, 0], [9, 1])]
+    text = yaml.safe_dump({
+        "world": {"width": 10, "height": 10, "collision_mode": "stop"},
+        "robot": [{"name": name, "kinematics": {"name": "omni"}, "shape": {"name": "circle", "radius": 0.25},
+                   "state": state, "goal": goal, "vel_max": [1, 1], "behavior": {"name": "dash"}}
+                  for name, state, goal in robots],
+    })  # fmt: skip
+    found = {robot.name: robot for robot in run(text=text, seed=0).robots}
+    for name, x in (("a", 4.75), ("b", 5.25)):
+        assert found[name].outcome == "collision"
+        assert found[name].nearest_at == pytest.approx((x, 5), abs=0.11)
