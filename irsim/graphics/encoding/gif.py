@@ -24,12 +24,13 @@ _KEEP_PREVIOUS = 1 << 2
 """Disposal method: the next frame is drawn over this one."""
 _TABLE_256 = 7
 """Code for a table of 256 colours."""
-_SIMILAR_LEVELS = 8
+_SIMILAR_LEVELS = 4
 """Two colours that differ by fewer levels (of 256) in every channel share an entry of the palette."""
 MAX_WRONG_SHARE = 0.0005
 """Share of additional wrong pixels in a frame, those far from their colour, above which a new palette is made."""
 MAX_HINTS = 64
 """Number of given colours that a palette takes over."""
+_PAPER_AND_INK = {(255, 255, 255), (0, 0, 0)}
 MAX_SAMPLED_PIXELS = 100_000
 """Colours of larger pictures are chosen from every fourth pixel, which saves time and memory."""
 
@@ -140,27 +141,25 @@ def reduce_colors(image: Image.Image, hints: Sequence[tuple[int, int, int]], max
 
 
 def _palette(image: Image.Image, hints: Sequence[tuple[int, int, int]], max_colors: int = MAX_COLORS) -> Image.Image:
-    """Choose at most ``max_colors`` colours: first the hints, then colours of the pixels that differ from them."""
+    """Choose at most ``max_colors`` colours: first the hints, then colours of the image that differ from them."""
     sample = image
     if image.width * image.height > MAX_SAMPLED_PIXELS:
         sample = image.resize((image.width // 2, image.height // 2), Image.Resampling.NEAREST)
     words = np.asarray(sample.convert("RGBA")).reshape(-1, 4).view(np.uint32)[:, 0]
-    for red, green, blue in hints[:MAX_HINTS]:
+    for red, green, blue in _PAPER_AND_INK & set(hints):  # most of a drawing; the other colours are chosen without them
         words = words[words != np.array([red, green, blue, 255], np.uint8).view(np.uint32)[0]]
     rest = words if words.size else np.zeros(1, np.uint32)
     other = Image.frombuffer("RGBA", (rest.size, 1), rest.tobytes(), "raw", "RGBA", 0, 1).convert("RGB")
     found = other.quantize(max_colors, method=Image.Quantize.MEDIANCUT).getpalette() or []
     own = [(found[i], found[i + 1], found[i + 2]) for i in range(0, len(found), 3)]
     chosen: list[tuple[int, int, int]] = list(dict.fromkeys(hints))[:MAX_HINTS]
-    fixed = np.array(chosen or [(0, 0, 0)], dtype=np.int16)
     for color in own:
-        distance = np.abs(fixed - np.array(color, dtype=np.int16))
-        is_similar = (distance < _SIMILAR_LEVELS).all(axis=1).any() if chosen else False
-        if not is_similar and len(chosen) < max_colors:
+        distances = np.abs(np.array(chosen, dtype=np.int16).reshape(-1, 3) - np.array(color, dtype=np.int16))
+        if not (distances < _SIMILAR_LEVELS).all(axis=1).any() and len(chosen) < max_colors:
             chosen.append(color)
+    chosen = chosen or [(0, 0, 0)]
     flat = [level for color in chosen for level in color]
     flat += flat[:3] * (max_colors - len(chosen))
     palette = Image.new("P", (1, 1))
     palette.putpalette(flat)
     return palette
-

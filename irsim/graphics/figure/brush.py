@@ -78,7 +78,9 @@ def _draw(renderer: Any, ax: Any, mark: Mark, face: Any, stroke: tuple[Any, floa
     context.set_joinstyle(ends[1])
     context.set_foreground(stroke[0], isRGBA=True)
     context.set_linewidth(stroke[1] if mark.stroke.color is not None else 0.0)
-    renderer.draw_path(context, geometry_path(mark.geometry), ax.transData.frozen(), None if mark.fill is None else face)
+    renderer.draw_path(
+        context, geometry_path(mark.geometry), ax.transData.frozen(), None if mark.fill is None else face
+    )
     context.restore()
 
 

@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import RendererAgg
 from numpy.typing import NDArray
 
@@ -23,7 +22,7 @@ class Canvas:
     """The canvas that layers draw for: its pixels, its resolution and its view of the world.
 
     Args:
-        ax: Axes in world coordinates.
+        ax: Matplotlib axes in world coordinates.
         renderer: The Agg renderer of the canvas.
         earlier: The canvas of the last frame, whose memory may serve again.
 
@@ -37,7 +36,7 @@ class Canvas:
         unknown: Whether something was drawn without the painter.
     """
 
-    def __init__(self, ax: Axes, renderer: Any, earlier: Canvas | None = None) -> None:
+    def __init__(self, ax: Any, renderer: Any, earlier: Canvas | None = None) -> None:
         self.renderer = renderer
         self.pixels: NDArray[np.uint8] = np.asarray(renderer.buffer_rgba())
         self.height, self.width = self.pixels.shape[:2]
@@ -45,7 +44,7 @@ class Canvas:
         self.px_per_point = self.dpi / POINTS_PER_INCH
         self.unknown = False
         matrix = ax.transData.get_matrix()
-        x0, y0, x1, y1 = ax.bbox.extents.tolist()
+        x0, y0, x1, y1 = map(float, ax.bbox.extents)
         self.size = self.width, self.height
         self.key = (self.size, self.dpi, matrix.tobytes(), x0, y0, x1, y1)
         left, right = max(0, math.floor(x0 + 0.5)), min(self.width, math.floor(x1 + 0.5))
@@ -55,7 +54,7 @@ class Canvas:
         self.painter = core.Painter(self.size, self.clip, (xx, xy, x, -yx, -yy, self.height - y))
         self._matrix = matrix
         same = earlier is not None and (earlier.size, earlier.dpi) == (self.size, self.dpi)
-        self._scratch = earlier._scratch if earlier is not None and same else None
+        self._scratch: Any = earlier._scratch if earlier is not None and same else None
 
     def to_pixels(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Convert points (N, 2) of the world to pixels from the lower left corner."""

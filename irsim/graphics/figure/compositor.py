@@ -117,12 +117,12 @@ class Compositor:
             else:
                 break
             drawn += 1
-        below, changed = self._background.update(self._furniture, sheets, view)
+        ground, changed = self._background.update(self._furniture, sheets, view)
         if changed is None or self._drawn is None:
-            view.pixels[...] = below
+            view.pixels[...] = ground
             self._note_change(None)
         else:
-            core.copy_boxes(below, view.pixels, [*self._drawn, *changed])
+            core.copy_boxes(ground, view.pixels, [*self._drawn, *changed])
             self._note_change([*self._drawn, *changed])
         view.painter.take_boxes()
         view.unknown = False
@@ -170,13 +170,13 @@ class Compositor:
 
     def _draw_furniture(self, canvas: Any) -> None:
         ax, figure = self.ax, self.figure
-        ax.apply_aspect()
+        position = ax.get_position().bounds  # this applies the aspect, too
         key = (
             *figure.get_size_inches(),
             figure.dpi,
             *ax.get_xlim(),
             *ax.get_ylim(),
-            *ax.get_position().bounds,
+            *position,
             ax.axison,
         )
         parts = (ax.patch, ax.xaxis, ax.yaxis) if ax.axison else ()

@@ -73,9 +73,9 @@ class QuickText(Text):
 
         Matplotlib draws rotated text, text with effects or several lines, and text on a vector canvas.
         """
-        if not isinstance(renderer, RendererAgg) or self.axes is None:
-            super().draw(renderer)
-        elif self.get_visible() and not self.paint_on(Canvas(self.axes, renderer)):
+        if not self.get_visible():
+            return
+        if not (self.axes and isinstance(renderer, RendererAgg) and self.paint_on(Canvas(self.axes, renderer))):
             super().draw(renderer)
 
     def paint_on(self, canvas: Canvas) -> bool:
@@ -129,10 +129,9 @@ class QuickText(Text):
         below = math.ceil(descent) + _MARGIN
         new_renderer: Any = RendererAgg
         paper = new_renderer(math.ceil(advance) + 2 * _MARGIN, math.ceil(height) + 2 * _MARGIN, renderer.dpi)
-        stamp = Text(_MARGIN, below, piece, fontproperties=properties, color=self.get_color(), parse_math=False)
-        stamp.set_alpha(self.get_alpha())
-        figure = self.figure
-        assert figure is not None
-        stamp.set_figure(figure)
-        stamp.draw(paper)
+        context = paper.new_gc()
+        context.set_foreground(self.get_color())
+        context.set_alpha(self.get_alpha())
+        paper.draw_text(context, _MARGIN, paper.height - below, piece, properties, 0)
+        context.restore()
         return _Piece(np.array(paper.buffer_rgba()), below, advance)

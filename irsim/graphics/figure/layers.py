@@ -63,7 +63,7 @@ class MarkArtist(PathCollection):
         if self.before is not None:
             self.before()
         if isinstance(renderer, RendererAgg) and self._is_plain():
-            self._paint(Canvas(self._own_axes(), renderer))
+            self._paint(Canvas(self.axes, renderer))
             return
         self.fill()
         super().draw(renderer)
@@ -83,11 +83,7 @@ class MarkArtist(PathCollection):
     def _paint(self, canvas: Canvas) -> None:
         if self.marks:
             ends = str(self.get_capstyle()), str(self.get_joinstyle())
-            paint(canvas, (canvas.pixels, canvas.renderer), self._own_axes(), self.marks, self.scale, ends)
-
-    def _own_axes(self) -> Axes:
-        assert self.axes is not None
-        return self.axes
+            paint(canvas, (canvas.pixels, canvas.renderer), self.axes, self.marks, self.scale, ends)
 
 
 class MarkLayer:
@@ -213,7 +209,7 @@ class FogLayer:
 
 
 class Spokes(Collection):
-    """Lines from one point: painted on a pixel canvas, one unit line that is rotated and stretched for each elsewhere."""
+    """Lines from one point: painted on a pixel canvas; elsewhere one unit line, rotated and stretched for each."""
 
     def __init__(self, zorder: float) -> None:
         super().__init__(facecolors="none", linewidths=_BEAM_WIDTH_PT, zorder=zorder)
@@ -258,7 +254,8 @@ class Spokes(Collection):
         self._matrices[:, :2, 0] = self._ends - self._origin
         self._matrices[:, 2, 2] = 1.0
         self.set_offsets(np.tile(self._origin, (len(self._ends), 1)))
-        self.set_edgecolor(self._colors)
+        colors: Any = self._colors
+        self.set_edgecolor(colors)
         self.set_linewidth(self._widths.tolist())
         linear = self.axes.transData.get_matrix().copy()
         linear[:2, 2] = 0.0

@@ -1,7 +1,8 @@
 """Layers of tracks: only what came new since the last frame is drawn, onto what stands.
 
 A layer keeps pixels of its own: trails in one transparent image, to which new snapshots are added in the order of
-time; lines as one mask of coverage each, because a translucent line that crosses itself is nowhere darker. The artist of a layer draws the same for every other canvas, such as that of a PDF.
+time; lines as one mask of coverage each, because a translucent line that crosses itself is nowhere darker. The artist
+of a layer draws the same for every other canvas, such as that of a PDF.
 """
 
 from __future__ import annotations
