@@ -58,8 +58,7 @@ class CodeWriter {
 class Compressor {
  public:
   Compressor(std::vector<std::uint8_t>& out, std::uint8_t common) : writer_(out), common_(common) {
-    keys_.assign(kSlots, 0);
-    values_.resize(kSlots);
+    codes_.assign(kSlots, 0);
     writer_.write(kClear, bits_);
     restart();
   }
@@ -93,7 +92,8 @@ class Compressor {
   }
 
  private:
-  static constexpr std::size_t kSlots = 1 << 14;
+  static constexpr int kSlotBits = 13, kCodeBits = 12;
+  static constexpr std::size_t kSlots = std::size_t{1} << kSlotBits;
 
   void add(std::uint8_t index) {
     if (prefix_ < 0) {
@@ -101,10 +101,9 @@ class Compressor {
       length_ = index == common_;
       return;
     }
-    const std::uint32_t key = (static_cast<std::uint32_t>(prefix_) << kColorBits | index) + 1;
-    const std::size_t slot = find(key);
-    if (keys_[slot] != key) return emit(index);
-    prefix_ = values_[slot];
+    const std::uint32_t known = codes_[find(key_of(index))];
+    if (known == 0) return emit(index);
+    prefix_ = static_cast<int>(known & (kMostCodes - 1));
     length_ = length_ > 0 && index == common_ ? length_ + 1 : 0;
   }
 
@@ -112,16 +111,14 @@ class Compressor {
   void emit(std::uint8_t index) {
     writer_.write(prefix_, bits_);
     if (next_ < kMostCodes) {
-      const std::uint32_t key = (static_cast<std::uint32_t>(prefix_) << kColorBits | index) + 1;
-      const std::size_t slot = find(key);
-      keys_[slot] = key;
-      values_[slot] = static_cast<std::uint16_t>(next_);
+      const std::uint32_t key = key_of(index);
+      codes_[find(key)] = key << kCodeBits | static_cast<std::uint32_t>(next_);
       if (length_ > 0 && index == common_) runs_.push_back(next_);
       grow();
       ++next_;
     } else {
       writer_.write(kClear, bits_);
-      std::fill(keys_.begin(), keys_.end(), 0);
+      std::fill(codes_.begin(), codes_.end(), 0);
       restart();
     }
     prefix_ = index;
@@ -140,9 +137,13 @@ class Compressor {
     runs_.assign(1, common_);
   }
 
+  /// The present string and the index after it.
+  std::uint32_t key_of(std::uint8_t index) const { return static_cast<std::uint32_t>(prefix_) << kColorBits | index; }
+
+  /// The slot of a key, or the empty slot for it.
   std::size_t find(std::uint32_t key) const {
-    std::size_t slot = key * 2654435761u >> 18;
-    while (keys_[slot] != 0 && keys_[slot] != key) slot = (slot + 1) % kSlots;
+    std::size_t slot = key * 2654435761u >> (32 - kSlotBits);
+    while (codes_[slot] != 0 && codes_[slot] >> kCodeBits != key) slot = (slot + 1) % kSlots;
     return slot;
   }
 
@@ -151,8 +152,7 @@ class Compressor {
   int bits_ = kColorBits + 1, next_ = kFirstCode, prefix_ = -1;
   std::size_t length_ = 0;  ///< of the present string, if it has only the common index; 0 otherwise
   std::vector<int> runs_;
-  std::vector<std::uint32_t> keys_;
-  std::vector<std::uint16_t> values_;
+  std::vector<std::uint32_t> codes_;  ///< key and code of each string that is known; 0 in an empty slot
 };
 
 }  // namespace
@@ -160,18 +160,20 @@ class Compressor {
 Palette::Palette(std::vector<std::array<int, 3>> colors)
     : colors_(std::move(colors)), slots_(std::size_t{1} << kSlotBits) {}
 
-Palette::Nearest Palette::search(const std::uint8_t* pixel) const {
-  // Similar colours share an index, that of the middle of their cell: such pictures are compressed better. A colour of
-  // the palette itself is found exactly.
-  int best = std::numeric_limits<int>::max();
+std::uint32_t Palette::search(const std::uint8_t* pixel) const {
+  const auto cell = [](int level) { return level & ~(kCellLevels - 1); };
+  int best = std::numeric_limits<int>::max(), inside = 0;
   std::size_t found = 0;
-  const auto cell = [](int level) { return (level & ~(kCellLevels - 1)) + kCellLevels / 2; };
   for (std::size_t i = 0; i < colors_.size(); ++i) {
-    const std::array<int, 3>& color = colors_[i];
-    if (color[0] == pixel[0] && color[1] == pixel[1] && color[2] == pixel[2])
-      return {static_cast<std::uint8_t>(i), false};
-    const int r = color[0] - cell(pixel[0]), g = color[1] - cell(pixel[1]), b = color[2] - cell(pixel[2]);
-    const int distance = r * r + g * g + b * b;
+    int distance = 0;
+    bool same = true;
+    for (int k = 0; k < 3; ++k) {
+      const int apart = colors_[i][k] - cell(pixel[k]) - kCellLevels / 2;
+      distance += apart * apart;
+      same = same && cell(colors_[i][k]) == cell(pixel[k]);
+    }
+    inside += same;
+    if (same) distance -= kInCell;
     if (distance < best) {
       best = distance;
       found = i;
@@ -179,7 +181,15 @@ Palette::Nearest Palette::search(const std::uint8_t* pixel) const {
   }
   bool wrong = false;
   for (int k = 0; k < 3; ++k) wrong = wrong || std::abs(colors_[found][k] - pixel[k]) > kWrongLevels;
-  return {static_cast<std::uint8_t>(found), wrong};
+  return static_cast<std::uint32_t>(found) | (wrong ? kWrong : 0) | (inside > 1 ? kCrowded : 0);
+}
+
+std::uint8_t Palette::exact(const std::uint8_t* pixel, std::uint8_t otherwise) const {
+  for (std::size_t i = 0; i < colors_.size(); ++i) {
+    const std::array<int, 3>& color = colors_[i];
+    if (color[0] == pixel[0] && color[1] == pixel[1] && color[2] == pixel[2]) return static_cast<std::uint8_t>(i);
+  }
+  return otherwise;
 }
 
 namespace {

@@ -9,6 +9,9 @@
 namespace irsim {
 
 /// Finds the nearest of at most 256 colours, and remembers what it has found.
+///
+/// Colours are told apart by cells of 4 levels in each channel: such pictures are compressed better, and few searches
+/// are needed. A colour of the palette itself is always found.
 class Palette {
  public:
   explicit Palette(std::vector<std::array<int, 3>> colors);
@@ -21,23 +24,23 @@ class Palette {
 
   /// Find the nearest colour.
   Nearest nearest(const std::uint8_t* pixel) {
-    const std::uint32_t color = pixel[0] | pixel[1] << 8 | pixel[2] << 16 | 0xff000000u;
-    Slot& slot = slots_[color * 2654435761u >> (32 - kSlotBits)];
-    if (slot.color != color) slot = {color, search(pixel)};
-    return slot.nearest;
+    const std::uint32_t cell = pixel[0] >> 2 | (pixel[1] >> 2) << 6 | (pixel[2] >> 2) << 12;
+    std::uint32_t& slot = slots_[cell * 2654435761u >> (32 - kSlotBits)];
+    if (slot >> kCellShift != cell + 1) slot = (cell + 1) << kCellShift | search(pixel);
+    const std::uint8_t index = static_cast<std::uint8_t>(slot);
+    return {(slot & kCrowded) != 0 ? exact(pixel, index) : index, (slot & kWrong) != 0};
   }
 
  private:
-  static constexpr int kSlotBits = 14, kWrongLevels = 32, kCellLevels = 4;
-  struct Slot {
-    std::uint32_t color = 0;
-    Nearest nearest;
-  };
+  static constexpr int kSlotBits = 13, kCellShift = 10, kWrongLevels = 32, kCellLevels = 4;
+  static constexpr int kInCell = 1 << 20;  ///< added to the closeness of colours in the same cell
+  static constexpr std::uint32_t kWrong = 1u << 8, kCrowded = 1u << 9;
 
-  Nearest search(const std::uint8_t* pixel) const;
+  std::uint32_t search(const std::uint8_t* pixel) const;
+  std::uint8_t exact(const std::uint8_t* pixel, std::uint8_t otherwise) const;
 
   std::vector<std::array<int, 3>> colors_;
-  std::vector<Slot> slots_;
+  std::vector<std::uint32_t> slots_;  ///< of each cell, its number, whether it has several colours or is wrong, index
 };
 
 /// A compressed frame.

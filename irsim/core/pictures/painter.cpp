@@ -20,7 +20,7 @@ void Painter::paint(Raster& raster, const Pixels& pixels, Ink ink) {
   const float opacity = static_cast<float>(ink.alpha);
   raster.sweep([&](int y, int x, float share) {
     const int alpha = static_cast<int>(share * opacity + 0.5f);
-    lay_over(pixels.row(y) + kChannels * x, ink.red, ink.green, ink.blue, alpha);
+    lay_over(pixels.row(y) + kChannels * x, ink, alpha);
   });
   boxes_.push_back(box);
 }
@@ -80,10 +80,37 @@ void Painter::line(const Pixels& pixels, const Vec2* points, std::size_t count, 
 void Painter::beams(const Pixels& pixels, Vec2 origin, const Vec2* ends, std::size_t count, const Ink* inks,
                     const double* widths) {
   const std::vector<PixelBox> before = take_boxes();
+  Raster& raster = raster_for(clip_);
+  PixelBox around{clip_.right, clip_.bottom, clip_.left, clip_.top};
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec2 both[2] = {origin, ends[i]};
-    line(pixels, both, 2, inks[i], {widths[i], Join::kMiter, false});
+    const Ink ink = inks[i];
+    const double width = widths[i];
+    if (ink.alpha == 0 || !(width > 0.0)) continue;
+    std::vector<Vec2>& both = beam_;
+    both.assign({view_(origin), view_(ends[i])});
+    snap(both, false, width);
+    const Vec2 step = both[1] - both[0];
+    const double length = norm(step);
+    if (!(length > 0.0)) continue;
+    const Vec2 across = Vec2{-step.y, step.x} * (width / 2 / length);
+    const Vec2 corners[4] = {both[0] + across, both[0] - across, both[1] - across, both[1] + across};
+    const float opacity = static_cast<float>(ink.alpha);
+    const bool drawn = raster.sweep_convex(corners, 4, [&](int y, int x, float share) {
+      lay_over(pixels.row(y) + kChannels * x, ink, static_cast<int>(share * opacity + 0.5f));
+    });
+    if (!drawn) {
+      raster.outline(corners, 4);
+      paint(raster, pixels, ink);
+      continue;
+    }
+    for (const Vec2 corner : corners) {
+      around.left = std::min(around.left, static_cast<int>(std::floor(corner.x)));
+      around.right = std::max(around.right, static_cast<int>(std::ceil(corner.x)) + 1);
+      around.top = std::min(around.top, static_cast<int>(std::floor(corner.y)));
+      around.bottom = std::max(around.bottom, static_cast<int>(std::ceil(corner.y)) + 1);
+    }
   }
+  boxes_.push_back(common(around, clip_));
   boxes_ = merged(boxes_);
   boxes_.insert(boxes_.end(), before.begin(), before.end());
 }

@@ -48,6 +48,7 @@ class Painter {
   PixelBox clip_;
   PictureView view_;
   std::vector<PixelBox> boxes_;
+  std::vector<Vec2> beam_;
 };
 
 }  // namespace irsim

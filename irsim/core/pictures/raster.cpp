@@ -12,6 +12,25 @@ void Raster::clip(PixelBox box) {
   last_ = box.top - 1;
 }
 
+bool Raster::read_convex(const Vec2* points, std::size_t count) {
+  const double wide = box_.right - box_.left, high = box_.bottom - box_.top;
+  double top = high, bottom = 0.0;
+  sides_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 a = points[i], b = points[(i + 1) % count];
+    const double x0 = a.x - box_.left, y0 = a.y - box_.top, x1 = b.x - box_.left, y1 = b.y - box_.top;
+    if (!(x0 >= 0.0 && x0 <= wide && std::isfinite(y0))) return false;
+    top = std::min(top, y0);
+    bottom = std::max(bottom, y0);
+    if (y0 == y1) continue;
+    const double slope = (x1 - x0) / (y1 - y0);
+    sides_.push_back(y0 < y1 ? Side{x0, y0, y1, slope, 1.0f} : Side{x1, y1, y0, slope, -1.0f});
+  }
+  line_.resize(std::max(line_.size(), pitch_));
+  convex_ = {0, static_cast<int>(std::max(top, 0.0)), 0, static_cast<int>(std::ceil(std::min(bottom, high)))};
+  return true;
+}
+
 void Raster::outline(const Vec2* points, std::size_t count) {
   for (std::size_t i = 0; i + 1 < count; ++i) edge(points[i], points[i + 1]);
   if (count > 1) edge(points[count - 1], points[0]);

@@ -99,7 +99,7 @@ class GifWriter:
         """Choose the palette for this frame and the following ones that have similar colours."""
         self._table = bytes(_palette(to_image(pixels), self._hints).getpalette() or []).ljust(3 * 256, b"\0")[: 3 * 256]
         levels = list(self._table[: 3 * MAX_COLORS])
-        self._palette = core.Palette(list(zip(levels[::3], levels[1::3], levels[2::3], strict=True)))
+        self._palette = core.Palette(list(dict.fromkeys(zip(levels[::3], levels[1::3], levels[2::3], strict=True))))
         self._accepted: int | None = None
 
     def _frame(self, pixels: Pixels, box: Box, boxes: list[Box] | None) -> None:
