@@ -1154,6 +1154,121 @@ def attention(
     Returns (B, Q, V); zeros where no key is present. The heads are equal slices of D and V.
     """
 
+# pictures (core/pictures/): pixels are (height, width, 4) red, green, blue and opacity, top row first; boxes are left,
+# top, right, bottom [px]; colours with opacity are four numbers of 0..1
+class Painter:
+    """Paints shapes of a plane into pictures of one size, as Agg would draw them.
+
+    `view` are xx, xy, x0, yx, yy, y0: a point is at pixel (xx x + xy y + x0, yx x + yy y + y0), y downwards.
+    """
+
+    def __init__(
+        self,
+        size: tuple[int, int],
+        clip: tuple[int, int, int, int],
+        view: tuple[float, float, float, float, float, float],
+    ) -> None: ...
+    def circle(
+        self,
+        pixels: NDArray[np.uint8],
+        x: float,
+        y: float,
+        radius: float,
+        fill: tuple[float, float, float, float],
+        edge: tuple[float, float, float, float],
+        width: float,
+    ) -> None:
+        """Paint a disc and its outline, `width` pixels wide."""
+
+    def polygon(
+        self,
+        pixels: NDArray[np.uint8],
+        points: Floats,
+        fill: tuple[float, float, float, float],
+        edge: tuple[float, float, float, float],
+        width: float,
+        join: str,
+    ) -> None:
+        """Paint a polygon and its outline; `join` is miter, round or bevel."""
+
+    def line(
+        self,
+        pixels: NDArray[np.uint8],
+        points: Floats,
+        edge: tuple[float, float, float, float],
+        width: float,
+        join: str,
+        round_caps: bool,
+    ) -> None:
+        """Paint a line through points (N, 2)."""
+
+    def beams(
+        self,
+        pixels: NDArray[np.uint8],
+        origin: tuple[float, float],
+        ends: Floats,
+        inks: NDArray[np.uint8],
+        widths: Floats,
+    ) -> None:
+        """Paint lines from one point to `ends` (B, 2), with colours (B, 4) of 0..255 and widths (B,) [px]."""
+
+    def image(self, pixels: NDArray[np.uint8], above: NDArray[np.uint8], left: int, top: int) -> None:
+        """Lay a picture over another; the clip box does not cut it."""
+
+    def take_boxes(self) -> list[tuple[int, int, int, int]]:
+        """Return the boxes that were painted since this was last asked."""
+
+    def line_mask(
+        self, mask: NDArray[np.uint8], points: Floats, width: float, round_caps: bool, snapped: bool
+    ) -> tuple[int, int, int, int] | None:
+        """Raise the levels of a mask (height, width) to those of a line; return the box that was touched."""
+
+def compose(
+    pixels: NDArray[np.uint8],
+    ground: NDArray[np.uint8],
+    boxes: Sequence[tuple[int, int, int, int]],
+    layers: Sequence[tuple[NDArray[np.uint8], int, int, tuple[float, float, float], float]],
+) -> None:
+    """Put parts of a picture together from the same parts of `ground` and layers above it, the lowest first.
+
+    A layer is an image (h, w, 4) or a mask (h, w), left and top, and colour (0..255) and opacity of the mask.
+    """
+
+def copy_boxes(
+    source: NDArray[np.uint8], target: NDArray[np.uint8], boxes: Sequence[tuple[int, int, int, int]]
+) -> None:
+    """Copy parts of a picture to another of the same size."""
+
+def rgb_rows(pixels: NDArray[np.uint8]) -> bytes:
+    """Return a zero and the red, green and blue of all pixels for each row, which is what PNG compresses."""
+
+def changed_box(
+    before: NDArray[np.uint8],
+    after: NDArray[np.uint8],
+    boxes: Sequence[tuple[int, int, int, int]] | None = None,
+) -> tuple[int, int, int, int] | None:
+    """Return the box that differs between two pictures, of which only `boxes` are compared; None without difference."""
+
+def opaque_box(pixels: NDArray[np.uint8]) -> tuple[int, int, int, int] | None:
+    """Return the box outside of which a picture is transparent; None if all of it is."""
+
+class Palette:
+    """Finds the nearest of at most 256 colours (0..255)."""
+
+    def __init__(self, colors: Sequence[tuple[int, int, int]]) -> None: ...
+    def encode(
+        self,
+        pixels: NDArray[np.uint8],
+        before: NDArray[np.uint8] | None,
+        box: tuple[int, int, int, int],
+        boxes: Sequence[tuple[int, int, int, int]] | None,
+        transparent: int,
+    ) -> tuple[int, bytes]:
+        """Compress a part of a picture for a GIF; return the number of pixels far from their colour, and the data.
+
+        Pixels that are as before get the index `transparent`; only those in `boxes` may have changed.
+        """
+
 STREAMS: dict[
     str, int
 ]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user, perturbation, policy, task

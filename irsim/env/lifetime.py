@@ -11,14 +11,12 @@ from irsim.env.drawing import finish_drawing, redraw
 from irsim.env.loop import log_collisions
 from irsim.env.objects import count_ids, restore_objects
 from irsim.env.parameters import EnvParam, WorldParam, checked_step_mode
-from irsim.env.policies import remember_written
+from irsim.env.policies import attach, driven, remember_written
 from irsim.env.queries import objects
 from irsim.env.state import EnvState
 from irsim.objects.extensions.attach import attach_python
 from irsim.objects.view import ObjectView
 from irsim.objects.views import make_view, views
-from irsim.policies.behavior import with_policy
-from irsim.policies.driver import attach_policy
 from irsim.scenario.open import open_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.active_env import next_seed, use
@@ -40,13 +38,13 @@ def open_world(env: EnvState, world_name: str | Path | ResolvedScenario | None) 
     chosen = env._wanted_seed if env._wanted_seed is not None else scenario.world.seed
     chosen = next_seed() if chosen is None else chosen
     seed = fresh_seed() if chosen is None else check_seed(chosen)
-    plain, scenario = scenario, with_policy(scenario, env._policy)
+    plain, scenario = scenario, driven(scenario, env._policy)
     simulation = Simulation(scenario, [seed], history=True)
     simulation.report = env.logger.error_once
     simulation.owner = ref(env)
     simulation.make_view = make_view
     attach_python(simulation)
-    attach_policy(simulation, env._policy)
+    attach(simulation, env._policy)
     env.scenario, env._seed, env._simulation = scenario, seed, simulation
     remember_written(env, plain, scenario)
     env._originals = views(simulation)

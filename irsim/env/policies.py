@@ -7,20 +7,40 @@ from typing import TYPE_CHECKING, Any
 
 from irsim.env.state import EnvState
 from irsim.objects.lifecycle import amend_all
-from irsim.policies.behavior import TASK_AND_BEHAVIOR, BehaviorPolicy, with_policy
-from irsim.policies.catalog import PolicySource, open_policy
-from irsim.policies.driver import attach_policy
 
 if TYPE_CHECKING:
+    from irsim.policies.catalog import PolicySource
     from irsim.policies.policy import Policy
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+    from irsim.simulation.simulation import Simulation
 
-__all__ = ["drive_again", "opened", "remember_written", "set_policy"]
+__all__ = ["attach", "drive_again", "driven", "opened", "remember_written", "set_policy"]
 
 
 def opened(policy: PolicySource | None) -> Policy | None:
     """Open the policy that a caller gives; None stands for the behaviors of the scenario."""
-    return None if policy is None else open_policy(policy)
+    if policy is None:
+        return None
+    from irsim.policies.catalog import open_policy  # most environments have no policy, and start without this room
+
+    return open_policy(policy)
+
+
+def driven(scenario: ResolvedScenario, policy: Policy | None) -> ResolvedScenario:
+    """Return the scenario with the behavior that a policy stands for; unchanged for all other policies."""
+    if policy is None:
+        return scenario
+    from irsim.policies.behavior import with_policy
+
+    return with_policy(scenario, policy)
+
+
+def attach(simulation: Simulation, policy: Policy | None) -> None:
+    """Let a policy drive the robots of a new simulation."""
+    if policy is not None:
+        from irsim.policies.driver import attach_policy
+
+        attach_policy(simulation, policy)
 
 
 def set_policy(env: EnvState, policy: PolicySource | None) -> None:
@@ -36,6 +56,9 @@ def set_policy(env: EnvState, policy: PolicySource | None) -> None:
         PolicyError: The policy cannot drive these robots (``policy-mismatch``); nothing is changed then.
         BenchmarkError: There is no such policy, or a behavior cannot drive these robots.
     """
+    from irsim.policies.behavior import with_policy
+    from irsim.policies.driver import attach_policy
+
     chosen, simulation = opened(policy), env._simulation
     now = simulation.scenario
     plain = replace(now, objects=[_as_written(record, env._written) for record in now.objects])
@@ -56,6 +79,10 @@ def remember_written(env: EnvState, plain: ResolvedScenario, driven: ResolvedSce
 
 def drive_again(env: EnvState) -> None:
     """Give robots that have come the behavior that is the policy; policies in Python find new robots themselves."""
+    if env._policy is None:
+        return
+    from irsim.policies.behavior import BehaviorPolicy
+
     if isinstance(env._policy, BehaviorPolicy):
         set_policy(env, env._policy)
 
@@ -69,5 +96,7 @@ def _as_written(record: ObjectRecord, written: dict[int, ObjectRecord]) -> Objec
     before = written.get(record.id)
     if before is None:
         return record
+    from irsim.policies.behavior import TASK_AND_BEHAVIOR
+
     own: dict[str, Any] = {key: getattr(before, key) for key in TASK_AND_BEHAVIOR}
     return replace(record, **own)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -60,19 +60,26 @@ class Recording:
         """Step number of the last stored frame, or None."""
         return self._buffer.counts[-1] if self._buffer is not None and self._buffer.counts else None
 
-    def add(self, pixels: Pixels, colors: Callable[[], list[tuple[int, int, int]]]) -> None:
+    def add(
+        self,
+        pixels: Pixels,
+        colors: Callable[[], list[tuple[int, int, int]]],
+        changed: Sequence[tuple[int, int, int, int]] | None = None,
+    ) -> None:
         """Store a frame.
 
         Args:
             pixels: The frame.
             colors: Returns the (r, g, b) colours that a GIF must reproduce exactly; called for the first frame only.
+            changed: Boxes (left, top, right, bottom) [px] outside of which the frame is as the one before; None if that
+                is not known.
         """
         if self._buffer is None:
             defaults = self.env.ani_kwargs
             indexed = str(defaults.get("suffix", ".gif")).lower() == ".gif" and bool(defaults.get("rm_fig_path", True))
             play, _ = _animation_options(defaults)
             self._buffer = FrameBuffer(play, indexed=indexed, colors=colors())
-        self._buffer.add(pixels, int(self.env.simulation.count[0]))
+        self._buffer.add(pixels, int(self.env.simulation.count[0]), changed)
 
     def save(
         self,

@@ -15,6 +15,7 @@ from irsim.diagnostics.diagnostic import nearest
 from irsim.graphics.encoding.picture_files import picture_path
 from irsim.graphics.encoding.pixels import Pixels, from_image
 from irsim.graphics.encoding.png import png_bytes
+from irsim.graphics.figure.canvas import Box
 from irsim.graphics.figure.figure import SceneFigure
 from irsim.graphics.figure.layers import opaque_colors
 from irsim.graphics.scene.scene import Scene
@@ -141,16 +142,19 @@ class Saving:
         self._keep_options(options)
         plot = self._plot
         kwargs, crop = plot.saved_figure_kwargs, self.recording.crop
-        cut = crop is not None and kwargs.get("bbox_inches") == "tight"
-        if cut and _is_quick(kwargs, plot.made_figure().figure.dpi):
+        cut = kwargs.get("bbox_inches") == "tight"
+        if crop is not None and cut and _is_quick(kwargs, plot.made_figure().figure.dpi):
             figure = plot.synced_figure()
             with plot.as_shown():
                 figure.draw()
                 pixels = figure.compositor.pixels(crop)
             plot.note_drawn()
+            changed = _cut(figure.compositor.take_changes(), crop)
         else:
             pixels, self.recording.crop = self.pixels()
-        self.recording.add(pixels, self._colors)
+            changed = None
+            plot.made_figure().compositor.take_changes()
+        self.recording.add(pixels, self._colors, changed)
         self.size = pixels.shape[1], pixels.shape[0]
 
     def _keep_options(self, options: Mapping[str, Any]) -> None:
@@ -165,6 +169,12 @@ class Saving:
     def _colors(self) -> list[tuple[int, int, int]]:
         """Return the colours that a reduced palette must keep: those of opaque bodies, paper and ink."""
         return opaque_colors(self._plot.scene())
+
+
+def _cut(boxes: list[Box] | None, crop: Box) -> list[Box] | None:
+    """Move boxes of a canvas into a part that is cut out of it."""
+    left, top = crop[:2]
+    return boxes and [(x0 - left, y0 - top, x1 - left, y1 - top) for x0, y0, x1, y1 in boxes]
 
 
 def saved_figure_options(options: Any) -> dict[str, Any]:

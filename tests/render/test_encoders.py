@@ -9,10 +9,12 @@ import pytest
 from PIL import Image
 
 from irsim.graphics.encoding.gif import GifWriter
-from irsim.graphics.encoding.pixels import changed_box, even, fit
+from irsim.graphics.encoding.pixels import even, fit
 from irsim.graphics.encoding.png import ApngWriter, png_bytes
 
 RNG = np.random.default_rng(7)
+LEVELS = (0, 100, 200)
+UNCHANGED = [(70, 0, 80, 60), (0, 50, 80, 60), (0, 0, 3, 60), (40, 20, 75, 25)]
 
 
 def blank(height: int, width: int, level: int = 255) -> np.ndarray:
@@ -83,6 +85,39 @@ def test_gif_finds_a_new_palette_when_the_picture_changes() -> None:
         assert np.abs(again.astype(int) - frame[..., :3]).mean() < 8
 
 
+def test_gif_of_known_changes_is_that_of_unknown_ones() -> None:
+    frames = [blank(60, 80) for _ in range(6)]
+    boxes = [(7 * k, 5 * k, 7 * k + 20, 5 * k + 12) for k in range(6)]
+    for frame, (left, top, right, bottom) in zip(frames, boxes, strict=True):
+        frame[top:bottom, left:right, :3] = RNG.choice(LEVELS, (bottom - top, right - left, 3))
+    colors = [(0, 0, 0), (255, 255, 255), *((r, g, b) for r in LEVELS for g in LEVELS for b in LEVELS)]
+    files = []
+    for known in (False, True):
+        data = io.BytesIO()
+        writer = GifWriter(data, colors=colors)
+        for k, frame in enumerate(frames):
+            writer.add(frame, [boxes[k - 1], boxes[k], *UNCHANGED] if known and k else None)
+        writer.close(1)
+        files.append(data.getvalue())
+        for frame, again in zip(frames, decode(data), strict=True):
+            assert np.abs(again.astype(int) - frame[..., :3]).max() <= 3
+    assert files[0] == files[1]
+
+
+def test_gif_of_a_large_flat_picture_with_noise_is_read_by_others() -> None:
+    frames = [blank(700, 900, 30) for _ in range(2)]
+    frames[0][300:420, 100:800, :3] = RNG.integers(0, 2, (120, 700, 1)) * 255
+    frames[1][...] = frames[0]
+    frames[1][310:420, 150:800, :3] = RNG.integers(0, 2, (110, 650, 1)) * 255
+    data = io.BytesIO()
+    writer = GifWriter(data, colors=[(30, 30, 30), (0, 0, 0), (255, 255, 255)])
+    for frame in frames:
+        writer.add(frame)
+    writer.close(1)
+    for frame, again in zip(frames, decode(data), strict=True):
+        assert (again == frame[..., :3]).all()
+
+
 def test_gif_survives_noise() -> None:
     frames = [noise(33, 47) for _ in range(3)]
     data = io.BytesIO()
@@ -93,13 +128,6 @@ def test_gif_survives_noise() -> None:
     decoded = decode(data)
     assert len(decoded) == 3
     assert all(frame.shape == (33, 47, 3) for frame in decoded)
-
-
-def test_changed_box() -> None:
-    changed = np.zeros((5, 7), bool)
-    assert changed_box(changed) == (0, 0, 1, 1)
-    changed[2, 3] = changed[4, 1] = True
-    assert changed_box(changed) == (1, 2, 4, 5)
 
 
 def test_fitting_pads_with_white_and_cuts() -> None:

@@ -115,9 +115,9 @@ def test_only_what_came_new_is_drawn(make: Make, picture: Picture, monkeypatch: 
     painted: list[int] = []
     paint = tracks.paint
 
-    def counted(renderer: Any, ax: Any, marks: Any, *rest: Any) -> None:
+    def counted(canvas: Any, target: Any, ax: Any, marks: Any, *rest: Any) -> None:
         painted.append(len(marks))
-        paint(renderer, ax, marks, *rest)
+        paint(canvas, target, ax, marks, *rest)
 
     monkeypatch.setattr(tracks, "paint", counted)
     env = make(CROSSING % (*SHAPES[0], ""))

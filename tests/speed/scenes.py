@@ -168,6 +168,7 @@ SCENES: dict[str, Scene] = {
     "savefig_rvo10": Scene(lambda: _shown(10), "savefig", steps=20, agents=10),
     "savefig_lidar360": Scene(lambda: _lidar(360, 20, 20.0, 8.0, plot=_SHOWN_LIDAR), "savefig", steps=20, rays=360),
     "gif_rvo10": Scene(lambda: _shown(10), "gif", agents=10),
+    "gif_lidar360": Scene(lambda: _lidar(360, 20, 20.0, 8.0, plot=_SHOWN_LIDAR), "gif", rays=360),
     "gif_rvo10_long": Scene(lambda: _shown(10), "gif", steps=400, agents=10),
     "batch_orca_20": Scene(lambda: _orca(20), "batch", steps=20, agents=20, worlds=256),
     "batch_lidar180": Scene(lambda: _lidar(180, 8, 10.0, 7.0), "batch", steps=20, rays=180, worlds=1024),

@@ -136,6 +136,7 @@ void bind_state(nb::module_& m);
 void bind_steps(nb::module_& m);
 void bind_object(nb::module_& m);
 void bind_observing(nb::module_& m);
+void bind_pictures(nb::module_& m);
 void bind_tools(nb::module_& m);
 void bind_clearance(nb::module_& m);
 void bind_policies(nb::module_& m);

@@ -16,7 +16,7 @@ from isal import isal_zlib
 from PIL import Image
 
 from irsim.common.files import replacing
-from irsim.graphics.encoding.gif import GifWriter
+from irsim.graphics.encoding.gif import Box, GifWriter
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, VIDEO_SUFFIXES
 from irsim.graphics.encoding.pixels import Pixels, fit, from_image
 from irsim.graphics.encoding.png import ApngWriter
@@ -135,23 +135,24 @@ class FrameBuffer:
         """Number of stored frames."""
         return len(self.counts)
 
-    def add(self, pixels: Pixels, count: int) -> None:
+    def add(self, pixels: Pixels, count: int, changed: Sequence[Box] | None = None) -> None:
         """Store a frame, cut or padded to the size of the first.
 
         Args:
-            pixels: The frame.
+            pixels: The frame, whose memory may change afterwards.
             count: Number of the step that the frame shows.
+            changed: Boxes outside of which it is as the frame before; None if that is not known.
         """
         if self._size is None:
             self._size = pixels.shape[1], pixels.shape[0]
         pixels = fit(pixels, *self._size)
         if self._gif is not None:
-            self._gif.add(pixels)
+            self._gif.add(pixels, changed)
         else:
-            change = pixels if self._last is None else pixels ^ self._last
+            change = pixels.copy() if self._last is None else pixels ^ self._last
             self._offsets.append(self._file.tell())
             self._file.write(isal_zlib.compress(change, 1))
-            self._last = pixels
+            self._last = pixels.copy()
         self.counts.append(count)
 
     def save(self, path: Path, options: AnimationOptions) -> None:

@@ -6,26 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-__all__ = ["Pixels", "changed_box", "differing", "even", "fit", "from_image", "to_image"]
+__all__ = ["Pixels", "even", "fit", "from_image", "to_image"]
 
 Pixels = NDArray[np.uint8]
 """(H, W, 4) red, green, blue and an unused byte (always 255)."""
 
 _WHITE = 255
-
-
-def changed_box(changed: NDArray[np.bool_]) -> tuple[int, int, int, int]:
-    """Return left, top, right, bottom of the True cells of an (H, W) array; of the first pixel if no cell is True."""
-    rows, columns = np.flatnonzero(changed.any(axis=1)), np.flatnonzero(changed.any(axis=0))
-    if not rows.size:
-        return 0, 0, 1, 1
-    return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
-
-
-def differing(before: Pixels, after: Pixels) -> NDArray[np.bool_]:
-    """Return (H, W) whether each pixel differs between two frames of the same size."""
-    words: NDArray[np.bool_] = before.view(np.uint32)[..., 0] != after.view(np.uint32)[..., 0]
-    return words
 
 
 def to_image(pixels: Pixels) -> Image.Image:

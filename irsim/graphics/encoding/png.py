@@ -9,11 +9,10 @@ import struct
 import zlib
 from typing import BinaryIO
 
-import numpy as np
 from isal import isal_zlib
-from PIL import Image
 
-from irsim.graphics.encoding.pixels import Pixels, changed_box, differing
+from irsim import _core as core
+from irsim.graphics.encoding.pixels import Pixels
 
 __all__ = ["ApngWriter", "png_bytes"]
 
@@ -26,7 +25,6 @@ _KEEP_PREVIOUS = 0
 """Disposal method: the next frame is drawn over this one."""
 _OVERWRITE = 0
 """Blend method: a frame replaces the pixels below it."""
-_NO_FILTER = b"\0"
 
 
 def png_bytes(pixels: Pixels, dpi: float | None = None) -> bytes:
@@ -77,7 +75,7 @@ class ApngWriter:
             self._file.write(_chunk(b"IDAT", data))
         else:
             self._file.write(_chunk(b"fdAT", struct.pack(">I", self._next()) + data))
-        self._last = pixels
+        self._last = pixels.copy()
         self.frames += 1
 
     def close(self, last_duration: float) -> None:
@@ -111,7 +109,7 @@ class ApngWriter:
 
 def _changed_part(before: Pixels, after: Pixels) -> tuple[int, int, Pixels]:
     """Return left and top of the rectangle that changed, and its new pixels."""
-    left, top, right, bottom = changed_box(differing(before, after))
+    left, top, right, bottom = core.changed_box(before, after) or (0, 0, 1, 1)
     return left, top, after[top:bottom, left:right]
 
 
@@ -120,12 +118,8 @@ def _header(width: int, height: int) -> bytes:
 
 
 def _compress(pixels: Pixels) -> bytes:
-    height, width = pixels.shape[:2]
-    image = Image.frombuffer("RGBA", (width, height), np.ascontiguousarray(pixels), "raw", "RGBA", 0, 1)
-    # The stride is one byte longer than a row, so a zero byte follows each row: the filter byte of the next row.
-    rows = image.tobytes("raw", "RGB", 3 * width + 1, 1)
     compressor = isal_zlib.compressobj(_COMPRESSION_LEVEL)
-    return b"".join([compressor.compress(_NO_FILTER), compressor.compress(memoryview(rows)[:-1]), compressor.flush()])
+    return b"".join([compressor.compress(core.rgb_rows(pixels)), compressor.flush()])
 
 
 def _chunk(kind: bytes, data: bytes) -> bytes:

@@ -12,8 +12,8 @@ from matplotlib.patches import PathPatch
 from matplotlib.text import Text
 from matplotlib.transforms import Affine2D
 
+from irsim.graphics.figure.brush import geometry_path, rgba
 from irsim.graphics.figure.grids import GridLayer
-from irsim.graphics.figure.layers import geometry_path, rgba
 from irsim.graphics.figure.patches import linewidth_from_data_units
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.scene.scene import Dots, GridImage, Label, Line, Mark, Picture

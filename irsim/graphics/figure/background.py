@@ -9,12 +9,14 @@ import numpy as np
 from matplotlib.artist import Artist
 from numpy.typing import NDArray
 
-from irsim.graphics.encoding.pixels import changed_box
-from irsim.graphics.figure.tracks import Box, Canvas, LineLayer, TrailLayer, around, common, lay_over, part_of
+from irsim import _core as core
+from irsim.graphics.figure.canvas import Box, Canvas
+from irsim.graphics.figure.tracks import LineLayer, PixelLayer, TrailLayer
 
 __all__ = ["Background", "Resting", "Sheet", "TrackLayer"]
 
 TrackLayer = LineLayer | TrailLayer
+_NO_COLOR = (0.0, 0.0, 0.0)
 
 
 class Resting:
@@ -42,12 +44,14 @@ class Resting:
         """Draw the artists if that has not been done; see :meth:`irsim.graphics.figure.tracks.TrailLayer.update`."""
         if self._image is not None:
             return []
-        renderer = canvas.renderer()
+        renderer = canvas.scratch()
         for artist, _ in self._artists:
             artist.draw(renderer)
-        self._image = np.asarray(renderer.buffer_rgba())
-        opaque = self._image[..., 3] > 0
-        self._box = changed_box(opaque) if opaque.any() else None
+        drawn = np.asarray(renderer.buffer_rgba())
+        self._box = core.opaque_box(drawn)
+        left, top, right, bottom = self._box or (0, 0, 0, 0)
+        self._image = drawn[top:bottom, left:right].copy()
+        drawn[top:bottom, left:right] = 0
         return self.boxes
 
     @property
@@ -55,11 +59,17 @@ class Resting:
         """Boxes outside of which the sheet is empty."""
         return [] if self._box is None else [self._box]
 
-    def blend(self, patch: NDArray[np.float32], box: Box) -> None:
-        """Lay the sheet over a patch (h, w, 3) of a picture."""
-        assert self._image is not None
-        if self._box is not None and (shared := common(self._box, box)) is not None:
-            lay_over(part_of(patch, box, shared), self._image, shared)
+    def lay_over(self, canvas: Canvas) -> None:
+        """Lay the sheet over the canvas."""
+        self.update(canvas)
+        for image, left, top, _, _ in self.layers():
+            canvas.painter.image(canvas.pixels, image, left, top)
+
+    def layers(self) -> list[PixelLayer]:
+        """Return the sheet as an image."""
+        if self._box is None or self._image is None:
+            return []
+        return [(self._image, self._box[0], self._box[1], _NO_COLOR, 1.0)]
 
 
 Sheet = Resting | LineLayer | TrailLayer
@@ -74,17 +84,24 @@ class Background:
         self._sheets: list[Sheet] = []
         self._key: Any = None
 
-    def update(self, furniture: NDArray[np.uint8], sheets: Sequence[Sheet], canvas: Canvas) -> NDArray[np.uint8]:
-        """Return the (height, width, 4) pixels of the sheets over the furniture, which must not be changed.
+    def update(
+        self, furniture: NDArray[np.uint8], sheets: Sequence[Sheet], canvas: Canvas
+    ) -> tuple[NDArray[np.uint8], list[Box] | None]:
+        """Put the background together.
 
         Args:
             furniture: (height, width, 4) pixels below the sheets; another array if they have changed.
             sheets: The sheets, the lowest first.
             canvas: The canvas.
+
+        Returns:
+            The (height, width, 4) pixels of the sheets over the furniture, which must not be changed, and the boxes
+            outside of which they are as before; None if they are new.
         """
         if not sheets:
-            self._pixels, self._sheets = None, []
-            return furniture
+            same = furniture is self._furniture and not self._sheets
+            self._pixels, self._furniture, self._sheets = None, furniture, []
+            return furniture, [] if same else None
         same = (
             self._pixels is not None
             and furniture is self._furniture
@@ -100,30 +117,10 @@ class Background:
             self._pixels = furniture.copy()
             boxes = [box for sheet in sheets for box in sheet.boxes]
         self._furniture, self._sheets, self._key = furniture, list(sheets), canvas.key
-        for box in _merged(boxes):
-            left, top, right, bottom = box
-            patch = furniture[top:bottom, left:right, :3].astype(np.float32)
-            for sheet in sheets:
-                sheet.blend(patch, box)
-            patch += 0.5  # rounds to the nearest level
-            self._pixels[top:bottom, left:right, :3] = patch
-        return self._pixels
+        if boxes:
+            core.compose(self._pixels, furniture, boxes, [layer for sheet in sheets for layer in sheet.layers()])
+        return self._pixels, boxes if same else None
 
 
 def _identity(sheet: Sheet) -> Any:
     return sheet.key if isinstance(sheet, Resting) else id(sheet)
-
-
-def _merged(boxes: Sequence[Box]) -> list[Box]:
-    """Replace boxes that overlap by one around both."""
-    merged: list[Box] = []
-    for box in boxes:
-        left, top, right, bottom = box
-        apart = []
-        for other in merged:
-            if other[0] < right and left < other[2] and other[1] < bottom and top < other[3]:
-                left, top, right, bottom = around([other, (left, top, right, bottom)]) or other
-            else:
-                apart.append(other)
-        merged = [*apart, (left, top, right, bottom)]
-    return merged

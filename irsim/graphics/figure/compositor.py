@@ -11,7 +11,7 @@ it. For that reason only layers below the lowest changing one can be part of the
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import matplotlib
@@ -20,17 +20,22 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from irsim import _core as core
 from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.background import Background, Resting, Sheet, TrackLayer
+from irsim.graphics.figure.canvas import Box, Canvas
 from irsim.graphics.figure.glyphs import QuickText
-from irsim.graphics.figure.tracks import Canvas
+from irsim.graphics.figure.layers import MarkArtist, Spokes
 
 __all__ = ["Compositor"]
 
 MIN_RESTING_SCENES = 2
 """Number of scenes without a change after which a layer becomes part of the background."""
+MAX_CHANGES = 1000
+"""Number of boxes that may have changed, above which all pixels count as changed."""
 
 
 class Compositor:
@@ -46,6 +51,7 @@ class Compositor:
         self.ax = ax
         self._new: tuple[Any, tuple[Any, ...], Bbox | None] | None = None
         self._options: dict[str, Any] = {}
+        self._spine_version = 0
         self.forget()
 
     def settle(self) -> None:
@@ -70,6 +76,11 @@ class Compositor:
         """Drop the kept background: the next frame is drawn from scratch."""
         self._keep(None, None, None)
         self._background = Background()
+        self._view: Canvas | None = None
+        self._drawn: list[Box] | None = None
+        self._changes: list[Box] | None = None
+        self._spines: dict[Artist, Resting] = {}
+        self._spine_key: tuple[Any, ...] | None = None
 
     def draw(self, versions: Mapping[Artist, tuple[int, int]], tracks: Mapping[Artist, TrackLayer]) -> None:
         """Draw everything into the canvas.
@@ -79,36 +90,72 @@ class Compositor:
                 every frame.
             tracks: Artist -> layer of the artists that only grow.
         """
-        canvas = self._canvas()
+        canvas, ax = self._canvas(), self.ax
         if len(self.figure.axes) != 1 or self.figure.texts or self.figure.artists or self.figure.legends:
             self.draw_without_cache()
             return
-        furniture: tuple[Artist, ...] = (self.ax.xaxis, self.ax.yaxis, self.ax.patch)
-        if not self.ax.axison:
-            furniture += tuple(self.ax.spines.values())
-        artists = [a for a in self.ax.get_children() if a not in furniture and a.get_visible()]
+        spines = tuple(ax.spines.values())
+        furniture: tuple[Artist, ...] = (ax.xaxis, ax.yaxis, ax.patch, *(() if ax.axison else spines))
+        artists = [a for a in ax.get_children() if a.get_visible() and a not in furniture and not _is_empty(a)]
         artists.sort(key=lambda artist: artist.get_zorder())
         self._draw_furniture(canvas)
-        renderer = canvas.get_renderer()
+        frame = self._spine_sheets(spines)
+        self._view = view = Canvas(ax, canvas.get_renderer(), self._view)
         sheets: list[Sheet] = []
         drawn = 0
         for artist in artists:
             version, resting_scenes = versions.get(artist, (0, 0))
-            if (layer := tracks.get(artist)) is not None and layer.growing:
+            if artist in frame:
+                sheets.append(frame[artist])
+            elif (layer := tracks.get(artist)) is not None and layer.growing:
                 sheets.append(layer)
             elif resting_scenes >= MIN_RESTING_SCENES:
                 below = sheets[-1] if sheets else None
-                sheet = below if isinstance(below, Resting) else Resting()
+                sheet = below if isinstance(below, Resting) and below not in frame.values() else Resting()
                 sheet.add(artist, version)
                 sheets += [] if sheet is below else [sheet]
             else:
                 break
             drawn += 1
-        np.asarray(renderer.buffer_rgba())[...] = self._background.update(
-            self._furniture, sheets, Canvas(self.ax, self.size)
-        )
+        ground, changed = self._background.update(self._furniture, sheets, view)
+        if changed is None or self._drawn is None:
+            view.pixels[...] = ground
+            self._note_change(None)
+        else:
+            core.copy_boxes(ground, view.pixels, [*self._drawn, *changed])
+            self._note_change([*self._drawn, *changed])
+        view.painter.take_boxes()
+        view.unknown = False
         for artist in artists[drawn:]:
-            artist.draw(renderer)
+            if artist in frame:
+                frame[artist].lay_over(view)
+            elif not (isinstance(artist, MarkArtist | Spokes | QuickText) and artist.paint_on(view)):
+                view.unknown = True
+                artist.draw(view.renderer)
+        self._drawn = None if view.unknown else view.painter.take_boxes()
+        self._note_change(self._drawn)
+
+    def _note_change(self, boxes: list[Box] | None) -> None:
+        """Note where the pixels may have changed; None for everywhere."""
+        changes = self._changes
+        self._changes = None if boxes is None or changes is None or len(changes) > MAX_CHANGES else changes + boxes
+
+    def take_changes(self) -> list[Box] | None:
+        """Return the boxes outside of which the pixels are as when this was last asked; None if all may differ."""
+        changes, self._changes = self._changes, []
+        return changes
+
+    def _spine_sheets(self, spines: Sequence[Artist]) -> dict[Artist, Resting]:
+        """Return the spines as sheets, which are drawn again only if a script or the view has changed them."""
+        if self._furniture_key != self._spine_key:
+            self._spines, self._spine_key = {}, self._furniture_key
+        for spine in spines:
+            if spine.stale or spine not in self._spines:
+                self._spine_version += 1
+                spine.stale = False
+                self._spines[spine] = Resting()
+                self._spines[spine].add(spine, self._spine_version)
+        return self._spines
 
     def draw_without_cache(self) -> None:
         """Let Matplotlib draw everything, and keep no background."""
@@ -123,13 +170,13 @@ class Compositor:
 
     def _draw_furniture(self, canvas: Any) -> None:
         ax, figure = self.ax, self.figure
-        ax.apply_aspect()
+        position = ax.get_position().bounds  # this applies the aspect, too
         key = (
             *figure.get_size_inches(),
             figure.dpi,
             *ax.get_xlim(),
             *ax.get_ylim(),
-            *ax.get_position().bounds,
+            *position,
             ax.axison,
         )
         parts = (ax.patch, ax.xaxis, ax.yaxis) if ax.axison else ()
@@ -138,6 +185,7 @@ class Compositor:
             return
         renderer = canvas.get_renderer()
         renderer.clear()
+        self._drawn = None
         figure.patch.draw(renderer)
         for part in parts:
             part.draw(renderer)
@@ -180,7 +228,7 @@ class Compositor:
         return int(width), int(height)
 
     def pixels(self, crop: tuple[int, int, int, int] | None = None) -> Pixels:
-        """Return a copy of the last drawn frame.
+        """Return the last drawn frame; the next one is drawn into the same memory.
 
         Args:
             crop: Box to cut out: left, top, right, bottom [px].
@@ -188,8 +236,12 @@ class Compositor:
         rgba = np.asarray(self._canvas().buffer_rgba())
         if crop is not None:
             rgba = rgba[crop[1] : crop[3], crop[0] : crop[2]]
-        pixels: Pixels = rgba.copy()
-        return pixels
+        return rgba
+
+
+def _is_empty(artist: Artist) -> bool:
+    """Whether an artist is a text without words."""
+    return isinstance(artist, Text) and not artist.get_text()
 
 
 def _is_inside(artist: Artist, ax: Axes) -> bool:

@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 from irsim.common.arrays import Floats
 from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.background import TrackLayer
+from irsim.graphics.figure.brush import rgba
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.glyphs import Glyphs, QuickText
 from irsim.graphics.figure.grids import GridLayer
-from irsim.graphics.figure.layers import BeamLayer, FogLayer, MarkLayer, layer_key, rgba
+from irsim.graphics.figure.layers import BeamLayer, FogLayer, MarkLayer, layer_key
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.figure.tracks import track_layers
 from irsim.graphics.scene.labels import free_places, small_bodies

@@ -14,6 +14,8 @@ from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from irsim.graphics.figure.canvas import Canvas
+
 __all__ = ["Glyphs", "QuickText"]
 
 _PIECES = re.compile(r"\d|\D+")
@@ -28,7 +30,7 @@ class _Piece:
     """A bitmap of a piece of text.
 
     Attributes:
-        bitmap: (H, W, 4) pixels, lowest row first.
+        bitmap: (H, W, 4) pixels, top row first.
         below: Number of rows below the baseline.
         advance: Distance to the start of the next piece [px].
     """
@@ -71,19 +73,25 @@ class QuickText(Text):
 
         Matplotlib draws rotated text, text with effects or several lines, and text on a vector canvas.
         """
-        text = self.get_text()
-        if not self._is_plain(renderer):
+        if not self.get_visible():
+            return
+        if not (self.axes and isinstance(renderer, RendererAgg) and self.paint_on(Canvas(self.axes, renderer))):
             super().draw(renderer)
-            return
-        if not self.get_visible() or not text:
-            return
-        pieces, across, up = self._layout(renderer)
-        context = renderer.new_gc()
+
+    def paint_on(self, canvas: Canvas) -> bool:
+        """Paint the text if it is plain; return whether that was done."""
+        if not self._is_plain(canvas.renderer):
+            return False
+        if not self.get_text():
+            return True
+        pieces, across, up = self._layout(canvas.renderer)
+        baseline = canvas.height - round(up)
         for piece in pieces:
-            renderer.draw_image(context, round(across) - _MARGIN, round(up) - piece.below, piece.bitmap)
+            top = baseline + piece.below - piece.bitmap.shape[0]
+            canvas.painter.image(canvas.pixels, piece.bitmap, round(across) - _MARGIN, top)
             across += piece.advance
-        context.restore()
         self.stale = False
+        return True
 
     def get_window_extent(self, renderer: Any = None, dpi: float | None = None) -> Bbox:
         """Return the bounding box of the text [px]."""
@@ -121,10 +129,9 @@ class QuickText(Text):
         below = math.ceil(descent) + _MARGIN
         new_renderer: Any = RendererAgg
         paper = new_renderer(math.ceil(advance) + 2 * _MARGIN, math.ceil(height) + 2 * _MARGIN, renderer.dpi)
-        stamp = Text(_MARGIN, below, piece, fontproperties=properties, color=self.get_color(), parse_math=False)
-        stamp.set_alpha(self.get_alpha())
-        figure = self.figure
-        assert figure is not None
-        stamp.set_figure(figure)
-        stamp.draw(paper)
-        return _Piece(np.asarray(paper.buffer_rgba())[::-1].copy(), below, advance)
+        context = paper.new_gc()
+        context.set_foreground(self.get_color())
+        context.set_alpha(self.get_alpha())
+        paper.draw_text(context, _MARGIN, paper.height - below, piece, properties, 0)
+        context.restore()
+        return _Piece(np.array(paper.buffer_rgba()), below, advance)

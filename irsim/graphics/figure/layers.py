@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -10,16 +9,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.collections import Collection, PathCollection
-from matplotlib.colors import to_rgba
 from matplotlib.image import AxesImage
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from irsim.common.arrays import Floats
+from irsim.graphics.figure.brush import geometry_path, paint, rgba
+from irsim.graphics.figure.canvas import Canvas
 from irsim.graphics.scene.palette import Color
-from irsim.graphics.scene.scene import Beams, Circle, Dots, Fog, Geometry, Line, Mark, Scene, Sector
+from irsim.graphics.scene.scene import Beams, Dots, Fog, Mark, Scene
 
-__all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "paint", "rgba"]
+__all__ = ["PARTS", "BeamLayer", "FogLayer", "MarkArtist", "MarkLayer", "Spokes", "layer_key", "opaque_colors"]
 
 PARTS = ("field", "zone", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
 """Drawing order of the parts that have the same zorder."""
@@ -30,12 +30,10 @@ ZORDER_STEP = 1e-3
 Matplotlib draws artists of equal zorder in the order in which they were added, which is not the order of the parts.
 """
 
-_UNIT_CIRCLE = Path.unit_circle()
 _BEAM_WIDTH_PT = 1.0
 _TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
 _SOLID = ("-", "solid")
-MAX_PAINTED = 64
-"""Number of marks up to which painting one by one is faster than a collection."""
+_OPAQUE = 255.0
 
 
 def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, ...]:
@@ -44,7 +42,7 @@ def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, 
 
 
 class MarkArtist(PathCollection):
-    """Shows marks; few of them are painted one by one, which is faster than to set up a collection.
+    """Shows marks: painted one by one on a pixel canvas if their strokes are solid, as a collection elsewhere.
 
     Attributes:
         before: Called before the marks are drawn; it may bring them up to date.
@@ -64,38 +62,28 @@ class MarkArtist(PathCollection):
             return
         if self.before is not None:
             self.before()
-        plain = len(self.marks) <= MAX_PAINTED and all(mark.stroke.style in _SOLID for mark in self.marks)
-        if plain and isinstance(renderer, RendererAgg):
-            ends = str(self.get_capstyle()), str(self.get_joinstyle())
-            paint(renderer, self.axes, self.marks, self.scale, ends)
+        if isinstance(renderer, RendererAgg) and self._is_plain():
+            self._paint(Canvas(self.axes, renderer))
             return
         self.fill()
         super().draw(renderer)
 
+    def paint_on(self, canvas: Canvas) -> bool:
+        """Paint the marks if their strokes are solid; return whether that was done."""
+        if self.before is not None:
+            self.before()
+        plain = self._is_plain()
+        if plain:
+            self._paint(canvas)
+        return plain
 
-def paint(renderer: Any, ax: Any, marks: Sequence[Mark], points_per_metre: float, ends: tuple[str, str]) -> None:
-    """Paint marks with solid strokes into a pixel canvas.
+    def _is_plain(self) -> bool:
+        return all(mark.stroke.style in _SOLID for mark in self.marks)
 
-    Args:
-        renderer: The canvas.
-        ax: Axes in world coordinates, which cut the marks.
-        marks: The marks.
-        points_per_metre: Scale of the view, for line widths given in metres.
-        ends: Styles of caps and joins of strokes.
-    """
-    context = renderer.new_gc()
-    context.set_clip_rectangle(ax.bbox)
-    context.set_capstyle(ends[0])
-    context.set_joinstyle(ends[1])
-    transform = ax.transData.frozen()
-    for mark in marks:
-        stroke, fill = mark.stroke, mark.fill
-        width = stroke.width * (points_per_metre if stroke.metric else 1.0) if stroke.color is not None else 0.0
-        context.set_foreground(_TRANSPARENT if stroke.color is None else rgba(stroke.color, mark.alpha), isRGBA=True)
-        context.set_linewidth(width)
-        face = None if fill is None else rgba(fill, mark.alpha)
-        renderer.draw_path(context, geometry_path(mark.geometry), transform, face)
-    context.restore()
+    def _paint(self, canvas: Canvas) -> None:
+        if self.marks:
+            ends = str(self.get_capstyle()), str(self.get_joinstyle())
+            paint(canvas, (canvas.pixels, canvas.renderer), self.axes, self.marks, self.scale, ends)
 
 
 class MarkLayer:
@@ -157,7 +145,7 @@ class BeamLayer:
 
     def __init__(self, ax: Axes, zorder: float) -> None:
         self._ax = ax
-        self.artist = _Spokes(zorder + ZORDER_STEP * PARTS.index("beams"))
+        self.artist = Spokes(zorder + ZORDER_STEP * PARTS.index("beams"))
         ax.add_collection(self.artist, autolim=False)
         self._dots: PathCollection | None = None
 
@@ -167,13 +155,12 @@ class BeamLayer:
         self._show_dots(None if beams is None else beams.dots)
         if beams is None:
             return
-        self.artist.set_ends(beams.origin, beams.ends)
         colors: Any = np.empty((len(beams.ends), 4))
         colors[:] = rgba(beams.color, beams.alpha) if beams.colors is None else beams.colors
         for beam, color, alpha in beams.highlights:
             colors[beam] = rgba(color, alpha)
-        self.artist.set_edgecolor(colors)
-        self.artist.set_linewidth(_BEAM_WIDTH_PT if beams.widths is None else beams.widths.tolist())
+        widths = np.full(len(beams.ends), _BEAM_WIDTH_PT) if beams.widths is None else beams.widths
+        self.artist.set_beams(beams.origin, beams.ends, colors, widths)
 
     def _show_dots(self, dots: Dots | None) -> None:
         if self._dots is not None:
@@ -221,51 +208,59 @@ class FogLayer:
         self.artist.set_extent(fog.extent)
 
 
-class _Spokes(Collection):
-    """Lines from one point.
-
-    A single unit line is rotated and stretched for each, which is cheaper than a path for each.
-    """
+class Spokes(Collection):
+    """Lines from one point: painted on a pixel canvas; elsewhere one unit line, rotated and stretched for each."""
 
     def __init__(self, zorder: float) -> None:
         super().__init__(facecolors="none", linewidths=_BEAM_WIDTH_PT, zorder=zorder)
         self._paths = [Path([(0.0, 0.0), (1.0, 0.0)])]
         self._matrices = np.empty((0, 3, 3))
+        self._origin, self._ends = (0.0, 0.0), np.empty((0, 2))
+        self._colors, self._widths = np.empty((0, 4)), np.empty(0)
 
-    def set_ends(self, origin: tuple[float, float], ends: Floats) -> None:
-        """Set the lines from ``origin`` to ``ends`` (B, 2)."""
-        matrices = np.zeros((len(ends), 3, 3))
-        matrices[:, :2, 0] = ends - origin
-        matrices[:, 2, 2] = 1.0
-        self._matrices = matrices
-        self.set_offsets(np.tile(origin, (len(ends), 1)))
+    def set_beams(self, origin: tuple[float, float], ends: Floats, colors: Floats, widths: Floats) -> None:
+        """Set the lines from ``origin`` to ``ends`` (B, 2), with ``colors`` (B, 4) and ``widths`` (B,) in points."""
+        self._origin, self._ends, self._colors, self._widths = origin, ends, colors, widths
+        self.stale = True
 
     def get_transforms(self) -> Any:
         """Return the (B, 3, 3) matrices that turn the unit line into lines from (0, 0)."""
         return self._matrices
 
     def draw(self, renderer: Any) -> None:
-        """Draw the lines.
+        """Draw the lines."""
+        if not self.get_visible():
+            return
+        if isinstance(renderer, RendererAgg) and self.axes is not None:
+            self.paint_on(Canvas(self.axes, renderer))
+            return
+        self._fill()
+        super().draw(renderer)
+
+    def paint_on(self, canvas: Canvas) -> bool:
+        """Paint the lines; return True."""
+        inks = (self._colors * _OPAQUE + 0.5).astype(np.uint8)
+        ends = np.ascontiguousarray(self._ends, dtype=np.float64)
+        canvas.painter.beams(canvas.pixels, self._origin, ends, inks, self._widths * canvas.px_per_point)
+        return True
+
+    def _fill(self) -> None:
+        """Make offsets and matrices of the collection.
 
         The offsets already move each line to its origin, so the data transform is used without its translation.
         """
         assert self.axes is not None
+        self._matrices = np.zeros((len(self._ends), 3, 3))
+        self._matrices[:, :2, 0] = self._ends - self._origin
+        self._matrices[:, 2, 2] = 1.0
+        self.set_offsets(np.tile(self._origin, (len(self._ends), 1)))
+        colors: Any = self._colors
+        self.set_edgecolor(colors)
+        self.set_linewidth(self._widths.tolist())
         linear = self.axes.transData.get_matrix().copy()
         linear[:2, 2] = 0.0
         self.set_transform(Affine2D(linear))
         self.set_offset_transform(self.axes.transData)
-        super().draw(renderer)
-
-
-def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
-    """Convert a colour to red, green, blue and opacity (0..1); ``alpha`` multiplies the colour's own opacity.
-
-    Raises:
-        ValueError: The colour is not valid.
-    """
-    given: Any = color
-    red, green, blue, opacity = to_rgba(given)
-    return red, green, blue, opacity * float(alpha)
 
 
 def opaque_colors(scene: Scene) -> list[tuple[int, int, int]]:
@@ -290,32 +285,3 @@ def _colors(colors: Sequence[Color | None], alphas: Sequence[float]) -> Any:
         return np.empty((0, 4))
     levels = [_TRANSPARENT if c is None else rgba(c, a) for c, a in zip(colors, alphas, strict=True)]
     return np.array(levels, dtype=np.float64)
-
-
-def geometry_path(geometry: Geometry) -> Path:
-    """Return the outline of a mark as a Matplotlib path."""
-    if isinstance(geometry, Circle):
-        return _scale_and_move(_UNIT_CIRCLE, geometry)
-    if isinstance(geometry, Line):
-        return Path(geometry.points)
-    if isinstance(geometry, Sector):
-        return _sector(geometry)
-    if len(geometry.rings) == 1:
-        return _ring(geometry.rings[0])
-    return Path.make_compound_path(*[_ring(ring) for ring in geometry.rings])
-
-
-def _ring(points: Floats) -> Path:
-    closed = np.concatenate([points, points[:1]])
-    codes = np.full(len(closed), Path.LINETO, dtype=Path.code_type)
-    codes[0], codes[-1] = Path.MOVETO, Path.CLOSEPOLY
-    return Path(closed, codes)
-
-
-def _sector(sector: Sector) -> Path:
-    return _scale_and_move(Path.wedge(math.degrees(sector.start), math.degrees(sector.end)), sector)
-
-
-def _scale_and_move(unit: Path, target: Circle | Sector) -> Path:
-    """Scale and move a path of radius 1 about the origin to the radius and centre of ``target``."""
-    return Path(np.asarray(unit.vertices) * target.radius + (target.x, target.y), unit.codes)

@@ -60,12 +60,17 @@ MIN_ARROW_SPEED = 1e-9
 
 @dataclass(slots=True)
 class _Drawn:
-    """Marks, labels and picture of an object, kept as long as ``key`` does not change."""
+    """Marks, labels and picture of an object, kept as long as ``key`` does not change.
+
+    Its goal is kept as long as ``goal_key`` does not change.
+    """
 
     key: tuple[Any, ...]
     marks: list[Mark]
     labels: list[Label]
     picture: Picture | None
+    goal_key: tuple[Any, ...] = ()
+    goal: Mark | None = None
 
 
 class SceneBuilder:
@@ -235,7 +240,8 @@ class SceneBuilder:
         key = (style, body, pose, str(goal), heading, view.text, view.goal_text, view.description)
         drawn = self._drawn.get(view.id)
         if drawn is None or drawn.key != key:
-            drawn = self._drawn[view.id] = _draw(view, body, style, pose, heading, goal, key, self._has_picture)
+            drawn = _draw(view, body, style, pose, heading, goal, key, self._has_picture, drawn)
+            self._drawn[view.id] = drawn
         scene.marks += drawn.marks
         scene.labels += drawn.labels
         if drawn.picture is not None:
@@ -331,19 +337,27 @@ def _draw(
     goal: list[float],
     key: tuple[Any, ...],
     has_picture: Callable[[str], bool],
+    earlier: _Drawn | None = None,
 ) -> _Drawn:
-    """Return all marks, labels and pictures of an object that follow from its pose and goal."""
-    drawn = _Drawn(key, [], [], None)
+    """Return all marks, labels and pictures of an object that follow from its pose and goal.
+
+    The mark of a goal that has not changed since ``earlier`` is the same Python object.
+    """
+    drawn = _Drawn(key, [], [], None, (style, body, str(goal)))
     marks, number = drawn.marks, view.id
     if style.show_fov and view.fov is not None and view.fov_radius is not None:
         marks.append(view_sector(number, view.fov, view.fov_radius, style, pose))
     has_goal = not math.isnan(goal[0])
     if style.show_goal and has_goal:
-        goal_pose = (goal[0], goal[1], 0.0 if math.isnan(goal[2]) else goal[2])
-        marks.append(
-            shape_mark(number, "goal", place(body.geometry, goal_pose), style.goal_color, Stroke(style.goal_color),
-                        style.goal_alpha, style.goal_zorder)
-        )  # fmt: skip
+        if earlier is not None and earlier.goal_key == drawn.goal_key:
+            drawn.goal = earlier.goal
+        if drawn.goal is None:
+            goal_pose = (goal[0], goal[1], 0.0 if math.isnan(goal[2]) else goal[2])
+            stroke, place_of = Stroke(style.goal_color), place(body.geometry, goal_pose)
+            drawn.goal = shape_mark(
+                number, "goal", place_of, style.goal_color, stroke, style.goal_alpha, style.goal_zorder
+            )
+        marks.append(drawn.goal)
     if view.description is not None and body.kind != "compound" and has_picture(view.description):
         area = (*body.low, body.length, body.width)
         drawn.picture = Picture(

@@ -1,0 +1,132 @@
+#include "pictures/painter.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr float kFullMask = 255.0f;
+
+/// The raster of this thread, whose memory serves all painters.
+Raster& raster_for(PixelBox clip) {
+  thread_local Raster raster;
+  raster.clip(clip);
+  return raster;
+}
+
+}  // namespace
+
+void Painter::paint(Raster& raster, const Pixels& pixels, Ink ink) {
+  const PixelBox box = raster.touched();
+  if (is_empty(box)) return raster.sweep([](int, int, float) {});
+  const float opacity = static_cast<float>(ink.alpha);
+  raster.sweep([&](int y, int x, float share) {
+    const int alpha = static_cast<int>(share * opacity + 0.5f);
+    lay_over(pixels.row(y) + kChannels * x, ink, alpha);
+  });
+  boxes_.push_back(box);
+}
+
+void Painter::image(const Pixels& pixels, const Pixels& above, int left, int top) {
+  lay_image(pixels, above, left, top);
+  const PixelBox whole{0, 0, pixels.width, pixels.height};
+  boxes_.push_back(common(whole, {left, top, left + above.width, top + above.height}));
+}
+
+std::vector<Vec2> Painter::seen(const Vec2* points, std::size_t count) const {
+  std::vector<Vec2> pixels;
+  pixels.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) pixels.push_back(view_(points[i]));
+  return pixels;
+}
+
+void Painter::circle(const Pixels& pixels, Vec2 center, double radius, Ink fill, Ink edge, double width) {
+  Raster& raster = raster_for(clip_);
+  const Vec2 middle = view_(center);
+  const double reach = radius * std::sqrt(std::fabs(view_.xx * view_.yy - view_.xy * view_.yx));
+  if (fill.alpha > 0) {
+    add_disc(raster, middle, reach);
+    paint(raster, pixels, fill);
+  }
+  if (edge.alpha > 0 && width > 0.0) {
+    add_ring(raster, middle, reach, width);
+    paint(raster, pixels, edge);
+  }
+}
+
+void Painter::polygon(const Pixels& pixels, const Vec2* points, std::size_t count, Ink fill, Ink edge,
+                      const LineStyle& style) {
+  Raster& raster = raster_for(clip_);
+  std::vector<Vec2> corners = seen(points, count);
+  const bool stroked = edge.alpha > 0 && style.width > 0.0;
+  snap(corners, true, stroked ? style.width : 0.0);
+  if (fill.alpha > 0) {
+    raster.outline(corners.data(), corners.size());
+    paint(raster, pixels, fill);
+  }
+  if (stroked) {
+    add_stroke(raster, corners, true, style);
+    paint(raster, pixels, edge);
+  }
+}
+
+void Painter::line(const Pixels& pixels, const Vec2* points, std::size_t count, Ink edge, const LineStyle& style) {
+  if (edge.alpha == 0 || !(style.width > 0.0)) return;
+  Raster& raster = raster_for(clip_);
+  std::vector<Vec2> corners = seen(points, count);
+  snap(corners, false, style.width);
+  add_stroke(raster, corners, false, style);
+  paint(raster, pixels, edge);
+}
+
+void Painter::beams(const Pixels& pixels, Vec2 origin, const Vec2* ends, std::size_t count, const Ink* inks,
+                    const double* widths) {
+  const std::vector<PixelBox> before = take_boxes();
+  Raster& raster = raster_for(clip_);
+  PixelBox around{clip_.right, clip_.bottom, clip_.left, clip_.top};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Ink ink = inks[i];
+    const double width = widths[i];
+    if (ink.alpha == 0 || !(width > 0.0)) continue;
+    std::vector<Vec2>& both = beam_;
+    both.assign({view_(origin), view_(ends[i])});
+    snap(both, false, width);
+    const Vec2 step = both[1] - both[0];
+    const double length = norm(step);
+    if (!(length > 0.0)) continue;
+    const Vec2 across = Vec2{-step.y, step.x} * (width / 2 / length);
+    const Vec2 corners[4] = {both[0] + across, both[0] - across, both[1] - across, both[1] + across};
+    const float opacity = static_cast<float>(ink.alpha);
+    const bool drawn = raster.sweep_convex(corners, 4, [&](int y, int x, float share) {
+      lay_over(pixels.row(y) + kChannels * x, ink, static_cast<int>(share * opacity + 0.5f));
+    });
+    if (!drawn) {
+      raster.outline(corners, 4);
+      paint(raster, pixels, ink);
+      continue;
+    }
+    for (const Vec2 corner : corners) {
+      around.left = std::min(around.left, static_cast<int>(std::floor(corner.x)));
+      around.right = std::max(around.right, static_cast<int>(std::ceil(corner.x)) + 1);
+      around.top = std::min(around.top, static_cast<int>(std::floor(corner.y)));
+      around.bottom = std::max(around.bottom, static_cast<int>(std::ceil(corner.y)) + 1);
+    }
+  }
+  boxes_.push_back(common(around, clip_));
+  boxes_ = merged(boxes_);
+  boxes_.insert(boxes_.end(), before.begin(), before.end());
+}
+
+PixelBox Painter::line_mask(std::uint8_t* mask, std::ptrdiff_t stride, const Vec2* points, std::size_t count,
+                            const LineStyle& style, bool snapped) {
+  Raster& raster = raster_for(clip_);
+  std::vector<Vec2> corners = seen(points, count);
+  if (snapped) snap(corners, false, style.width);
+  add_stroke(raster, corners, false, style);
+  const PixelBox box = raster.touched();
+  raster.sweep([&](int y, int x, float share) {
+    std::uint8_t& level = mask[y * stride + x];
+    level = std::max(level, static_cast<std::uint8_t>(share * kFullMask + 0.5f));
+  });
+  return box;
+}
+
+}  // namespace irsim

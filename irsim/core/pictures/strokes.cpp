@@ -1,0 +1,124 @@
+#include "pictures/strokes.hpp"
+
+#include <array>
+
+namespace irsim {
+namespace {
+
+constexpr double kSagitta = 0.02;           // distance of a circle from the polygon that stands for it [px]
+constexpr int kFewestCorners = 16;          // of such a polygon
+constexpr double kShortest = 1e-9;          // shorter segments are left out [px]
+constexpr double kAlignedPx = 1e-4;         // deviation up to which a segment counts as horizontal or vertical
+constexpr std::size_t kMostSnapped = 1024;  // corners; longer outlines are not snapped
+
+int corners_of(double radius) {
+  return std::max(kFewestCorners, static_cast<int>(std::ceil(kPi * std::sqrt(std::max(radius, 0.0) / (2 * kSagitta)))));
+}
+
+/// Collect the polygon that stands for a circle; its area is that of the circle.
+void add_circle(Raster& raster, Vec2 center, double radius, bool backwards) {
+  const int count = corners_of(radius);
+  const double step = (backwards ? -kTurn : kTurn) / count;
+  const double reach = radius * std::sqrt(std::fabs(step) / std::sin(std::fabs(step)));
+  const Vec2 turn = unit(step);
+  Vec2 arm{reach, 0.0};
+  const Vec2 start = center + arm;
+  Vec2 last = start;
+  for (int i = 1; i < count; ++i) {
+    arm = rotate(arm, turn);
+    raster.edge(last, center + arm);
+    last = center + arm;
+  }
+  raster.edge(last, start);
+}
+
+void add_quad(Raster& raster, Vec2 a, Vec2 b, Vec2 across) {
+  const std::array<Vec2, 4> corners{a + across, a - across, b - across, b + across};
+  raster.outline(corners.data(), corners.size());
+}
+
+/// Collect a sector of a disc from `arm` on, over an angle that may be negative; the area counts in the same direction.
+void add_fan(Raster& raster, Vec2 center, Vec2 arm, double angle) {
+  const int count = std::max(1, static_cast<int>(std::ceil(std::fabs(angle) / kTurn * corners_of(norm(arm)))));
+  const Vec2 turn = unit(angle / count);
+  Vec2 last = arm;
+  raster.edge(center, center + arm);
+  for (int i = 0; i < count; ++i) {
+    const Vec2 next = rotate(last, turn);
+    raster.edge(center + last, center + next);
+    last = next;
+  }
+  raster.edge(center + last, center);
+}
+
+/// Fill the gap at the outer side of a corner between two segments with these directions.
+void add_join(Raster& raster, Vec2 corner, Vec2 before, Vec2 after, const LineStyle& style) {
+  const double half = style.width / 2, turn = cross(before, after), along = dot(before, after);
+  if (turn == 0.0 && along > 0.0) return;
+  const double side = turn > 0.0 ? half : -half;
+  const Vec2 from{before.y * side, -before.x * side}, to{after.y * side, -after.x * side};
+  // The pieces of a stroke run in the same direction as its quads, whichever way the line turns.
+  if (style.join == Join::kRound) {
+    if (turn >= 0.0) return add_fan(raster, corner, from, std::atan2(turn, along));
+    return add_fan(raster, corner, to, -std::atan2(turn, along));
+  }
+  std::array<Vec2, 4> gap{corner, corner + from, corner + to, corner + to};
+  const double half_angle = std::sqrt(std::max(0.0, (1.0 + along) / 2));  // cosine of half the change of direction
+  // As Matplotlib has it, the tip is at most as many half widths away from the corner as the line has pixels.
+  if (style.join == Join::kMiter && half_angle * style.width >= 1.0) {
+    gap[2] = corner + (from + to) * (0.5 / (half_angle * half_angle));
+  }
+  if (turn < 0.0) std::swap(gap[1], gap[3]);
+  raster.outline(gap.data(), gap.size());
+}
+
+}  // namespace
+
+void add_disc(Raster& raster, Vec2 center, double radius) {
+  if (radius > 0.0) add_circle(raster, center, radius, false);
+}
+
+void add_ring(Raster& raster, Vec2 center, double radius, double width) {
+  add_disc(raster, center, radius + width / 2);
+  if (radius > width / 2) add_circle(raster, center, radius - width / 2, true);
+}
+
+void add_stroke(Raster& raster, const std::vector<Vec2>& points, bool closed, const LineStyle& style) {
+  thread_local std::vector<Vec2> path, directions;
+  path.clear();
+  directions.clear();
+  for (const Vec2 p : points) {
+    if (path.empty() || norm(p - path.back()) > kShortest) path.push_back(p);
+  }
+  if (closed && path.size() > 1 && norm(path.front() - path.back()) <= kShortest) path.pop_back();
+  if (path.size() < 2) return;
+  const double half = style.width / 2;
+  const std::size_t count = path.size(), segments = closed ? count : count - 1;
+  for (std::size_t i = 0; i < segments; ++i) {
+    const Vec2 step = path[(i + 1) % count] - path[i];
+    const Vec2 direction = step * (1.0 / norm(step));
+    directions.push_back(direction);
+    add_quad(raster, path[i], path[(i + 1) % count], Vec2{-direction.y, direction.x} * half);
+  }
+  for (std::size_t i = closed ? 0 : 1; i < segments; ++i) {
+    add_join(raster, path[i], directions[(i + segments - 1) % segments], directions[i], style);
+  }
+  if (closed || !style.round_caps) return;
+  const Vec2 first = directions.front(), last = directions.back();
+  add_fan(raster, path.front(), Vec2{-first.y, first.x} * half, kPi);
+  add_fan(raster, path.back(), Vec2{last.y, -last.x} * half, kPi);
+}
+
+bool snap(std::vector<Vec2>& points, bool closed, double width) {
+  const std::size_t count = points.size();
+  if (count > kMostSnapped) return false;
+  for (std::size_t i = closed ? 0 : 1; i < count; ++i) {
+    const Vec2 step = points[i] - points[(i + count - 1) % count];
+    if (std::fabs(step.x) >= kAlignedPx && std::fabs(step.y) >= kAlignedPx) return false;
+  }
+  const double shift = std::lround(width) % 2 != 0 ? 0.5 : 0.0;
+  for (Vec2& p : points) p = {std::floor(p.x + 0.5) + shift, std::floor(p.y + 0.5) + shift};
+  return true;
+}
+
+}  // namespace irsim
