@@ -64,16 +64,16 @@ def unequal_note(limits: Mapping[str, Mapping[str, Limit]]) -> str | None:
     found, parts, fixes = of_robot[name], list[str](), dict[str, None]()
     if _ratio(found, 0) > 1 + _EQUAL_SHARE:
         most = max(limit.speed for limit in found.values())
-        parts.append("drives at most " + _told({key: one.speed for key, one in found.items()}, "m/s"))
+        parts.append("drives at most " + _by_policy({key: one.speed for key, one in found.items()}, "m/s"))
         slower = [one.behavior for one in found.values() if one.speed * (1 + _EQUAL_SHARE) < most]
         fixes = dict.fromkeys(_FIXES[behavior] for behavior in slower if behavior in _FIXES)
     if _ratio(found, 1) > 1 + _EQUAL_SHARE:
-        parts.append("turns at most " + _told({key: one.turn for key, one in found.items()}, "rad/s"))
+        parts.append("turns at most " + _by_policy({key: one.turn for key, one in found.items()}, "rad/s"))
     equal = f"; equal speeds need {' and '.join(fixes)} or a lower vel_max" if fixes else ""
     return f"limits are unequal, so times are not fair: '{clean(name)}' {' and '.join(parts)}{equal}"
 
 
-def _told(values: Mapping[str, float], unit: str) -> str:
+def _by_policy(values: Mapping[str, float], unit: str) -> str:
     """Values by policy in words, those of equal ones once: ``2 m/s under dash, 1.5 m/s under rvo and sfm``."""
     policies: dict[str, list[str]] = {}
     for policy, value in values.items():
@@ -90,7 +90,7 @@ def _ratio(found: Mapping[str, Limit], column: int) -> float:
 def _limit(record: ObjectRecord, own: bool) -> Limit:
     options: Any = None
     if own:
-        options = record.behavior if record.group_behavior is None else record.group_behavior
+        options = record.active_behavior
     options = getattr(options, "local", options)
     name, drive = str(getattr(options, "name", "")), record.kinematics
     speeds, turns = getattr(drive, "speeds", 1), getattr(drive, "turns", False)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = [
+    "REACTIVE",
     "Circle",
     "Obstruction",
     "find_circling",
@@ -47,7 +48,7 @@ _MAX_OBSTRUCTION_DISTANCE = 0.5
 """Distance [m] up to which an object obstructs one that makes no progress."""
 _MAX_WALL_DISTANCE = 2.0
 """Distance [m] up to which something static obstructs a car that plans no path."""
-_REACTIVE = ("rvo", "orca", "sfm")
+REACTIVE = ("rvo", "orca", "sfm")
 """Behaviors that avoid obstacles without planning a path."""
 _MAX_JAM_DISTANCE = 2.0
 """Distance [m] up to which a jammed obstacle obstructs an object, as some behaviors keep this far from people."""
@@ -230,9 +231,9 @@ def find_obstruction(
 
 def reactive_behavior(record: ObjectRecord) -> str | None:
     """The behavior of an object, or of its group, if it avoids obstacles without planning a path; else None."""
-    options = record.behavior if record.group_behavior is None else record.group_behavior
+    options = record.active_behavior
     name = str(getattr(options, "name", ""))
-    return name if name in _REACTIVE else None
+    return name if name in REACTIVE else None
 
 
 def heading_message(record: ObjectRecord, pose: NDArray[np.float64], goal: NDArray[np.float64]) -> str | None:

@@ -67,13 +67,11 @@ class Draws:
         """
         found: dict[str, NDArray[Any]] = {}
         for (quantity, word), objects in self._objects.items():
-            all_objects = self._array(quantity)
             if quantity == "number":
-                found[f"number.{word}"] = (all_objects[:, objects] != 0).sum(axis=1)
-            elif self._together[quantity, word]:
-                found[f"{quantity}.{word}"] = all_objects[:, objects[0]].copy()
+                found[f"number.{word}"] = self._count(word)
             else:
-                found[f"{quantity}.{word}"] = all_objects[:, objects].copy()
+                chosen = objects[0] if self._together[quantity, word] else objects
+                found[f"{quantity}.{word}"] = self._array(quantity)[:, chosen].copy()
         for name, values in self._parameters.items():
             found[f"parameters.{name}"] = values[self._simulation.state.variant]
         if self._parameters:
@@ -93,13 +91,17 @@ class Draws:
             if column.parameter is not None:
                 values = column.parameter[simulation.state.variant][:, None]
             elif column.quantity == "number":
-                objects = self._objects["number", column.word]
-                values = (self._array("number")[:, objects] != 0).sum(axis=1)[:, None]
+                values = self._count(column.word)[:, None]
             else:
                 values = self._array(column.quantity)[:, self._learners]
             scaled = (values.astype(np.float64) - column.low) / ((column.high - column.low) or 1.0)
             columns.append(np.broadcast_to(np.clip(scaled, 0.0, 1.0), shape).reshape(-1))
         return np.stack(columns, axis=1).astype(np.float32)
+
+    def _count(self, word: str) -> NDArray[np.int64]:
+        """(n,) number of objects of a word that take part."""
+        counts: NDArray[np.int64] = (self._array("number")[:, self._objects["number", word]] != 0).sum(axis=1)
+        return counts
 
     def _array(self, quantity: str) -> NDArray[Any]:
         array: NDArray[Any] = getattr(self._simulation.state, _ARRAYS[quantity])

@@ -17,7 +17,7 @@ __all__ = ["Ladder"]
 class Ladder:
     """Counts successes, and sets the level of worlds: a learner succeeds when it arrives and does not collide.
 
-    An episode counts if its world was at the present level; after a move the count begins anew.
+    An episode counts if its world was at the present level. After a move the count starts at 0.
 
     Args:
         worlds: The worlds.

@@ -101,7 +101,7 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
         return _from_file(text, name, keys, folder, root)
     if name in behavior_names():
         return BehaviorPolicy(text)
-    if name in trained_policies() and name not in POLICIES.names():
+    if _is_trained(name):
         trained = _network(trained_policy(name), text, name, keys)
         trained.source = text
         return trained
@@ -121,7 +121,11 @@ def names_trained(text: str) -> bool:
     Raises:
         BenchmarkError: The text is not a policy.
     """
-    return _parsed(text)[0] in trained_policies()
+    return _is_trained(_parsed(text)[0])
+
+
+def _is_trained(name: str) -> bool:
+    return name in trained_policies() and name not in POLICIES.names()  # a plug-in may replace one
 
 
 def is_network(text: str) -> bool:

@@ -76,16 +76,15 @@ def describe_policy(text: str, folder: str | Path | None = None) -> PolicyInfo:
         return _behavior(policy.name)
     if text == RANDOM:
         return _random()
-    kind = (
-        "file"
-        if names_file(text)
-        else "trained"
-        if names_trained(text)
-        else "built-in"
-        if policy.name == RANDOM
-        else "plug-in"
-    )
-    return _info(text, kind, policy, _about(policy), {})
+    return _info(text, _kind(text, policy), policy, _about(policy), {})
+
+
+def _kind(text: str, policy: Policy) -> str:
+    if names_file(text):
+        return "file"
+    if names_trained(text):
+        return "trained"
+    return "built-in" if policy.name == RANDOM else "plug-in"
 
 
 def _behavior(name: str) -> PolicyInfo:

@@ -177,7 +177,7 @@ def _behavior_time(
     scenario: ResolvedScenario, record: ObjectRecord, row: int, near: _Nearness, static: NDArray[np.bool_]
 ) -> float:
     """Estimate the time of the behavior of one object per step [µs]."""
-    behavior: Any = record.behavior if record.group_behavior is None else record.group_behavior
+    behavior: Any = record.active_behavior
     work = 0.0
     if getattr(behavior, "name", "") == "follow":
         work += UNIT + _replanning_time(scenario, behavior, record, bool(static.any()))

@@ -10,8 +10,8 @@ namespace irsim {
 
 /// Finds the nearest of at most 256 colours, and remembers what it has found.
 ///
-/// Colours are told apart by cells of 4 levels in each channel: such pictures are compressed better, and few searches
-/// are needed. A colour of the palette itself is always found.
+/// Colours in the same cell of 4 levels in each channel get the same index, which compresses better and needs few
+/// searches. A colour of the palette itself is always found.
 class Palette {
  public:
   explicit Palette(std::vector<std::array<int, 3>> colors);
@@ -51,8 +51,8 @@ struct GifData {
 
 /// Compress the part `box` of a picture.
 ///
-/// Pixels that are as in `before`, unless that is null, become `transparent`, which is no index of the palette then;
-/// only those in `boxes` may have changed.
+/// With `before`, pixels that have not changed since become `transparent`, an index that the palette must not use then.
+/// Only pixels in `boxes` may have changed.
 GifData encode_gif(Palette& palette, const Pixels& pixels, const Pixels* before, const PixelBox& box,
                    const std::vector<PixelBox>& boxes, std::uint8_t transparent);
 

@@ -224,7 +224,7 @@ OBJECTS: dict[str, Code] = {
     ),
     "ends-in-zone": Code(
         "start or goal in a zone that follow avoids",
-        "The zones that `avoid` of `follow` names are solid for the object. To a goal in one of them there is no path, "
+        "The zones that `avoid` of `follow` names are solid for the object. A goal in one of them has no path to it, "
         "and the object stays where it is; from a start in one of them it drives out first. The whole body counts: its "
         "radius must fit between the place and the zone.",
     ),

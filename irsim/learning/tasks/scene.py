@@ -19,7 +19,7 @@ from irsim.diagnostics.diagnostic import suggestion
 from irsim.learning.tasks.files import TaskError, task_error
 from irsim.learning.tasks.randomize import Value
 from irsim.learning.tasks.task import Task
-from irsim.learning.tasks.variation import LevelDraws, drawn_values, level_draws
+from irsim.learning.tasks.variation import LevelDraws, drawn_values, level_draws, randomize_path
 from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Variation, VariedLevel
@@ -113,7 +113,7 @@ def _values_of(task: Task, level: int, draw: LevelDraws) -> list[dict[str, Value
     template = _template(task)
     columns = {}
     for name, given in draw.parameters.items():
-        path = (*_where(task, level), *(() if task.curriculum is None else ("randomize",)), "parameters", name)
+        path = (*randomize_path(task, level), "parameters", name)
         if name not in template.parameters:
             known = ", ".join(template.parameters) or "none"
             what = f"the template {template.name!r} has no parameter {clean(name)!r}; it has {known}"

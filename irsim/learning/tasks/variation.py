@@ -21,7 +21,7 @@ from irsim.metrics.roles import HUMAN, kinds_of
 from irsim.scenario.resolve.resolved import DrawnQuantity, ObjectRecord, ResolvedScenario
 from irsim.simulation.random_streams import generator
 
-__all__ = ["LevelDraws", "drawn_values", "level_draws"]
+__all__ = ["LevelDraws", "drawn_values", "level_draws", "randomize_path"]
 
 _ENTRY = re.compile(r"^(robot|obstacle)\[(\d+)\]$")
 _DIGITS = 6
@@ -57,7 +57,7 @@ def level_draws(task: Task, scenario: ResolvedScenario) -> tuple[LevelDraws, ...
     selection = _Selection(scenario, learners)
     found = []
     for number, change in enumerate(own):
-        where = ("randomize",) if task.curriculum is None else ("curriculum", "levels", number, "randomize")
+        where = randomize_path(task, number)
         whole = merged(task.randomize, change)
         changed = change if task.curriculum is not None else task.randomize
         drawn = _quantities(whole, changed, where, selection)
@@ -65,6 +65,11 @@ def level_draws(task: Task, scenario: ResolvedScenario) -> tuple[LevelDraws, ...
         parameters = {name: values for name, values in whole.parameters.items() if name not in fixed}
         found.append(LevelDraws(drawn, parameters, whole.variants))
     return tuple(found)
+
+
+def randomize_path(task: Task, level: int) -> Where:
+    """Path of the key `randomize` that holds for a level: that of the level, or that of a task without a curriculum."""
+    return ("randomize",) if task.curriculum is None else ("curriculum", "levels", level, "randomize")
 
 
 def drawn_values(name: str, given: Sequence[Value], kind: str, count: int) -> list[Value]:

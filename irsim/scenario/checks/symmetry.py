@@ -69,7 +69,7 @@ def _needs_side(record: ObjectRecord) -> bool:
 
 
 def _options(record: ObjectRecord) -> Any:
-    options = record.behavior if record.group_behavior is None else record.group_behavior
+    options = record.active_behavior
     return getattr(options, "local", options)
 
 

@@ -103,7 +103,7 @@ def top_speed(record: Any) -> float:
     if drive is None or record.static:
         return 0.0
     limits = [max(abs(low), abs(high)) for low, high in zip(record.vel_min, record.vel_max, strict=False)]
-    options = record.behavior if record.group_behavior is None else record.group_behavior
+    options = record.active_behavior
     options = getattr(options, "local", options)
     built_in = not isinstance(options, CustomOptions | None)
     if drive.speeds == 2:  # dash turns the limits into the direction of the goal

@@ -93,6 +93,11 @@ class ObjectRecord:
     spreads: Spreads | None = None  # None: it starts as written
 
     @property
+    def active_behavior(self) -> Any:
+        """The options of what moves the object: of the behavior of its group, else of its own; None without any."""
+        return self.behavior if self.group_behavior is None else self.group_behavior
+
+    @property
     def moves_from(self) -> float:
         """Time from which it may move [s]."""
         return max(self.start_time, self.appear_time)

@@ -66,8 +66,7 @@ class Mover:
     @property
     def behavior(self) -> str:
         """Name of its own behavior or that of its group, "" without any."""
-        record = self.record
-        return str(getattr(record.behavior if record.group_behavior is None else record.group_behavior, "name", ""))
+        return str(getattr(self.record.active_behavior, "name", ""))
 
 
 def movers_of(context: Context) -> list[Mover]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from irsim.common.text import metres
 from irsim.episodes.episode import HORIZON_FACTOR, MIN_HORIZON
+from irsim.episodes.stuck import REACTIVE
 from irsim.scenario.checks import Context
 from irsim.scenario.checks.overlap import reach_of
 from irsim.validation.feasibility.clearance_grid import ClearanceGrid
@@ -33,8 +34,6 @@ _MIN_DETOUR = 1.25
 _CREEP_SPEED = 0.15
 """Speed [m/s] below which a car under `orca` hardly gets to its goal: `orca` drives towards a wall at most at the room
 before it divided by `timeHorizonObst`. Measured with 120 cars in a hall."""
-_LOCAL = ("rvo", "sfm", "orca")
-"""Behaviors that avoid obstacles without planning a path."""
 
 
 def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
@@ -49,20 +48,20 @@ def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, l
         length = straight[mover.record.id]
         blocked = [leg for leg in route if leg.blocked]
         trap = None
-        if blocked and mover.behavior in ("dash", *_LOCAL) and looked_at < _MAX_TRAPS:
+        if blocked and mover.behavior in ("dash", *REACTIVE) and looked_at < _MAX_TRAPS:
             looked_at += 1
             trap = trap_of(scene, blocked[0])
             trap = None if trap is not None and trap.line and mover.behavior == "rvo" else trap  # rvo passes lines
-        if trap is not None and mover.behavior in _LOCAL:
+        if trap is not None and mover.behavior in REACTIVE:
             _report_trap(mover, blocked[0], trap, scene, tally)
-        elif mover.behavior in _LOCAL and getattr(mover.record.kinematics, "steered", False):
+        elif mover.behavior in REACTIVE and getattr(mover.record.kinematics, "steered", False):
             _check_car(mover, route, grid if isinstance(grid, ClearanceGrid) else None, scene, tally)
         if blocked and mover.behavior == "dash":
             _report_dash(mover, blocked[0], trap, scene, tally)
         elif blocked and isinstance(grid, ClearanceGrid) and measured < _MAX_MEASURED_ROUTES and not scene.rough:
             measured += 1
             around = sum(_path_length(grid, leg) if leg.blocked else math.dist(leg.start, leg.goal) for leg in route)
-            if mover.behavior in _LOCAL and around > _MIN_DETOUR * length and trap is None:
+            if mover.behavior in REACTIVE and around > _MIN_DETOUR * length and trap is None:
                 _report_detour(mover, blocked[0], scene, around, length, tally)
             length = max(length, around)
         if not mover.behavior or mover.record.loop or len(route) < len(scene.goals[mover.record.id]):
@@ -182,7 +181,7 @@ def _check_car(mover: Mover, route: list[Leg], grid: ClearanceGrid | None, scene
 def _creeps(mover: Mover, leg: Leg, grid: ClearanceGrid) -> bool:
     """Whether the circle around a car under ``orca`` has so little room at a goal that it hardly gets there."""
     record = mover.record
-    options: Any = record.behavior if record.group_behavior is None else record.group_behavior
+    options: Any = record.active_behavior
     if mover.behavior != "orca" or not grid.holds(leg.goal):
         return False
     room = float(grid.at(np.array([leg.goal]))[0]) - reach_of(record.shape) - options.safe_radius

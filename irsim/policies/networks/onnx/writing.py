@@ -23,7 +23,6 @@ __all__ = ["onnx_bytes", "save_onnx"]
 
 _OPSET, _IR_VERSION = 17, 9
 """Versions of the operations and of the format, which onnxruntime 1.20 and newer read."""
-_LAYERS = ("concat", "dense", "pool")
 _ACTIVATIONS = {"relu": "Relu", "tanh": "Tanh", "sigmoid": "Sigmoid", "elu": "Elu"}
 
 
@@ -62,11 +61,11 @@ def onnx_bytes(network: Network, source: str = "network") -> bytes:
     require("onnx", "onnx")
     from onnx import TensorProto, helper
 
-    check_network(network, source)
+    plan = check_network(network, source)
     _check_layers(network, source)
     document = network.document
     graph = _Graph(np.dtype(document.precision))
-    kind = TensorProto.FLOAT if graph.type == np.float32 else TensorProto.DOUBLE
+    kind = graph.kind
     inputs = []
     for label, shape in layout_shapes(document.layout).items():
         members = [] if shape.members is None else [shape.members]
@@ -79,8 +78,7 @@ def onnx_bytes(network: Network, source: str = "network") -> bytes:
     for layer in document.network:
         _WRITERS[layer.name](graph, layer, arrays.get(layer.label, {}))
     result = document.output.input
-    size = check_network(network, source).shapes[result].features
-    output = helper.make_tensor_value_info(result, kind, ["robots", size])
+    output = helper.make_tensor_value_info(result, kind, ["robots", plan.shapes[result].features])
     made = helper.make_graph(graph.nodes, "policy", inputs, [output], graph.constants)
     opset = [helper.make_opsetid("", _OPSET)]
     model = helper.make_model(made, opset_imports=opset, ir_version=_IR_VERSION, producer_name="irsim")
@@ -95,12 +93,16 @@ class _Graph:
     """Collects operations and arrays.
 
     Attributes:
+        type: Type of its numbers.
+        kind: The same type as ONNX numbers it.
         masks: Label of a set -> name of the tensor (robots, members) of bool that says which members are present.
         members: Label of a set -> number of its members.
     """
 
     def __init__(self, type: np.dtype[Any]) -> None:
-        self.type = type
+        from onnx import helper
+
+        self.type, self.kind = type, helper.np_dtype_to_tensor_dtype(type)
         self.nodes: list[Any] = []
         self.constants: list[Any] = []
         self.masks: dict[str, str] = {}
@@ -135,8 +137,8 @@ def _check_layers(network: Network, source: str) -> None:
     problems = []
     for k, layer in enumerate(network.document.network):
         where = f"network[{k}]"
-        if layer.name not in _LAYERS:
-            problems.append(Problem(where, "this layer is not written as ONNX", layer.name, ", ".join(_LAYERS)))
+        if layer.name not in _WRITERS:
+            problems.append(Problem(where, "this layer is not written as ONNX", layer.name, ", ".join(_WRITERS)))
         elif (activation := getattr(layer, "activation", "none")) not in ("none", *_ACTIVATIONS):
             allowed = ", ".join(("none", *_ACTIVATIONS))
             problems.append(Problem(where, "this activation is not written as ONNX", activation, allowed))
@@ -185,8 +187,7 @@ def _pool(graph: _Graph, layer: Any, arrays: dict[str, Array]) -> None:
     (before,) = layer.inputs
     each = graph.node("Unsqueeze", [graph.masks[before], graph.axis(2)])
     zero = graph.number(0.0)
-    kind = TensorProto.FLOAT if graph.type == np.float32 else TensorProto.DOUBLE
-    present = graph.node("Cast", [graph.masks[before]], to=kind)
+    present = graph.node("Cast", [graph.masks[before]], to=graph.kind)
     if layer.method == "max":
         shown = graph.node("Where", [each, before, graph.number(-np.inf)])
         largest = graph.node("ReduceMax", [shown], axes=[1], keepdims=0)

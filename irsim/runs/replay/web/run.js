@@ -113,7 +113,7 @@ export function poseAt(run, object, at, out = {}) {
   return out;
 }
 
-/** Whether an object is drawn anew for each moment: what moves, robots, and what waits, which is pale until it may. */
+/** Whether an object is drawn for each moment: what moves, robots, and what waits, which is pale until it may. */
 export const isMover = ({ track, role, until = 0 }) => track >= 0 || role === "robot" || until > 0;
 
 /** Whether an object has not come into the world at a moment. */
