@@ -41,7 +41,9 @@ def train(
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the training in the folder.")] = False,
 ) -> None:
     """Train a policy for a task; needs the extra `learn`. Success is measured on seeds that are not trained on."""
+    from irsim.cli.findings import print_findings
     from irsim.cli.output import console
+    from irsim.learning.tasks.report import task_report
     from irsim.learning.training.run_folder import RunFolder
     from irsim.learning.training.settings import read_settings
 
@@ -53,6 +55,10 @@ def train(
     settings = RunFolder(out).settings() if resume else read_settings(given, options or [])
     from irsim.learning.training.train import train as run
 
+    if task is not None:
+        print_findings(
+            [one for one in task_report(str(task)).findings if one.severity == "warning"], str(task), stderr=True
+        )
     out_console = console()
     show: Any = _Progress(out_console)
     best = run(task or out / "task.yaml", out, settings, resume=resume, threads=threads, on_round=show)

@@ -51,15 +51,8 @@ def task_report(file: str) -> ValidationReport:
         learners += f", {len(variation.variants)} variants"
     if task.curriculum is not None:
         learners += f", {len(task.levels)} levels"
-    return ValidationReport(
-        file=file,
-        valid=True,
-        summary=f"valid: task {task.task}, {learners}",
-        errors=0,
-        warnings=0,
-        hints=0,
-        findings=[],
-    )
+    summary = f"valid: task {task.task}, {learners}"
+    return _report(file, [_of_scenario(item) for item in scene.warnings], summary)
 
 
 def _of_scenario(item: Diagnostic) -> Diagnostic:
@@ -67,9 +60,19 @@ def _of_scenario(item: Diagnostic) -> Diagnostic:
     return replace(item, path=("scenario", *item.path), line=None, column=None, length=1, edit=None)
 
 
-def _report(file: str, found: list[Diagnostic]) -> ValidationReport:
+def _report(file: str, found: list[Diagnostic], valid: str | None = None) -> ValidationReport:
+    """The report of a file; ``valid`` begins its summary if the task can be used."""
     findings = [as_finding(item) for item in found]
-    summary = f"{len(findings)} error{'s' * (len(findings) != 1)}, 0 warnings"
+    warnings = sum(item.severity == "warning" for item in found)
+    errors = len(found) - warnings
+    counts = [f"{errors} error{'s' * (errors != 1)}"] if valid is None else []
+    counts += [f"{warnings} warning{'s' * (warnings != 1)}"] if warnings or valid is None else []
     return ValidationReport(
-        file=file, valid=False, summary=summary, errors=len(findings), warnings=0, hints=0, findings=findings
+        file=file,
+        valid=valid is not None,
+        summary="; ".join([*([valid] if valid else []), ", ".join(counts)] if counts else [valid or ""]),
+        errors=errors,
+        warnings=warnings,
+        hints=0,
+        findings=findings,
     )

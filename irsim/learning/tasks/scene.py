@@ -15,12 +15,14 @@ from irsim.bundled.templates.fill import fill, parse_path
 from irsim.bundled.templates.metadata import Template, TemplateError
 from irsim.bundled.templates.store import load
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.diagnostic import Diagnostic, suggestion
 from irsim.learning.tasks.files import TaskError, task_error
 from irsim.learning.tasks.randomize import Value
 from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.variation import LevelDraws, drawn_values, level_draws, randomize_path
+from irsim.scenario.behavior_override import BenchmarkError
 from irsim.scenario.open import or_raise
+from irsim.scenario.perturbation import perturbed
 from irsim.scenario.read import read
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Variation, VariedLevel
 from irsim.scenario.yaml.document import Document, load_path, load_text
@@ -45,11 +47,13 @@ class Scene:
         scenario: The scenario, with what is drawn for each episode.
         levels: What is drawn at each level.
         parameters: Name of each drawn parameter -> its value in each variant.
+        warnings: What in the scenario has no effect or may not be meant; paths are those of the scenario.
     """
 
     scenario: ResolvedScenario
     levels: tuple[LevelDraws, ...]
     parameters: dict[str, list[Value]]
+    warnings: tuple[Diagnostic, ...] = ()
 
 
 def task_scenario(task: Task, folder: Path) -> ResolvedScenario:
@@ -68,10 +72,10 @@ def task_scenario(task: Task, folder: Path) -> ResolvedScenario:
 
 def open_scene(task: Task, folder: Path) -> Scene:
     """The scenario of a task, and what is drawn in it. See :func:`task_scenario`."""
-    base = _resolved(task, folder, task.parameters, {})
+    base, warnings = _resolved(task, folder, task.parameters, {})
     draws = level_draws(task, base)
     if task.curriculum is None and not any(one.drawn or one.parameters for one in draws):
-        return Scene(base, draws, {})
+        return Scene(base, draws, {}, warnings)
     names = dict.fromkeys(name for one in draws for name in one.parameters)
     table: dict[str, list[Value]] = {name: [] for name in names}
     variants: list[ResolvedScenario] = []
@@ -81,7 +85,7 @@ def open_scene(task: Task, folder: Path) -> Scene:
         counts.append(len(values))
         for drawn in values:
             changed = {**task.parameters, **task.levels[level].parameters, **drawn}
-            variant = _resolved(task, folder, changed, task.levels[level].values, level)
+            variant, _ = _resolved(task, folder, changed, task.levels[level].values, level)
             _check_alike(base, variant, (*_where(task, level), "parameters" if drawn else "values"))
             variants.append(variant)
             for name in names:
@@ -92,7 +96,7 @@ def open_scene(task: Task, folder: Path) -> Scene:
     levels = [VariedLevel(one.drawn, first, n) for one, first, n in zip(draws, firsts, counts, strict=True)]
     base.world = _roomy(base, variants)
     base.variation = Variation(levels, variants)
-    return Scene(base, draws, table)
+    return Scene(base, draws, table, warnings)
 
 
 def _is_plain(task: Task, level: int) -> bool:
@@ -144,8 +148,8 @@ def _template(task: Task) -> Template:
 
 def _resolved(
     task: Task, folder: Path, parameters: Mapping[str, Value], values: Mapping[str, Any], level: int | None = None
-) -> ResolvedScenario:
-    """The scenario with some parameters and values."""
+) -> tuple[ResolvedScenario, tuple[Diagnostic, ...]]:
+    """The scenario with some parameters and values, and its warnings."""
     document = _document(task, folder, parameters)
     data = document.data
     if (task.protocol != "as-written" or values) and isinstance(data, Mapping):
@@ -155,8 +159,12 @@ def _resolved(
         for path, value in values.items():
             _set(changed, path, value, (*_where(task, level), "values", path))
         document = load_text(yaml.safe_dump(changed, sort_keys=False), name=task.task, path=str(folder / "scene.yaml"))
-    scenario, _ = or_raise(read(document, strict=True))
-    return scenario
+    scenario, found = or_raise(read(document, strict=True))
+    try:
+        scenario = perturbed(scenario, task.perturb, called=task.task)
+    except BenchmarkError as error:
+        raise task_error(("perturb",), error.message, error.fix or "") from None
+    return scenario, tuple(item for item in found if item.severity == "warning")
 
 
 def _set(data: Any, path: str, value: Any, where: tuple[str | int, ...]) -> None:

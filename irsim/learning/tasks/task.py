@@ -34,6 +34,7 @@ from irsim.policies.networks.document import Meaning, OutputOptions
 from irsim.policies.networks.features import PARTS
 from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.parts._options import PartOptions
+from irsim.scenario.perturbation import Perturbation
 
 __all__ = ["Action", "Ends", "Seeds", "Task"]
 
@@ -120,6 +121,9 @@ class Task(Options):
     """What is drawn for each episode, besides the places that the scenario draws: ranges [low, high] under words that
     name objects, as in `size: {"obstacle[0]": [0.7, 1.3]}`. A word is the name, tag or group of objects, an entry of
     the scenario such as `robot[1]`, or one of `learners`, `robots`, `obstacles` and `people` (obstacles that move)."""
+    perturb: Annotated[list[Perturbation], Field(max_length=64)] = []
+    """How far starts, headings and speeds may differ from those that the scenario writes, as `perturb` of `irsim run`:
+    for random starts with goals that stay. Of two spreads for an object the later one counts."""
     curriculum: Curriculum | None = None
     """Levels from easy to hard, through which a training rises; null: the task as it is."""
 
