@@ -18,7 +18,7 @@ from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.team import team_of
 from irsim.learning.training.curve import draw_curve
 from irsim.learning.training.extractor import PartColumns, columns_of
-from irsim.learning.training.run_folder import RunFolder
+from irsim.learning.training.run_folder import RunFolder, merit
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.document import PolicyDocument
 from irsim.policies.networks.files import save_network
@@ -64,7 +64,7 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
     settings = run.settings()
     file = run.path / "task.yaml"
     task, _ = open_task(file)
-    best = max(rounds, key=lambda one: (one["learners"], -one["round"]))
+    best = max(rounds, key=merit)
     card = {
         "description": description or task.title,
         "license": license,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,12 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.task import Task
 from irsim.learning.training.settings import TrainingSettings
 
-__all__ = ["RunFolder"]
+__all__ = ["RunFolder", "merit"]
+
+
+def merit(facts: Mapping[str, Any]) -> tuple[float, float]:
+    """How good a round is: the success of its learners and, between equal ones, their reward."""
+    return facts["learners"], facts["reward"]
 
 
 class RunFolder:

@@ -21,7 +21,7 @@ from irsim.learning.sb3_env import SB3VecEnv
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.training.extractor import PartsExtractor, columns_of
 from irsim.learning.training.masked_buffer import MaskedRolloutBuffer
-from irsim.learning.training.run_folder import RunFolder
+from irsim.learning.training.run_folder import RunFolder, merit
 from irsim.learning.training.settings import TrainingSettings
 from irsim.learning.training.success import Success, measure_success
 from irsim.learning.worlds import Worlds
@@ -49,7 +49,7 @@ class Round:
         steps: Decisions of all learners so far, without those of learners that waited.
         seconds: Wall-clock time of all rounds so far [s].
         success: What the policy reaches on the validation seeds.
-        best: Whether no earlier round reached more.
+        best: Whether it is better than every earlier round: in success or, with equal success, in reward.
         rounds: Number of rounds of the whole training.
     """
 
@@ -123,10 +123,10 @@ def train(
     rounds = max(1, -(-settings.steps // per_round))
     if env.ladder is not None and done:
         env.ladder.restore(done[-1])
-    best = max((one["learners"] for one in done), default=-1.0)
+    best = max(map(merit, done), default=(-1.0, 0.0))
     steps, before = (done[-1]["steps"], done[-1]["seconds"]) if done else (0, 0.0)
     for number in range(len(done) + 1, rounds + 1):
-        if done and settings.stop_at is not None and best >= settings.stop_at:
+        if done and settings.stop_at is not None and best[0] >= settings.stop_at:
             break
         begin = time.perf_counter()
         counter = _begin_round(model, env, settings, number, rounds)
@@ -138,9 +138,9 @@ def train(
         )  # fmt: skip
         steps += counter.counted
         before += time.perf_counter() - begin
-        better = success.learners > best
-        best = max(best, success.learners)
         facts = {"round": number, "steps": steps, "seconds": round(before, 2), **asdict(success)}
+        better = merit(facts) > best
+        best = max(best, merit(facts))
         if env.ladder is not None:
             facts |= env.ladder.facts()
             model.logger.record("curriculum/level", env.ladder.level)
