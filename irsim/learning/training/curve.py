@@ -15,6 +15,8 @@ __all__ = ["draw_curve"]
 def draw_curve(rounds: Sequence[Mapping[str, Any]], title: str, file: Path) -> None:
     """Draw success and collisions on the validation seeds against the decisions of the training.
 
+    With one learner its success is that of the episode, so one line shows both.
+
     Args:
         rounds: Facts of the rounds, in order.
         title: Title of the picture.
@@ -30,6 +32,8 @@ def draw_curve(rounds: Sequence[Mapping[str, Any]], title: str, file: Path) -> N
         ("worlds", "episodes in which all of them do", "#009E73"),
         ("collided", "robots that collide", "#D55E00"),
     ):
+        if key == "worlds" and all(one["worlds"] == one["learners"] for one in rounds):
+            continue
         axes.plot(decisions, [100 * one[key] for one in rounds], color=color, label=label, marker=".", markersize=4)
     axes.set(xlabel="decisions [million]", ylabel="on validation seeds [%]", ylim=(-2, 102), title=title)
     axes.grid(alpha=0.3)
