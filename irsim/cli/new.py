@@ -39,7 +39,8 @@ def new(
     from irsim.scenario.yaml.modeline import with_modeline
 
     template = templates.load(name)
-    text = templates.fill(template, templates.parse_settings(settings or ()))
+    given = templates.parse_settings(settings or ())
+    text = templates.fill(template, given)
     report = api.validate(text=text)
     print_findings(report.findings, str(out or name), text=text, stderr=True)
     if not report.valid:
@@ -50,5 +51,5 @@ def new(
     target = out or Path(f"{name}.yaml")
     write_new(target, with_modeline(text, target), overwrite=force)
     shown = console()
-    shown.print(Text.assemble("wrote ", (str(target), "bold"), f": {template.purpose}"))
+    shown.print(Text.assemble("wrote ", (str(target), "bold"), f": {template.purpose} {template.prospect(given)}"))
     shown.print(Text.assemble("next: ", (shlex.join(["irsim", "run", str(target)]), "cyan")), soft_wrap=True)

@@ -153,8 +153,7 @@ def template_answer(template: Template) -> Answer:
         topic=template.name,
         kind="template",
         title=f"template {template.name}: {template.title}",
-        text=f"{template.purpose} With the default parameters it ends in {' or '.join(template.outcomes)}. "
-        f"{PICTURE} {templates.picture_file(template.name)}",
+        text=f"{template.purpose} {template.prospect()} {PICTURE} {templates.picture_file(template.name)}",
         groups={"parameters": keys},
         example=f"irsim new {template.name}{setting}",
         see=["templates"],

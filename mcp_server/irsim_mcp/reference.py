@@ -9,7 +9,6 @@ from irsim.bundled import templates
 from irsim.diagnostics.errors import ArgumentError
 from irsim.lookup import TopicError, as_brief_text, as_text, lookup_several, schema_part, topics_of
 from irsim.lookup import lookup as look_up
-from irsim.lookup.index import PICTURE
 from irsim.runs.files import RunError
 from irsim.scenario.yaml.modeline import without_modeline
 
@@ -89,8 +88,7 @@ def _template(name: str, parameters: dict[str, Any]) -> str:
     except templates.TemplateError as error:
         where = "topic" if error.code == "unknown-template" else "parameters"
         raise RunError(error.code, error.message, error.fix, where=where) from None
-    answer = look_up(name)
-    about = answer.text.partition(PICTURE)[0].rstrip()  # a path of the server's machine is of no use to a caller
-    answer = answer.model_copy(update={"text": about, "see": []})
+    about = f"{template.purpose} {template.prospect(parameters)}"  # without the path of the picture on this machine
+    answer = look_up(name).model_copy(update={"text": about, "see": []})
     given = ", ".join(f"{key}={value}" for key, value in parameters.items()) or "the default parameters"
     return f"{as_text(answer)}\n\nscenario.yaml with {given}:\n```yaml\n{without_modeline(text)}```"

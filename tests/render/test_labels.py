@@ -12,8 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.transforms import Bbox
 
+from irsim.bundled.templates import scenario_file
 from irsim.graphics.figure.figure import SceneFigure, fitting_size
-from irsim.graphics.scene.labels import free_places
+from irsim.graphics.scene.labels import free_places, leader
 from irsim.rendering.snapshot import legible_scene
 
 Make = Callable[..., Any]
@@ -32,10 +33,10 @@ def overlapping(boxes: Any) -> list[tuple[int, int]]:
     return [(i, j) for i, j in pairs if (boxes[i][:2] < boxes[j][2:]).all() and (boxes[j][:2] < boxes[i][2:]).all()]
 
 
-def placed(points: Any, bodies: Any = NOTHING) -> np.ndarray:
-    boxes = boxes_of(points)
-    anchors = np.asarray(points, dtype=float).reshape(-1, 2)
-    moves = free_places(boxes, anchors, VIEW, lambda: np.asarray(bodies, dtype=float))
+def placed(points: Any, bodies: Any = NOTHING, walls: Any = NOTHING) -> np.ndarray:
+    boxes, middle = boxes_of(points), np.asarray(points, dtype=float).reshape(-1, 2)
+    things = np.concatenate([middle - 10.0, middle + 10.0], axis=1)
+    moves = free_places(boxes, things, VIEW, lambda: (np.asarray(bodies, dtype=float), np.asarray(walls, dtype=float)))
     return boxes + np.concatenate([moves, moves], axis=1)
 
 
@@ -61,6 +62,27 @@ def test_labels_stay_inside_of_the_picture() -> None:
     assert (found[:, :2] >= 0).all()
     assert (found[:, 2:] <= 600).all()
     assert not overlapping(found)
+
+
+def test_a_label_moves_no_farther_than_it_must() -> None:
+    above = [80.0, 110.5, 160.0, 120.0]
+    found = placed([(100, 100)], [above])[0]
+    assert not overlapping([found, np.array(above)])
+    assert found.tolist() == [112.0, 94.0, 142.0, 106.0]  # right beside the thing, at its height
+
+
+def test_labels_keep_off_walls_but_not_off_the_room_around_their_thing() -> None:
+    wall, room = [0.0, 112.0, 600.0, 118.0], [0.0, 0.0, 600.0, 600.0]
+    assert not overlapping([placed([(100, 100)], walls=[wall])[0], np.array(wall)])
+    assert (placed([(100, 100)], walls=[room]) == boxes_of([(100, 100)])).all()
+
+
+def test_only_a_label_away_from_its_thing_has_a_line_to_it() -> None:
+    thing = np.array([90.0, 90.0, 110.0, 110.0])
+    assert leader(np.array([112.0, 94.0, 142.0, 106.0]), thing) is None
+    line = leader(np.array([90.0, 140.0, 120.0, 152.0]), thing)
+    assert line is not None
+    assert line.tolist() == [[100.0, 140.0], [100.0, 110.0]]
 
 
 @given(st.lists(st.tuples(st.integers(50, 550), st.integers(50, 550)), min_size=1, max_size=12))
@@ -132,3 +154,20 @@ def test_names_in_a_very_flat_world_can_be_read(make: Make, turned: bool) -> Non
     assert {"eastbound", "westbound", "G-eastbound", "G-westbound", "crate"} <= set(boxes)
     for one, other in combinations(boxes.values(), 2):
         assert Bbox.intersection(one, other) is None or min(Bbox.intersection(one, other).size) < 1.0
+
+
+def test_names_in_a_flat_corridor_stand_at_their_bodies(make: Make) -> None:
+    simulation = make(scenario_file("pedestrian-corridor").read_text()).simulation
+    scene, pictures = legible_scene(simulation)
+    x0, x1, y0, y1 = scene.extent
+    figure = SceneFigure(fitting_size(x1 - x0, y1 - y0, 600, 100), 100, pictures=pictures, halo=True)
+    figure.show(scene, "0.00 s")
+    figure.pixels(tight=False)
+    renderer = figure.figure.canvas.get_renderer()
+    boxes = {t.get_text(): t.get_window_extent(renderer) for t in figure.ax.texts if t.get_visible()}
+    for label in scene.labels:
+        if label.part == "name" and len(label.text) == 2:  # o1 to o6, people of radius 0.2 m
+            x, y = figure.ax.transData.transform(label.anchor)
+            box = boxes[label.text]
+            away = max(box.x0 - x, x - box.x1, box.y0 - y, y - box.y1)
+            assert away < 12, label.text

@@ -15,6 +15,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -116,6 +117,17 @@ class Template(_Metadata):
     parameters: dict[str, Parameter] = {}
     sets: dict[str, str] = {}
     text: str = Field(repr=False)
+
+    def prospect(self, given: Mapping[str, Any] | None = None) -> str:
+        """Say how a run with some parameters ends, as far as it is known: that of the default parameters.
+
+        Raises:
+            TemplateError: A name is unknown or a value is not allowed.
+        """
+        values = self.values(dict(given or {}))
+        changed = [f"{name}={value}" for name, value in values.items() if value != self.parameters[name].default]
+        tried = f"With the default parameters it ends in {' or '.join(self.outcomes)}"
+        return f"{tried}; with {', '.join(changed)} it may end otherwise: run it." if changed else f"{tried}."
 
     def values(self, given: dict[str, Any]) -> dict[str, Value]:
         """All parameters: the given ones checked, the others at their defaults.

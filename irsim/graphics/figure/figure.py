@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.text import Text
-from matplotlib.transforms import Affine2D, Bbox
+from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
@@ -26,7 +27,7 @@ from irsim.graphics.figure.grids import GridLayer
 from irsim.graphics.figure.layers import BeamLayer, FogLayer, MarkLayer, layer_key
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.figure.tracks import track_layers
-from irsim.graphics.scene.labels import free_places, small_bodies
+from irsim.graphics.scene.labels import bodies_by_size, free_places, leader
 from irsim.graphics.scene.scene import Bounds, GridImage, Label, Picture, Scene
 from irsim.graphics.scene.tracks import Track
 
@@ -43,6 +44,11 @@ _LABEL_ZORDER_STEP = 0.01
 MAX_CACHED_EXTENTS = 2000
 """Number of label sizes after which the cache of label sizes is emptied."""
 _HALO_WIDTH_PT = 2.0
+_NAMING_PARTS = ("name", "goal")
+"""Labels that stand beside the thing that they name, with a line to it if they have no room there."""
+_LEADER_COLOR = "#555555"
+_LEADER_WIDTH_PT = 0.7
+_LEADER_ZORDER = 9.5
 _ROUNDING_RESERVE_PX = 0.01
 """Added to the size of a figure, because Matplotlib truncates a product such as 599.9999 px to 599 px."""
 _PADDING_PT = 8.0
@@ -105,6 +111,7 @@ class SceneFigure:
         self._fog: FogLayer | None = None
         self._grids: dict[int, GridLayer] = {}
         self._labels: dict[tuple[int, str], Text] = {}
+        self._leaders: LineCollection | None = None
         self._extents: dict[tuple[str, float, float], Bounds] = {}
         self._pictures: dict[int, AxesImage] = {}
         self._extent: tuple[float, float, float, float] | None = None
@@ -314,24 +321,47 @@ class SceneFigure:
     def _move_labels(self, shown: list[tuple[Label, Text]], anchors: Floats, scene: Scene) -> None:
         """Shift labels that the edge of the axes would cut or that would cover another label.
 
-        Goal labels give way to all others.
+        Goal labels give way to all others. With halo, a label that stands away from its thing gets a line to it.
         """
         order = sorted(range(len(shown)), key=lambda i: shown[i][0].part == "goal")
-        texts, anchors = [shown[i][1] for i in order], anchors[order]
+        labels, texts = [shown[i][0] for i in order], [shown[i][1] for i in order]
+        anchors = anchors[order]
         view, data = self.ax.bbox, self.ax.transData
         starts = data.transform([text.get_position() for text in texts])
         boxes = np.array([self._extent_of(text) for text in texts]) + np.concatenate([starts, starts], axis=1)
         margin = _LABEL_MARGIN_PX * np.array([1.0, 1.0, -1.0, -1.0])
+        names = np.array([self._halo and label.part in _NAMING_PARTS for label in labels])
+        lifts = np.zeros_like(starts)  # the descenders of a name stand above its body, too
+        lifts[names, 1] = np.maximum(starts[names, 1] - boxes[names, 1], 0.0)
+        boxes += np.concatenate([lifts, lifts], axis=1)
+        half = np.maximum(np.abs(boxes[:, :2] - anchors), 1.0)
+        things = np.concatenate([anchors - half, anchors + half], axis=1)
 
-        def bodies() -> Floats:
-            corners = np.array(small_bodies(scene), dtype=np.float64).reshape(-1, 2)
-            return np.asarray(data.transform(corners), dtype=np.float64).reshape(-1, 4)
+        def bodies() -> tuple[Floats, Floats]:
+            small, walls = bodies_by_size(scene)
+            return _in_pixels(small, data), _in_pixels(walls, data)
 
-        moves = free_places(boxes, anchors, np.array(view.extents) + margin, bodies, clear=self._halo)
-        moved = data.inverted().transform(starts + moves)
-        for text, move, (x, y) in zip(texts, moves.tolist(), moved.tolist(), strict=True):
+        moves = free_places(boxes, things, np.array(view.extents) + margin, bodies, clear=self._halo)
+        moved = data.inverted().transform(starts + lifts + moves)
+        for text, move, (x, y) in zip(texts, (lifts + moves).tolist(), moved.tolist(), strict=True):
             if move != [0.0, 0.0]:
                 text.set_position((x, y))
+        if self._halo:
+            placed = boxes + np.concatenate([moves, moves], axis=1)
+            self._show_leaders([leader(placed[i], things[i]) for i in np.flatnonzero(names)])
+
+    def _show_leaders(self, lines: list[Floats | None]) -> None:
+        """Draw thin lines [px] from labels to the things that they name."""
+        if self._leaders is None:
+            self._leaders = LineCollection(
+                [],
+                colors=_LEADER_COLOR,
+                linewidths=_LEADER_WIDTH_PT,
+                zorder=_LEADER_ZORDER,
+                transform=IdentityTransform(),
+            )
+            self.ax.add_collection(self._leaders, autolim=False)
+        self._leaders.set_segments([line for line in lines if line is not None])
 
     def _extent_of(self, text: Text) -> Bounds:
         """Return left, bottom, right and top of a label relative to its position [px]."""
@@ -344,6 +374,12 @@ class SceneFigure:
             x, y = self.ax.transData.transform(text.get_position())
             extent = self._extents[key] = float(box.x0 - x), float(box.y0 - y), float(box.x1 - x), float(box.y1 - y)
         return extent
+
+
+def _in_pixels(boxes: list[Bounds], data: Transform) -> Floats:
+    """Transform (K, 4) boxes in the world to pixels."""
+    corners = np.array(boxes, dtype=np.float64).reshape(-1, 2)
+    return np.asarray(data.transform(corners), dtype=np.float64).reshape(-1, 4)
 
 
 def _printable(text: str) -> str:
