@@ -9,7 +9,7 @@ __all__ = ["EVERYDAY", "named"]
 EVERYDAY: dict[str, str] = {
     "robot.sensors.lidar2d": "lidar, laser, laser scanner, scanner, lidar scanner, range finder, rangefinder, ladar, "
     "distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range",
-    "robot.sensors.fmcw_lidar2d": "lidar, fmcw, doppler, radar, velocity lidar, radial velocity",
+    "robot.sensors.fmcw_lidar2d": "lidar, fmcw, fmcw lidar, doppler, radar, velocity lidar, radial velocity",
     "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",
     "robot.sensors": "sensor, camera, depth camera, imu, gps",
     "robot.sensors.fmcw_lidar2d.motion_compensate": "ego motion, own motion",
@@ -83,6 +83,11 @@ EVERYDAY: dict[str, str] = {
     "world.step_time": "time step, step time, timestep, dt, period, frequency, sampling time, step size",
     "world.seed": "seed, random seed, reproducible",
     "gui.keyboard": "keyboard, teleop, manual control, joystick",
+    "goal-unreachable": "path exist, path must exist, path to the goal exist, path to goal exist, way must exist, "
+    "way to the goal exist, no path, no way to the goal, reachable, unreachable, can reach, connected",
+    "goal-blocked": "free space, goal in an obstacle, goal in free space",
+    "pictures": "path exist, path must exist, path to the goal exist, path to goal exist, way must exist, "
+    "way to the goal exist, reachable, free space, draw the path, show the path",
     "avoidance": "between walls, among walls",
     "dead-ends": "deadlock, stuck, trap",
     "guard-patrol": "guard, watchman, surveillance, vision cone, sight cone",
