@@ -56,6 +56,8 @@ EVERYDAY: dict[str, str] = {
     "robot.goal": "goal, destination, target, target position, end position, go to goal",
     "robot.waypoints": "waypoint, via point, checkpoint, route, several goals, multiple goals",
     "robot.goal_threshold": "goal tolerance, arrival tolerance, goal radius, arrive",
+    "robot.arrive_mode": "goal angle threshold, goal heading, goal angle, goal yaw, final heading, heading tolerance, "
+    "heading threshold, yaw tolerance, arrival heading",
     "robot.number": "number of robots, how many robots, number of obstacles, count, fleet size",
     "robot.vel_max": "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity",
     "robot.acce": "acceleration, acceleration limit, braking, brake, braking distance, stopping distance, deceleration",

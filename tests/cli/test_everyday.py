@@ -71,6 +71,8 @@ MEANT = {
     "number of robots": "robot.number",
     "random positions": "robot.distribution.random",
     "field of view": "robot.fov",
+    "goal_angle_threshold": "robot.arrive_mode",
+    "heading tolerance": "robot.arrive_mode",
     "moving obstacle": "obstacle",
 }
 
