@@ -73,14 +73,11 @@ def test_a_drive_that_does_not_turn_there_is_told_and_says_why() -> None:
 def test_the_threshold_of_distance_and_turn_is_that_of_its_description(
     distance: float, turn: float, arrives: bool
 ) -> None:
-    env = irsim.make(
-        text="robot: {kinematics: {name: omni_angular}, state: [1, 1, 0], arrive_mode: state, goal_threshold: 0.15, "
-        f"goal: [{1 + distance}, 1, {turn}]}}\n",
-        headless=True,
+    text = (
+        "robot: {kinematics: {name: omni_angular}, state: [1, 1, 0], arrive_mode: state, goal_threshold: 0.15, "
+        f"goal: [{1 + distance}, 1, {turn}]}}\n"
     )
-    env.step([0, 0, 0], 0)
-    assert env.done() is arrives
-    env.end(ending_time=0.0)
+    assert (irsim.run(text=text, steps=1).outcome == "success") is arrives
     said = lookup("robot.goal_threshold").text
     assert "sqrt(dx^2 + dy^2 + turn^2)" in said
     assert "0.15 means under 0.15 m and under 0.15 rad (8.6 degrees)" in said

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -110,7 +112,7 @@ def test_a_placement_names_objects_that_exist() -> None:
         scene(robot(), placements=[placement([1], 10)])
 
 
-def test_a_range_bounds_rear_axles_and_not_the_footprints_of_cars() -> None:
+def test_a_range_bounds_rear_axles_and_not_the_footprints_of_cars(tmp_path: Path) -> None:
     """As the description of `range_low` says: a car reaches (length + wheelbase) / 2 ahead of its position."""
     text = """
 world: {width: 40, height: 40}
@@ -120,7 +122,8 @@ robot:
   shape: {name: rectangle, length: 4.6, width: 1.8, wheelbase: 3.0}
   distribution: {name: random, range_low: [10, 10, 0], range_high: [30, 30, 0.001]}
 """
-    env = irsim.make(text=text, seed=3, headless=True)
+    (tmp_path / "cars.yaml").write_text(text, encoding="utf-8")
+    env = irsim.make(tmp_path / "cars.yaml", seed=3, headless=True)
     places = np.array([robot.state[:2, 0] for robot in env.robot_list])
     fronts = np.array([robot.geometry.bounds[2] for robot in env.robot_list])
     env.end(ending_time=0.0)

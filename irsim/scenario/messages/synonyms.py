@@ -16,12 +16,10 @@ __all__ = ["advice_on_key", "vector_of"]
 
 _HEADINGS = ("theta", "yaw", "heading", "angle", "orientation")
 _HEADING_TOLERANCES = tuple(
-    f"{first}{what}_{last}"
-    for first in ("", "goal_")
-    for what in ("angle", "heading", "yaw", "theta", "orientation")
+    f"{what}_{last}"
+    for what in ("goal_angle", "goal_heading", "goal_yaw", "goal_theta", "heading", "yaw", "theta", "yaw_goal")
     for last in ("threshold", "tolerance")
-    if f"{first}{what}_{last}" != "angle_tolerance"  # a key of behaviors
-) + ("yaw_goal_tolerance", "arrive_angle")
+)
 _SIDES = ("size", "dimensions", "extent")
 
 
