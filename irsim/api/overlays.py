@@ -137,19 +137,24 @@ def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
     ]
 
 
-def _routes(env: Env) -> dict[int, Floats | None]:
-    """Routes of robots with the behavior ``follow``, by id; before the first step, those they will plan in it."""
-    following = [record for record in env.scenario.objects if getattr(record.behavior, "name", "") == "follow"]
-    if not following:
-        return {}
-    ahead = env
-    if int(env.simulation.count[0]) == 0:
-        from irsim.env import Env
+def _routes(env: Env) -> dict[int, list[Floats | None]]:
+    """Routes of robots with the behavior ``follow`` to their remaining goals, by id."""
+    from irsim.episodes.planned_routes import planned_routes
+    from irsim.rendering.planned_paths import remaining_goals
 
-        ahead = Env(env.scenario, seed=env.seed, headless=True, log_level="ERROR")
-        ahead.step()
-    places = {view.id: view.row for view in ahead.robot_list}
-    routes = {record.id: ahead.simulation.state.route(places[record.id]) for record in following if record.id in places}
-    if ahead is not env:
-        ahead.end(ending_time=0.0)
-    return routes
+    following = {record.id for record in env.scenario.objects if getattr(record.behavior, "name", "") == "follow"}
+    ways = {
+        view.id: [goal.tolist() for goal in remaining_goals(view)]
+        for view in env.robot_list
+        if view.id in following and view.goal is not None and not view.arrive
+    }
+    if not ways:
+        return {}
+    state, rows = env.simulation.state, {view.id: view.row for view in env.objects}
+    poses = {key: state.pose[row].tolist() for key, row in rows.items()}
+    if int(env.simulation.count[0]) == 0:
+        return planned_routes(env.scenario, env.seed, poses, ways)
+    now: dict[int, list[Floats | None]] = {key: [state.route(rows[key])] for key in ways}
+    later = {key: goals[1:] for key, goals in ways.items() if len(goals) > 1 and now[key][0] is not None}
+    ahead = planned_routes(env.scenario, env.seed, poses | {key: ways[key][0] for key in later}, later)
+    return {key: [*legs, *ahead.get(key, [])] for key, legs in now.items()}

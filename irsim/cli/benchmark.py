@@ -206,6 +206,8 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
         )
         last = row.scenario
     out.print(table)
+    if any(row.success.rate < 1 and row.metrics["time_to_goal"].n for row in result.rows):
+        out.print("success: every robot arrived without a collision; time: of the robots that arrived, in any episode")
     for text, label in behaviors.items():
         if label != text:
             out.print(f"{label}: {clean(text, 400)}", soft_wrap=True)

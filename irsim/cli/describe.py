@@ -65,7 +65,7 @@ def _show_several(found: list[Answer | TopicError], json_output: bool) -> None:
 def _show(answer: Answer, out: Console) -> None:
     from rich.text import Text
 
-    from irsim.lookup.text import facts
+    from irsim.lookup.text import as_brief_text, facts
 
     def line(*parts: RenderableType) -> None:
         out.print(*parts)
@@ -87,6 +87,9 @@ def _show(answer: Answer, out: Console) -> None:
     if answer.see:
         line()
         line(Text.assemble(("see also: ", "dim"), ", ".join(answer.see)))
+    if answer.best is not None:
+        title, _, rest = as_brief_text(answer.best).partition("\n")
+        out.print("", Text(title, style="bold"), Text(rest), sep="\n")
 
 
 def _table(keys: list[Key]) -> RenderableType:

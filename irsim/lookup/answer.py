@@ -59,6 +59,8 @@ class Answer(_Data):
     """YAML or a command to start from."""
     see: list[str] = []
     """Related topics."""
+    best: Answer | None = None
+    """Of a search: what the first of the topics says."""
 
 
 class Answers(_Data):

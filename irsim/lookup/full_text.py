@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
-__all__ = ["Document", "best", "words_of"]
+__all__ = ["Document", "best", "has_all", "telling_words", "words_of"]
 
 MAX_RESULTS = 5
 """Largest number of documents in a result."""
@@ -51,12 +51,8 @@ def best(documents: Sequence[Document], query: str) -> tuple[list[str], list[str
     Returns:
         Names of the documents, best first, and the words of the query that occur in no document.
     """
-    meaningful = list(dict.fromkeys(word for word in words_of(query) if not _STOP_WORDS.fullmatch(word)))
-    wanted = meaningful or words_of(query)
-    counts = [Counter(words_of(document.text)) for document in documents]
-    for document, count in zip(documents, counts, strict=True):
-        for word in words_of(document.heads):
-            count[word] += _HEAD_WEIGHT
+    wanted = telling_words(query)
+    counts = [_counts(document) for document in documents]
     mean = sum(count.total() for count in counts) / max(len(counts), 1)
     scores, matched = [0.0] * len(counts), [0] * len(counts)
     unknown = []
@@ -75,6 +71,25 @@ def best(documents: Sequence[Document], query: str) -> tuple[list[str], list[str
     order = sorted(range(len(scores)), key=lambda k: -scores[k])[:MAX_RESULTS]
     shown = [k for k in order if scores[k] > 0 and scores[k] >= MIN_SCORE_SHARE * scores[order[0]]]
     return [documents[k].name for k in shown], unknown
+
+
+def has_all(document: Document, query: str) -> bool:
+    """Whether every word of a query that identifies a topic occurs in a document."""
+    counts = _counts(document)
+    return all(_frequency(word, counts) for word in telling_words(query))
+
+
+def telling_words(query: str) -> list[str]:
+    """Return the words of a query that identify a topic, or all of them if none does."""
+    meaningful = list(dict.fromkeys(word for word in words_of(query) if not _STOP_WORDS.fullmatch(word)))
+    return meaningful or words_of(query)
+
+
+def _counts(document: Document) -> Counter[str]:
+    counts = Counter(words_of(document.text))
+    for word in words_of(document.heads):
+        counts[word] += _HEAD_WEIGHT
+    return counts
 
 
 def words_of(text: str) -> list[str]:

@@ -168,6 +168,18 @@ GUIDES: dict[str, Guide] = {
             *("people", "pedestrian", "human", "crowd", "crowded"),
         ),
     ),
+    "pictures": Guide(
+        "what a picture can show besides bodies",
+        "The option --overlays of `irsim render`, and the argument overlays of render_snapshot and irsim.api.snapshot; "
+        "no keys of a scenario. overlays: [plan] draws the path of each robot to its goals, or `no path`, and the text "
+        "says where it comes nearest to something and by how much: it shows whether a path exists. [clearance] shades "
+        "where the middle of a robot cannot be, so what is white is free space for a start or a goal. names, goals, "
+        "paths (where it has driven), sensors and zones switch what is drawn anyway. If no path exists, the finding "
+        "goal-unreachable of `irsim validate` and validate_scenario gives the narrowest gap and a goal that can be "
+        "reached.",
+        "irsim render map.yaml --overlays plan,clearance -o map.png",
+        ("overlay", "overlays", "picture", "snapshot", "clearance map", "planned path"),
+    ),
     "outcomes": Guide(
         "success, collision, timeout",
         "A run ends when every robot has arrived or been stopped by a collision, or at its time limit: the number of "

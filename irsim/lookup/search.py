@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import functools
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from irsim.bundled import templates
 from irsim.common.text import clean
@@ -34,13 +34,16 @@ _MAX_CHOICES = 12
 """Number of allowed words up to which they can be searched; longer lists (colours) cannot."""
 
 
-def search_answer(schema: Node, topic: str, words: list[str]) -> Answer:
+def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[[str], Answer]) -> Answer:
     """Answer free text: with all keys of that name if there are any, otherwise with what fits the words best.
+
+    Topics that are called by all words come first, then a guide that has all words, then topics called by some of them.
 
     Args:
         schema: JSON Schema of the language.
         topic: The text.
         words: Its words.
+        explain: Returns the answer to the name of a topic.
 
     Raises:
         TopicError: Nothing fits, or a name is so similar that the text is probably a misspelling of it.
@@ -65,13 +68,18 @@ def search_answer(schema: Node, topic: str, words: list[str]) -> Answer:
     if not (called or found) or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _MIN_LIKENESS)):
         raise TopicError(topic, near_topics(topics, words))
     lines |= {name: _line_of(schema, name) for name in called}
-    hits = [lines[name] for name in dict.fromkeys([*called[:_MAX_EVERYDAY], *found])][:MAX_HITS]
-    return _hits_answer(
-        wanted,
-        hits,
-        f"{len(hits)} topics fit '{clean(wanted)}' best" if len(hits) > 1 else f"About '{clean(wanted)}'",
-        unknown,
-    )
+    guides = {document.name: document for document in documents if document.name in GUIDES}
+    whole = [name for name in found if name in guides and full_text.has_all(guides[name], topic)]
+    first = [] if _is_named_whole(topic, called) else whole[:1]
+    hits = [lines[name] for name in dict.fromkeys([*first, *called[:_MAX_EVERYDAY], *found])][:MAX_HITS]
+    title = f"{len(hits)} topics fit '{clean(wanted)}' best" if len(hits) > 1 else f"About '{clean(wanted)}'"
+    return _hits_answer(wanted, hits, title, unknown).model_copy(update={"best": explain(hits[0].name)})
+
+
+def _is_named_whole(topic: str, called: Sequence[str]) -> bool:
+    """Whether a text has the telling words of an everyday name of a topic, and no others."""
+    words = full_text.telling_words(topic)
+    return any(words == full_text.telling_words(name) for one in called for name in EVERYDAY[one].split(", "))
 
 
 def _namesakes_answer(wanted: str, same: list[Key]) -> Answer:
@@ -151,7 +159,9 @@ def _hit(path: tuple[str, ...], node: Node) -> Key:
 
 
 def _line_of(schema: Node, name: str) -> Key:
-    """Return the line of a guide, a template or a path of the language, even if another path has the same text."""
+    """Return the line of a code, a guide, a template or a path, even if another path has the same text."""
+    if name in all_codes():
+        return Key(name=name, text=all_codes()[name].title)
     if name in GUIDES:
         return Key(name=name, text=GUIDES[name].title)
     if name in templates.names():

@@ -9,7 +9,7 @@ __all__ = ["EVERYDAY", "named"]
 EVERYDAY: dict[str, str] = {
     "robot.sensors.lidar2d": "lidar, laser, laser scanner, scanner, lidar scanner, range finder, rangefinder, ladar, "
     "distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range",
-    "robot.sensors.fmcw_lidar2d": "lidar, fmcw, doppler, radar, velocity lidar, radial velocity",
+    "robot.sensors.fmcw_lidar2d": "lidar, fmcw, fmcw lidar, doppler, radar, velocity lidar, radial velocity",
     "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",
     "robot.sensors": "sensor, camera, depth camera, imu, gps",
     "robot.sensors.fmcw_lidar2d.motion_compensate": "ego motion, own motion",
@@ -56,6 +56,8 @@ EVERYDAY: dict[str, str] = {
     "robot.goal": "goal, destination, target, target position, end position, go to goal",
     "robot.waypoints": "waypoint, via point, checkpoint, route, several goals, multiple goals",
     "robot.goal_threshold": "goal tolerance, arrival tolerance, goal radius, arrive",
+    "robot.arrive_mode": "goal angle threshold, goal heading, goal angle, goal yaw, final heading, heading tolerance, "
+    "heading threshold, yaw tolerance, arrival heading",
     "robot.number": "number of robots, how many robots, number of obstacles, count, fleet size",
     "robot.vel_max": "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity",
     "robot.acce": "acceleration, acceleration limit, braking, brake, braking distance, stopping distance, deceleration",
@@ -83,6 +85,11 @@ EVERYDAY: dict[str, str] = {
     "world.step_time": "time step, step time, timestep, dt, period, frequency, sampling time, step size",
     "world.seed": "seed, random seed, reproducible",
     "gui.keyboard": "keyboard, teleop, manual control, joystick",
+    "goal-unreachable": "path exist, path must exist, path to the goal exist, path to goal exist, way must exist, "
+    "way to the goal exist, no path, no way to the goal, reachable, unreachable, can reach, connected",
+    "goal-blocked": "free space, goal in an obstacle, goal in free space",
+    "pictures": "path exist, path must exist, path to the goal exist, path to goal exist, way must exist, "
+    "way to the goal exist, reachable, free space, draw the path, show the path",
     "avoidance": "between walls, among walls",
     "dead-ends": "deadlock, stuck, trap",
     "guard-patrol": "guard, watchman, surveillance, vision cone, sight cone",

@@ -28,6 +28,8 @@ def as_text(answer: Answer) -> str:
             lines += ["", f"{heading}:", *(_line(key) for key in keys)]
     if answer.see:
         lines += ["", f"see also: {', '.join(answer.see)}"]
+    if answer.best is not None:
+        lines += ["", as_brief_text(answer.best)]
     return "\n".join(lines)
 
 
@@ -35,11 +37,11 @@ def as_brief_text(answer: Answer) -> str:
     """Return the essence of an answer: first sentences, its own keys, and the example.
 
     Keys that a component has in common with its siblings, and those beyond the first ones, are only named. A list of
-    topics is whole, or has only names.
+    topics is whole, or has only names. Of the first topic that a search finds there is only the text.
     """
     lines = [answer.title]
     if answer.text:
-        lines.append(answer.text if answer.kind == "guide" else first_sentence(answer.text, least=_MIN_BRIEF_TEXT))
+        lines.append(_brief(answer))
     if answer.about is not None:
         lines.append(facts(answer.about))
     most = _MAX_BRIEF_KEYS
@@ -51,11 +53,18 @@ def as_brief_text(answer: Answer) -> str:
         lines += [_brief_line(key) for key in shown]
         if rest := [_with_default(key) for key in keys[len(shown) :]]:
             lines.append(f"- {'also' if shown else heading}: {', '.join(rest)}")
+    if answer.best is not None:
+        lines += [f"{answer.best.title}\n{_brief(answer.best)}"]
     if answer.example:
         lines.append(
             f"For example: {answer.example}" if "\n" not in answer.example else f"For example:\n{answer.example}"
         )
     return "\n".join(lines)
+
+
+def _brief(answer: Answer) -> str:
+    """Return the text of a guide or a code, or the first sentences of any other."""
+    return answer.text if answer.kind in ("guide", "code") else first_sentence(answer.text, least=_MIN_BRIEF_TEXT)
 
 
 def _brief_line(key: Key) -> str:

@@ -8,6 +8,7 @@ from irsim.bundled import templates
 from irsim.compat import DIFFERENCES
 from irsim.lookup.answer import Answer, Key, TopicError
 from irsim.lookup.examples import example_of
+from irsim.lookup.full_text import words_of
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.index import (
     all_codes,
@@ -105,7 +106,10 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     if guide is not None:
         asked = f"metric {name}"
         return guide_answer(guide, ([asked] if asked in METRIC_TOPICS else []) + named(topic)[:MAX_HITS])
-    return search_answer(schema, topic.strip(), words or topic.split())
+    component = _component_called(topic)
+    if component is not None:
+        return lookup(component, schema=schema)
+    return search_answer(schema, topic.strip(), words or topic.split(), lambda hit: lookup(hit, schema=schema))
 
 
 def schema_part(topic: str) -> Node:
@@ -137,6 +141,14 @@ def _metric_named(words: list[str]) -> str | None:
     key = words[1] if len(words) == 2 and words[0] in ("metric", "metrics") else None
     topic = metric_topic(key) if key is not None else " ".join(words)
     return topic if topic in METRIC_TOPICS else None
+
+
+def _component_called(topic: str) -> str | None:
+    """Find the component whose name begins with a topic that is an everyday name of no other: ``fmcw lidar``."""
+    called, start = named(topic), "_".join(words_of(topic))
+    name = called[0].rpartition(".")[2] if len(called) == 1 else ""
+    known = name.startswith(start) and any(name in registry.names() for registry in REGISTRIES.values())
+    return called[0] if known else None
 
 
 def _find(schema: Node, words: list[str]) -> tuple[tuple[str, ...], list[Node]] | None:

@@ -48,7 +48,12 @@ def _canonical() -> tuple[Metric, ...]:
             better="less",
         ),
         Metric("stalled_time", "s", "slower than 0.05 m/s and 0.05 rad/s, not arrived", better="less"),
-        Metric("time_to_goal", "s", "time of first arrival", better="less"),
+        Metric(
+            "time_to_goal",
+            "s",
+            "time of first arrival; of an episode the mean of the robots that arrived, also if others did not",
+            better="less",
+        ),
         Metric(
             "path_length",
             "m",

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["PlannedPath", "draw_plans", "plan_paths"]
+__all__ = ["PlannedPath", "draw_plans", "plan_paths", "remaining_goals"]
 
 MAX_LEGS = 40
 """Number of legs (paths to one goal) after which no further robot is planned for."""
@@ -51,7 +51,7 @@ class PlannedPath:
         robot: Id of the robot.
         name: Name of the robot.
         points: (K, 2) corners of the path, from the present position to the last goal that can be reached [m].
-        own: Whether the behavior of the robot has planned the path to the present goal.
+        own: Whether the behavior of the robot has planned the path, at least to the present goal.
         own_points: Number of corners of that part of the path.
         lost: First goal that cannot be reached; None if all goals can be reached.
         margin: Where along the path the footprint of the robot is nearest to something that stands.
@@ -74,14 +74,15 @@ class PlannedPath:
 
 
 def plan_paths(
-    simulation: Simulation, world: int = 0, routes: Mapping[int, Floats | None] | None = None
+    simulation: Simulation, world: int = 0, routes: Mapping[int, Sequence[Floats | None]] | None = None
 ) -> list[PlannedPath]:
     """Plan the paths of the robots that have not arrived; after `MAX_LEGS` legs the remaining robots are skipped.
 
     Args:
         simulation: The simulation, at its present state.
         world: Index of the world.
-        routes: Robot id -> path that the behavior of the robot has planned, or None if the behavior found no path.
+        routes: Robot id -> paths that the behavior of the robot plans to its first goals, one after the other, or None
+            where the behavior finds no path.
     """
     legs_left, geodesics = MAX_LEGS, Geodesics(simulation, world)
     spaces: dict[float, FreeSpace] = {}
@@ -93,7 +94,7 @@ def plan_paths(
         if inner not in spaces:
             spaces[inner] = _free_space(simulation, world, inner)
         found.append(_plan_path(simulation, view, geodesics, spaces[inner], inner, routes or {}))
-        legs_left -= len(_remaining_goals(view))
+        legs_left -= len(remaining_goals(view))
     return found
 
 
@@ -103,14 +104,15 @@ def _plan_path(
     geodesics: Geodesics,
     space: FreeSpace,
     inner: float,
-    routes: Mapping[int, Floats | None],
+    routes: Mapping[int, Sequence[Floats | None]],
 ) -> PlannedPath:
     outer = max(float(simulation.radius[view.row]), inner)
     points, lost, own = [view.state[:2, 0][None]], None, 0
-    for number, goal in enumerate(_remaining_goals(view)):
+    for number, goal in enumerate(remaining_goals(view)):
         start = points[-1][-1]
-        if number == 0 and view.id in routes:
-            leg, own = routes[view.id], 1
+        planned = routes.get(view.id, ())
+        if number < len(planned):
+            leg = planned[number]
         else:
             leg = _shortest_path(geodesics, space, start, goal, (outer, inner))
             if leg is None or not _is_free(space, leg, inner):  # the shortest path knows no standing people
@@ -118,8 +120,8 @@ def _plan_path(
         if leg is None:
             lost = float(goal[0]), float(goal[1])
             break
-        own = len(leg) if own == 1 and number == 0 else own
         points.append(np.asarray(leg)[:, :2])
+        own += len(leg) if number < len(planned) else 0
     line = np.concatenate(points if len(points) == 1 else points[1:])
     margin = path_margin(simulation, view, line, space)
     return PlannedPath(view.id, view.name, line, view.id in routes, own, lost, margin, _outlines(view, margin))
@@ -197,7 +199,7 @@ def _color_of(scene: Scene, robot: int) -> Color:
     return next((color for color in colors if color is not None), _DEFAULT_COLOR)
 
 
-def _remaining_goals(view: ObjectView) -> list[Floats]:
+def remaining_goals(view: ObjectView) -> list[Floats]:
     """Return the positions (2,) of the present goal and the goals after it."""
     goals = [np.asarray(goal)[:2, 0] for goal in view.goals]
     assert view.goal is not None
@@ -211,7 +213,7 @@ def _free_space(simulation: Simulation, world: int, radius: float) -> FreeSpace:
     x0, y0, x1, y1 = simulation.scenario.world.bounds
     robots = [view for view in views(simulation, world) if view.role == "robot"]
     positions = [view.state[:2, 0] for view in robots] + [
-        goal for view in robots if view.goal is not None for goal in _remaining_goals(view)
+        goal for view in robots if view.goal is not None for goal in remaining_goals(view)
     ]
     points = np.array([(x0, y0), (x1, y1), *positions])
     (left, low), (right, top) = points.min(axis=0), points.max(axis=0)

@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.episodes.planned_routes import planned_routes
 from irsim.navigation.outlines import placed_parts
 from irsim.results.scene import ScenePassage
+from irsim.scenario.model.zones import Zone
 from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of
-from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.validation.feasibility.clearance_grid import cells_over
 from irsim.validation.feasibility.gaps import outlines_of
 from irsim.validation.feasibility.scenes import FAR
 
-__all__ = ["find_passages"]
+__all__ = ["Places", "find_passages", "passages_of_legs"]
 
 _MAX_LEGS = 40
 """Number of ways from one goal to the next that are searched."""
@@ -35,14 +39,35 @@ _REACHES = (0.75, 1.0, 1.5, 2.0, 3.0, 4.0)
 """Distances from the way, in widths of the robot, up to which obstacles count; the first with both sides is used."""
 _WIDE = 5.0
 """Passages wider than this many widths of the robot are left out."""
+_MAX_EQUAL = 4
+"""Number of places on one leg that are told if they are equally narrow."""
 _TOLERANCE_M = 0.005
 """Places and widths that differ by less are the same passage [m]."""
 
 Point = tuple[float, float]
+Thing = tuple[Sequence[Any], Sequence[float]]
+"""Parts of a body, and its pose."""
 
 
-def find_passages(scenario: ResolvedScenario, state: core.State, world: int) -> list[ScenePassage]:
-    """Find the narrowest passage on the shortest way of each robot to each of its goals.
+@dataclass(frozen=True)
+class Places:
+    """Where the objects of a scenario are at the start.
+
+    Attributes:
+        seed: Seed of random shapes and maps.
+        pose: Object id -> x, y [m] and heading [rad].
+        goals: Object id -> goals to visit.
+        things: Parts and pose of everything that stands and is solid.
+    """
+
+    seed: int
+    pose: Mapping[int, Sequence[float]]
+    goals: Mapping[int, Sequence[Sequence[float]]]
+    things: Sequence[Thing]
+
+
+def find_passages(scenario: ResolvedScenario, state: core.State, world: int, seed: int) -> list[ScenePassage]:
+    """Find the narrowest passages on the way of each robot to each of its goals.
 
     A passage is the least distance between what stands left and what stands right of a way. Passages wider than a
     few robots are left out. Equal passages of the same robots are one, as are those of several robots at one place.
@@ -51,41 +76,97 @@ def find_passages(scenario: ResolvedScenario, state: core.State, world: int) -> 
         scenario: The scenario.
         state: Worlds at their starts.
         world: Index of the world.
+        seed: Seed of the world.
     """
     first = world * len(scenario.objects)
-    standing = [k for k, record in enumerate(scenario.objects) if record.static and not record.unobstructed]
+    records = scenario.objects
+    standing = [k for k, record in enumerate(records) if record.static and not record.unobstructed]
     parts = [part for k in standing for part in placed_parts(state, first + k, world_frame=True)]
-    robots = [
-        (k, width)
-        for k, record in enumerate(scenario.objects)
-        if record.role == "robot" and not record.static and not record.wander and has_fixed_shape(record.shape)
-        if (width := 2 * inner_disc(parts_of(record.shape))[2]) > 0
-    ]
-    if not parts or not robots:
-        return []
-    obstacles = _outlines(parts)
-    if obstacles is None:
-        return []
-    ways = _Ways(scenario.world.bounds, parts, min(width for _, width in robots) / 2)
+    places = Places(
+        seed,
+        {record.id: state.pose[first + k].tolist() for k, record in enumerate(records)},
+        {record.id: [[float(x) for x in goal] for goal in state.goals(first + k)] for k, record in enumerate(records)},
+        [(parts, (0.0, 0.0, 0.0))] if parts else [],
+    )
     found: list[ScenePassage] = []
-    legs = 0
-    for k, width in robots:
-        own: list[tuple[float, Point]] = []
-        here = _point(state.pose[first + k])
-        for goal in state.goals(first + k):
-            there, legs = _point(goal), legs + 1
-            line = (
-                ways.shortest(here, there, width / 2, scenario.objects[k].goal_threshold) if legs <= _MAX_LEGS else None
-            )
-            passage = None if line is None else _narrowest(line, obstacles, width)
-            if passage is not None:
-                own.append(passage)
-            here = there
+    legs = passages_of_legs(scenario, places)
+    for record in records:
+        own = [passage for (key, _), passages in legs.items() if key == record.id for passage in passages]
         least = min((gap for gap, _ in own), default=0.0)
         for gap, place in own:
             if gap < least + _TOLERANCE_M:
-                _add(found, scenario.objects[k].name, width, gap, place)
+                _add(found, record.name, _width(record), gap, place)
     return _joined(sorted(found, key=lambda passage: passage.gap - passage.width))
+
+
+def passages_of_legs(
+    scenario: ResolvedScenario, places: Places, only: int | None = None
+) -> dict[tuple[int, int], list[tuple[float, Point]]]:
+    """Find the narrowest passages on each leg of the ways of robots.
+
+    The way of a robot under `follow` is the route that it plans and drives; that of any other is the shortest one. What
+    a robot keeps out of (`avoid`) is as solid as an obstacle.
+
+    Args:
+        scenario: The scenario.
+        places: Where the objects are.
+        only: Id of the robot; by default all robots.
+
+    Returns:
+        (object id, number of the leg) -> width [m] and middle of the narrowest passage, and of others as narrow; legs
+        without a narrow passage are missing.
+    """
+    robots = [r for r in scenario.objects if _is_measured(r) and only in (None, r.id)]
+    asked = {record.id: places.goals.get(record.id, []) for record in robots}
+    solid = any(places.things) or any(_avoided(scenario, record) for record in robots)
+    if not solid or not any(asked.values()):
+        return {}
+    routes = planned_routes(scenario, places.seed, places.pose, asked)
+    grounds: dict[tuple[str, ...], _Ground | None] = {}
+    found: dict[tuple[int, int], list[tuple[float, Point]]] = {}
+    legs = 0
+    for record in robots:
+        width, here = _width(record), _point(places.pose[record.id])
+        closed = _avoided(scenario, record)
+        key = tuple(zone.name for zone in closed)
+        if key not in grounds:
+            things = [*places.things, *(([_part_of(zone)], (0.0, 0.0, 0.0)) for zone in closed)]
+            grounds[key] = _ground(scenario.world.bounds, things, min(map(_width, robots)) / 2)
+        ground, mine = grounds[key], routes.get(record.id)
+        for leg, goal in enumerate(asked[record.id]):
+            there, legs = _point(goal), legs + 1
+            if ground is None or legs > _MAX_LEGS or (mine is not None and (leg >= len(mine) or mine[leg] is None)):
+                break
+            line = ground.shortest(here, there, width / 2, record.goal_threshold) if mine is None else mine[leg]
+            passages = [] if line is None or len(line) < 2 else _narrowest_ones(line, ground.outlines, width)
+            if passages:
+                found[record.id, leg] = passages
+            here = there
+    return found
+
+
+def _is_measured(record: ObjectRecord) -> bool:
+    """Whether passages on the way of an object are told: of robots that move and have a fixed shape."""
+    moves = record.role == "robot" and not record.static and not record.wander
+    return moves and has_fixed_shape(record.shape) and _width(record) > 0
+
+
+def _width(record: ObjectRecord) -> float:
+    """Diameter of the largest disc in the body of an object [m]."""
+    return 2 * inner_disc(parts_of(record.shape))[2]
+
+
+def _avoided(scenario: ResolvedScenario, record: ObjectRecord) -> list[Zone]:
+    """The areas that an object keeps out of."""
+    names = set(getattr(record.behavior, "avoid", ()))
+    return [zone for zone in scenario.world.zones if zone.name in names and not zone.is_line]
+
+
+def _part_of(zone: Zone) -> Any:
+    """A zone as a part in the world frame."""
+    if zone.circle is not None:
+        return core.Circle(radius=zone.circle.radius, center=zone.circle.center)
+    return core.Polygon(vertices=zone.points)
 
 
 def _add(found: list[ScenePassage], name: str, width: float, gap: float, place: Point) -> None:
@@ -111,19 +192,27 @@ def _joined(passages: list[ScenePassage]) -> list[ScenePassage]:
     return joined
 
 
-class _Ways:
-    """Shortest ways of discs between obstacles.
+class _Ground:
+    """What stands, and shortest ways of discs between it.
 
     Args:
         bounds: Extent of the world: left, bottom, right, top [m].
-        parts: Obstacles, world frame.
+        things: Parts and poses of everything solid.
+        outlines: Their outlines.
         radius: Radius of the smallest disc [m].
     """
 
-    def __init__(self, bounds: tuple[float, float, float, float], parts: Sequence[Any], radius: float) -> None:
-        cells = cells_over(bounds, radius / _CELLS_PER_RADIUS, _MAX_CELLS)
-        self._bounds, self._size = bounds, max(cells[1])
-        self._clearance = core.Clearance(core.Terrain(FAR, [(list(parts), [0.0, 0.0, 0.0])]), cells)
+    def __init__(
+        self, bounds: tuple[float, float, float, float], things: Sequence[Thing], outlines: Any, radius: float
+    ) -> None:
+        self.outlines = outlines
+        self._bounds, self._cells = bounds, cells_over(bounds, radius / _CELLS_PER_RADIUS, _MAX_CELLS)
+        self._things, self._size = things, max(self._cells[1])
+
+    @cached_property
+    def _clearance(self) -> core.Clearance:
+        terrain = core.Terrain(FAR, [(list(parts), list(pose)) for parts, pose in self._things])
+        return core.Clearance(terrain, self._cells)
 
     def shortest(self, start: Point, goal: Point, radius: float, reach: float) -> Floats | None:
         """(K, 2) points of the shortest way of a disc to a goal; None if there is none or cells are too large."""
@@ -140,11 +229,28 @@ class _Ways:
         return np.concatenate([[start], way[1:-1], [goal]]) if len(way) else None
 
 
-def _narrowest(line: Floats, obstacles: Any, width: float) -> tuple[float, Point] | None:
+def _narrowest_ones(line: Floats, obstacles: Any, width: float) -> list[tuple[float, Point]]:
+    """The narrowest passage on a way, and further ones that are as narrow."""
+    import shapely
+
+    pieces: list[Any] = [shapely.LineString(line).simplify(width / 16)]
+    found: list[tuple[float, Point]] = []
+    while pieces and len(found) < _MAX_EQUAL:
+        piece = pieces.pop(0)
+        passage = _narrowest(piece, obstacles, width)
+        if passage is None or (found and passage[0] > found[0][0] + _TOLERANCE_M):
+            continue
+        found.append(passage)
+        rest = shapely.difference(piece, shapely.Point(passage[1]).buffer(max(passage[0], width)))
+        pieces += [part for part in shapely.get_parts(rest) if part.length > width]
+    least = min((gap for gap, _ in found), default=0.0)
+    return [passage for passage in found if passage[0] < least + _TOLERANCE_M]
+
+
+def _narrowest(way: Any, obstacles: Any, width: float) -> tuple[float, Point] | None:
     """The least distance between obstacles left and right of a way, and the middle of that gap; None if it is wide."""
     import shapely
 
-    way = shapely.LineString(line).simplify(width / 16)
     for reach in (width * share for share in _REACHES):
         left, right = (
             shapely.intersection(obstacles, shapely.buffer(way, side * reach, single_sided=True, cap_style="flat"))
@@ -161,13 +267,20 @@ def _narrowest(line: Floats, obstacles: Any, width: float) -> tuple[float, Point
     return None
 
 
-def _outlines(parts: Sequence[Any]) -> Any:
-    """The outlines of obstacles as one geometry; None if they have too many corners."""
+def _ground(bounds: tuple[float, float, float, float], things: Sequence[Thing], radius: float) -> _Ground | None:
+    """What stands; None without anything, and if it has too many corners."""
+    outlines = _outlines(things)
+    return None if outlines is None else _Ground(bounds, things, outlines, radius)
+
+
+def _outlines(things: Sequence[Thing]) -> Any:
+    """The outlines of obstacles as one geometry; None without any, and if they have too many corners."""
     import shapely
 
     lines: list[Any] = []
     corners = 0
-    for points, radius in itertools.chain.from_iterable(outlines_of(part, [0.0, 0.0, 0.0]) for part in parts):
+    placed = ((part, list(pose)) for parts, pose in things for part in parts)
+    for points, radius in itertools.chain.from_iterable(outlines_of(part, pose) for part, pose in placed):
         corners += len(points)
         if corners > _MAX_CORNERS:
             return None

@@ -68,7 +68,7 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None) -> SceneTab
         crowded=sorted(set(crowded) & set(range(count))),
         overlapping_goals=_overlapping_goals(scenario, state, built.objects, [w for w in good if w > 0]),
         lidars=lidar_hits(scenario, seeds[shown]) if good else [],
-        passages=find_passages(scenario, state, shown) if good else [],
+        passages=find_passages(scenario, state, shown, seeds[shown]) if good else [],
     )
 
 

@@ -7,8 +7,9 @@ from typing import Any
 
 from irsim.bundled import templates
 from irsim.diagnostics.errors import ArgumentError
-from irsim.lookup import TopicError, as_brief_text, as_text, lookup_several, schema_part, topics_of
+from irsim.lookup import Answer, TopicError, as_brief_text, as_text, lookup_several, schema_part, topics_of
 from irsim.lookup import lookup as look_up
+from irsim.lookup.index import PICTURE
 from irsim.runs.files import RunError
 from irsim.scenario.yaml.modeline import without_modeline
 
@@ -39,6 +40,7 @@ def explanation(topic: str, parameters: dict[str, Any] | None) -> str:
     if answer.kind == "template":
         return _template(answer.topic, {})
     if answer.kind != "index":
+        answer = _with_usable_best(answer)
         return as_text(answer) + (f"\n\nFor example:\n{answer.example}" if answer.example else "")
     if answer.topic:
         return as_text(answer)
@@ -63,7 +65,7 @@ def _several(topics: list[str]) -> str:
         elif one.kind == "template":
             parts.append(_template(one.topic, {}))
         else:
-            parts.append(as_brief_text(one))
+            parts.append(as_brief_text(_with_usable_best(one)))
     return "\n\n".join(f"== {part}" for part in parts)
 
 
@@ -92,3 +94,13 @@ def _template(name: str, parameters: dict[str, Any]) -> str:
     answer = look_up(name).model_copy(update={"text": about, "see": []})
     given = ", ".join(f"{key}={value}" for key, value in parameters.items()) or "the default parameters"
     return f"{as_text(answer)}\n\nscenario.yaml with {given}:\n```yaml\n{without_modeline(text)}```"
+
+
+def _without_picture(answer: Answer) -> Answer:
+    """An answer without the path of a picture: a path of the server's machine is of no use to a caller."""
+    return answer.model_copy(update={"text": answer.text.partition(PICTURE)[0].rstrip()})
+
+
+def _with_usable_best(answer: Answer) -> Answer:
+    """An answer whose first topic is told without the path of a picture."""
+    return answer if answer.best is None else answer.model_copy(update={"best": _without_picture(answer.best)})

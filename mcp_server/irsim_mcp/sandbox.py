@@ -7,8 +7,8 @@ from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
 from irsim.common.text import clean
-from irsim.runs.files import RunError
-from irsim.runs.store import find_run, mark_cancelled, run_folders, runs_folder
+from irsim.runs.files import RunError, json_of, text_of
+from irsim.runs.store import ID, META, SCENARIO_FILE, find_run, mark_cancelled, run_folders, runs_folder
 from irsim.scenario.path_confinement import why_outside
 from irsim_mcp.errors import failure
 
@@ -104,6 +104,21 @@ class Workspace:
             return [folder.name for folder in run_folders(runs_folder(self.root))]
         except RunError:
             return []
+
+    def is_run(self, name: str) -> bool:
+        """Whether a name is the id of a recorded run of the workspace."""
+        return ID.fullmatch(name) is not None and name in self.runs()
+
+    def scenario_of_run(self, run_id: str) -> tuple[str | None, str | None]:
+        """The file that a run simulated, if it is still there, and otherwise its text; None for what is not known."""
+        try:
+            folder = find_run(run_id, self.root)
+            meta, text = json_of(folder, META), text_of(folder, SCENARIO_FILE)
+        except RunError:
+            return None, None
+        name = meta.get("scenario") if isinstance(meta, dict) else None
+        there = isinstance(name, str) and why_outside(name, self.root) is None and (self.root / name).is_file()
+        return (str(name), None) if there else (None, text)
 
     def mark_cancelled(self, run_id: str) -> None:
         """Record that a run was stopped on purpose."""

@@ -144,6 +144,7 @@ class Services:
             return {"base_text": self._text(base, "base")}
         if (known := self._known_text(base, "base")) is not None:
             return {"base_text": known}
+        self._refuse_run(base, "base")
         return {"base": self.workspace.scenario(base, "base")}
 
     async def _source(self, scenario_path: str | None, scenario_yaml: str | None) -> dict[str, str]:
@@ -154,6 +155,7 @@ class Services:
         if scenario_path:
             if (known := self._known_text(scenario_path, "scenario_path")) is not None:
                 return {"text": known}
+            self._refuse_run(scenario_path, "scenario_path")
             text = await self._suite_scene(scenario_path, "scenario_path")
             return {"path": self.workspace.scenario(scenario_path)} if text is None else {"text": text}
         assert scenario_yaml
@@ -179,6 +181,23 @@ class Services:
             what = f"no text with the id {given!r} is kept; the last ones are, until the server ends"
             raise failure("file-not-found", what, where=argument, fix="give the text again, as scenario_yaml")
         return text
+
+    def _refuse_run(self, given: str, argument: str) -> None:
+        """Refuse the id of a run where a scenario is expected, and name what gives its scenario.
+
+        Raises:
+            ToolError: It is the id of a run.
+        """
+        if (self.workspace.root / given).exists() or not self.workspace.is_run(given):
+            return
+        file, text = self.workspace.scenario_of_run(given)
+        known = file is None and text is not None and len(text.encode()) <= self.limits.yaml_bytes
+        name = clean(file, 200) if file is not None else self.texts.remember(text) if known and text else None
+        fix = "give the text-... id that a call with its text has named" if name is None else f"give {argument}={name}"
+        if name is not None and argument == "scenarios":
+            fix = f"give scenarios=[{name!r}]"
+        what = f"there is no file {clean(given)!r}: that is a run id"
+        raise failure("file-not-found", what, where=argument, fix=f"{fix}, which gives the scenario of that run")
 
     async def _suite_scene(self, given: str, argument: str) -> str | None:
         """The text of ``SUITE/SCENARIO``; None if no bundled suite is named.
@@ -211,6 +230,7 @@ class Services:
             return self._text(given, argument)
         if (known := self._known_text(given, argument)) is not None:
             return known if "\n" in known else f"{known}\n"  # a text of one line would be taken for a path
+        self._refuse_run(given, argument)
         return self.workspace.scenario(given, argument)
 
     def _text(self, text: str, argument: str) -> str:

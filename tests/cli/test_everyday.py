@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from irsim.lookup import Answer, lookup
+from irsim.lookup import Answer, as_brief_text, as_text, lookup
 from irsim.lookup.full_text import words_of
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.synonyms import EVERYDAY, named
@@ -71,6 +71,8 @@ MEANT = {
     "number of robots": "robot.number",
     "random positions": "robot.distribution.random",
     "field of view": "robot.fov",
+    "goal_angle_threshold": "robot.arrive_mode",
+    "heading tolerance": "robot.arrive_mode",
     "moving obstacle": "obstacle",
 }
 
@@ -116,3 +118,31 @@ def test_words_beside_a_name_that_say_nothing_are_told() -> None:
     answer = lookup("laser qwertz", schema=SCHEMA)
     assert answer.text == "Nothing about 'qwertz'."
     assert "robot.sensors.lidar2d" in led_to(answer)
+
+
+@pytest.mark.parametrize("word", ["fmcw", "fmcw_lidar", "FMCW lidar"])
+def test_the_beginning_of_a_name_that_only_one_component_has_is_that_component(word: str) -> None:
+    assert lookup(word, schema=SCHEMA).title == "sensor fmcw_lidar2d"
+
+
+@pytest.mark.parametrize("words", ["path must exist", "a path must exist", "a path to the goal exists", "reachable"])
+def test_whether_a_path_exists_leads_to_the_finding_and_to_the_picture(words: str) -> None:
+    answer = lookup(words, schema=SCHEMA)
+    assert {"goal-unreachable", "pictures"} <= set(led_to(answer)[1:4])
+    assert "overlays: [plan]" in lookup("pictures", schema=SCHEMA).text
+    assert answer.best is not None
+    assert answer.best.topic == "goal-unreachable"
+
+
+def test_a_search_says_what_its_first_topic_says() -> None:
+    answer = lookup("car avoids with orca", schema=SCHEMA)
+    (hits,) = answer.groups.values()
+    assert (hits[0].name, "robot.kinematics.acker" in [hit.name for hit in hits]) == ("avoidance", True)
+    for text in (as_text(answer), as_brief_text(answer)):
+        assert "use follow with local: {name: orca}, for cars too" in text
+
+
+def test_a_whole_everyday_name_comes_before_texts_that_have_its_words() -> None:
+    for words in ("laser scanner", "differential drive", "field of view"):
+        (hits,) = lookup(words, schema=SCHEMA).groups.values()
+        assert hits[0].name in EVERYDAY

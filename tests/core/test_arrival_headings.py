@@ -7,6 +7,7 @@ import math
 import pytest
 
 import irsim
+from irsim.lookup import lookup
 
 BEHAVIORS = ("dash", "follow", "orca", "rvo", "sfm")
 LIMITS = (
@@ -63,3 +64,21 @@ def test_a_drive_that_does_not_turn_there_is_told_and_says_why() -> None:
     assert report.dry_run is not None
     assert "it is at its goal, but its heading is off by 1.57 rad" in report.dry_run.summary
     assert "its heading is off by 1.57 rad" in (irsim.run(text=text, seed=1).reason or "")
+
+
+@pytest.mark.parametrize(
+    ("distance", "turn", "arrives"),
+    [(0, 0.14, True), (0, 0.16, False), (0.14, 0, True), (0.16, 0, False), (0.1, 0.1, True), (0.11, 0.11, False)],
+)
+def test_the_threshold_of_distance_and_turn_is_that_of_its_description(
+    distance: float, turn: float, arrives: bool
+) -> None:
+    text = (
+        "robot: {kinematics: {name: omni_angular}, state: [1, 1, 0], arrive_mode: state, goal_threshold: 0.15, "
+        f"goal: [{1 + distance}, 1, {turn}]}}\n"
+    )
+    assert (irsim.run(text=text, steps=1).outcome == "success") is arrives
+    said = lookup("robot.goal_threshold").text
+    assert "sqrt(dx^2 + dy^2 + turn^2)" in said
+    assert "0.15 means under 0.15 m and under 0.15 rad (8.6 degrees)" in said
+    assert math.degrees(0.15) == pytest.approx(8.6, abs=0.01)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import irsim
 import irsim._core as core
+from irsim.lookup import lookup
 from tests.core import oracle
 from tests.core.worlds import circle, obstacle, polygon, random_placement, rectangle, robot, scene
 from tests.effort import examples
@@ -106,3 +110,26 @@ def test_wanderers_get_a_wander_goal() -> None:
 def test_a_placement_names_objects_that_exist() -> None:
     with pytest.raises(ValueError, match="does not exist"):
         scene(robot(), placements=[placement([1], 10)])
+
+
+def test_a_range_bounds_rear_axles_and_not_the_footprints_of_cars(tmp_path: Path) -> None:
+    """As the description of `range_low` says: a car reaches (length + wheelbase) / 2 ahead of its position."""
+    text = """
+world: {width: 40, height: 40}
+robot:
+  number: 20
+  kinematics: {name: acker}
+  shape: {name: rectangle, length: 4.6, width: 1.8, wheelbase: 3.0}
+  distribution: {name: random, range_low: [10, 10, 0], range_high: [30, 30, 0.001]}
+"""
+    (tmp_path / "cars.yaml").write_text(text, encoding="utf-8")
+    env = irsim.make(tmp_path / "cars.yaml", seed=3, headless=True)
+    places = np.array([robot.state[:2, 0] for robot in env.robot_list])
+    fronts = np.array([robot.geometry.bounds[2] for robot in env.robot_list])
+    env.end(ending_time=0.0)
+    assert ((places >= 10) & (places <= 30)).all()
+    np.testing.assert_allclose(fronts - places[:, 0], (4.6 + 3.0) / 2, atol=0.01)
+    assert fronts.max() > 30
+    said = lookup("robot.distribution.random.range_low").text
+    assert "its rear axle" in said
+    assert "(length + wheelbase) / 2" in said

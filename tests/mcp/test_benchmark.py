@@ -119,6 +119,17 @@ async def test_means_of_fewer_episodes_say_so_and_the_period_is_told(workspace: 
     assert "20 episodes, step_time 0.1 s; success" in told
 
 
+async def test_times_beside_failures_are_those_of_robots_that_arrived(workspace: Path) -> None:
+    two = ROOM + "  - {name: still, kinematics: {name: diff}, state: [6, 5, 0], goal: [7, 5, 0]}\n"
+    async with connected(workspace) as client:
+        told = text_of(await client.call_tool("benchmark", {"scenarios": [two], "seeds": 1}))
+        whole = text_of(await client.call_tool("benchmark", {"scenarios": [ROOM], "seeds": 1}))
+    assert "success 0; " in told
+    assert "; time_to_goal of robots that arrived 3" in told
+    assert "; time_to_goal 3" in whole
+    assert "the mean of the robots that arrived" in irsim.lookup.lookup("time_to_goal").text
+
+
 async def test_what_is_not_random_has_no_interval(workspace: Path) -> None:
     async with connected(workspace) as client:
         found = data_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))

@@ -61,6 +61,9 @@ async def test_index_fits_a_screen_and_leads_on(empty: Path) -> None:
         ("aggregated_time", ["a number [s]", "the greatest time_to_goal", "Less is better"]),
         ("metrics", ["spl", "metric success", "path_irregularity", "more is better"]),
         ("hallway", ["corridor-passing"]),
+        ("path must exist", ["goal-unreachable", "pictures", "narrowest gap of the widest path"]),
+        ("car avoids with orca", ["use follow with local: {name: orca}, for cars too"]),
+        ("dash, car avoids with orca", ["use follow with local: {name: orca}, for cars too"]),
     ],
 )
 async def test_topics(empty: Path, topic: str, said: list[str]) -> None:
@@ -68,6 +71,12 @@ async def test_topics(empty: Path, topic: str, said: list[str]) -> None:
     assert len(text) < MOST_CHARACTERS
     for word in said:
         assert word in text
+
+
+async def test_no_path_of_this_machine_is_told(empty: Path) -> None:
+    for topic in ("hallway", "dash, hallway"):
+        assert "corridor-passing" in (text := await looked_up(empty, topic))
+        assert "picture.png" not in text
 
 
 @pytest.mark.parametrize("name", templates.names())

@@ -40,6 +40,42 @@ async def test_next_names_the_id_of_a_text_and_never_the_text(workspace: Path) -
             assert "distribution" not in ran["next"]
 
 
+@pytest.mark.parametrize("more", ["", "vel_max: [1, 1]\n    plot: {show_goal: true}\n"])
+async def test_a_look_at_a_text_without_a_behavior_names_its_id(workspace: Path, more: str) -> None:
+    still = ROOM.replace("behavior: {name: dash}\n", more)
+    async with connected(workspace) as client:
+        looked = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": still, "return_image": False}))
+        name = RecentTexts().remember(still)
+        advice = looked.splitlines()[-1]
+        assert f"run_episode scenario_path={name} policy=dash, " in advice
+        assert f"benchmark scenarios=['{name}'] policies=[...]" in advice
+        ran = await client.call_tool("run_episode", {"scenario_path": name, "policy": "dash"})
+        assert data_of(ran)["outcome"] == "success"
+
+
+async def test_the_id_of_a_run_where_a_scenario_is_meant_leads_to_the_scenario(workspace: Path) -> None:
+    (workspace / "room.yaml").write_text(ROOM)
+    async with connected(workspace) as client:
+        for arguments, name in (
+            ({"scenario_yaml": ROOM}, RecentTexts().remember(ROOM)),
+            ({"scenario_path": "room.yaml"}, "room.yaml"),
+        ):
+            run = data_of(await client.call_tool("run_episode", arguments))["run_id"]
+            for tool, wrong, right in (
+                ("run_episode", {"scenario_path": run}, f"give scenario_path={name}"),
+                ("render_snapshot", {"scenario_path": run}, f"give scenario_path={name}"),
+                ("benchmark", {"scenarios": [run]}, f"give scenarios=['{name}']"),
+                ("validate_scenario", {"scenario_yaml": CRASH, "base": run}, f"give base={name}"),
+            ):
+                told = error_of(await client.call_tool(tool, wrong))
+                assert told.startswith(f"file-not-found: there is no file '{run}': that is a run id (")
+                assert told.endswith(f"Fix: {right}, which gives the scenario of that run.")
+        (workspace / "room.yaml").unlink()  # the run still has its text
+        told = error_of(await client.call_tool("run_episode", {"scenario_path": run}))
+        text = re.findall(r"text-[0-9a-f]{6}", told)[0]
+        assert data_of(await client.call_tool("run_episode", {"scenario_path": text}))["outcome"] == "success"
+
+
 async def test_an_unknown_id_says_what_to_do(workspace: Path) -> None:
     async with connected(workspace) as client:
         for tool, arguments in (

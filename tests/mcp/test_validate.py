@@ -168,5 +168,6 @@ async def test_few_hints_need_no_second_call(empty: Path) -> None:
     async with connected(empty) as client:
         data = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": hinted}))
     assert {issue["code"] for issue in data["issues"]} == {"no-behavior", "vel-min-default"}
-    assert "nothing to fix if" in str(data["issues"])
+    told = next(issue["fix"] for issue in data["issues"] if issue["code"] == "no-behavior")
+    assert told.startswith("nothing to fix if it is meant to stand still or a program moves it; else add 'behavior: ")
     assert data["summary"].endswith("; 2 hints")

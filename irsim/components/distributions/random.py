@@ -74,10 +74,13 @@ class RandomDistribution(DistributionOptions):
 
     name: Literal["random"] = "random"
     range_low: Offset | None = None
-    """Lower bounds [x, y, theta] of the middle of each object and of its goal, each drawn on its own; footprints may
-    reach beyond. Null is half a metre inside the world, heading -π."""
+    """Lower bounds [x, y, theta] of the position of each object and of its goal, each drawn on its own: the middle of
+    the object; of a car with `wheelbase`, its rear axle. They do not bound footprints, which reach beyond: a disc by
+    its radius, a rectangle by half its diagonal, a car by about (length + wheelbase) / 2 ahead of it. Leave that much
+    room to the edge of the world. Null is half a metre inside the world, heading -π."""
     range_high: Offset | None = None
-    """Upper bounds [x, y, theta], as `range_low`; null is half a metre inside the world, heading π."""
+    """Upper bounds [x, y, theta] of the same positions, not of footprints, as `range_low`; null is half a metre inside
+    the world, heading π."""
     min_distance: Annotated[Meters, Field(ge=0)] = 1.0
     """Smallest distance between the positions of this entry's objects, and between their goals."""
     keep_clear: list[KeepClear] = []

@@ -65,7 +65,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "no-behavior",
             record.path,
             f"this {record.role} has no behavior: it stands still unless {unless}",
-            fix="add 'behavior: {name: dash}'; nothing to fix if it is meant to stand still or a program moves it",
+            fix="nothing to fix if it is meant to stand still or a program moves it; else add 'behavior: {name: dash}'",
             edit=Edit("add", (*record.path, "behavior"), {"name": "dash"}),
         )
 

@@ -15,6 +15,11 @@ from irsim.scenario.yaml.formatting import flow
 __all__ = ["advice_on_key", "vector_of"]
 
 _HEADINGS = ("theta", "yaw", "heading", "angle", "orientation")
+_HEADING_TOLERANCES = tuple(
+    f"{what}_{last}"
+    for what in ("goal_angle", "goal_heading", "goal_yaw", "goal_theta", "heading", "yaw", "theta", "yaw_goal")
+    for last in ("threshold", "tolerance")
+)
 _SIDES = ("size", "dimensions", "extent")
 
 
@@ -51,6 +56,11 @@ def _of_entry(key: str, value: Any, parent: Mapping[Any, Any]) -> str | None:
     if key in ("x", "y") or key in _HEADINGS:
         pose = _pose(key, value, parent)
         return f"it belongs in 'state', which is [x, y, theta]: {pose}"
+    if key in _HEADING_TOLERANCES:
+        return (
+            "see arrive_mode: state, with which the heading counts at the goal; goal_threshold holds for metres and "
+            "radians together"
+        )
     if key in ("radius", "diameter"):
         return f"it belongs in 'shape': {{name: circle, radius: {_half(value) if key == 'diameter' else _text(value)}}}"
     if key in ("length", "width"):

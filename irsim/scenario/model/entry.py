@@ -71,6 +71,9 @@ class Entry(Options):
         "max_velocity": "vel_max",
         "acceleration": "acce",
         "tolerance": "goal_threshold",
+        "goal_tolerance": "goal_threshold",
+        "xy_goal_tolerance": "goal_threshold",
+        "goal_radius": "goal_threshold",
         "delay": "start_time",
         "start_delay": "start_time",
         "departure": "start_time",
@@ -147,7 +150,9 @@ class Entry(Options):
     angle_range: Annotated[Any, PerObject(Range | None, "vector")] = None
     """Interval of the heading, one turn wide; null is [-π, π]."""
     goal_threshold: Annotated[Meters, Field(ge=0)] = 0.1
-    """A goal counts as reached when it is nearer than this."""
+    """A goal counts as reached when it is nearer than this. With `arrive_mode: state` the heading counts too:
+    sqrt(dx^2 + dy^2 + turn^2), in metres and radians, must be below it, so 0.15 means under 0.15 m and under 0.15 rad
+    (8.6 degrees), and less of each if both are off."""
     arrive_mode: Annotated[Any, PerObject(Literal["position", "state"])] = "position"
     """What must match at the goal: `position` alone, or `state`, which includes the heading that a goal of three
     numbers [x, y, heading] gives. `state` has no tolerance of its own: sqrt(dx^2 + dy^2 + turn^2), in metres and

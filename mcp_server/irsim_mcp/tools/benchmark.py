@@ -323,7 +323,9 @@ def _text(found: Benchmark) -> str:
     lines = [f"{found.status}: {found.summary}" if found.rows else found.summary]
     lines[0] += f" (job {found.job_id}, {found.done} of {found.total})"
     for row in found.rows:
-        values = _lines(row) + [f"difference of {line}" for line in _lines(row.get("diff", {}))]
+        values = _lines(row, partly=row["success"][0] < 1) + [
+            f"difference of {line}" for line in _lines(row.get("diff", {}))
+        ]
         values += [f"failed: {row['failed']}"] if "failed" in row else []
         if "incident_seeds" in row:
             values.append(f"episodes with {row['incident_seeds']}")
@@ -341,11 +343,17 @@ def _text(found: Benchmark) -> str:
     return "\n".join([*lines, f"Next: {found.next}"])
 
 
-def _lines(row: dict[str, Any]) -> list[str]:
-    """Each number with its interval, and with the number of episodes in which it is defined, if not in all."""
+def _lines(row: dict[str, Any], partly: bool = False) -> list[str]:
+    """Each number with its interval, and with the number of episodes in which it is defined, if not in all.
+
+    Args:
+        row: The numbers by key.
+        partly: Some episodes failed, and the times are those of the robots that arrived nevertheless.
+    """
     fewer = row.get("n", {})
+    some = " of robots that arrived" if partly else ""
     return [
-        f"{key} {_shown(value)}" + (f" n={fewer[key]}" if key in fewer else "")
+        f"{key}{some if key == 'time_to_goal' else ''} {_shown(value)}" + (f" n={fewer[key]}" if key in fewer else "")
         for key, value in row.items()
         if isinstance(value, list)
     ]

@@ -111,8 +111,12 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
     table = scene_lines(answer["table"], labels, answer["scene"]["seed"])
     first = "If the picture is right" if not report.issues else "Fix what is not meant, then"
     report.next = f"{first}{',' if not report.issues else ''} run_episode {given}."
-    if any(issue.code == "no-behavior" for issue in report.issues):
-        report.next = f"{first}, drive it by a program, or compare policies with benchmark (policies=[...])."
+    if any(item["code"] == "no-behavior" for item in answer["report"]["findings"]):
+        name = str(given).removeprefix("scenario_path=")
+        report.next = (
+            f"{report.next.removesuffix('.')} policy=dash, compare policies with benchmark scenarios=[{name!r}] "
+            "policies=[...], or drive it by a program."
+        )
     head, *findings, advice = text_of(report).splitlines()
     return "\n".join([_line(answer["scene"], run_id, brief=True), head, *findings, *table, advice])
 
