@@ -50,7 +50,7 @@ for name in ("a", "b"):
 
 COMMAND = """
     irsim benchmark a.yaml b.yaml \\
-      --behaviors '{name: orca, timeHorizon: 3},rvo' --seeds 5 --steps 40
+      --policies '{name: orca, timeHorizon: 3},rvo' --seeds 5 --steps 40
 """
 OTHER_SEEDS = 'irsim.benchmark(["a.yaml", "b.yaml"], "rvo", seeds=range(5, 10), steps=40)'
 

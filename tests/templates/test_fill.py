@@ -74,6 +74,11 @@ def test_wrong_parameters_are_refused_with_what_is_accepted(
     assert help_text in str(caught.value)
 
 
+def test_only_the_default_parameters_promise_an_outcome(room: Template) -> None:
+    assert room.prospect() == room.prospect({"width": 10}) == "With the default parameters it ends in success."
+    assert "with width=12 it may end otherwise" in room.prospect({"width": 12})
+
+
 def test_text_is_converted_to_the_type_of_the_parameter(room: Template) -> None:
     values = room.values({"width": "3", "count": "2", "drive": "omni", "walls": "off"})
     assert values == {"width": 3.0, "count": 2, "drive": "omni", "walls": False}

@@ -134,7 +134,8 @@ def _commanded(material: Material, text: str) -> Iterator[Started]:
         files, options = _parsed(words)
         try:
             seeds = seeds_from(options.get("--seeds", str(DEFAULT_SEEDS)))
-            names = [_name(word) for word in split_behaviors(options.get("--behaviors", "as-written"))]
+            behaviors = options.get("--policies", options.get("--behaviors", "as-written"))
+            names = [_name(word) for word in split_behaviors(behaviors)]
             steps = int(options["--steps"]) if "--steps" in options else None
         except (IrsimError, ValueError):
             continue

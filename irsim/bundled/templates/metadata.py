@@ -125,7 +125,11 @@ class Template(_Metadata):
             TemplateError: A name is unknown or a value is not allowed.
         """
         values = self.values(dict(given or {}))
-        changed = [f"{name}={value}" for name, value in values.items() if value != self.parameters[name].default]
+        changed = [
+            f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
+            for name, value in values.items()
+            if value != self.parameters[name].default
+        ]
         tried = f"With the default parameters it ends in {' or '.join(self.outcomes)}"
         return f"{tried}; with {', '.join(changed)} it may end otherwise: run it." if changed else f"{tried}."
 
