@@ -104,6 +104,9 @@ class _Reader:
         if not isinstance(self.data, Mapping):
             self._add([_not_a_mapping(self.data)])
             return None
+        if (other := _other_file(self.data)) is not None:
+            self._add([other])
+            return None
         too_many = _too_many_objects(self.data, self.limits)
         if too_many is not None:
             self._add([too_many])
@@ -216,6 +219,25 @@ def _not_a_mapping(data: Any) -> Finding:
         allowed="a mapping with the keys world, robot, obstacle, gui, custom",
         fix="start with 'world: {width: 10, height: 10}'",
     )
+
+
+def _other_file(data: Mapping[str, Any]) -> Finding | None:
+    """The error if the file is of another kind, which its first key names; else None."""
+    key = next(iter(data), None)
+    if key not in _OTHER_FILES or any(section in data for section in ("world", "robot", "obstacle")):
+        return None
+    what, fix = _OTHER_FILES[key]
+    return error("not-a-scenario", (), f"this is {what} file, and a scenario was expected", fix=fix)
+
+
+_OTHER_FILES = {
+    "task": (
+        "a task",
+        "irsim validate FILE checks it, irsim train FILE trains and keeps its scenario as scenario.yaml in its folder",
+    ),
+    "suite": ("a suite", "irsim benchmark FILE runs it"),
+}
+"""First key -> kind of the file, and what it is for."""
 
 
 def _too_many_objects(data: Mapping[str, Any], limits: Limits) -> Finding | None:

@@ -1,11 +1,41 @@
-"""Which round of a training is the best."""
+"""What the folder of a training keeps, and which round is the best."""
 
 from __future__ import annotations
 
-from irsim.learning.training.run_folder import merit
+from pathlib import Path
+
+import yaml
+from PIL import Image
+
+import irsim
+from irsim.learning.tasks.files import open_task
+from irsim.learning.training.run_folder import RunFolder, merit
+from irsim.learning.training.settings import TrainingSettings
+from irsim.learning.worlds import Worlds
+from tests.learning.tasks import corridor, task
 
 
 def test_more_success_is_better_and_with_equal_success_more_reward() -> None:
     rounds = [{"learners": 0.9, "reward": 5.0}, {"learners": 1.0, "reward": 2.0}, {"learners": 1.0, "reward": 3.0}]
     assert max(rounds, key=merit) is rounds[2]
     assert max(rounds[:2], key=merit) is rounds[1]
+
+
+def test_the_scenario_of_a_task_is_kept_with_its_maps(tmp_path: Path) -> None:
+    made = task(world={"obstacle_map": "maps/hall.png"}, protocol="freeze")
+    (tmp_path / "maps").mkdir()
+    Image.new("L", (20, 20), 255).save(tmp_path / "maps" / "hall.png")
+    (tmp_path / "scene.yaml").write_text(yaml.safe_dump(made.pop("scenario")))
+    (tmp_path / "task.yaml").write_text(yaml.safe_dump({**made, "file": "scene.yaml"}))
+    opened, folder = open_task(tmp_path / "task.yaml")
+    maps = Worlds(tmp_path / "task.yaml").scenario.map_files
+    RunFolder(tmp_path / "run").begin(opened, folder, maps, TrainingSettings())
+    assert irsim.validate(tmp_path / "run" / "scenario.yaml").valid
+    assert yaml.safe_load((tmp_path / "run" / "scenario.yaml").read_text())["world"]["after_arrival"] == "freeze"
+    assert Worlds(tmp_path / "run" / "task.yaml").scenario.map_files["maps/hall.png"].startswith(str(tmp_path / "run"))
+
+
+def test_the_scenario_of_a_template_is_kept_too(tmp_path: Path) -> None:
+    opened, folder = open_task(corridor())
+    RunFolder(tmp_path / "run").begin(opened, folder, {}, TrainingSettings())
+    assert irsim.validate(tmp_path / "run" / "scenario.yaml").valid

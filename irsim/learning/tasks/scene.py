@@ -27,7 +27,7 @@ from irsim.scenario.read import read
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Variation, VariedLevel
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["Scene", "open_scene", "task_scenario"]
+__all__ = ["Scene", "open_scene", "scenario_text", "task_scenario"]
 
 _MAY_VARY = {"state", "goals", "shape", "range_low", "range_high", "plot", "color", "description"}
 """Fields in which an object may differ between variants."""
@@ -150,6 +150,34 @@ def _resolved(
     task: Task, folder: Path, parameters: Mapping[str, Value], values: Mapping[str, Any], level: int | None = None
 ) -> tuple[ResolvedScenario, tuple[Diagnostic, ...]]:
     """The scenario with some parameters and values, and its warnings."""
+    document = _changed(task, folder, parameters, values, level)
+    scenario, found = or_raise(read(document, strict=True))
+    try:
+        scenario = perturbed(scenario, task.perturb, called=task.task)
+    except BenchmarkError as error:
+        raise task_error(("perturb",), error.message, error.fix or "") from None
+    return scenario, tuple(item for item in found if item.severity == "warning")
+
+
+def scenario_text(task: Task, folder: Path) -> str:
+    """The scenario of a task as text of a scenario file; what ``perturb`` and ``randomize`` draw is not in it.
+
+    Args:
+        task: The task.
+        folder: Where the file of its scenario is found.
+
+    Raises:
+        TaskError: The template does not exist or does not take these parameters.
+    """
+    text = _changed(task, folder, task.parameters, {}).text
+    assert text is not None, "only data without a text has none"
+    return text
+
+
+def _changed(
+    task: Task, folder: Path, parameters: Mapping[str, Value], values: Mapping[str, Any], level: int | None = None
+) -> Document:
+    """The scenario file under the protocol of the task, with some parameters and values."""
     document = _document(task, folder, parameters)
     data = document.data
     if (task.protocol != "as-written" or values) and isinstance(data, Mapping):
@@ -159,12 +187,7 @@ def _resolved(
         for path, value in values.items():
             _set(changed, path, value, (*_where(task, level), "values", path))
         document = load_text(yaml.safe_dump(changed, sort_keys=False), name=task.task, path=str(folder / "scene.yaml"))
-    scenario, found = or_raise(read(document, strict=True))
-    try:
-        scenario = perturbed(scenario, task.perturb, called=task.task)
-    except BenchmarkError as error:
-        raise task_error(("perturb",), error.message, error.fix or "") from None
-    return scenario, tuple(item for item in found if item.severity == "warning")
+    return document
 
 
 def _set(data: Any, path: str, value: Any, where: tuple[str | int, ...]) -> None:

@@ -12,6 +12,7 @@ import yaml
 
 from irsim.common.files import replacing, write_atomically
 from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.tasks.scene import scenario_text
 from irsim.learning.tasks.task import Task
 from irsim.learning.training.settings import TrainingSettings
 
@@ -26,8 +27,8 @@ def merit(facts: Mapping[str, Any]) -> tuple[float, float]:
 class RunFolder:
     """Files of a training.
 
-    ``task.yaml`` and ``settings.yaml`` say what was asked for, ``progress.jsonl`` has a line for each round,
-    ``latest.zip`` and ``best.zip`` are models of Stable-Baselines3.
+    ``task.yaml``, its scenario ``scenario.yaml`` and ``settings.yaml`` say what was asked for, ``progress.jsonl`` has a
+    line for each round, ``latest.zip`` and ``best.zip`` are models of Stable-Baselines3.
 
     Args:
         path: The folder.
@@ -38,8 +39,14 @@ class RunFolder:
         self.latest, self.best = path / "latest.zip", path / "best.zip"
         self._progress = path / "progress.jsonl"
 
-    def begin(self, task: Task, scene: Path | None, settings: TrainingSettings) -> None:
+    def begin(self, task: Task, folder: Path, maps: Mapping[str, str], settings: TrainingSettings) -> None:
         """Write what was asked for.
+
+        Args:
+            task: The task.
+            folder: Where the file of its scenario is found.
+            maps: Names of files that the scenario reads -> their paths. Files with relative names are copied.
+            settings: The settings.
 
         Raises:
             ArgumentError: The folder holds another training.
@@ -50,9 +57,14 @@ class RunFolder:
             )
         self.path.mkdir(parents=True, exist_ok=True)
         data = task.model_dump(mode="json", exclude_unset=True)
-        if scene is not None:
-            shutil.copyfile(scene, self.path / "scenario.yaml")
+        if task.file is not None:
             data["file"] = "scenario.yaml"
+        write_atomically(self.path / "scenario.yaml", scenario_text(task, folder))
+        for name, file in maps.items():
+            copy = self.path / name
+            if not Path(name).is_absolute() and copy.resolve().is_relative_to(self.path.resolve()):
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(file, copy)
         write_atomically(self.path / "task.yaml", yaml.safe_dump(data, sort_keys=False, allow_unicode=True))
         text = yaml.safe_dump(settings.model_dump(mode="json"), sort_keys=False)
         write_atomically(self.path / "settings.yaml", text)

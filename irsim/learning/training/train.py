@@ -110,7 +110,7 @@ def train(
     opened, where = open_task(task)
     one = Worlds(task, 1)
     if not resume:
-        run.begin(opened, None if opened.file is None else where / opened.file, settings)
+        run.begin(opened, where, one.scenario.map_files, settings)
     torch.set_num_threads(threads)
     worlds = max(1, -(-settings.slots // one.learners))
     env = SB3VecEnv(task, worlds, threads=threads)
