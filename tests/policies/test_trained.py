@@ -1,0 +1,40 @@
+"""The policies that ship with irsim: what they reach in the scenes of their tasks, and their cards."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import pytest
+
+import irsim
+from irsim.learning.tasks.files import open_task
+from irsim.learning.tasks.scene import scenario_text
+from irsim.policies.trained import trained_policies, trained_policy
+from irsim.scenario.perturbation import perturbation_text
+
+RECIPES = Path(irsim.__file__).parents[1] / "skills" / "irsim-runner" / "recipes"
+LEAST = {"goal_lidar": 0.9, "crowd": 0.9, "corridor_social": 0.9, "multi_robot": 0.9, "multi_robot_freeze": 0.75}
+"""Success that each must reach in 20 scenes that it was not trained on; in all it has reached more."""
+
+
+@pytest.mark.slow(15)
+@pytest.mark.parametrize("name", trained_policies())
+def test_it_reaches_its_success_in_scenes_of_its_task(name: str, tmp_path: Path) -> None:
+    task, folder = open_task(name)
+    (tmp_path / "scene.yaml").write_text(scenario_text(task, folder))
+    spreads = "; ".join(perturbation_text(one) for one in task.perturb) or None
+    found = irsim.benchmark(tmp_path / "scene.yaml", policies=[name], seeds=20, perturb=spreads, workers=1)
+    [row] = found.rows
+    assert row.success.rate >= LEAST[name]
+
+
+@pytest.mark.parametrize("name", trained_policies())
+def test_its_card_and_its_curve_are_those_of_the_file(name: str) -> None:
+    file = trained_policy(name)
+    assert file.stat().st_size < 1_000_000
+    card = (RECIPES / f"{name}.md").read_text(encoding="utf-8")
+    assert hashlib.sha256(file.read_bytes()).hexdigest() in card
+    assert f"![learning curve]({name}.png)" in card
+    assert (RECIPES / f"{name}.png").is_file()
+    assert f"[{name}]({name}.md)" in (RECIPES / "README.md").read_text(encoding="utf-8")
