@@ -112,6 +112,9 @@ class SnapshotResult(Result):
     world; None if it shows the world or a region that was asked for."""
     ended: int | None = None
     """Step in which the episode had ended, if the picture shows a later one."""
+    explored: float | None = None
+    """Share of the area of the world that the robots have seen, from 0 to 1; the rest is under fog. None without
+    ``world.fog_map``."""
     robots: list[RobotPose]
     """One entry per robot."""
     moving: list[MovingPose]

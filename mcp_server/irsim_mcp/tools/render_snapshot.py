@@ -35,8 +35,8 @@ _OVERLAYS = (
 )
 _MAX_NAMED = 10
 """Number of robots, plans and moving obstacles that the text lists."""
-_CORNER_M = 0.05
-"""A path that is nobody's plan touches a corner if its margin is smaller [m]."""
+_CORNER_M = 0.25
+"""A margin below which the text says that a path that no behavior has planned keeps close to corners [m]."""
 _MAX_FINDINGS = 20
 """Number of findings that the text lists."""
 
@@ -147,6 +147,9 @@ def _line(
     ]
     if scene["ended"] is not None:
         parts.append(f"beyond the end of the episode, which is step {scene['ended']}")
+    if scene["explored"] is not None:
+        seen = f"{100 * scene['explored']:.0f} % of the area of the world seen"
+        parts.append(f"fog: {seen}, the rest is grey, with goals drawn above it")
     if scene["view"] is not None:
         x0, x1, y0, y1 = scene["view"]
         region = [left, low, right, top]
@@ -195,7 +198,11 @@ def _plan(plan: dict[str, Any], passages: Sequence[dict[str, Any]]) -> str:
             if margin < 0
             else f"least margin {metres(margin)}{to}"
         )
-        corner = " (a shortest path, which touches corners)" if not plan["own"] and 0 <= margin < _CORNER_M else ""
+        corner = (
+            " (a shortest path, which touches corners or nearly so)"
+            if not plan["own"] and 0 <= margin < _CORNER_M
+            else ""
+        )
         tight = f", {least} at ({x:.2f}, {y:.2f}){_passage(plan, passages)}{corner}"
     return f"{'its own plan' if plan['own'] else 'a path'} for {clean(plan['name'])!r}: {metres(plan['length'])}{tight}"
 
