@@ -119,6 +119,7 @@ def footprint_of(env: Env, ways: list[PlannedPath]) -> Footprint | None:
 
 def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
     """The planned paths as results."""
+    from irsim.episodes.scene_summary import called
     from irsim.results.picture import RobotPlan
 
     labels = {view.id: view.label for view in env.robot_list}
@@ -130,6 +131,7 @@ def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
             length=way.length,
             margin=None if way.margin.nearest is None else way.margin.distance,
             nearest=way.margin.nearest,
+            nearest_called=None if way.margin.nearest is None else called(env.scenario, way.margin.nearest),
             tightest=way.margin.pose[:2],
             lost=way.lost,
         )

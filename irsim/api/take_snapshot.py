@@ -20,6 +20,7 @@ from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.simulation.explored import explored_share
 from irsim.simulation.outcome import robot_outcomes
 from irsim.simulation.random_streams import fresh_seed
 
@@ -202,6 +203,7 @@ def snapshot_of_env(
         contents=in_words(counts, robots=False, sensors=False),
         view=None if region is not None else moved_view(env),
         ended=ended_before(env),
+        explored=explored_share(env.simulation),
         robots=_poses(env),
         moving=[
             _moving(view)

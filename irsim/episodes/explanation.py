@@ -93,7 +93,7 @@ def summary_message(
         parts.append(zone)
     share = explored_share(env.simulation)
     if share is not None:
-        parts.append(f"explored {100 * share:.0f} %")
+        parts.append(f"explored {100 * share:.0f} % of the area of the world, insides of obstacles included")
     if sight := sights_message(events):
         parts.append(sight)
     return ("" if driven is None else f"with {driven} for all robots: ") + "; ".join(parts)

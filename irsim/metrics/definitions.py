@@ -183,7 +183,8 @@ EPISODE_METRICS: tuple[Metric, ...] = (
     Metric(
         "explored",
         "0-1",
-        "share of the cells of the fog that the robots had seen at the end; undefined without world.fog_map",
+        "share of the area of the world, insides of obstacles included, that the robots had seen at the end; undefined "
+        "without world.fog_map",
         canonical=False,
         better="more",
     ),

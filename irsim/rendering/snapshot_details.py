@@ -1,4 +1,4 @@
-"""Details that only snapshots show: goals whose heading counts, arrows over hits, and no names under the fog."""
+"""Details that only snapshots show: goals whose heading counts, arrows over hits, and goals, not names, over fog."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ _GOAL_ARROW_SHARE = 0.05
 """Length of the arrow on a goal, as a share of the longer side of the picture."""
 _GOAL_ARROW_WIDTH = 0.4
 """Its width, as a share of its length."""
+_ABOVE = 0.1
+"""How far above the fog goals are drawn."""
 _DEFAULT_COLOR: Color = "#333333"
 
 
@@ -29,7 +31,7 @@ def add_details(scene: Scene, simulation: Simulation, world: int) -> None:
 
     - A goal that requires a heading has an arrow in that direction.
     - Arrows of objects are above the marks of hits.
-    - Names of obstacles under the fog are left out.
+    - Goals of robots are above the fog, and names of obstacles under it are left out.
 
     Args:
         scene: The scene; its extent is the area that the picture shows.
@@ -40,9 +42,12 @@ def add_details(scene: Scene, simulation: Simulation, world: int) -> None:
     for mark in scene.marks:
         if mark.part == "arrow":
             mark.zorder = max(mark.zorder, top + 1.0)
+    fog, robots = scene.fog, {view.id for view in views(simulation, world) if view.role == "robot"}
+    for mark in scene.marks:
+        if fog is not None and mark.part == "goal" and mark.object in robots:
+            mark.zorder = max(mark.zorder, fog.zorder + _ABOVE)
     scene.marks += _goal_arrows(scene, simulation, world)
-    if scene.fog is not None:
-        fog, robots = scene.fog, {view.id for view in views(simulation, world) if view.role == "robot"}
+    if fog is not None:
         scene.labels = [label for label in scene.labels if label.object in robots or not _is_hidden(fog, label.anchor)]
 
 

@@ -71,8 +71,8 @@ class RobotPlan(Result):
     label: str
     """Its label in the picture."""
     own: bool
-    """Whether the robot's own behavior planned it; otherwise it is a shortest path round everything static, which the
-    robot itself may not know."""
+    """Whether the robot's own behavior plans it, leg by leg; otherwise it is a shortest path round everything static,
+    which touches corners and which the robot itself may not know."""
     length: float
     """Length of the path, as far as one was found [m]."""
     margin: float | None
@@ -80,6 +80,8 @@ class RobotPlan(Result):
     negative where they overlap, None if nothing stands."""
     nearest: str | None
     """Name of what is that near; None if nothing stands."""
+    nearest_called: str | None
+    """That in a sentence: its name in quotes, `the map` or `the walls round the world`."""
     tightest: tuple[float, float]
     """Position of that smallest distance [m]."""
     lost: tuple[float, float] | None
@@ -110,6 +112,9 @@ class SnapshotResult(Result):
     world; None if it shows the world or a region that was asked for."""
     ended: int | None = None
     """Step in which the episode had ended, if the picture shows a later one."""
+    explored: float | None = None
+    """Share of the area of the world that the robots have seen, from 0 to 1; the rest is under fog. None without
+    ``world.fog_map``."""
     robots: list[RobotPose]
     """One entry per robot."""
     moving: list[MovingPose]

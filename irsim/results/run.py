@@ -171,7 +171,8 @@ class RunResult(Result):
     jumped: list[str] = Field(default_factory=list)
     """The first objects that passed a goal within ``goal_threshold`` between two steps and did not arrive later."""
     explored: float | None = None
-    """Share of the world that the robots have seen, from 0 to 1; None without `fog_map`."""
+    """Share of the area of the world, insides of obstacles included, that the robots have seen, from 0 to 1; None
+    without `fog_map`."""
     human_contacts: int = 0
     """Number of contacts that began between two people: moving obstacles, or objects tagged ``pedestrian``."""
     zones: dict[str, ZoneResult] = Field(default_factory=dict)

@@ -188,7 +188,7 @@ class Services:
         Raises:
             ToolError: It is the id of a run.
         """
-        if (self.workspace.root / given).exists() or not self.workspace.is_run(given):
+        if not self.workspace.is_run(given) or (self.workspace.root / given).exists():
             return
         file, text = self.workspace.scenario_of_run(given)
         known = file is None and text is not None and len(text.encode()) <= self.limits.yaml_bytes

@@ -42,7 +42,7 @@ def test_the_explored_share_is_told(tmp_path: Path) -> None:
     found = result_of(FOG, tmp_path)
     assert found.explored is not None
     assert 0.9 < found.explored <= 1
-    assert f"explored {100 * found.explored:.0f} %" in found.summary
+    assert f"explored {100 * found.explored:.0f} % of the area of the world, insides of obstacles incl" in found.summary
 
 
 def test_the_error_of_a_heading_that_counts_and_the_walls_are_told(tmp_path: Path) -> None:

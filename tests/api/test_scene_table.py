@@ -127,3 +127,40 @@ def test_a_passage_in_a_map_and_one_that_is_too_narrow(tmp_path: Path) -> None:
     picture.save(tmp_path / "door.png")
     assert "Narrowest passage on the way of 'robot_0': 1 m at (3" in lines(cells + robot, tmp_path)
     assert "passage" not in lines((cells + robot).replace("radius: 0.3", "radius: 0.6"), tmp_path)
+
+
+TALK = """\
+world: {width: 12, height: 12, zones: [{name: talk, circle: {center: [6, 6], radius: 1.6}}]}
+robot: {name: guest, kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [6, 1.2, 1.57],
+        waypoints: [[6, 10.8], [6, 1.2]], behavior: {name: follow, avoid: [talk]}}
+obstacle:
+  - {number: 3, shape: {name: circle, radius: 0.25}, state: [[6, 6.8], [5.31, 5.6], [6.69, 5.6]]}
+"""
+
+
+def test_no_passage_is_told_in_a_zone_that_the_robot_avoids(tmp_path: Path) -> None:
+    assert "passage" not in lines(TALK, tmp_path)
+    through = lines(TALK.replace(", avoid: [talk]", ""), tmp_path)
+    assert "Narrowest passage on the way of 'guest': 0.88 m at (6.00, 5.60)" in through.replace("0.89", "0.88")
+
+
+def test_a_zone_that_the_robot_avoids_is_a_side_of_the_passage_beside_it(tmp_path: Path) -> None:
+    wall = "  - {shape: {name: linestring, vertices: [[8.6, 0], [8.6, 12]]}, state: [0, 0, 0]}\n"
+    fence = "  - {shape: {name: linestring, vertices: [[0, 6], [5, 6]]}, state: [0, 0, 0]}\n"
+    (line,) = [line for line in lines(TALK + wall + fence, tmp_path).splitlines() if "passage" in line]
+    assert line.startswith("Narrowest passage on the way of 'guest': 1 m at (8.1")
+
+
+def test_the_passage_is_that_of_the_route_that_the_robot_plans(tmp_path: Path) -> None:
+    """The shortest way leads through the narrow door, the region `within` only through the wide one."""
+    inside = DOORS.replace(
+        "goal: [10, 6],\n     behavior: {name: dash}", "goal: [10, 2],\n     behavior: {name: follow}"
+    )
+    inside = inside.replace("length: 0.2, width: 4.55}, state: [6, 5.725]", "length: 0.2, width: 2}, state: [6, 4.45]")
+    inside += "  - {shape: {name: rectangle, length: 0.2, width: 1}, state: [6, 7.45]}\n"
+    by_name = {line.split("'")[1]: line for line in lines(inside, tmp_path).splitlines() if "passage" in line}
+    assert "0.9 m at (" in by_name["slim"]
+    upper = inside.replace("{name: follow}", "{name: follow, within: {polygon: [[0, 0], [4, 0], [4, 5], [8, 5], [8, 0],"
+                           " [12, 0], [12, 8], [0, 8]]}}")  # fmt: skip
+    by_name = {line.split("'")[1]: line for line in lines(upper, tmp_path).splitlines() if "passage" in line}
+    assert "1.5 m at (" in by_name["slim"]

@@ -87,6 +87,11 @@ async def test_templates_come_as_yaml_that_is_valid(empty: Path, name: str) -> N
     assert api.validate(text=text.split("```yaml\n")[1].split("```")[0]).valid
 
 
+async def test_no_outcome_is_promised_for_other_parameters(empty: Path) -> None:
+    text = await looked_up(empty, "u-trap", parameters={"behavior": "dash"})
+    assert "With the default parameters it ends in success; with behavior=dash it may end otherwise: run it." in text
+
+
 async def test_parameters_are_filled_in(empty: Path) -> None:
     text = await looked_up(empty, "circle-swap", parameters={"robots": 5, "kinematics": "omni"})
     assert "number: 5" in text

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 from pathlib import Path
 
 import pytest
@@ -202,3 +203,17 @@ async def test_a_step_beyond_the_end_and_a_moved_view_are_said(empty: Path) -> N
         text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": moved, "step": 900}))
     assert "beyond the end of the episode, which is step" in text
     assert "as plot.viewpoint centres the view" in text
+
+
+async def test_the_share_seen_says_of_what(empty: Path) -> None:
+    fog = ROOM.replace("height: 6}", "height: 6, fog_map: true}") + "    sensors: [{name: lidar2d, range_max: 2}]\n"
+    async with connected(empty) as client:
+        told = [
+            text_of(await client.call_tool("render_snapshot", {"scenario_yaml": fog, "step": step})) for step in (0, 5)
+        ]
+        ran = text_of(await client.call_tool("run_episode", {"scenario_yaml": fog}))
+        clear = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM}))
+    assert "; fog: 0 % of the area of the world seen, the rest is grey" in told[0]
+    assert re.search(r"; fog: [1-9]\d* % of the area of the world seen", told[1])
+    assert re.search(r"explored [1-9]\d* % of the area of the world, insides of obstacles included", ran)
+    assert "fog" not in clear

@@ -192,4 +192,8 @@ def test_names_of_obstacles_under_the_fog_are_hidden(tmp_path: Path) -> None:
     (robot,) = env.robot_list
     pointers = [mark for mark in scene.marks if mark.part == "arrow" and mark.object == robot.id]
     assert len(pointers) == 2  # one on the robot, one on its goal, whose heading counts
+    (goal,) = [mark for mark in scene.marks if mark.part == "goal" and mark.object == robot.id]
+    assert scene.fog is not None
+    assert goal.zorder > scene.fog.zorder
+    assert pointers[1].zorder > goal.zorder
     env.end(ending_time=0.0)

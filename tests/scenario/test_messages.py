@@ -22,11 +22,7 @@ from irsim.scenario.yaml.formatting import flow, number, quote_value
 
 BAD = sorted((Path(__file__).parent.parent / "bad").glob("*.yaml"))
 PACKAGE = Path(irsim.__file__).parent
-
-HEADING_COUNTS = (
-    "see arrive_mode: state, with which the heading counts at the goal; goal_threshold holds for metres and radians "
-    "together"
-)
+HEADING = "see arrive_mode: state: the heading counts, and goal_threshold holds for metres and radians together"
 
 
 def first(text: str) -> Diagnostic:
@@ -295,9 +291,8 @@ def test_diagnostics_are_data() -> None:
         ),
         ("robot: {x: 3, y: 4}\n", "it belongs in 'state', which is [x, y, theta]: state: [3, 4, 0]"),
         ("robot: {radius: 0.3}\n", "it belongs in 'shape': {name: circle, radius: 0.3}"),
-        ("robot: {goal_angle_threshold: 0.1}\n", HEADING_COUNTS),
-        ("robot: {heading_tolerance: 0.1}\n", HEADING_COUNTS),
-        ("robot: {yaw_goal_tolerance: 0.1}\n", HEADING_COUNTS),
+        ("robot: {goal_angle_threshold: 0.1}\n", HEADING),
+        ("robot: {yaw_goal_tolerance: 0.1}\n", HEADING),
         ("robot: {xy_goal_tolerance: 0.1}\n", "rename it to 'goal_threshold'"),
         ("robot: {vel_max: {linear: 1, angular: 2}}\n", "write the numbers alone, in a list: [1, 2]"),
     ],

@@ -130,8 +130,9 @@ OBJECTS: dict[str, Code] = {
     ),
     "narrow-passage": Code(
         "gap hardly wider than the robot",
-        "The widest path has a gap less than a quarter wider than the body (its largest inner disc). The robot can "
-        "pass it, but behaviors that keep a distance may refuse, and small deviations hit the side. It is a warning"
+        "The widest path has a gap less than a quarter wider than the body (its largest inner disc). The finding "
+        "gives the narrowest gaps on the way that the robot drives, like the table of a picture. The robot can "
+        "pass, but behaviors that keep a distance may refuse, and small deviations hit the side. It is a warning"
         " if a single robot under 'follow' does not get through because its planner's cells are too large. Example:"
         " a door of 0.65 m for a robot 0.6 m wide; 0.75 m or more is easier.",
     ),

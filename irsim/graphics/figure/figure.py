@@ -3,32 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import compress
 from typing import Any
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
-from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.text import Text
-from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
-from numpy.typing import NDArray
+from matplotlib.transforms import Affine2D, Bbox
 
-from irsim.common.arrays import Floats
 from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.background import TrackLayer
-from irsim.graphics.figure.brush import rgba
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.glyphs import Glyphs, QuickText
 from irsim.graphics.figure.grids import GridLayer
+from irsim.graphics.figure.labels import LabelLayer, printable
 from irsim.graphics.figure.layers import BeamLayer, FogLayer, MarkLayer, layer_key
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.figure.tracks import track_layers
-from irsim.graphics.scene.labels import bodies_by_size, free_places, leader
-from irsim.graphics.scene.scene import Bounds, GridImage, Label, Picture, Scene
+from irsim.graphics.scene.scene import GridImage, Picture, Scene
 from irsim.graphics.scene.tracks import Track
 
 __all__ = ["SceneFigure", "fitting_size", "inches"]
@@ -37,18 +30,8 @@ _TITLE_PAD_PT = 6.0
 _TITLE_SIZE_PT = 12.0
 MIN_TITLE_SIZE_PT = 5.0
 """A title that is too long for the figure is not made smaller than this [pt]."""
-_LABEL_MARGIN_PX = 4.0
-"""Distance that labels keep from the edge of the axes, and titles from the edge of the figure [px]."""
-_LABEL_ZORDER_STEP = 0.01
-"""Added to the zorder of labels, so that they cover marks of the same zorder."""
-MAX_CACHED_EXTENTS = 2000
-"""Number of label sizes after which the cache of label sizes is emptied."""
-_HALO_WIDTH_PT = 2.0
-_NAMING_PARTS = ("name", "goal")
-"""Labels that stand beside the thing that they name, with a line to it if they have no room there."""
-_LEADER_COLOR = "#555555"
-_LEADER_WIDTH_PT = 0.7
-_LEADER_ZORDER = 9.5
+_TITLE_MARGIN_PX = 4.0
+"""Distance that titles keep from the edge of the figure [px]."""
 _ROUNDING_RESERVE_PX = 0.01
 """Added to the size of a figure, because Matplotlib truncates a product such as 599.9999 px to 599 px."""
 _PADDING_PT = 8.0
@@ -96,9 +79,6 @@ class SceneFigure:
         self.axis, self.tight = axis, tight
         self._images = pictures or Pictures()
         self._halo = halo
-        self._effects: list[AbstractPathEffect] = (
-            [withStroke(linewidth=_HALO_WIDTH_PT, foreground="white")] if halo else []
-        )
         self.ax: Axes = figure.add_subplot()
         self.compositor = Compositor(figure, self.ax)
         self._glyphs = Glyphs()
@@ -110,9 +90,7 @@ class SceneFigure:
         self._beams: dict[tuple[int, int], BeamLayer] = {}
         self._fog: FogLayer | None = None
         self._grids: dict[int, GridLayer] = {}
-        self._labels: dict[tuple[int, str], Text] = {}
-        self._leaders: LineCollection | None = None
-        self._extents: dict[tuple[str, float, float], Bounds] = {}
+        self._labels = LabelLayer(self.figure, self.ax, self._glyphs, halo=self._halo)
         self._pictures: dict[int, AxesImage] = {}
         self._extent: tuple[float, float, float, float] | None = None
         self._title: str | None = None
@@ -180,7 +158,7 @@ class SceneFigure:
             self._fog.show(scene.fog)
         self._show_grids(scene.grids)
         self._show_pictures(scene.pictures)
-        self._show_labels(scene)
+        self._labels.show(scene)
         if not self._settled:
             self._settled = True
             self.compositor.settle()
@@ -241,7 +219,7 @@ class SceneFigure:
             return False
         longer = self._title is None or len(title) > len(self._title)
         self._title = title
-        self._title_artist.set_text(_printable(title))
+        self._title_artist.set_text(printable(title))
         return longer
 
     def _fit_title(self) -> None:
@@ -249,7 +227,7 @@ class SceneFigure:
         artist, box, width = self._title_artist, self.ax.bbox, self.figure.bbox.width
         artist.set_fontsize(_TITLE_SIZE_PT)
         middle = (box.x0 + box.x1) / 2
-        available = 2 * min(middle, width - middle) - 2 * _LABEL_MARGIN_PX
+        available = 2 * min(middle, width - middle) - 2 * _TITLE_MARGIN_PX
         needed = artist.get_window_extent(self._renderer()).width
         if needed > available:
             artist.set_fontsize(max(MIN_TITLE_SIZE_PT, _TITLE_SIZE_PT * available / needed))
@@ -287,104 +265,6 @@ class SceneFigure:
             artist.set_alpha(picture.alpha)
             artist.set_zorder(picture.zorder)
             artist.set_clip_path(self.ax.patch)
-
-    def _show_labels(self, scene: Scene) -> None:
-        labels = scene.labels
-        if not labels and not self._labels:
-            return
-        shown: dict[tuple[int, str], tuple[Label, Text]] = {}
-        view, data = self.ax.bbox, self.ax.transData
-        anchors = data.transform([label.anchor for label in labels]) if labels else np.empty((0, 2))
-        inside: NDArray[np.bool_] = (anchors >= (view.x0, view.y0)) & (anchors <= (view.x1, view.y1))
-        seen: NDArray[np.bool_] = np.all(inside, axis=1)
-        for label in compress(labels, seen.tolist()):
-            key = label.object, label.part
-            text = self._labels.get(key)
-            if text is None:
-                text = self._labels[key] = QuickText(self._glyphs, parse_math=False, clip_on=False)
-                text.set_path_effects(self._effects)
-                self.ax.add_artist(text)
-            shown[key] = label, text
-            text.set_visible(True)
-            text.set_text(_printable(label.text))
-            text.set_position((label.x, label.y))
-            text.set_color(rgba(label.color))
-            text.set_fontsize(label.size)
-            text.set_alpha(label.alpha)
-            text.set_zorder(label.zorder + _LABEL_ZORDER_STEP)
-        for key, text in self._labels.items():
-            if key not in shown:
-                text.set_visible(False)
-        if shown:
-            self._move_labels(list(shown.values()), anchors[seen], scene)
-
-    def _move_labels(self, shown: list[tuple[Label, Text]], anchors: Floats, scene: Scene) -> None:
-        """Shift labels that the edge of the axes would cut or that would cover another label.
-
-        Goal labels give way to all others. With halo, a label that stands away from its thing gets a line to it.
-        """
-        order = sorted(range(len(shown)), key=lambda i: shown[i][0].part == "goal")
-        labels, texts = [shown[i][0] for i in order], [shown[i][1] for i in order]
-        anchors = anchors[order]
-        view, data = self.ax.bbox, self.ax.transData
-        starts = data.transform([text.get_position() for text in texts])
-        boxes = np.array([self._extent_of(text) for text in texts]) + np.concatenate([starts, starts], axis=1)
-        margin = _LABEL_MARGIN_PX * np.array([1.0, 1.0, -1.0, -1.0])
-        names = np.array([self._halo and label.part in _NAMING_PARTS for label in labels])
-        lifts = np.zeros_like(starts)  # the descenders of a name stand above its body, too
-        lifts[names, 1] = np.maximum(starts[names, 1] - boxes[names, 1], 0.0)
-        boxes += np.concatenate([lifts, lifts], axis=1)
-        half = np.maximum(np.abs(boxes[:, :2] - anchors), 1.0)
-        things = np.concatenate([anchors - half, anchors + half], axis=1)
-
-        def bodies() -> tuple[Floats, Floats]:
-            small, walls = bodies_by_size(scene)
-            return _in_pixels(small, data), _in_pixels(walls, data)
-
-        moves = free_places(boxes, things, np.array(view.extents) + margin, bodies, clear=self._halo)
-        moved = data.inverted().transform(starts + lifts + moves)
-        for text, move, (x, y) in zip(texts, (lifts + moves).tolist(), moved.tolist(), strict=True):
-            if move != [0.0, 0.0]:
-                text.set_position((x, y))
-        if self._halo:
-            placed = boxes + np.concatenate([moves, moves], axis=1)
-            self._show_leaders([leader(placed[i], things[i]) for i in np.flatnonzero(names)])
-
-    def _show_leaders(self, lines: list[Floats | None]) -> None:
-        """Draw thin lines [px] from labels to the things that they name."""
-        if self._leaders is None:
-            self._leaders = LineCollection(
-                [],
-                colors=_LEADER_COLOR,
-                linewidths=_LEADER_WIDTH_PT,
-                zorder=_LEADER_ZORDER,
-                transform=IdentityTransform(),
-            )
-            self.ax.add_collection(self._leaders, autolim=False)
-        self._leaders.set_segments([line for line in lines if line is not None])
-
-    def _extent_of(self, text: Text) -> Bounds:
-        """Return left, bottom, right and top of a label relative to its position [px]."""
-        key = text.get_text(), float(text.get_fontsize()), float(self.figure.dpi)
-        extent = self._extents.get(key)
-        if extent is None:
-            if len(self._extents) >= MAX_CACHED_EXTENTS:
-                self._extents.clear()
-            box = text.get_window_extent(self._renderer())
-            x, y = self.ax.transData.transform(text.get_position())
-            extent = self._extents[key] = float(box.x0 - x), float(box.y0 - y), float(box.x1 - x), float(box.y1 - y)
-        return extent
-
-
-def _in_pixels(boxes: list[Bounds], data: Transform) -> Floats:
-    """Transform (K, 4) boxes in the world to pixels."""
-    corners = np.array(boxes, dtype=np.float64).reshape(-1, 2)
-    return np.asarray(data.transform(corners), dtype=np.float64).reshape(-1, 4)
-
-
-def _printable(text: str) -> str:
-    """Replace control characters, which fonts lack, by spaces."""
-    return "".join(character if character.isprintable() or character == "\n" else " " for character in text)
 
 
 def inches(size: tuple[float, float], dpi: float) -> tuple[float, float]:

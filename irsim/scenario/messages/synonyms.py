@@ -57,10 +57,7 @@ def _of_entry(key: str, value: Any, parent: Mapping[Any, Any]) -> str | None:
         pose = _pose(key, value, parent)
         return f"it belongs in 'state', which is [x, y, theta]: {pose}"
     if key in _HEADING_TOLERANCES:
-        return (
-            "see arrive_mode: state, with which the heading counts at the goal; goal_threshold holds for metres and "
-            "radians together"
-        )
+        return "see arrive_mode: state: the heading counts, and goal_threshold holds for metres and radians together"
     if key in ("radius", "diameter"):
         return f"it belongs in 'shape': {{name: circle, radius: {_half(value) if key == 'diameter' else _text(value)}}}"
     if key in ("length", "width"):

@@ -16,20 +16,17 @@ from irsim.validation.feasibility.clearance_grid import (
     Point,
     grid_of,
     narrowest_gap,
-    reachable_place,
     with_gaps_closed,
 )
 from irsim.validation.feasibility.gaps import find_gaps
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.passages import Passages, passages_of
-from irsim.validation.feasibility.planner_check import missed_way
+from irsim.validation.feasibility.path_reports import EASE, add_unreachable, report_narrow, report_no_path
 from irsim.validation.feasibility.scenes import Scene
 from irsim.validation.feasibility.tally import Tally
 
 __all__ = ["Leg", "check"]
 
-_EASE = 1.25
-"""A gap narrower than this many times the width of the robot is reported as narrow."""
 _MAX_GAPS = 4
 """Number of gaps that are measured between the same obstacles."""
 _MAX_CLOSED_GAPS = 2
@@ -92,7 +89,7 @@ def check(
     kept, queries = scene.owner.kept, 0
     wanderers: set[object] = set()
     coarse = [] if grid is None else [m for m in movers if grid.cell > _COARSE_CELL * m.radius]
-    passages = passages_of(context, scene, coarse, blocked_goals, ease=_EASE) if coarse else None
+    passages = passages_of(context, scene, coarse, blocked_goals, ease=EASE) if coarse else None
     blind = {m.record.id for m in coarse if grid is not None and grid.cell > _BLIND_CELL * m.radius}
     by_passages = {m.record.id for m in coarse} if passages is not None else set()
     for mover in sorted(
@@ -139,7 +136,7 @@ def check(
                 measured, found = _narrowest_on_path(grid, scene, mover, start, arrival)
                 kept["gaps"] = kept.get("gaps", 0) + measured
             if found is not None and found.width + found.slack < 2 * mover.radius:
-                _report_no_path(context, grid, scene, movers, mover, start, index, found, tally)
+                report_no_path(context, grid, scene, movers, mover, start, index, found, tally)
                 break
             if grid.clearance.widest(start, to, mover.reach)[0] < least:
                 ends = _open_ends(grid, mover, start, arrival)
@@ -147,10 +144,10 @@ def check(
                 if key not in kept:
                     kept[key] = narrowest_gap(grid, *ends)
                 found = kept[key]
-                _report_no_path(context, grid, scene, movers, mover, start, index, found, tally)
+                report_no_path(context, grid, scene, movers, mover, start, index, found, tally)
                 break
             if found is not None and mover.record.role == "robot":
-                _report_narrow(context, mover, index, found, scene, tally)
+                report_narrow(context, mover, index, found, scene, tally, grid, start)
             made.append(Leg(mover, start, to, _is_line_blocked(grid, mover, start, to), index))
             start = grid.clearance.climb(arrival, mover.radius)
     return legs
@@ -190,14 +187,14 @@ def _narrowest_on_path(
         width = grid.clearance.widest(start_top, goal_top, 0.0)[0]
         if closed and width < mover.radius - grid.half:
             return len(closed), max(closed, key=lambda g: g.width)
-        if not math.isfinite(width) or 2 * width >= _EASE * need:
+        if not math.isfinite(width) or 2 * width >= EASE * need:
             return len(closed), None
         key = f"gap {need} {round(width, 9)} {len(closed)}"
         if key not in scene.owner.kept:
             scene.owner.kept[key] = narrowest_gap(grid, start_top, goal_top)
         found: Gap | None = scene.owner.kept[key]
         if found is None or found.width + found.slack >= need:
-            narrow = found is not None and found.width < _EASE * need
+            narrow = found is not None and found.width < EASE * need
             return len(closed) + 1, found if narrow else None
         closed.append(found)
         grid = with_gaps_closed(grid, closed)
@@ -232,10 +229,10 @@ def _check_passages(
         if context.scenario.world.boundary == "none":
             inner = find_gaps(scene.owner, most=2 * mover.radius, open_edge=False)
             outside = inner is not None and inner.openings([(start, to)])[0].width >= 2 * mover.radius
-        _add_unreachable(context, scene, mover, index, found, None, outside, tally)
+        add_unreachable(context, scene, mover, index, found, None, outside, tally)
         return False
     if found is not None and mover.record.role == "robot":
-        _report_narrow(context, mover, index, found, scene, tally)
+        report_narrow(context, mover, index, found, scene, tally)
     return True
 
 
@@ -267,105 +264,6 @@ def _report_unchecked(mover: Mover, index: int, grid: ClearanceGrid, scene: Scen
         scene.seed,
         serious=False,
     )
-
-
-def _report_no_path(
-    context: Context,
-    grid: ClearanceGrid,
-    scene: Scene,
-    movers: list[Mover],
-    mover: Mover,
-    start: Point,
-    index: int,
-    found: Gap | None,
-    tally: Tally,
-) -> None:
-    """Report a goal to which no path leads over cells that are fine enough."""
-    x, y, *_ = scene.goals[mover.record.id][index]
-    need, outside, place = 2 * mover.radius, False, None
-    if not scene.rough:
-        place = reachable_place(grid, (x, y), mover.radius, start, max(need / 2, _EASE * need / 2 - grid.half))
-    if context.scenario.world.boundary == "none":
-        wider = grid_of(scene, movers, 4 * max(m.around for m in movers) + 2 * grid.cell)
-        outside = wider.clearance.widest(start, (x, y), mover.reach)[0] >= mover.radius - wider.half
-    _add_unreachable(context, scene, mover, index, found, place, outside, tally)
-
-
-def _add_unreachable(
-    context: Context,
-    scene: Scene,
-    mover: Mover,
-    index: int,
-    found: Gap | None,
-    place: Point | None,
-    outside: bool,
-    tally: Tally,
-) -> None:
-    """Add the finding ``goal-unreachable``.
-
-    Args:
-        context: The scenario.
-        scene: The initial poses and goals.
-        mover: The mover.
-        index: Index of the goal.
-        found: The narrowest gap on the widest path, None if there is no opening at all.
-        place: Another goal that can be reached, if one is known [m].
-        outside: Whether a path leads outside the world, over its open edge.
-        tally: Collects the finding.
-    """
-    name, goals = mover.record.name, scene.goals[mover.record.id]
-    goal, need = goals[index], 2 * mover.radius
-    what = f"waypoint {index + 1} at" if len(goals) > 1 else "its goal"
-    if found is None or found.width <= 0:
-        why = "obstacles separate them completely, without a gap even for a thinner robot"
-        fix = "an opening in the obstacles between them"
-    else:
-        x, y = found.place
-        wide = (
-            f"a gap of {metres(found.width, unlike=need)} at ({x:.2f}, {y:.2f})"
-            if found.width < need
-            else "too narrow a gap"
-        )
-        why = f"the widest path has {wide}, and the robot needs {'' if mover.is_disc else 'at least '}{metres(need)}"
-        fix = f"a gap of more than {metres(need)} ({metres(_EASE * need)} to pass with ease), or a narrower robot"
-    if hasattr(context.scenario.world.obstacle_map, "fill"):
-        fix += ", or a map with another 'seed' or a lower 'fill'"
-    if place is not None:
-        fix += f", or another goal: it can get to ({place[0]:.2f}, {place[1]:.2f})"
-    if outside:
-        why += ". A path around the obstacles exists only outside the world, whose edge is open"
-    tally.add(
-        "goal-unreachable",
-        mover.goal_path(index),
-        mover.record,
-        f"'{name}' cannot get to {what} ({goal[0]:g}, {goal[1]:g}): {why}",
-        fix,
-        scene.seed,
-        serious=mover.record.role == "robot",
-    )
-
-
-def _report_narrow(context: Context, mover: Mover, index: int, found: Gap, scene: Scene, tally: Tally) -> None:
-    need, name = 2 * mover.radius, mover.record.name
-    x, y = found.place
-    what = (
-        f"the path of '{name}' leads through a gap of {metres(found.width)} at ({x:.2f}, {y:.2f}), which leaves "
-        f"{metres(max(0.0, found.width - need) / 2)} on each side of its {metres(need)}"
-    )
-    fix = f"a gap of {metres(_EASE * need)} or more is easier to pass"
-    missed = missed_way(context, scene, mover, index)
-    if missed is not None:
-        cells = "" if missed.cell is None else f" with cells of {metres(missed.cell)}"
-        planner = f"its planner '{missed.planner}'{cells}"
-        what += (
-            f". Even alone it gets stuck on the path of {planner}"
-            if missed.found
-            else f". It does not move, because {planner} does not find that path"
-        )
-        fix = f"a gap of {metres(_EASE * need)} or more"
-        if missed.finer is not None:
-            fix = f"planner: {{name: astar, resolution: {missed.finer:g}}} in its behavior, or {fix}"
-    tally.add("narrow-passage", mover.goal_path(index), mover.record, what, fix, scene.seed, serious=missed is not None)
 
 
 def _is_line_blocked(grid: ClearanceGrid, mover: Mover, start: Point, goal: Point) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from mcp.server.mcpserver import Context
@@ -33,6 +35,8 @@ _OVERLAYS = (
 )
 _MAX_NAMED = 10
 """Number of robots, plans and moving obstacles that the text lists."""
+_CORNER_M = 0.25
+"""A margin below which the text says that a path that no behavior has planned keeps close to corners [m]."""
 _MAX_FINDINGS = 20
 """Number of findings that the text lists."""
 
@@ -118,16 +122,20 @@ def _text(answer: dict[str, Any], run_id: str | None, given: str | None, most: i
             "policies=[...], or drive it by a program."
         )
     head, *findings, advice = text_of(report).splitlines()
-    return "\n".join([_line(answer["scene"], run_id, brief=True), head, *findings, *table, advice])
+    line = _line(answer["scene"], run_id, brief=True, passages=answer["table"]["passages"])
+    return "\n".join([line, head, *findings, *table, advice])
 
 
-def _line(scene: dict[str, Any], run_id: str | None, brief: bool = False) -> str:
+def _line(
+    scene: dict[str, Any], run_id: str | None, brief: bool = False, passages: Sequence[dict[str, Any]] = ()
+) -> str:
     """Describe a picture.
 
     Args:
         scene: The snapshot.
         run_id: The run that it shows; None for a scenario.
         brief: Leave out places and warnings, which the other lines have.
+        passages: Narrowest passages on the ways of robots, which the other lines tell.
     """
     left, right, low, top = scene["extent"]
     moments = f"steps {', '.join(map(str, scene['moments']))}, the last: " if scene["moments"] else ""
@@ -139,6 +147,9 @@ def _line(scene: dict[str, Any], run_id: str | None, brief: bool = False) -> str
     ]
     if scene["ended"] is not None:
         parts.append(f"beyond the end of the episode, which is step {scene['ended']}")
+    if scene["explored"] is not None:
+        seen = f"{100 * scene['explored']:.0f} % of the area of the world seen"
+        parts.append(f"fog: {seen}, the rest is grey, with goals drawn above it")
     if scene["view"] is not None:
         x0, x1, y0, y1 = scene["view"]
         region = [left, low, right, top]
@@ -148,7 +159,7 @@ def _line(scene: dict[str, Any], run_id: str | None, brief: bool = False) -> str
         )
     robots, moving = ([], []) if brief else (scene["robots"], scene["moving"])
     parts += [_robot(robot) for robot in robots[:_MAX_NAMED]]
-    parts += [_plan(plan) for plan in scene["plans"][:_MAX_NAMED]]
+    parts += [_plan(plan, passages) for plan in scene["plans"][:_MAX_NAMED]]
     more = len(robots) - _MAX_NAMED
     if more > 0:
         parts.append(f"{more} more robots")
@@ -175,20 +186,34 @@ def _moving(item: dict[str, Any]) -> str:
     return f"{clean(item['name'])!r} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad{moving}"
 
 
-def _plan(plan: dict[str, Any]) -> str:
+def _plan(plan: dict[str, Any], passages: Sequence[dict[str, Any]]) -> str:
     lost, margin = plan["lost"], plan["margin"]
     if lost is not None:
         return f"no path for {clean(plan['name'])!r} to ({lost[0]:.2f}, {lost[1]:.2f})"
     tight = ""
     if margin is not None:
-        to, (x, y) = f" to {clean(plan['nearest'])!r}", plan["tightest"]
+        to, (x, y) = f" to {clean(plan['nearest_called'])}", plan["tightest"]
         least = (
             f"overlaps{to.removeprefix(' to')} by {metres(-margin)}"
             if margin < 0
             else f"least margin {metres(margin)}{to}"
         )
-        tight = f", {least} at ({x:.2f}, {y:.2f})"
+        corner = (
+            " (a shortest path, which touches corners or nearly so)"
+            if not plan["own"] and 0 <= margin < _CORNER_M
+            else ""
+        )
+        tight = f", {least} at ({x:.2f}, {y:.2f}){_passage(plan, passages)}{corner}"
     return f"{'its own plan' if plan['own'] else 'a path'} for {clean(plan['name'])!r}: {metres(plan['length'])}{tight}"
+
+
+def _passage(plan: dict[str, Any], passages: Sequence[dict[str, Any]]) -> str:
+    """The passage of the table in which a plan is tightest; empty if it is in none."""
+    for passage in passages:
+        near = [place for place in passage["places"] if math.dist(place, plan["tightest"]) < passage["gap"]]
+        if plan["name"] in passage["names"] and near:
+            return f", in the passage of {metres(passage['gap'])} at ({near[0][0]:.2f}, {near[0][1]:.2f})"
+    return ""
 
 
 def _robot(robot: dict[str, Any]) -> str:

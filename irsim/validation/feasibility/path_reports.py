@@ -1,0 +1,192 @@
+"""Findings about paths to goals: none that is wide enough, or one with a narrow gap."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import irsim._core as core
+from irsim.common.text import metres
+from irsim.scenario.checks import Context
+from irsim.validation.feasibility.clearance_grid import ClearanceGrid, Gap, Point, grid_of, reachable_place
+from irsim.validation.feasibility.movers import Mover
+from irsim.validation.feasibility.planner_check import missed_way
+from irsim.validation.feasibility.scenes import FAR, Scene
+from irsim.validation.feasibility.tally import Tally
+from irsim.validation.scene_passages import Places, passages_of_legs
+
+__all__ = ["EASE", "add_unreachable", "report_narrow", "report_no_path"]
+
+EASE = 1.25
+"""A gap narrower than this many times the width of the robot is reported as narrow."""
+_MIN_SHARE = 0.9
+"""Narrowest gap on the way that a robot drives, as a share of its width, that is reported instead of the widest way."""
+_MAX_DRIVEN = 4
+"""Number of robots of a scene whose ways are planned as they drive them."""
+_MAX_PLACES = 3
+"""Number of equally narrow gaps whose places are named."""
+_BESIDE_M = 0.02
+"""A gap is one of the map if the map is at most this far from its sides [m]."""
+
+
+def report_no_path(
+    context: Context,
+    grid: ClearanceGrid,
+    scene: Scene,
+    movers: list[Mover],
+    mover: Mover,
+    start: Point,
+    index: int,
+    found: Gap | None,
+    tally: Tally,
+) -> None:
+    """Report a goal to which no path leads over cells that are fine enough."""
+    x, y, *_ = scene.goals[mover.record.id][index]
+    need, outside, place = 2 * mover.radius, False, None
+    if not scene.rough:
+        place = reachable_place(grid, (x, y), mover.radius, start, max(need / 2, EASE * need / 2 - grid.half))
+    if context.scenario.world.boundary == "none":
+        wider = grid_of(scene, movers, 4 * max(m.around for m in movers) + 2 * grid.cell)
+        outside = wider.clearance.widest(start, (x, y), mover.reach)[0] >= mover.radius - wider.half
+    add_unreachable(context, scene, mover, index, found, place, outside, tally)
+
+
+def add_unreachable(
+    context: Context,
+    scene: Scene,
+    mover: Mover,
+    index: int,
+    found: Gap | None,
+    place: Point | None,
+    outside: bool,
+    tally: Tally,
+) -> None:
+    """Add the finding ``goal-unreachable``.
+
+    Args:
+        context: The scenario.
+        scene: The initial poses and goals.
+        mover: The mover.
+        index: Index of the goal.
+        found: The narrowest gap on the widest path, None if there is no opening at all.
+        place: Another goal that can be reached, if one is known [m].
+        outside: Whether a path leads outside the world, over its open edge.
+        tally: Collects the finding.
+    """
+    name, goals = mover.record.name, scene.goals[mover.record.id]
+    goal, need = goals[index], 2 * mover.radius
+    what = f"waypoint {index + 1} at" if len(goals) > 1 else "its goal"
+    fixes = [] if place is None else [f"another goal: it can get to ({place[0]:.2f}, {place[1]:.2f})"]
+    if found is None or found.width <= 0:
+        why = "obstacles separate them completely, without a gap even for a thinner robot"
+        fixes = ["an opening in the obstacles between them", *fixes]
+    else:
+        x, y = found.place
+        wide = (
+            f"a gap of {metres(found.width, unlike=need)} at ({x:.2f}, {y:.2f})"
+            if found.width < need
+            else "too narrow a gap"
+        )
+        why = f"the widest path has {wide}, and the robot needs {'' if mover.is_disc else 'at least '}{metres(need)}"
+        gap = f"a gap of more than {metres(need)} ({metres(EASE * need)} to pass with ease)"
+        fixes = [*fixes, "a narrower robot"] if _is_drawn(context, scene, found) else [gap, "a narrower robot", *fixes]
+    if hasattr(context.scenario.world.obstacle_map, "fill"):
+        fixes.append("a map with another 'seed' or a lower 'fill'")
+    if outside:
+        why += ". A path around the obstacles exists only outside the world, whose edge is open"
+    tally.add(
+        "goal-unreachable",
+        mover.goal_path(index),
+        mover.record,
+        f"'{name}' cannot get to {what} ({goal[0]:g}, {goal[1]:g}): {why}",
+        ", or ".join(fixes),
+        scene.seed,
+        serious=mover.record.role == "robot",
+    )
+
+
+def report_narrow(
+    context: Context,
+    mover: Mover,
+    index: int,
+    found: Gap,
+    scene: Scene,
+    tally: Tally,
+    grid: ClearanceGrid | None = None,
+    start: Point | None = None,
+) -> None:
+    """Report a gap that is hardly wider than the robot, where the robot drives.
+
+    Args:
+        context: The scenario.
+        mover: The robot.
+        index: Index of the goal.
+        found: The narrowest gap on the widest path.
+        scene: The initial poses and goals.
+        tally: Collects the finding.
+        grid: Distances to obstacles, if cells are fine enough to look for another goal.
+        start: Where the leg begins [m].
+    """
+    need, name = 2 * mover.radius, mover.record.name
+    width, places = _driven_gaps(context, scene, mover, index, found)
+    at = " and ".join(f"({x:.2f}, {y:.2f})" for x, y in places[:_MAX_PLACES])
+    gaps = "a gap" if len(places) == 1 else f"{len(places)} gaps"
+    what = (
+        f"the path of '{name}' leads through {gaps} of {metres(width)} at {at}, which leave{'s' * (len(places) == 1)} "
+        f"{metres(max(0.0, width - need) / 2)} on each side of its {metres(need)}"
+    )
+    drawn = _is_drawn(context, scene, Gap(width, places[0], 0.0))
+    wider = f"a gap of {metres(EASE * need)} or more"
+    other = _other_goal(scene, mover, index, grid, start) if drawn else wider
+    fix = other if drawn else f"{wider} is easier to pass"
+    missed = missed_way(context, scene, mover, index)
+    if missed is not None:
+        cells = "" if missed.cell is None else f" with cells of {metres(missed.cell)}"
+        planner = f"its planner '{missed.planner}'{cells}"
+        what += (
+            f". Even alone it gets stuck on the path of {planner}"
+            if missed.found
+            else f". It does not move, because {planner} does not find that path"
+        )
+        fix = other
+        if missed.finer is not None:
+            fix = f"planner: {{name: astar, resolution: {missed.finer:g}}} in its behavior, or {fix}"
+    tally.add("narrow-passage", mover.goal_path(index), mover.record, what, fix, scene.seed, serious=missed is not None)
+
+
+def _driven_gaps(
+    context: Context, scene: Scene, mover: Mover, index: int, found: Gap
+) -> tuple[float, list[tuple[float, float]]]:
+    """Width and places of the narrowest gaps on the way that a robot drives, as the table of a scenario tells them.
+
+    If that way was not measured, it is the gap on the widest way.
+    """
+    kept: dict[str, Any] = scene.owner.kept
+    key = f"driven {scene.seed} {mover.record.id}"
+    if key not in kept and kept.get("driven", 0) < _MAX_DRIVEN:
+        kept["driven"] = kept.get("driven", 0) + 1
+        places = Places(scene.seed, scene.pose, scene.goals, scene.owner.things)
+        kept[key] = passages_of_legs(context.resolved, places, mover.record.id)
+    own = kept.get(key, {}).get((mover.record.id, index), [])
+    width = min((gap for gap, _ in own), default=found.width)
+    if not own or not _MIN_SHARE * 2 * mover.radius <= width < EASE * 2 * mover.radius:
+        return found.width, [found.place]
+    return width, [place for _, place in own]
+
+
+def _is_drawn(context: Context, scene: Scene, gap: Gap) -> bool:
+    """Whether a gap is one of a map that is drawn by a seed, whose gaps nobody can widen one by one."""
+    if not hasattr(context.scenario.world.obstacle_map, "fill"):
+        return False
+    maps = [thing for thing in scene.owner.things if any(isinstance(part, core.GridCells) for part in thing[0])]
+    disc = core.Circle(radius=gap.width / 2 + gap.slack + _BESIDE_M, center=[0, 0])
+    return bool(maps) and core.Terrain(FAR, maps).collides([disc], (*gap.place, 0.0))
+
+
+def _other_goal(scene: Scene, mover: Mover, index: int, grid: ClearanceGrid | None, start: Point | None) -> str:
+    """Another goal as advice, if possible one to which a wider path leads."""
+    place = None
+    if grid is not None and start is not None and not scene.rough:
+        x, y, *_ = scene.goals[mover.record.id][index]
+        place = reachable_place(grid, (x, y), mover.radius, start, EASE * mover.radius)
+    where = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is reached without such a gap"
+    return f"another goal{where}, or a narrower robot, or a map with another 'seed' or a lower 'fill'"
