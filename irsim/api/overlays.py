@@ -148,12 +148,16 @@ def _routes(env: Env) -> dict[int, list[Floats | None]]:
     ways = {
         view.id: [goal.tolist() for goal in remaining_goals(view)]
         for view in env.robot_list
-        if view.id in following and view.goal is not None and not view.arrive
+        if view.id in following and view.goal is not None and not view.arrive and env.simulation.appeared[view.row] >= 0
     }
     if not ways:
         return {}
     state, rows = env.simulation.state, {view.id: view.row for view in env.objects}
-    poses = {key: state.pose[row].tolist() for key, row in rows.items()}
+    appeared = env.simulation.appeared
+    poses = {
+        key: (state.pose[row] if appeared[row] >= 0 else state.initial_state(row)[:3]).tolist()
+        for key, row in rows.items()
+    }
     if int(env.simulation.count[0]) == 0:
         return planned_routes(env.scenario, env.seed, poses, ways)
     now: dict[int, list[Floats | None]] = {key: [state.route(rows[key])] for key in ways}

@@ -76,7 +76,7 @@ class PlannedPath:
 def plan_paths(
     simulation: Simulation, world: int = 0, routes: Mapping[int, Sequence[Floats | None]] | None = None
 ) -> list[PlannedPath]:
-    """Plan the paths of the robots that have not arrived; after `MAX_LEGS` legs the remaining robots are skipped.
+    """Plan the paths of the robots that are there and have not arrived, until there are `MAX_LEGS` legs.
 
     Args:
         simulation: The simulation, at its present state.
@@ -87,8 +87,8 @@ def plan_paths(
     legs_left, geodesics = MAX_LEGS, Geodesics(simulation, world)
     spaces: dict[float, FreeSpace] = {}
     found: list[PlannedPath] = []
-    for view in views(simulation, world):
-        if view.role != "robot" or view.goal is None or view.arrive or legs_left <= 0:
+    for view in _robots(simulation, world):
+        if view.goal is None or view.arrive or legs_left <= 0:
             continue
         inner = max(inscribed_radius(simulation, view.row), MIN_RADIUS_M)
         if inner not in spaces:
@@ -208,10 +208,15 @@ def remaining_goals(view: ObjectView) -> list[Floats]:
     return [present] if index is None else goals[index:]
 
 
+def _robots(simulation: Simulation, world: int) -> list[ObjectView]:
+    """Return the robots that are in the world; those with an ``appear_time`` are not there before."""
+    return [view for view in views(simulation, world) if view.role == "robot" and simulation.appeared[view.row] >= 0]
+
+
 def _free_space(simulation: Simulation, world: int, radius: float) -> FreeSpace:
     """Return the free space of the world, enlarged to contain all robots and their goals."""
     x0, y0, x1, y1 = simulation.scenario.world.bounds
-    robots = [view for view in views(simulation, world) if view.role == "robot"]
+    robots = _robots(simulation, world)
     positions = [view.state[:2, 0] for view in robots] + [
         goal for view in robots if view.goal is not None for goal in remaining_goals(view)
     ]

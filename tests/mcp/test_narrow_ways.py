@@ -89,3 +89,10 @@ async def test_plans_are_those_that_follow_drives_to_every_goal(empty: Path) -> 
     assert "a path for 'dasher': " in other
     assert "to 'box' at (" in other
     assert "(a shortest path, which touches corners or nearly so)" in other
+
+
+async def test_a_robot_that_comes_later_has_no_plan_before(empty: Path) -> None:
+    late = CORNER.replace("behavior: {name: orca}", "appear_time: 0.5, behavior: {name: follow}")
+    told = [(await looked(empty, late, step=step))["first"] for step in (0, 2, 10)]
+    assert ["its own plan for 'dasher'" in line for line in told] == [False, False, True]
+    assert all("its own plan for 'rover'" in line for line in told)
