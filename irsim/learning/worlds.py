@@ -97,7 +97,7 @@ class Worlds:
         self.n = n
         first = self.task.seeds.train if seed is None else seed
         seeds = [first + i for i in range(n)]
-        self._batch = Batch(self.scenario, seeds, threads)
+        self._batch = Batch(self.scenario, seeds, threads, crowded=True)  # reset() below skips such scenes
         self._simulation = simulation = self._batch.simulation
         self._threads = threads
         team = team_of(self.task, self.scenario)
