@@ -14,8 +14,12 @@ constexpr double kWallReach = 5.0;   // distance within which walls act, in unit
 constexpr double kSideways = 0.2;    // largest push of walls across a route, as a share of the pull along it
 constexpr double kTolerance = 0.02;  // smaller heading errors are not corrected [rad]
 
-/// Force of another disc: a braking part against the interaction vector and a sideways part.
-Vec2 social_force(const SfmOptions& o, const Ego& ego, const Disc& other) {
+/// Force of another disc: a braking part against the interaction vector and a sideways part. Seen from the other, all
+/// vectors have the opposite signs and all numbers are the same. `mutual` becomes true if the opposite of the force is
+/// thus what the ego exerts on the other, to the last bit: the angle must not be 0 or half a turn, where the sign of a
+/// zero would count.
+Vec2 social_force(const SfmOptions& o, const Ego& ego, const Disc& other, bool& mutual) {
+  mutual = false;
   const Vec2 way = other.centre - ego.position;
   const double distance = norm(way);
   if (distance < kSamePlace) return {};
@@ -25,13 +29,44 @@ Vec2 social_force(const SfmOptions& o, const Ego& ego, const Disc& other) {
   if (!(length > 0.0)) return {};
   const Vec2 along = interaction * (1.0 / length);
   const double reach = o.gamma * length;
-  const double angle = std::atan2(cross(along, towards), dot(along, towards));
+  const double sine = cross(along, towards);
+  mutual = sine > 0.0 || sine < 0.0;
+  const double angle = std::atan2(sine, dot(along, towards));
   const double gap = std::max(distance - 2.0 * o.safety_radius, 0.0);
   const double braking = o.n_velocity * reach * angle, turning = o.n_angular * reach * angle;
   const double sign = angle > kStraight ? 1.0 : angle < -kStraight ? -1.0 : 0.0;
   const double f_velocity = -std::exp(-gap / reach - braking * braking);
   const double f_angular = -sign * std::exp(-gap / reach - turning * turning);
   return along * f_velocity + Vec2{-along.y, along.x} * f_angular;
+}
+
+bool same(Vec2 a, Vec2 b) { return a.x == b.x && a.y == b.y; }
+
+/// Sum of the forces of other discs on object k of the decision. A force that is known from the other's decision is not
+/// computed again.
+Vec2 social_forces(const SfmOptions& o, const Decision& decision, int k, const Ego& ego) {
+  const World& world = decision.world;
+  MutualForces& forces = decision.work.mutual;
+  const Scene& scene = decision.state.scenes[decision.w()];
+  const Neighbors& near = neighbors(world, decision.state, decision.work, decision.w());
+  // Others see the ego where it sees itself: its origin is the centre of its disc, or they know its origin.
+  const bool centred = decision.grouped || same(near.discs[scene.shapes->placed[ego.id].object].centre, ego.position);
+  Vec2 sum;
+  forces.decide(k);
+  for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& other) {
+    if (ego.route != nullptr && world.is_static[other.object]) return;
+    if (const Vec2* known = forces.find(other.object)) {
+      sum = sum + *known;
+      return;
+    }
+    bool mutual;
+    const Vec2 force = social_force(o, ego, other, mutual);
+    sum = sum + force;
+    if (!mutual || !centred || !forces.later(other.object)) return;
+    if (same(other.centre, decision.state.pose[decision.first_row + other.object].position()))
+      forces.add(ego.id, other.object, force * -1.0);
+  });
+  return sum;
 }
 
 /// Force of a wall, away from its nearest point.
@@ -146,16 +181,14 @@ Vec2 group_force(const SfmOptions& o, const Decision& decision, const Ego& ego) 
 void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
   const World& world = decision.world;
   const double dt = world.step_time;
+  decision.work.mutual.begin(decision.objects, decision.count, world.objects);
   for (int k = 0; k < decision.count; ++k) {
     Ego ego = ego_of(decision, k);
     ego.desired = sidestepped(decision, k, ego.desired, options.sidestep);
     const double speed = norm(ego.desired);
     const double most = options.vmax * ego.pace;
     const Vec2 desired = speed > 0.0 ? ego.desired * (most / speed) : Vec2{};
-    Vec2 social;
-    for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& other) {
-      if (ego.route == nullptr || !world.is_static[other.object]) social = social + social_force(options, ego, other);
-    });
+    const Vec2 social = social_forces(options, decision, k, ego);
     const Vec2 force = (desired - ego.velocity) * (options.force_factor_desired / options.relaxation_time) +
                        social * options.force_factor_social +
                        obstacle_force(options, decision, ego) * options.force_factor_obstacle +

@@ -9,6 +9,7 @@
 #include "planning/problem.hpp"
 #include "routes/sides.hpp"
 #include "rvo/velocity_obstacles.hpp"
+#include "surroundings/mutual.hpp"
 #include "surroundings/neighbors.hpp"
 
 namespace irsim {
@@ -38,6 +39,7 @@ struct Workspace {
   std::vector<Vec2> velocities;  // velocities of the objects of a world [m/s]
   std::vector<double> extra;     // copy of a row of State::extra
   Neighbors neighbors;
+  MutualForces mutual;
   ContactBuffers contacts;
   std::vector<int> walls;  // walls found near an object
   VelocityObstacles velocity_obstacles;
