@@ -77,10 +77,10 @@ inline void neighbor(const NeighborsOptions& o, const Seen& seen, const Neighbor
         *out++ = share(velocity.y, o.speed_max, o.clip);
         break;
       case NeighborsOptions::kHeadingCos:
-        *out++ = facing(unit(other.heading), axis).x;
+        *out++ = facing(other.ahead, axis).x;
         break;
       case NeighborsOptions::kHeadingSin:
-        *out++ = facing(unit(other.heading), axis).y;
+        *out++ = facing(other.ahead, axis).y;
         break;
       case NeighborsOptions::kRadius:
         *out++ = share(other.radius, o.radius_max, o.clip);
