@@ -19,6 +19,12 @@ class Grid {
   /// Sort the boxes that were added; queries are possible afterwards.
   void build();
 
+  /// Call `fetch` with the array that a query reads first.
+  template <class Fetch>
+  void fetch(Fetch&& fetch) const {
+    fetch(items_);
+  }
+
   template <class Report>
   void query(const Box& box, Report&& report) const {
     if (!box.finite()) return;
