@@ -69,23 +69,16 @@ inline double Fan::beam_of(Vec2 from_origin) const {
 template <class Test>
 inline void Fan::between(double low, double high, Test&& test) const {
   low -= blur_, high += blur_;
-  // One loop for all runs of beams, so that `test` is compiled into it.
-  double from[3], to[3];
-  int runs = 0;
-  const auto add = [&](double first, double last) { from[runs] = first, to[runs] = last, ++runs; };
-  if (!ordered_ || !(high - low < turn_)) {
-    add(0.0, count_);
-  } else {
-    add(low, high);
-    if (high >= turn_) add(low - turn_, high - turn_);  // the beams may extend across the rear
-    if (low + turn_ < count_) add(low + turn_, high + turn_);
-  }
-  for (int r = 0; r < runs; ++r) {
-    const double first = std::max(from[r], 0.0), last = std::min(to[r], count_ - 1.0);
-    int i = static_cast<int>(first);
-    if (i < first) ++i;
-    for (; i <= last; ++i) test(i);
-  }
+  const auto run = [&](double from, double to) {
+    from = std::max(from, 0.0), to = std::min(to, count_ - 1.0);
+    int i = static_cast<int>(from);
+    if (i < from) ++i;
+    for (; i <= to; ++i) test(i);
+  };
+  if (!ordered_ || !(high - low < turn_)) return run(0.0, count_);
+  run(low, high);
+  if (high >= turn_) run(low - turn_, high - turn_);  // the beams may extend across the rear
+  if (low + turn_ < count_) run(low + turn_, high + turn_);
 }
 
 void Fan::consider(int object, Vec2 centre, double radius) {
