@@ -180,7 +180,7 @@ bool avoid_discs(const World& world, const State& state, int w, int self, int ot
   };
   for (int k = 0; k < discs[0].count; ++k) {
     for (int n = 0; n < discs[1].count; ++n) {
-      all.planes.push_back(avoid_agent(disc(0, k), disc(1, n), share, horizon, world.step_time, self < other));
+      avoid_agent(disc(0, k), disc(1, n), share, horizon, world.step_time, self < other, all.planes.emplace_back());
     }
   }
   return true;
@@ -205,14 +205,14 @@ void avoid_movers(const OrcaOptions& options, const World& world, const State& s
     // not give way.
     const bool mutual = all.group[m] >= 0 && (all.group[m] == group || targets_role(world, world.moving[m], object));
     double share = options.responsibility ? *options.responsibility : mutual ? 0.5 : 1.0;
-    if (mutual) {
+    if (mutual && !state.routes.empty()) {
       const Precedence order = precedence(world, state, w, object, world.moving[m]);
       if (order == Precedence::first) continue;
       if (order == Precedence::second) share = 1.0;
     }
     const bool routed = state.route_of(w * world.objects + object) != nullptr;
     if (routed && avoid_discs(world, state, w, self, m, share, options.timeHorizon, all)) continue;
-    all.planes.push_back(avoid_agent(agent, all.movers[m], share, options.timeHorizon, world.step_time, self < m));
+    avoid_agent(agent, all.movers[m], share, options.timeHorizon, world.step_time, self < m, all.planes.emplace_back());
   }
 }
 

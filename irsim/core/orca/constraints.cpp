@@ -32,15 +32,14 @@ HalfPlane tangent_to_disc(Vec2 centre, double radius, Vec2 velocity) {
 
 }  // namespace
 
-HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt,
-                      bool first) {
+void avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt, bool first,
+                 HalfPlane& plane) {
   const Vec2 offset = other.position - agent.position, velocity = agent.velocity - other.velocity;
   const double distance2 = squared(offset), radius = agent.radius + other.radius;
   const bool apart = distance2 > radius * radius;
   const double rate = 1.0 / (apart ? horizon : dt);
   const Vec2 relative = velocity - offset * rate;  // relative to the centre of the disc that truncates the cone
   const double length2 = squared(relative), ahead = dot(relative, offset);
-  HalfPlane plane;
   Vec2 change;  // smallest change of the relative velocity
   if (!apart || (ahead < 0.0 && ahead * ahead > radius * radius * length2)) {
     const double length = std::sqrt(length2);
@@ -53,14 +52,15 @@ HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double sha
     change = plane.direction * dot(velocity, plane.direction) - velocity;
   }
   plane.point = agent.velocity + change * share;
-  return plane;
 }
 
 HalfPlane avoid_disc(const OrcaAgent& agent, Vec2 centre, double radius, double horizon) {
   const Vec2 offset = centre - agent.position;
   const double sum = agent.radius + radius;
   if (squared(offset) <= sum * sum) return away_from(offset);
-  return avoid_agent(agent, {centre, {}, radius}, 1.0, horizon, horizon, true);
+  HalfPlane plane;
+  avoid_agent(agent, {centre, {}, radius}, 1.0, horizon, horizon, true, plane);
+  return plane;
 }
 
 bool avoid_edge(const OrcaAgent& agent, const Edge& edge, double horizon, HalfPlane& out) {

@@ -35,8 +35,9 @@ struct Edge {
 /// Args:
 ///   first: Whether this is the first of the two. It decides the direction for agents with equal positions and
 ///   velocities.
-HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt,
-                      bool first);
+///   plane: The result.
+void avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt, bool first,
+                 HalfPlane& plane);
 
 /// Velocities with which `agent` does not meet a static disc before `horizon` [s]. They include zero.
 HalfPlane avoid_disc(const OrcaAgent& agent, Vec2 centre, double radius, double horizon);

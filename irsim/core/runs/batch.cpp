@@ -5,6 +5,8 @@
 #include <system_error>
 #include <thread>
 
+#include "runs/fetch_ahead.hpp"
+
 namespace irsim {
 namespace {
 
@@ -42,6 +44,7 @@ long long run_worlds(const World& world, State& state, const Schedule& schedule,
                      Scans scans) {
   const auto run_one = [&](int w, Workspace& work) {
     Recording* recording = recordings != nullptr ? &(*recordings)[w] : nullptr;
+    if (schedule.steps == 1) fetch_ahead(state, w);
     return run_world(world, state, w, work, schedule, recording, scans);
   };
   const int threads = std::max(1, std::min(schedule.threads, state.worlds));
