@@ -277,8 +277,8 @@ OBJECTS: dict[str, Code] = {
     "exact-symmetry": Code(
         "starts too symmetric to pass each other",
         "orca, rvo and sfm choose no side by themselves. Where two objects meet exactly head-on both brake and may "
-        "stand for ever (under sfm they touch), and one straight behind a slower one trails it. 'sidestep: 10' makes "
-        "them pass on the right. Example: behavior: {name: orca, sidestep: 10}.",
+        "stand for ever (under sfm they touch), and one straight behind a slower one trails it (under sfm it runs into "
+        "it; rvo passes). 'sidestep: 10' makes them pass on the right. Example: behavior: {name: orca, sidestep: 10}.",
     ),
     "vel-min-default": Code(
         "vel_min keeps its default", "Raising vel_max alone leaves vel_min at -1 for each component."
