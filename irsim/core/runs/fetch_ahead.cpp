@@ -31,14 +31,14 @@ void fetch(const Outlines& outlines) {
 
 }  // namespace
 
-void fetch_ahead(const State& state, int w) {
-  if (w + 3 < state.worlds) fetch(&state.scenes[w + 3], sizeof(Scene));
-  if (w + 2 < state.worlds) {
+void fetch_ahead(const State& state, int w, int last) {
+  if (w + 3 < last) fetch(&state.scenes[w + 3], sizeof(Scene));
+  if (w + 2 < last) {
     const Scene& scene = state.scenes[w + 2];
     fetch(scene.shapes.get(), sizeof(Shapes));
     fetch(scene.fixed.get(), sizeof(Fixed));
   }
-  if (w + 1 < state.worlds) {
+  if (w + 1 < last) {
     const Scene& scene = state.scenes[w + 1];
     fetch(scene.moving);
     if (const Shapes* shapes = scene.shapes.get()) {

@@ -25,7 +25,9 @@ void SocialForces::compute(const SfmOptions& o) {
   double *distances = distance_.data(), *lengths = length_.data(), *reaches = reach_.data(), *decay = decay_.data();
   const double importance = o.lambda_importance, gamma = o.gamma, safety = 2.0 * o.safety_radius;
   const std::size_t count = count_;
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC ivdep
+#endif
   for (std::size_t k = 0; k < count; ++k) {
     const double distance = std::sqrt(way_x[k] * way_x[k] + way_y[k] * way_y[k]), near = 1.0 / distance;
     const double towards_x = way_x[k] * near, towards_y = way_y[k] * near;

@@ -16,6 +16,8 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 
 _SIDESTEPPING = ("orca", "rvo", "sfm")
 """Behaviors with the key ``sidestep``."""
+_PASSING = ("rvo",)
+"""Those of them that pass a slower object straight ahead all the same."""
 _ANGLE = 10.0
 """Angle that is proposed [degrees]."""
 _OFF_LINE = 0.01
@@ -55,11 +57,17 @@ def _findings(context: Context) -> Iterator[Finding]:
                 yield _finding(context, a.record, f"meets '{b.record.name}' exactly head-on: {_effect(a.record)}")
                 continue
             behind, ahead = (a, b) if a.end > a.start and b.end > b.start else (b, a)
-            if (a.end > a.start) == (b.end > b.start) and _catches_up(behind, ahead):
+            passes = _options(behind.record).name in _PASSING
+            if (a.end > a.start) == (b.end > b.start) and not passes and _catches_up(behind, ahead):
                 yield _finding(
                     context,
                     behind.record,
-                    f"starts straight behind '{ahead.record.name}', which is slower: it trails it instead of passing",
+                    f"starts straight behind '{ahead.record.name}', which is slower: "
+                    + (
+                        "it drives into it instead of passing"
+                        if _pushes(behind.record)
+                        else "it trails it instead of passing"
+                    ),
                 )
 
 
@@ -102,8 +110,13 @@ def _catches_up(behind: _Way, ahead: _Way) -> bool:
     return time * fast < abs(behind.end - behind.start) and time * slow < abs(ahead.end - ahead.start)
 
 
+def _pushes(record: ObjectRecord) -> bool:
+    """Whether it moves by social forces alone; as local behavior of ``follow`` they come with a way to keep apart."""
+    return getattr(record.active_behavior, "name", "") == "sfm"
+
+
 def _effect(record: ObjectRecord) -> str:
-    if _options(record).name == "sfm":
+    if _pushes(record):
         return "social forces along one line only brake them, so they touch"
     return "both brake, and may stand there for ever"
 
