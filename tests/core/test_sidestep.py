@@ -75,7 +75,7 @@ robot:
 
 
 @pytest.mark.parametrize("count", [3, 4, 5, 6, 7, 8])
-@pytest.mark.parametrize("behavior", ["name: orca", "name: orca, timeHorizon: 3", "name: rvo"])
+@pytest.mark.parametrize("behavior", ["name: orca", *LOCALS.values()])
 @pytest.mark.parametrize(("drive", "turn"), [("omni", 1), ("diff", 2)])
 def test_a_ring_opens(behavior: str, count: int, drive: str, turn: float) -> None:
     text = RING.format(count=count, drive=drive, turn=turn, behavior=f"{behavior}, sidestep: 10")

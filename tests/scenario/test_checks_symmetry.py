@@ -91,3 +91,15 @@ def test_the_summary_says_how_long_a_car_shunted_at_its_goal() -> None:
     assert "to and fro at the goal" in irsim.run(text=car(0.1, True), seed=0).summary
     assert "no nearer than" in irsim.run(text=car(0.1, False), seed=0).summary
     assert "to and fro" not in irsim.run(text=car(0.3, True), seed=0).summary
+
+
+@pytest.mark.parametrize("count", [3, 4, 5])
+@pytest.mark.parametrize("behavior", ["name: orca", "name: rvo", "name: sfm"])
+def test_a_ring_is_reported_once_until_a_side_is_chosen(behavior: str, count: int) -> None:
+    text = (
+        f"world: {{width: 12, height: 12}}\nrobot:\n  - {{number: {count}, kinematics: {{name: omni}}, "
+        "distribution: {name: circle, center: [6, 6], radius: 4}, vel_max: [1, 1], vel_min: [-1, -1], "
+        "shape: {name: circle, radius: 0.25}, behavior: {BEHAVIOR}}\n"
+    )
+    assert codes(text.replace("BEHAVIOR", behavior)).count("exact-symmetry") == 1
+    assert "exact-symmetry" not in codes(text.replace("BEHAVIOR", f"{behavior}, sidestep: 10"))

@@ -21,7 +21,7 @@ _PASSING = ("rvo",)
 _ANGLE = 10.0
 """Angle that is proposed [degrees]."""
 _OFF_LINE = 0.01
-"""Ways less apart than this count as one line [m]."""
+"""Ways less apart than this count as one line, and middles of ways as one point [m]."""
 _MOST = 2000
 """Scenarios with more such objects are not checked."""
 
@@ -49,6 +49,10 @@ def _findings(context: Context) -> Iterator[Finding]:
     ]  # fmt: skip
     if not 1 < len(records) <= _MOST:
         return
+    for ring in _rings(records):
+        end = "touch or stand" if _options(ring[0]).name == "sfm" else "brake, and may stand there for ever"
+        what = f"meets {len(ring) - 1} others in the middle of their ways, all at the same time: they {end}"
+        yield _finding(context, ring[0], what)
     for ways in _lines(records):
         for a, b in itertools.pairwise(sorted(ways, key=lambda way: way.start)):
             if b.start == a.start:
@@ -79,6 +83,18 @@ def _needs_side(record: ObjectRecord) -> bool:
 def _options(record: ObjectRecord) -> Any:
     options = record.active_behavior
     return getattr(options, "local", options)
+
+
+def _rings(records: Sequence[ObjectRecord]) -> Iterator[list[ObjectRecord]]:
+    """Three or more objects whose straight ways have one middle, one length and one speed."""
+    rings: dict[tuple[int, ...], list[ObjectRecord]] = defaultdict(list)
+    for record in records:
+        (x, y), goal = record.state[:2], record.goals[0]
+        length = math.hypot(goal[0] - x, goal[1] - y)
+        if 0 < length < math.inf:
+            facts = ((x + goal[0]) / 2, (y + goal[1]) / 2, length, top_speed(record))
+            rings[tuple(round(fact / _OFF_LINE) for fact in facts)].append(record)
+    return (ring for ring in rings.values() if len(ring) > 2)
 
 
 def _lines(records: Sequence[ObjectRecord]) -> Iterator[list[_Way]]:
