@@ -11,7 +11,7 @@ from irsim.simulation.outcome import robot_outcomes
 if TYPE_CHECKING:
     from irsim.env import Env
 
-__all__ = ["ended_before", "moved_view"]
+__all__ = ["ended_before", "extent_of", "moved_view", "view_message"]
 
 
 def moved_view(env: Env) -> tuple[float, float, float, float] | None:
@@ -33,6 +33,22 @@ def moved_view(env: Env) -> tuple[float, float, float, float] | None:
     view = (x - world.width / 2, x + world.width / 2, y - world.height / 2, y + world.height / 2)
     left, low, right, top = world.bounds
     return None if view == (left, right, low, top) else view
+
+
+def extent_of(env: Env) -> tuple[float, float, float, float]:
+    """x_min, x_max, y_min, y_max [m] of the world."""
+    left, low, right, top = env.scenario.world.bounds
+    return left, right, low, top
+
+
+def view_message(view: tuple[float, float, float, float]) -> str:
+    """Say which part of the world a picture shows.
+
+    Args:
+        view: x_min, x_max, y_min, y_max [m], from :func:`moved_view`.
+    """
+    x0, x1, y0, y1 = view
+    return f"shows only x {x0:g}..{x1:g} m, y {y0:g}..{y1:g} m, as plot.viewpoint centres the view"
 
 
 def ended_before(env: Env) -> int | None:

@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from irsim.api.picture_notes import ended_before
+from irsim.api.picture_notes import ended_before, extent_of, moved_view
 from irsim.api.read_input import policy_of_suite, read_input
 from irsim.api.take_snapshot import snapshot, snapshot_of
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
 from irsim.diagnostics.errors import ArgumentError
 from irsim.env import Env
+from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import (
     Progress,
     advance,
@@ -116,6 +117,8 @@ def run(
     except BenchmarkError as error:
         error.where = "behavior" if policy is None else "policy"
         raise
+    if driver is not None:
+        warnings = findings_under_policy(warnings, scenario)
     scenario, perturb_texts = perturbed(scenario, perturbations), [perturbation_text(item) for item in perturbations]
     chosen, hidden = seed_of(scenario, seed), save is None and not show
     env, crowded = first_with_room(
@@ -268,6 +271,8 @@ def render(
         files=files,
         warnings=warnings,
         ended=None if animated else ended_before(env),
+        view=None if region is not None else moved_view(env),
+        extent=extent_of(env),
         table=scene_table(scenario, env.seed),
         reproduce=reproduce_command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
@@ -290,6 +295,8 @@ def _write_sheet(sheet: SnapshotResult, target: Path, table: SceneTable) -> Rend
         files=[str(target.absolute())],
         warnings=sheet.warnings,
         ended=sheet.ended,
+        view=sheet.view,
+        extent=sheet.extent,
         table=table,
         labels={robot.name: robot.label for robot in sheet.robots if robot.label != robot.name},
         reproduce=sheet.reproduce,

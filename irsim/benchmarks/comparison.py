@@ -26,6 +26,7 @@ from irsim.benchmarks.unequal_limits import Limit, limits_of, unequal_note
 from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
+from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import Progress, import_modules, read_document, source_of
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import PolicySource
@@ -146,6 +147,8 @@ def benchmark(
     for name, source in zip(names, given, strict=True):
         document = _document(source, limits)
         scenario, warnings[name] = read_document(document, strict=strict)
+        if AS_WRITTEN not in wanted:
+            warnings[name] = findings_under_policy(warnings[name], scenario)
         scenario = perturbed(scenario, perturbations, called=name if isinstance(source, Document) else None)
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
         if texts:

@@ -66,6 +66,7 @@ def render(
     import_user_modules(imports)
     with progress("drawing") as report:
         from irsim import api
+        from irsim.api.picture_notes import view_message
         from irsim.common.files import check_suffix
         from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
 
@@ -97,6 +98,14 @@ def render(
         )
     if result.ended is not None:
         shown.print(f"step {result.steps} is beyond the end of the episode, which is step {result.ended}")
+    if result.view is not None:
+        left, right, low, top = result.extent
+        whole = f"--region {left:g} {low:g} {right:g} {top:g} shows the world"
+        shown.print(
+            f"note: the picture {view_message(result.view)}: {whole}",
+            style="yellow",
+            soft_wrap=True,
+        )
     for line in scene_lines(result.table.model_dump(), result.labels, result.seed):
         shown.print(Text(line), soft_wrap=True)
     shown.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)

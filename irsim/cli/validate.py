@@ -62,8 +62,10 @@ def validate(
     max_objects: MaxObjects = None,
 ) -> None:
     """Check scenario files, suites and tasks without running them; the exit code is 2 if any file is invalid."""
+    from irsim.benchmarks.suite_report import suite_report
     from irsim.cli.findings import import_user_modules, limits_for, not_found
     from irsim.cli.output import print_json, progress
+    from irsim.learning.tasks.report import task_report
 
     import_user_modules(imports)
     filtering = fix and "-" in files
@@ -74,12 +76,17 @@ def validate(
             "--fix with - prints the repaired text, so it cannot be combined with --json or other files",
             "leave out --json and other files, or give the name of a file instead of -",
         )
+    kinds = {file: _kind(file) for file in files}
+    _check_options(kinds, fix=fix, simulate=simulate, table=table)
     valid = True
     for file in files:
         text = sys.stdin.read() if file == "-" else None
         with progress(f"checking {file}"):
             try:
-                report, text = _check_file(file, text, fix, simulate, table, seed, not lenient, limits_for(max_objects))
+                if kinds[file] == "a scenario":
+                    report, text = _check_file(file, text, fix, simulate, seed, not lenient, limits_for(max_objects))
+                else:
+                    report = suite_report(file) if kinds[file] == "a suite" else task_report(file)
             except ScenarioNotFoundError as error:  # continue with the other files
                 report, text = not_found(file, str(error)), ""
         valid &= report.valid
@@ -87,7 +94,7 @@ def validate(
             print_json(report, line=True)
         else:
             _show(report, file, text, stderr=filtering)
-        if table and report.valid:
+        if table and report.valid and kinds[file] == "a scenario":
             _show_table(file, text, seed, limits_for(max_objects), stderr=filtering)
         if filtering:
             sys.stdout.write(text or "")
@@ -95,30 +102,38 @@ def validate(
         raise typer.Exit(INVALID)
 
 
+def _kind(file: str) -> str:
+    """What a file is: ``a suite``, ``a task`` or ``a scenario``."""
+    from irsim.benchmarks.suite_files import is_suite
+    from irsim.learning.tasks.report import is_task
+
+    if file == "-":
+        return "a scenario"
+    return "a suite" if is_suite(file) else "a task" if is_task(file) else "a scenario"
+
+
+def _check_options(kinds: dict[str, str], **given: bool) -> None:
+    """Refuse options that only scenarios have if there is no scenario; beside one, they leave the other files alone."""
+    used = next((f"--{name}" for name, on in given.items() if on), None)
+    if used is not None and "a scenario" not in kinds.values():
+        file, kind = next(iter(kinds.items()))
+        raise ArgumentError(f"{used} belongs to scenario files, and {file} is {kind}", f"leave out {used}")
+
+
 def _check_file(
     file: str,
     text: str | None,
     fix: bool,
     simulate: bool,
-    table: bool,
     seed: int | None,
     strict: bool,
     limits: Limits | None,
 ) -> tuple[ValidationReport, str | None]:
-    """Return the report on a file or a text from standard input, and the text; with ``fix``, on the repaired one."""
+    """Return the report on a scenario, a file or standard input, and its text; with ``fix``, on the repaired one."""
     from irsim import api
-    from irsim.benchmarks.suite_files import is_suite, is_suite_text
-    from irsim.benchmarks.suite_report import suite_report
-    from irsim.learning.tasks.report import is_task, task_report
+    from irsim.benchmarks.suite_files import is_suite_text
 
     path = None if file == "-" else file
-    other = None if path is None else "a suite" if is_suite(path) else "a task" if is_task(path) else None
-    if path is not None and other is not None:
-        if used := [
-            option for option, given in (("--fix", fix), ("--simulate", simulate), ("--table", table)) if given
-        ]:
-            raise ArgumentError(f"{used[0]} belongs to scenario files, and {file} is {other}", f"leave out {used[0]}")
-        return suite_report(path) if other == "a suite" else task_report(path), None
     if text is not None and is_suite_text(text):
         raise ArgumentError("- stands for a scenario, and this is a suite", "give the name of its file instead of -")
     fixes, fix_texts = [], {}

@@ -40,6 +40,8 @@ _MAX_NAMED = 3
 """Number of robots that a sentence names."""
 _MAX_EVENTS = 100
 """Number of last events of a robot that are searched for a missing path."""
+_MAX_POSES = 2_000_000
+"""Number of poses, of all objects in all steps, up to which moving obstacles that stand still are looked for."""
 _MAX_STANDING_SPEED = 1e-3
 """Speed [m/s] below which a robot stands still; for a very slow robot a tenth of its top speed."""
 _LIMIT_SOURCES: dict[HorizonSource, str] = {
@@ -90,6 +92,8 @@ def summary_message(
         parts.append(touched)
     if jam := jam_message(env.simulation, held):
         parts.append(jam)
+    if stand := others_standing_message(env, events):
+        parts.append(stand)
     if zone := zones_message(zones):
         parts.append(zone)
     share = explored_share(env.simulation)
@@ -180,6 +184,39 @@ def others_arrived_message(scenario: ResolvedScenario, events: Sequence[Event]) 
         return None
     arrived = walking & {event.object for event in events if event.kind == "arrival"}
     return f"{len(arrived)} of {len(walking)} moving obstacle{'s' * (len(walking) != 1)} arrived"
+
+
+def others_standing_message(env: Env, events: Sequence[Event]) -> str | None:
+    """Say how many moving obstacles stand short of their goal, which one first, and where; None if there are none.
+
+    Obstacles that a collision has stopped do not count: other messages are about them.
+    """
+    simulation, scenario = env.simulation, env.scenario
+    if simulation.objects * (int(simulation.count[0]) + 1) > _MAX_POSES:
+        return None
+    arrived = {event.object for event in events if event.kind == "arrival"}
+    found = []
+    for view in env.obstacle_list:
+        record = view.record
+        if not is_moving_obstacle(record) or not record.goals or view.goal is None:
+            continue
+        at_its_end = record.name in arrived and has_one_end(record)
+        if at_its_end or simulation.stopped[view.row] or simulation.waits(view.row) or is_absent(env, view):
+            continue
+        track = simulation.state.trajectory(view.row)[:, :2]
+        since = no_progress_since(track, env.step_time, view.max_speed)
+        if since is not None:
+            found.append((int(simulation.count[0]) - len(track) + 1 + since, view))
+    if not found:
+        return None
+    step, view = min(found, key=lambda item: (item[0], item[1].row))
+    left = float(np.hypot(*(view.goal[:2, 0] - view.position[:, 0]))) if view.goal is not None else 0.0
+    place = f"{left:.2f} m from its goal since {seconds(step * env.step_time)}"
+    count = sum(is_moving_obstacle(record) for record in scenario.objects)
+    if len(found) == 1:
+        return f"the moving obstacle {quoted(view.name)} has stood still {place}"
+    first = f"(first {quoted(view.name)}, {place})"
+    return f"{len(found)} of {count} moving obstacles stand still short of their goals {first}"
 
 
 def reason_message(

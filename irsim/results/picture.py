@@ -32,6 +32,11 @@ class RenderResult(Result):
     """Warnings about the scenario."""
     ended: int | None = None
     """Step in which the episode had ended, if a picture shows a later one."""
+    view: tuple[float, float, float, float] | None = None
+    """Part that the last picture shows [m]: x_min, x_max, y_min, y_max, if ``world.plot.viewpoint`` moves it away from
+    the world; None if it shows the world or a region that was asked for."""
+    extent: tuple[float, float, float, float]
+    """Bounds of the world [m]: x_min, x_max, y_min, y_max."""
     table: SceneTable
     """What the scenario becomes, one row for each entry."""
     labels: dict[str, str] = {}

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import shlex
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -268,3 +270,57 @@ def test_who_drives_on_after_a_contact_and_does_not_arrive_has_timed_out(mode: s
     assert (episode.metrics[outcome], episode.metrics["collision_count"]) == (1, 1)
     assert sum(episode.metrics[key] for key in ("success", "collision", "timeout")) == 1
     assert episode.failures == {"a": "timeout" if outcome == "timeout" else "collision with 'post'"}
+
+
+STANDING = """
+world: {width: 20, height: 12, time_limit: 30}
+robot:
+  - {kinematics: {name: diff}, shape: {name: circle}, state: [1, 1, 0], goal: [18, 1, 0], behavior: {name: dash}}
+obstacle:
+  - {name: wall, shape: {name: rectangle, length: 0.4, width: 6}, state: [8, 6, 0]}
+  - name: hung
+    kinematics: {name: omni}
+    shape: {name: circle, radius: 0.3}
+    state: [3, 6, 0]
+    goal: [17, 6]
+    behavior: {name: rvo}
+"""
+
+
+def test_moving_obstacles_that_stand_short_of_their_goal_are_said() -> None:
+    result = irsim.run(text=STANDING)
+    assert result.outcome == "success"
+    assert "the moving obstacle 'hung' has stood still 9.65 m from its goal since 5.4 s" in result.summary
+    other = "  - {name: more, kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [1.5, 8, 0], "
+    two = irsim.run(text=STANDING + other + "goal: [17, 8], behavior: {name: rvo}}\n").summary
+    assert "2 of 2 moving obstacles stand still short of their goals (first 'hung', 9.65 m" in two
+    freed = irsim.run(text=STANDING.replace("width: 6", "width: 0.1"))
+    assert "1 of 1 moving obstacle arrived" in freed.summary
+    assert "stood still" not in freed.summary
+
+
+UNDRIVEN = """
+world: {width: 10, height: 10, time_limit: 2}
+robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 1, 0], goal: [9, 9, 0]}
+obstacle: {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 9, 0], goal: [3, 9, 0]}
+"""
+
+
+def test_no_behavior_is_left_out_for_robots_that_a_policy_drives(tmp_path: Path) -> None:
+    def still(observations: Any) -> Any:
+        return np.zeros((len(observations), 2))
+
+    def told(findings: list[Any]) -> list[str]:
+        return [finding.path for finding in findings if finding.code == "no-behavior"]
+
+    assert told(irsim.run(text=UNDRIVEN).warnings) == ["robot", "obstacle"]
+    assert told(irsim.run(text=UNDRIVEN, policy=still).warnings) == ["obstacle"]
+    assert told(irsim.run(text=UNDRIVEN, policy="dash").warnings) == ["obstacle"]
+    file = tmp_path / "undriven.yaml"
+    file.write_text(UNDRIVEN)
+    for policies, expected in (
+        (["dash", "orca"], ["obstacle"]),
+        (["dash", "as-written"], ["robot", "obstacle"]),
+    ):
+        [warnings] = irsim.benchmark(file, policies=policies, seeds=1, workers=1).warnings.values()
+        assert told(warnings) == expected

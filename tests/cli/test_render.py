@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -110,6 +111,20 @@ def test_render_prints_what_the_file_becomes_and_validate_does_when_asked(irsim:
     assert line in irsim("validate", "places.yaml", "--table").stdout
     assert irsim("validate", "places.yaml", "--table", "--json").exit_code == 2
     assert "belongs to scenario files" in irsim("validate", "maps_v1", "--table").output
+
+
+@pytest.mark.parametrize("more", [[], ["--strip", "2"]])
+def test_a_view_that_is_moved_is_said(irsim: Run, tmp_path: Path, more: list[str]) -> None:
+    (tmp_path / "places.yaml").write_text(PLACES.replace("world: {", "world: {plot: {viewpoint: scout}, "))
+    drawn = ["render", "places.yaml", "-o", "places.png", "--steps", "1", *more]
+    out = irsim(*drawn).stdout
+    assert "note: the picture shows only x " in out
+    assert "as plot.viewpoint centres the view" in out
+    region = re.search(r"--region (\S+) (\S+) (\S+) (\S+) shows the world", out)
+    assert region is not None
+    assert "note:" not in irsim(*drawn, "--region", *region.groups()).stdout
+    (tmp_path / "places.yaml").write_text(PLACES)
+    assert "note:" not in irsim(*drawn).stdout
 
 
 @pytest.mark.parametrize("more", [[], ["--strip", "3"]])

@@ -185,3 +185,24 @@ def test_comments_of_a_single_robot_are_those_of_the_first(irsim: Run, tmp_path:
     )
     assert irsim("diff", str(a), str(b), "--only", "robot[0]").exit_code == 0
     assert irsim("diff", str(a), str(b), "--only", "obstacle").exit_code == 1
+
+
+TASK = """
+task: crossing
+scenario:
+  world: {width: 10, height: 10, time_limit: 20}
+  robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 1, 0], goal: [8, 8]}
+observation: [{name: goal}]
+reward: [{name: progress, weight: 1}]
+"""
+
+
+def test_options_of_scenarios_leave_tasks_beside_them_alone(irsim: Run, room: Path) -> None:
+    Path("task.yaml").write_text(TASK)
+    alone = irsim("validate", "task.yaml")
+    assert alone.exit_code == 0, alone.output
+    result = irsim("validate", "room.yaml", "task.yaml", "--simulate", "--table")
+    assert result.exit_code == 0, result.output
+    assert result.stdout.count("dry run") == 1
+    assert "task.yaml: valid" in result.stdout
+    assert irsim("validate", "task.yaml", "--simulate").exit_code == 2

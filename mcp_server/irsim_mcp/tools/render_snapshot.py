@@ -11,6 +11,7 @@ from mcp.types import ImageContent, TextContent
 from pydantic import Field
 
 from irsim.api.film_strip import MAX_MOMENTS, MIN_MOMENTS
+from irsim.api.picture_notes import view_message
 from irsim.common.text import clean, metres
 from irsim.validation.scene_text import scene_lines
 from irsim_mcp.errors import failure
@@ -151,12 +152,8 @@ def _line(
         seen = f"{100 * scene['explored']:.0f} % of the area of the world seen"
         parts.append(f"fog: {seen}, the rest is grey, with goals drawn above it")
     if scene["view"] is not None:
-        x0, x1, y0, y1 = scene["view"]
-        region = [left, low, right, top]
-        parts.append(
-            f"shows only x {x0:g}..{x1:g} m, y {y0:g}..{y1:g} m, as plot.viewpoint centres the view: "
-            f"region=[{', '.join(f'{value:g}' for value in region)}] shows the world"
-        )
+        region = ", ".join(f"{value:g}" for value in (left, low, right, top))
+        parts.append(f"{view_message(scene['view'])}: region=[{region}] shows the world")
     robots, moving = ([], []) if brief else (scene["robots"], scene["moving"])
     parts += [_robot(robot) for robot in robots[:_MAX_NAMED]]
     parts += [_plan(plan, passages) for plan in scene["plans"][:_MAX_NAMED]]
