@@ -32,28 +32,27 @@ HalfPlane tangent_to_disc(Vec2 centre, double radius, Vec2 velocity) {
 
 }  // namespace
 
-HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt,
-                      bool first) {
+Escape escape(const OrcaAgent& agent, const OrcaAgent& other, double horizon, double dt, bool first) {
   const Vec2 offset = other.position - agent.position, velocity = agent.velocity - other.velocity;
   const double distance2 = squared(offset), radius = agent.radius + other.radius;
   const bool apart = distance2 > radius * radius;
   const double rate = 1.0 / (apart ? horizon : dt);
   const Vec2 relative = velocity - offset * rate;  // relative to the centre of the disc that truncates the cone
   const double length2 = squared(relative), ahead = dot(relative, offset);
-  HalfPlane plane;
-  Vec2 change;  // smallest change of the relative velocity
   if (!apart || (ahead < 0.0 && ahead * ahead > radius * radius * length2)) {
     const double length = std::sqrt(length2);
     const Vec2 out = length > 0.0 ? relative * (1.0 / length) : Vec2{first ? 1.0 : -1.0, 0.0};
-    plane.direction = right_of(out);
-    change = out * (radius * rate - length);
-  } else {
-    const Tangents legs = tangents(offset, radius);
-    plane.direction = cross(offset, relative) > 0.0 ? legs.left : legs.right * -1.0;
-    change = plane.direction * dot(velocity, plane.direction) - velocity;
+    return {out * (radius * rate - length), right_of(out)};
   }
-  plane.point = agent.velocity + change * share;
-  return plane;
+  const Tangents legs = tangents(offset, radius);
+  const Vec2 direction = cross(offset, relative) > 0.0 ? legs.left : legs.right * -1.0;
+  return {direction * dot(velocity, direction) - velocity, direction};
+}
+
+HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt,
+                      bool first) {
+  const Escape least = escape(agent, other, horizon, dt, first);
+  return {agent.velocity + least.change * share, least.direction};
 }
 
 HalfPlane avoid_disc(const OrcaAgent& agent, Vec2 centre, double radius, double horizon) {
