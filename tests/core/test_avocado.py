@@ -199,7 +199,7 @@ def test_it_makes_half_for_one_that_gives_way_and_most_for_one_that_does_not(dri
 @pytest.mark.parametrize("shape", ["{name: circle, radius: 0.2}", "{name: rectangle, length: 0.6, width: 0.3}"])
 @pytest.mark.parametrize("outer", ["{}", "{{name: follow, local: {}}}"])
 def test_with_neutral_opinions_it_is_orca(drive: str, shape: str, outer: str) -> None:
-    """Also among walls, for every drive and on planned routes: margin, noise and parameters alike, opinions held at 0."""
+    """Among obstacles and on planned routes, too: margin, noise and parameters alike, and opinions held at 0."""
     features = {"drive": drive, "shape": shape}
     one, two = (
         simulate(scenario_with(**features, behavior=outer.format(inner)), steps=120)[1]

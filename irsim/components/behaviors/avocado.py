@@ -27,6 +27,17 @@ class Avocado(BehaviorOptions):
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "avocado", "neighborDist": 5.0}]}
 
+    also_called: ClassVar[dict[str, str]] = {
+        "a": "own_weight",
+        "b": "bias",
+        "c": "evidence_weight",
+        "d": "forgetting",
+        "delta": "attention_step",
+        "epsilon": "evidence_gain",
+        "eta": "noise",
+        "kappa": "attention_time",
+    }
+
     name: Literal["avocado"] = "avocado"
     neighborDist: Annotated[Meters, Field(gt=0)] = 2.5
     """Moving objects farther away than this are ignored, and opinions of them forgotten."""

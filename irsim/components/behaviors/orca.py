@@ -15,10 +15,11 @@ from irsim.options.units import Count, Degrees, Fraction, Meters, MetersPerSecon
 class Orca(BehaviorOptions):
     """Take half of the smallest change of velocity that avoids every collision, and leave the rest to the other.
 
-    It makes the whole change for moving objects that run neither orca nor avocado, and never drives into static ones. It respects
-    walls, the largest speed and turn rate and the steering of a car, but not `acce`; every object counts as the circle
-    round its footprint, even a long rectangle. Robots that have arrived still give way: they leave their goals and come
-    back. It does not get out of dead ends: to find a way round walls, use `follow` with `orca` as its `local`.
+    It makes the whole change for moving objects that run neither orca nor avocado, and never drives into static ones.
+    It respects walls, the largest speed and turn rate and the steering of a car, but not `acce`; every object counts as
+    the circle round its footprint, even a long rectangle. Robots that have arrived still give way: they leave their
+    goals and come back. It does not get out of dead ends: to find a way round walls, use `follow` with `orca` as its
+    `local`.
     """
 
     in_group: ClassVar[bool] = True

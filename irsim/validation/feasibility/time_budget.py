@@ -181,7 +181,7 @@ def _check_car(mover: Mover, route: list[Leg], grid: ClearanceGrid | None, scene
 
 
 def _creeps(mover: Mover, leg: Leg, grid: ClearanceGrid) -> bool:
-    """Whether the circle around a car under ``orca`` or ``avocado`` has so little room at a goal that it hardly gets there."""
+    """Whether the circle around a car under ``orca`` or ``avocado`` has so little room at a goal that it creeps."""
     record = mover.record
     options: Any = record.active_behavior
     if mover.behavior not in ("orca", "avocado") or not grid.holds(leg.goal):
