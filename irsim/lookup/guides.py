@@ -120,10 +120,9 @@ GUIDES: dict[str, Guide] = {
         "obstacle (a U, a corner, a long wall between them and the goal) they stay caught. In such a local minimum "
         "rvo, orca, avocado and sfm usually time out; dash drives into the obstacle, which is a collision "
         "(collision_mode stop), not a time-out. follow finds a path around it: it plans on the whole map, including "
-        "what no sensor has seen. To "
-        "test your own exploring behavior, leave out the key behavior and drive by a program. A car that circles its "
-        "goal is another case: a goal inside its turning circle, of radius wheelbase / tan(largest steering angle), "
-        "cannot be reached; raise goal_threshold. Template: u-trap.",
+        "what no sensor has seen. To test your own exploring behavior, leave out the key behavior and drive by a "
+        "program. A car that circles its goal is another case: a goal inside its turning circle, of radius wheelbase / "
+        "tan(largest steering angle), cannot be reached; raise goal_threshold. Template: u-trap.",
         "behavior: {name: follow}",
         (
             *("dead end", "dead-end", "trap", "traps", "trapped", "u-trap", "local minimum", "local minima", "u-shape"),
