@@ -57,7 +57,7 @@ class LearnedShare final : public Reciprocity {
     opinions_->step = now_;
   }
 
-  double share(int m, bool, OrcaAgent& other) override {
+  double share(int m, OrcaAgent& other) override {
     const World& world = decision_.world;
     const OrcaAgent& agent = all_.movers[self_];
     const int number = world.number[world.moving[m]];
@@ -112,7 +112,7 @@ class LearnedShare final : public Reciprocity {
 
 void avocado(const AvocadoOptions& options, const Decision& decision, Intent* intents) {
   LearnedShare shares(options, decision);
-  avoid(settings_of(options), decision, shares, intents);
+  avoid(settings_of(options), decision, &shares, intents);
 }
 
 }  // namespace irsim

@@ -192,7 +192,7 @@ bool avoid_discs(const World& world, const State& state, int w, int self, int ot
 
 /// Add half-planes of the nearest movers.
 void avoid_movers(const OrcaSettings& options, const World& world, const State& state, int w, int self,
-                  Reciprocity& reciprocity, OrcaCrowd& all) {
+                  Reciprocity* reciprocity, OrcaCrowd& all) {
   const int object = world.moving[self], group = all.member_of[self];
   const OrcaAgent& agent = all.movers[self];
   const int most = std::min(options.maxNeighbors, static_cast<int>(all.movers.size()) - 1);
@@ -209,8 +209,14 @@ void avoid_movers(const OrcaSettings& options, const World& world, const State& 
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
     // not give way.
     const bool mutual = all.group[m] >= 0 && (all.group[m] == group || targets_role(world, world.moving[m], object));
-    OrcaAgent other = all.movers[m];
-    double share = reciprocity.share(m, mutual, other);
+    double share = options.responsibility ? *options.responsibility : mutual ? 0.5 : 1.0;
+    const OrcaAgent* other = &all.movers[m];
+    OrcaAgent taken;
+    if (reciprocity != nullptr) {
+      taken = *other;
+      share = reciprocity->share(m, taken);
+      other = &taken;
+    }
     if (mutual) {
       const Precedence order = precedence(world, state, w, object, world.moving[m]);
       if (order == Precedence::first) continue;
@@ -218,14 +224,15 @@ void avoid_movers(const OrcaSettings& options, const World& world, const State& 
     }
     if (share == 0.0) continue;
     const bool routed = state.route_of(w * world.objects + object) != nullptr;
-    if (routed && avoid_discs(world, state, w, self, m, agent, other, share, options.timeHorizon, all.planes)) continue;
-    all.planes.push_back(avoid_agent(agent, other, share, options.timeHorizon, world.step_time, self < m));
+    if (routed && avoid_discs(world, state, w, self, m, agent, *other, share, options.timeHorizon, all.planes))
+      continue;
+    all.planes.push_back(avoid_agent(agent, *other, share, options.timeHorizon, world.step_time, self < m));
   }
 }
 
 }  // namespace
 
-void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity& reciprocity, Intent* intents) {
+void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* reciprocity, Intent* intents) {
   const World& world = decision.world;
   const State& state = decision.state;
   const Scene& scene = state.scenes[decision.w()];
@@ -247,7 +254,7 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity& r
       avoid_obstacles(options.timeHorizonObst, world, obstacles, agent, i, speed, all);
     }
     const int hard = static_cast<int>(all.planes.size());
-    reciprocity.begin(k, self);
+    if (reciprocity != nullptr) reciprocity->begin(k, self);
     avoid_movers(options, world, state, decision.w(), self, reciprocity, all);
     Vec2 velocity;
     const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,

@@ -17,6 +17,8 @@ struct OrcaSettings {
   std::optional<double> maxSpeed;       // [m/s]; none: the limit of the object
   std::optional<double> approach_time;  // time constant of slowing down at the goal [s]; none: full speed
   double sidestep;  // angle to the right of the wanted velocity while something moving is ahead [degrees]
+  // share of a change of velocity, without a `Reciprocity`; none: half for objects that give way, else all
+  std::optional<double> responsibility = std::nullopt;
 };
 
 /// The settings among the options of a behavior.
@@ -25,7 +27,7 @@ OrcaSettings settings_of(const Options& o) {
   return {o.neighborDist, o.maxNeighbors, o.timeHorizon, o.timeHorizonObst, o.maxSpeed, o.approach_time, o.sidestep};
 }
 
-/// How objects share the avoidance with others.
+/// How objects share the avoidance with others, where the share differs from pair to pair.
 class Reciprocity {
  public:
   virtual ~Reciprocity() = default;
@@ -34,12 +36,14 @@ class Reciprocity {
   /// Share of the change of velocity that the object makes to avoid mover m; with 0 it does not avoid it at all.
   ///
   /// Args:
-  ///   mutual: Whether m runs a behavior that is built on ORCA and sees the object.
   ///   other: Mover m; what the object takes it for may be changed.
-  virtual double share(int m, bool mutual, OrcaAgent& other) = 0;
+  virtual double share(int m, OrcaAgent& other) = 0;
 };
 
 /// Write, for each object of the decision, the velocity nearest to the wanted one that avoids everything.
-void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity& reciprocity, Intent* intents);
+///
+/// Args:
+///   reciprocity: Shares of the avoidance of moving objects; null: those of the settings.
+void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* reciprocity, Intent* intents);
 
 }  // namespace irsim

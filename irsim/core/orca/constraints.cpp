@@ -30,9 +30,8 @@ HalfPlane tangent_to_disc(Vec2 centre, double radius, Vec2 velocity) {
   return {centre + out * radius, right_of(out)};
 }
 
-}  // namespace
-
-Escape escape(const OrcaAgent& agent, const OrcaAgent& other, double horizon, double dt, bool first) {
+/// `escape`, which is worth compiling into each of its callers.
+inline Escape nearest_escape(const OrcaAgent& agent, const OrcaAgent& other, double horizon, double dt, bool first) {
   const Vec2 offset = other.position - agent.position, velocity = agent.velocity - other.velocity;
   const double distance2 = squared(offset), radius = agent.radius + other.radius;
   const bool apart = distance2 > radius * radius;
@@ -49,9 +48,15 @@ Escape escape(const OrcaAgent& agent, const OrcaAgent& other, double horizon, do
   return {direction * dot(velocity, direction) - velocity, direction};
 }
 
+}  // namespace
+
+Escape escape(const OrcaAgent& agent, const OrcaAgent& other, double horizon, double dt, bool first) {
+  return nearest_escape(agent, other, horizon, dt, first);
+}
+
 HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt,
                       bool first) {
-  const Escape least = escape(agent, other, horizon, dt, first);
+  const Escape least = nearest_escape(agent, other, horizon, dt, first);
   return {agent.velocity + least.change * share, least.direction};
 }
 
