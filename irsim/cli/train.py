@@ -9,7 +9,13 @@ import typer
 
 from irsim.cli.guard import INVALID
 
-__all__ = ["train"]
+__all__ = ["SETTINGS", "train"]
+
+SETTINGS = (
+    "Their defaults: slots=128, rollout=64, batch=1024, epochs=6, rate=0.0007, gamma=0.98, gae_lambda=0.95, clip=0.2, "
+    "entropy=0.002, units=[128, 128], set_units=[64, 64], round_updates=8."
+)
+"""Help on the settings; a literal, so that the help needs no pydantic."""
 
 
 def train(
@@ -24,18 +30,30 @@ def train(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the training.")] = Path(
         "training"
     ),
-    algo: Annotated[str, typer.Option("--algo", help="Algorithm: ppo.")] = "ppo",
+    algo: Annotated[str | None, typer.Option("--algo", help="Algorithm: ppo, which is the default.")] = None,
     steps: Annotated[
-        float, typer.Option("--steps", min=1, help="Decisions of all learners, at most; 5e6 is a number, too.")
-    ] = 1e6,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of weights, exploration and samples.")] = 0,
+        float | None,
+        typer.Option(
+            "--steps",
+            min=1,
+            help="Decisions of all learners, at most, such as 5e6; with --resume a finished training goes on to them. "
+            "Default: 1e6.",
+        ),
+    ] = None,
+    max_time: Annotated[
+        float | None,
+        typer.Option("--max-time", min=0, metavar="SECONDS", help="Begin no further round after this wall-clock time."),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option("--seed", min=0, help="Seed of weights, exploration and samples. Default: 0.")
+    ] = None,
     stop_at: Annotated[
         float | None,
         typer.Option("--stop-at", min=0, max=1, help="Stop at this success on the validation seeds, such as 0.98."),
     ] = None,
     options: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Another setting, such as rate=3e-4; may be repeated."),
+        typer.Option("--set", metavar="KEY=VALUE", help=f"Another setting; may be repeated. {SETTINGS}"),
     ] = None,
     threads: Annotated[int, typer.Option("--threads", min=1, help="Threads of simulation and torch.")] = 1,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the training in the folder.")] = False,
@@ -51,7 +69,11 @@ def train(
         what = "a task file is missing" if task is None else "a resumed training has its own task"
         typer.echo(f"{what}: give TASK, or --resume with -o FOLDER", err=True)
         raise typer.Exit(INVALID)
-    given = {"algo": algo, "steps": int(steps), "seed": seed, "stop_at": stop_at}
+    wanted = None if steps is None else int(steps)
+    given = {"algo": algo, "steps": wanted, "seed": seed, "stop_at": stop_at}
+    if resume and (options or any(given[name] is not None for name in ("algo", "seed", "stop_at"))):
+        typer.echo("a resumed training keeps its settings, except --steps: leave out the others", err=True)
+        raise typer.Exit(INVALID)
     settings = RunFolder(out).settings() if resume else read_settings(given, options or [])
     from irsim.learning.training.train import train as run
 
@@ -61,7 +83,10 @@ def train(
         )
     out_console = console()
     show: Any = _Progress(out_console)
-    best = run(task or out / "task.yaml", out, settings, resume=resume, threads=threads, on_round=show)
+    best = run(
+        task or out / "task.yaml", out, settings, resume=resume, steps=wanted if resume else None, max_time=max_time,
+        threads=threads, on_round=show,
+    )  # fmt: skip
     out_console.print(f"best model: {best}; irsim export-policy {out} policy.npz makes a file that needs no torch")
 
 

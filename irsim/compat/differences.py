@@ -121,10 +121,10 @@ DIFFERENCES: dict[str, Difference] = {
         "objects should not stay inside each other",
     ),
     "D21": Difference(
-        "attributes can be written, but some writes have no effect (`lidar.number`, `info`) or only part of it "
-        "(`step_time`: the clock does not change)",
+        "attributes can be written, but some writes have no effect (`lidar.number`, `info`, `step_mode` of the "
+        "world: actions still move robots) or only part of it (`step_time`: the clock does not change)",
         "a write takes effect at once, or it is an error that names the method to call; `world_param.step_time` can be "
-        "set before the first step, `collision_mode` and others at any time",
+        "set before the first step, `collision_mode`, `step_mode` and others at any time",
         "a line without effect should not be found only through wrong results",
     ),
     "D22": Difference(

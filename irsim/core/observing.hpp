@@ -14,6 +14,7 @@ namespace irsim {
 struct Neighbor {
   Vec2 position;    // of the middle of its bounding circle [m]
   double heading;   // [rad]
+  Vec2 ahead;       // cosine and sine of the heading
   Vec2 velocity;    // [m/s]
   double radius;    // of its bounding circle [m]
   double arrived;   // 1 for a robot that has reached its last goal

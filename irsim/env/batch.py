@@ -60,11 +60,17 @@ class Batch:
     """
 
     def __init__(
-        self, scenario: ResolvedScenario, seeds: Sequence[int], threads: int, policy: Policy | None = None
+        self,
+        scenario: ResolvedScenario,
+        seeds: Sequence[int],
+        threads: int,
+        policy: Policy | None = None,
+        *,
+        crowded: bool = False,
     ) -> None:
         self.scenario = scenario = with_policy(scenario, policy)
         self.seeds = [check_seed(seed) for seed in seeds]
-        self._simulation = Simulation(scenario, self.seeds, threads=threads)
+        self._simulation = Simulation(scenario, self.seeds, threads=threads, crowded=crowded)
         self._simulation.make_view = make_view
         attach_python(self._simulation)
         attach_policy(self._simulation, policy)

@@ -38,7 +38,9 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
     simulation = env._simulation
     if env.world_param.step_mode == "external":
         if action is not None:
-            raise ValueError("step_mode 'external' takes no actions: move the objects with set_state")
+            raise ValueError(
+                "step_mode 'external' takes no actions: move the objects with set_state, or set step_mode to 'internal'"
+            )
         simulation.step_external()
     else:
         if action is not None:

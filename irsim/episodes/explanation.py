@@ -12,6 +12,7 @@ from irsim.episodes.appearances import absence, appearances_message, is_absent
 from irsim.episodes.detours import closeness_message, shunting_message
 from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
 from irsim.episodes.out_of_bounds import exits_message
+from irsim.episodes.reverse import reverse_message
 from irsim.episodes.scene_summary import called
 from irsim.episodes.stalling import stalled_step
 from irsim.episodes.stuck import (
@@ -280,6 +281,8 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
     row = view.row
     if off := heading_message(record, env.simulation.pose[row], env.simulation.state.goal[row]):
         return f"stands still {place}: {off}"
+    if back := reverse_message(record, env.simulation.pose[row], env.simulation.state.goal[row]):
+        return f"stands still {place}: {back}"
     return f"stands still {place}{_obstruction_message(env, view, held)}"
 
 

@@ -97,7 +97,7 @@ class Worlds:
         self.n = n
         first = self.task.seeds.train if seed is None else seed
         seeds = [first + i for i in range(n)]
-        self._batch = Batch(self.scenario, seeds, threads)
+        self._batch = Batch(self.scenario, seeds, threads, crowded=True)  # reset() below skips such scenes
         self._simulation = simulation = self._batch.simulation
         self._threads = threads
         team = team_of(self.task, self.scenario)
@@ -155,10 +155,10 @@ class Worlds:
         if self._draws.varies:
             self._read_draws(chosen)
         self._ended[chosen] = ~self.present[chosen]
-        self._low, self._high = state.vel_min[self.rows], state.vel_max[self.rows]
+        self._low, self._high = state.vel_min.take(self.rows, axis=0), state.vel_max.take(self.rows, axis=0)
         flags = self._simulation
-        self._arrived[chosen] = flags.arrived[self.rows].reshape(self._shape)[chosen] != 0
-        self._collided[chosen] = flags.collided[self.rows].reshape(self._shape)[chosen] != 0
+        self._arrived[chosen] = flags.arrived.take(self.rows).reshape(self._shape)[chosen] != 0
+        self._collided[chosen] = flags.collided.take(self.rows).reshape(self._shape)[chosen] != 0
 
     def set_level(self, level: int) -> None:
         """Set the level of the curriculum of the episodes that start from now on.
@@ -226,14 +226,14 @@ class Worlds:
             ArgumentError: The actions have another shape, or are not finite.
         """
         simulation, rows, shape = self._simulation, self.rows, self._shape
-        goal, before = simulation.goal[rows], simulation.pose[rows]
-        control_before = simulation.control[rows]
-        self._impose(self._read(actions), before, goal)
+        goal, before = simulation.goal.take(rows, axis=0), simulation.pose.take(rows, axis=0)
+        control_before = simulation.control.take(rows, axis=0)
+        self._impose(self._read(actions), before, goal, control_before)
         simulation.step()
-        after = simulation.pose[rows]
-        reached = ~_same(simulation.goal[rows], goal)
-        arrived = (simulation.arrived[rows] != 0).reshape(shape)
-        collided = (simulation.collided[rows] != 0).reshape(shape)
+        after, twist = simulation.pose.take(rows, axis=0), simulation.twist.take(rows, axis=0)
+        reached = ~_same(simulation.goal.take(rows, axis=0), goal)
+        arrived = (simulation.arrived.take(rows) != 0).reshape(shape)
+        collided = (simulation.collided.take(rows) != 0).reshape(shape)
         active = ~self._ended & ~self._over[:, None]
         came, hit = arrived & ~self._arrived & active, collided & ~self._collided & active
         self._arrived |= arrived
@@ -245,12 +245,12 @@ class Worlds:
             reached=(reached.reshape(shape) & active) | came,
             arrived=came,
             collided=hit,
-            control=simulation.control[rows].reshape(*shape, 3),
+            control=simulation.control.take(rows, axis=0).reshape(*shape, 3),
             control_before=control_before.reshape(*shape, 3),
             low=self._low.reshape(*shape, 3),
             high=self._high.reshape(*shape, 3),
-            velocity=simulation.twist[rows, :2].reshape(*shape, 2),
-            yaw_rate=simulation.twist[rows, 2].reshape(shape),
+            velocity=twist[:, :2].reshape(*shape, 2),
+            yaw_rate=twist[:, 2].reshape(shape),
             gaps=self._gaps(),
         )
         terms = np.stack([self._value(feature, options, moment) for feature, options in self._terms])
@@ -318,14 +318,14 @@ class Worlds:
         numbers[np.arange(len(number)), number] = 1.0
         return numbers
 
-    def _impose(self, numbers: Floats, pose: Floats, goal: Floats) -> None:
+    def _impose(self, numbers: Floats, pose: Floats, goal: Floats, control: Floats) -> None:
         """Command the learners whose episodes go on; the others stand still."""
         simulation, rows = self._simulation, self.rows
         held = None
         if self._latency is not None:
             numbers, held = self._latency.pass_on(numbers, simulation.count)
-        velocity = simulation.twist[rows, :2]
-        present = Present(pose, goal, velocity, simulation.control[rows], self._low, self._high)
+        velocity = simulation.twist.take(rows, axis=0)[:, :2]
+        present = Present(pose, goal, velocity, control, self._low, self._high)
         wanted = decide(self._meaning, numbers, present)
         wanted[self._ended.reshape(-1)] = 0.0
         if held is not None:

@@ -19,11 +19,13 @@ _ABOUT = (
 
 
 def task_answer(words: Sequence[str]) -> Answer | None:
-    """Describe a task, or a key of one; None if there is no such key.
+    """Describe a task, or a key of one, or a bundled task; None if there is no such key or task.
 
     Args:
-        words: The path below ``task``, such as ``reward progress``.
+        words: The path below ``task``, such as ``reward progress``, or the name of a bundled task.
     """
+    if len(words) == 1 and words[0] in bundled_tasks():
+        return _bundled(words[0])
     schema = task_schema()
     nodes: list[Node] = [schema]
     for word in words:
@@ -40,7 +42,7 @@ def task_answer(words: Sequence[str]) -> Answer | None:
     about = None if not words or chosen else key(schema, words[-1], node)
     if not words:
         groups["bundled tasks"] = [
-            Key(name=name, text=open_task(bundled_task(name))[0].title) for name in bundled_tasks()
+            Key(name=f"task.{name}", text=open_task(bundled_task(name))[0].title) for name in bundled_tasks()
         ]
     return Answer(
         topic=".".join(path),
@@ -51,6 +53,21 @@ def task_answer(words: Sequence[str]) -> Answer | None:
         groups={name: keys for name, keys in groups.items() if keys},
         example=_EXAMPLE if not words else _example(schema, node),
         see=["policies", "suites"] if not words else ["task"],
+    )
+
+
+def _bundled(name: str) -> Answer:
+    file = bundled_task(name)
+    task, _ = open_task(file)
+    return Answer(
+        topic=f"task.{name}",
+        kind="component",
+        title=f"bundled task {name}",
+        text=f"{task.title}. {task.about.strip()} To change it, write what stands below into a file of your own.",
+        about=None,
+        groups={},
+        example=file.read_text(encoding="utf-8"),
+        see=["task", "policies"],
     )
 
 

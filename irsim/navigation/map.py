@@ -223,12 +223,17 @@ def _grid_parts(env_map: Any) -> list[Any]:
     return [core.GridCells(grid=core.OccupancyGrid(occupied, origin, cell))] if occupied.any() else []
 
 
-def cells_of(env_map: Any) -> tuple[tuple[float, float], tuple[float, float], int, int]:
-    """Return origin, cell size, columns and rows of the cells that grid planners use: those of the grid, if any."""
-    if env_map.grid is not None:
+Cells = tuple[tuple[float, float], tuple[float, float], int, int]
+"""Origin [m], size of a cell [m], number of columns and of rows of the cells that a planner searches."""
+
+
+def cells_of(env_map: Any, resolution: float | None = None) -> Cells:
+    """Return the cells that grid planners use: those of ``resolution`` [m] if given, else those of the grid, if any."""
+    if resolution is None and env_map.grid is not None:
         nx, ny = env_map.grid.shape
     else:
-        nx, ny = (max(1, round(extent / env_map.resolution)) for extent in (env_map.width, env_map.height))
+        size = env_map.resolution if resolution is None else resolution
+        nx, ny = (max(1, round(extent / size)) for extent in (env_map.width, env_map.height))
     return (env_map.world_offset[0], env_map.world_offset[1]), (env_map.width / nx, env_map.height / ny), nx, ny
 
 

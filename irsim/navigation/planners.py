@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
-from irsim.navigation.map import EnvGridMap, cells_of, footprint_of, terrain_of
+from irsim.navigation.map import Cells, EnvGridMap, cells_of, footprint_of, terrain_of
 from irsim.simulation.random_streams import check_seed, fresh_seed
 
 __all__ = ["RRT", "AStarPlanner", "InformedRRTStar", "JPSPlanner", "PRMPlanner", "PathNode", "PathPlanner", "RRTStar"]
@@ -87,7 +88,7 @@ class PathPlanner:
             heading=0.0,
             start=start,
             goal=goal,
-            cells=cells_of(self.map),
+            cells=self._cells(),
             key=key,
             object=self._object,
             first_draw=next(self._calls) * _DRAWS_PER_CALL,
@@ -112,6 +113,9 @@ class PathPlanner:
     def _footprint(self) -> list[Any]:
         return footprint_of(self.robot)
 
+    def _cells(self) -> Cells:
+        return cells_of(self.map)
+
 
 class _GridPlanner(PathPlanner):
     """Planner on the cells of the map.
@@ -120,24 +124,53 @@ class _GridPlanner(PathPlanner):
 
     Attributes:
         resolution: Size of a cell along x [m]: that of the grid of the map, or else the resolution of the map. A
-            resolution that does not divide the map is rounded, when planning, to the nearest one that does.
-        x_width, y_width: Number of cells along x and y.
+            resolution that does not divide the map is rounded, when planning, to the nearest one that does. A written
+            value holds for this planner only, which then searches cells of that size; the map keeps its own.
+        x_width, y_width: Number of cells along x and y; a written number holds until ``resolution`` is written.
     """
+
+    _resolution: float | None = None
+    _columns: int | None = None
+    _rows: int | None = None
 
     @property
     def resolution(self) -> float:
-        """Size of a cell along x [m]."""
-        return float(self.map.resolution if self.map.grid is None else cells_of(self.map)[1][0])
+        """Size of a cell along x [m]; may be written."""
+        if self._resolution is not None and self._columns is None:
+            return self._resolution
+        planned_as_given = self.map.grid is None and self._columns is None
+        return float(self.map.resolution if planned_as_given else self._cells()[1][0])
+
+    @resolution.setter
+    def resolution(self, metres: float) -> None:
+        size = float(metres)
+        if not (math.isfinite(size) and size > 0):
+            raise ValueError(f"the resolution of a planner is a positive number [m], not {metres!r}")
+        self._resolution, self._columns, self._rows = size, None, None
 
     @property
     def x_width(self) -> int:
-        """Number of cells along x."""
-        return cells_of(self.map)[2]
+        """Number of cells along x; may be written."""
+        return self._cells()[2]
+
+    @x_width.setter
+    def x_width(self, cells: int) -> None:
+        self._columns = _cell_count(cells)
 
     @property
     def y_width(self) -> int:
-        """Number of cells along y."""
-        return cells_of(self.map)[3]
+        """Number of cells along y; may be written."""
+        return self._cells()[3]
+
+    @y_width.setter
+    def y_width(self, cells: int) -> None:
+        self._rows = _cell_count(cells)
+
+    def _cells(self) -> Cells:
+        origin, (width, height), columns, rows = cells_of(self.map, self._resolution)
+        extent = width * columns, height * rows
+        columns, rows = self._columns or columns, self._rows or rows
+        return origin, (extent[0] / columns, extent[1] / rows), columns, rows
 
     def _footprint(self) -> list[Any]:
         return footprint_of(self.robot if self.robot is not None else getattr(self.map, "robot", None))
@@ -338,6 +371,13 @@ class PRMPlanner(PathPlanner):
 
     def _footprint(self) -> list[Any]:
         return [core.Circle(radius=self.robot_radius, center=(0.0, 0.0))]
+
+
+def _cell_count(cells: Any) -> int:
+    count = int(cells)
+    if count != cells or count < 1:
+        raise ValueError(f"the number of cells of a planner is a positive whole number, not {cells!r}")
+    return count
 
 
 def _point(pose: Any, what: str) -> tuple[float, float]:

@@ -89,6 +89,7 @@ class Simulation:
         *,
         threads: int = 1,
         history: bool = False,
+        crowded: bool = False,
     ) -> None:
         self.scenario = scenario
         self.threads = threads
@@ -113,7 +114,7 @@ class Simulation:
         self._views: dict[int, list[Any]] = {}
         self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
-        if scenario.variation is None:  # else the caller resets all worlds, at the level that it wants
+        if not crowded:
             self._check_placement()
 
     def _bind(self, world: core.World, state: core.State) -> None:

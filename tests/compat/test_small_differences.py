@@ -249,6 +249,11 @@ def test_the_step_mode_of_the_world_may_be_written(make: Make) -> None:
     before = env.robot_list[1].state
     env.step()
     assert (env.robot_list[1].state == before).all()
+    with pytest.raises(ValueError, match=r"takes no actions.*set step_mode to 'internal'"):  # D21: the write counts
+        env.step([0.5, 0.1])
+    env._world.step_mode = "internal"
+    env.step([0.5, 0.1])
+    assert (env.robot_list[0].state != before).any()
     with pytest.raises(ValueError, match="sideways"):
         env._world.step_mode = "sideways"
 

@@ -58,3 +58,26 @@ def test_the_sign_chooses_the_side() -> None:
 def test_alone_it_drives_straight() -> None:
     text = world("name: orca, sidestep: 20", ([1, 5, 0], [12, 5], 1.0))
     assert irsim.run(text=text, seed=0, steps=40).robots[0].pose[1] == 5
+
+
+RING = """
+world: {{width: 12, height: 12, time_limit: 90}}
+robot:
+  - number: {count}
+    kinematics: {{name: {drive}}}
+    shape: {{name: circle, radius: 0.25}}
+    distribution: {{name: circle, center: [6, 6], radius: 4}}
+    goal_threshold: 0.2
+    vel_max: [1, {turn}]
+    vel_min: [-1, -{turn}]
+    behavior: {{{behavior}}}
+"""
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 6, 7, 8])
+@pytest.mark.parametrize("behavior", ["name: orca", *LOCALS.values()])
+@pytest.mark.parametrize(("drive", "turn"), [("omni", 1), ("diff", 2)])
+def test_a_ring_opens(behavior: str, count: int, drive: str, turn: float) -> None:
+    text = RING.format(count=count, drive=drive, turn=turn, behavior=f"{behavior}, sidestep: 10")
+    result = irsim.run(text=text, seed=0)
+    assert result.outcome == "success", result.reason

@@ -26,6 +26,18 @@ def test_too_little_time() -> None:
     assert codes(scenario(loop, time_limit=5)) == []
 
 
+def test_one_time_limit_is_long_enough_for_all_robots() -> None:
+    late = {**ROBOT, "name": "late", "state": [2, 3, 0], "goal": [4, 3], "start_time": 30}
+    data = scenario({**ROBOT, "start_time": 6}, time_limit=10)
+    data["robot"] += [late, {**ROBOT, "name": "ap", "state": [2, 7, 0], "goal": [10, 7], "appear_time": 12}]
+    item = one(data, "time-too-short")
+    assert "'late' needs at least 31.9 s" in item.message
+    assert "time_limit is 10 s; 2 more robots need more than that" in item.message
+    assert str(item.fix).startswith("time_limit: 36,")
+    data["world"]["time_limit"] = 36
+    assert codes(data) == []
+
+
 @pytest.mark.parametrize("behavior", ["dash", "rvo", "orca", "sfm"])
 def test_nobody_hurries_backwards(behavior: str) -> None:
     """The limit backwards stays at 1 m/s by default, and helps none of the behaviors forwards."""

@@ -8,6 +8,7 @@ import yaml
 from PIL import Image
 
 import irsim
+from irsim.cli.train import SETTINGS
 from irsim.learning.tasks.files import open_task
 from irsim.learning.training.run_folder import RunFolder, merit
 from irsim.learning.training.settings import TrainingSettings
@@ -39,3 +40,17 @@ def test_the_scenario_of_a_template_is_kept_too(tmp_path: Path) -> None:
     opened, folder = open_task(corridor())
     RunFolder(tmp_path / "run").begin(opened, folder, {}, TrainingSettings())
     assert irsim.validate(tmp_path / "run" / "scenario.yaml").valid
+
+
+def test_the_help_of_train_has_every_setting_with_its_default() -> None:
+    options = {"algo", "steps", "seed", "stop_at"}
+    settings = TrainingSettings().model_dump(exclude=options)
+    assert SETTINGS.endswith(": " + ", ".join(f"{key}={value}" for key, value in settings.items()) + ".")
+
+
+def test_a_training_without_a_finished_round_does_not_block_its_folder(tmp_path: Path) -> None:
+    opened, folder = open_task(corridor())
+    run = RunFolder(tmp_path / "run")
+    run.begin(opened, folder, {}, TrainingSettings(seed=1))
+    run.begin(opened, folder, {}, TrainingSettings(seed=2))
+    assert run.settings().seed == 2

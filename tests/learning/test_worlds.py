@@ -275,3 +275,11 @@ def test_tasks_that_do_not_fit_their_scenario_are_refused(keys: dict[str, Any], 
 def test_learners_share_a_drive() -> None:
     with pytest.raises(TaskError, match=r"different drives"):
         Worlds(task({}, {"kinematics": {"name": "omni"}, "state": [1, 2, 0]}))
+
+
+def test_first_scenes_without_room_are_skipped_as_later_ones_are() -> None:
+    far = {"name": "random", "range_low": [1, 1, -3], "range_high": [9, 9, 3], "goal_distance": 10.9, "min_distance": 0}
+    worlds = Worlds(task({"number": 2, "distribution": far}), 60, seed=1)
+    scenes = [worlds.simulation.key(k)[1] for k in range(60)]
+    assert 0 < sum(scene > 0 for scene in scenes) < 60
+    assert Worlds(task({"number": 2, "distribution": far}), 1, seed=7).simulation.key(0) == worlds.simulation.key(6)

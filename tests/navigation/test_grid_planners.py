@@ -175,3 +175,36 @@ def test_starts_and_goals_of_any_form() -> None:
     assert np.array_equal(paths[0], paths[1])
     with pytest.raises(ValueError, match="two finite numbers"):
         AStarPlanner(env_map).planning([1], [4, 4])
+
+
+@pytest.mark.parametrize("planner_class", [AStarPlanner, JPSPlanner])
+@pytest.mark.parametrize("grid", [None, np.zeros((100, 80))])
+def test_a_written_resolution_holds_for_the_planner_alone(planner_class: type[AStarPlanner], grid: Any) -> None:
+    env_map = Map(10, 8, 0.1, grid=grid)
+    planner = planner_class(env_map)
+    planner.resolution = 0.5
+    assert (planner.resolution, planner.x_width, planner.y_width, env_map.resolution) == (0.5, 20, 16, 0.1)
+    path = planner.planning([1, 1], [9, 7], show_animation=False)
+    assert path is not None
+    assert path[:, -1].tolist() == [1.25, 1.25], "the middle of a cell of 0.5 m"
+    assert planner_class(env_map).x_width == 100
+
+
+@pytest.mark.parametrize("planner_class", [AStarPlanner, JPSPlanner])
+def test_written_numbers_of_cells_hold_until_the_resolution_is_written(planner_class: type[AStarPlanner]) -> None:
+    planner = planner_class(Map(10, 8, 0.1))
+    planner.x_width, planner.y_width = 40, 32
+    assert (planner.resolution, planner.x_width, planner.y_width) == (0.25, 40, 32)
+    path = planner.planning([1, 1], [9, 7], show_animation=False)
+    assert path is not None
+    assert path[:, -1].tolist() == [1.125, 1.125]
+    planner.resolution = 1
+    assert (planner.x_width, planner.y_width) == (10, 8)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("resolution", 0), ("resolution", math.inf), ("x_width", 0), ("y_width", 2.5)]
+)
+def test_cells_that_are_none_are_refused(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match="positive"):
+        setattr(AStarPlanner(Map(10, 8, 0.1)), name, value)

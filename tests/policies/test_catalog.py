@@ -96,7 +96,7 @@ def test_files_have_a_digest_and_are_found_from_their_folder(tmp_path: Path) -> 
     [
         ("orka", "unknown-policy: there is no policy 'orka'. Fix: did you mean orca"),
         ("stil", "there is no policy 'stil'. Fix: did you mean still"),
-        ("xyzzy", r"Fix: choose one of as-written, avocado, .*random.* or a file"),
+        ("xyzzy", r"Fix: choose one of as-written, .*dash, .*random.* or a file"),
         ("nett.npz", "there is no file 'nett.npz'. Fix: did you mean net.npz"),
         ("orca dash", "'orca dash' is not a valid behavior"),
         (7, "a policy cannot be 7"),

@@ -46,6 +46,30 @@ def test_behind_a_slower_one_is_reported_only_if_it_catches_up() -> None:
     assert "exact-symmetry" not in codes(pair("name: orca", *places, tops=(1.0, 0.95)))
 
 
+@pytest.mark.parametrize(
+    ("behavior", "words", "end"),
+    [
+        ("name: orca", "trails it", "trails"),
+        ("name: follow, local: {name: orca}", "trails it", "trails"),
+        ("name: follow, local: {name: sfm}", "trails it", "trails"),
+        ("name: sfm", "drives into it", "collides"),
+        ("name: rvo", None, "passes"),
+        ("name: follow, local: {name: rvo}", None, "passes"),
+    ],
+)
+def test_what_is_said_of_one_behind_a_slower_one_is_what_it_does(behavior: str, words: str | None, end: str) -> None:
+    text = pair(behavior, "[1, 5, 0];[3, 5, 0]", "[15, 5];[18, 5]", tops=(1.0, 0.4))
+    messages = [f.message for f in irsim.validate(text=text).findings if f.code == "exact-symmetry"]
+    assert len(messages) == (words is not None)
+    assert words is None or words in messages[0]
+    first = irsim.run(text=text, seed=0).robots[0]
+    slow_time = 12 / 0.4  # the one ahead needs this long to the goal of the one behind
+    arrived = first.time_to_goal
+    assert (
+        "collides" if first.outcome == "collision" else "passes" if arrived and arrived < 0.8 * slow_time else "trails"
+    ) == end
+
+
 def test_starts_that_are_drawn_are_not_reported() -> None:
     text = "robot: {number: 6, distribution: {name: random}, kinematics: {name: omni}, behavior: {name: orca}}"
     assert "exact-symmetry" not in codes(text)
@@ -73,3 +97,15 @@ def test_the_summary_says_how_long_a_car_shunted_at_its_goal() -> None:
     assert "to and fro at the goal" in irsim.run(text=car(0.1, True), seed=0).summary
     assert "no nearer than" in irsim.run(text=car(0.1, False), seed=0).summary
     assert "to and fro" not in irsim.run(text=car(0.3, True), seed=0).summary
+
+
+@pytest.mark.parametrize("count", [3, 4, 5])
+@pytest.mark.parametrize("behavior", ["name: orca", "name: rvo", "name: sfm"])
+def test_a_ring_is_reported_once_until_a_side_is_chosen(behavior: str, count: int) -> None:
+    text = (
+        f"world: {{width: 12, height: 12}}\nrobot:\n  - {{number: {count}, kinematics: {{name: omni}}, "
+        "distribution: {name: circle, center: [6, 6], radius: 4}, vel_max: [1, 1], vel_min: [-1, -1], "
+        "shape: {name: circle, radius: 0.25}, behavior: {BEHAVIOR}}\n"
+    )
+    assert codes(text.replace("BEHAVIOR", behavior)).count("exact-symmetry") == 1
+    assert "exact-symmetry" not in codes(text.replace("BEHAVIOR", f"{behavior}, sidestep: 10"))

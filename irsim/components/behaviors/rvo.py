@@ -39,8 +39,9 @@ class Rvo(BehaviorOptions):
     """Objects and walls farther away than this are ignored; linestrings are never ignored."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
     """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
-    turns by this angle to the right, to the left if negative. 10 breaks exact symmetry: trailing a slower one, stopping
-    when two meet head-on, a ring that locks up. 0 is off."""
+    turns by this angle to the right, to the left if negative, and further, up to 90 degrees, the slower the object
+    drives. 10 breaks exact symmetry: trailing a slower one, stopping when two meet head-on, a ring that locks up. 0 is
+    off."""
 
 
 BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

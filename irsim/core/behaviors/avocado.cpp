@@ -67,7 +67,9 @@ class LearnedShare final : public Reciprocity {
       of.velocity = other.velocity;
     }
     blur(of, agent, other);
-    of.change = escape(agent, other, options_.timeHorizon, world.step_time, self_ < m).change;
+    HalfPlane whole;
+    avoid_agent(agent, other, 1.0, options_.timeHorizon, world.step_time, self_ < m, whole);
+    of.change = whole.point - agent.velocity;
     return 1.0 - clip(0.5 * (of.opinion + 1.0), 0.0, 1.0);
   }
 

@@ -7,31 +7,34 @@
 namespace irsim {
 namespace {
 
-constexpr double kSamePlace = 1e-6;  // two objects this close have no direction between them, and so no force [m]
-constexpr double kStraight = 1e-12;  // smaller angles are rounding errors of an object straight ahead [rad]
 constexpr double kOnWall = 1e-9;     // an object this close is on the wall [m]
 constexpr double kWallReach = 5.0;   // distance within which walls act, in units of sigma
 constexpr double kSideways = 0.2;    // largest push of walls across a route, as a share of the pull along it
 constexpr double kTolerance = 0.02;  // smaller heading errors are not corrected [rad]
 
-/// Force of another disc: a braking part against the interaction vector and a sideways part.
-Vec2 social_force(const SfmOptions& o, const Ego& ego, const Disc& other) {
-  const Vec2 way = other.centre - ego.position;
-  const double distance = norm(way);
-  if (distance < kSamePlace) return {};
-  const Vec2 towards = way * (1.0 / distance);
-  const Vec2 interaction = (ego.velocity - other.velocity) * o.lambda_importance + towards;
-  const double length = norm(interaction);
-  if (!(length > 0.0)) return {};
-  const Vec2 along = interaction * (1.0 / length);
-  const double reach = o.gamma * length;
-  const double angle = std::atan2(cross(along, towards), dot(along, towards));
-  const double gap = std::max(distance - 2.0 * o.safety_radius, 0.0);
-  const double braking = o.n_velocity * reach * angle, turning = o.n_angular * reach * angle;
-  const double sign = angle > kStraight ? 1.0 : angle < -kStraight ? -1.0 : 0.0;
-  const double f_velocity = -std::exp(-gap / reach - braking * braking);
-  const double f_angular = -sign * std::exp(-gap / reach - turning * turning);
-  return along * f_velocity + Vec2{-along.y, along.x} * f_angular;
+bool same(Vec2 a, Vec2 b) { return a.x == b.x && a.y == b.y; }
+
+/// Sum of the forces of other discs on object k of the decision. A force that is known from the other's decision is not
+/// computed again.
+Vec2 social_force(const SfmOptions& o, const Decision& decision, int k, const Ego& ego) {
+  const World& world = decision.world;
+  SocialForces& forces = decision.work.social_forces;
+  MutualForces& mutual = decision.work.mutual_forces;
+  const Scene& scene = decision.state.scenes[decision.w()];
+  const Neighbors& near = neighbors(world, decision.state, decision.work, decision.w());
+  mutual.decide(k);
+  forces.clear(world.objects);
+  for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& other) {
+    if (ego.route != nullptr && world.is_static[other.object]) return;
+    if (mutual.knows(other.object)) return;
+    forces.add(other.centre - ego.position, ego.velocity - other.velocity);
+    // Others see the ego where it sees itself: its origin is the centre of its disc, or they know its origin.
+    const Vec2 origin = decision.state.pose[decision.first_row + other.object].position();
+    mutual.expect(other.object, same(other.centre, origin));
+  });
+  forces.compute(o);
+  const bool centred = decision.grouped || same(near.discs[scene.shapes->placed[ego.id].object].centre, ego.position);
+  return mutual.sum(ego.id, centred, forces);
 }
 
 /// Force of a wall, away from its nearest point.
@@ -146,16 +149,14 @@ Vec2 group_force(const SfmOptions& o, const Decision& decision, const Ego& ego) 
 void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
   const World& world = decision.world;
   const double dt = world.step_time;
+  decision.work.mutual_forces.begin(decision.objects, decision.count, world.objects);
   for (int k = 0; k < decision.count; ++k) {
     Ego ego = ego_of(decision, k);
     ego.desired = sidestepped(decision, k, ego.desired, options.sidestep);
     const double speed = norm(ego.desired);
     const double most = options.vmax * ego.pace;
     const Vec2 desired = speed > 0.0 ? ego.desired * (most / speed) : Vec2{};
-    Vec2 social;
-    for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& other) {
-      if (ego.route == nullptr || !world.is_static[other.object]) social = social + social_force(options, ego, other);
-    });
+    const Vec2 social = social_force(options, decision, k, ego);
     const Vec2 force = (desired - ego.velocity) * (options.force_factor_desired / options.relaxation_time) +
                        social * options.force_factor_social +
                        obstacle_force(options, decision, ego) * options.force_factor_obstacle +

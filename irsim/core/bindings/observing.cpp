@@ -141,7 +141,7 @@ struct SeenRows {
     seen.arrived = arrived.data()[row] ? 1.0 : 0.0;
     near.neighbors.clear();
     for (std::size_t k = row * neighbors; k < (row + 1) * neighbors; ++k) {
-      near.neighbors.push_back({vector_at(position.data(), k), heading.data()[k],
+      near.neighbors.push_back({vector_at(position.data(), k), heading.data()[k], unit(heading.data()[k]),
                                 vector_at(neighbor_velocity.data(), k), neighbor_radius.data()[k],
                                 neighbor_arrived.data()[k] ? 1.0 : 0.0, is_robot.data()[k] ? 1.0 : 0.0,
                                 present.data()[k] != 0, extent.data()[k], own_extent.data()[k]});

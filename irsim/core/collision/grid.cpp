@@ -5,24 +5,25 @@ namespace irsim {
 void Grid::clear(double cell) {
   inverse_ = cell > 0.0 && std::isfinite(cell) ? 1.0 / cell : 1.0;
   items_.clear();
-  large_.clear();
-  entries_.clear();
 }
 
 void Grid::add(int id, const Box& box) {
-  if (!box.finite()) return;
-  const auto item = static_cast<std::uint32_t>(items_.size());
-  items_.push_back({box, id});
-  const Cells cells = covered(box);
-  if (cells.count() > kMaxCellsPerBox) {
-    large_.push_back({box, id});
-    return;
-  }
-  for (std::int32_t y = cells.y0; y <= cells.y1; ++y)
-    for (std::int32_t x = cells.x0; x <= cells.x1; ++x) entries_.push_back({x, y, item});
+  if (box.finite()) items_.push_back({box, id});
 }
 
 void Grid::build() {
+  if (items_.size() <= kMaxLinearItems) return;
+  large_.clear();
+  entries_.clear();
+  for (std::size_t k = 0; k < items_.size(); ++k) {
+    const Cells cells = covered(items_[k].box);
+    if (cells.count() > kMaxCellsPerBox) {
+      large_.push_back(items_[k]);
+      continue;
+    }
+    for (std::int32_t y = cells.y0; y <= cells.y1; ++y)
+      for (std::int32_t x = cells.x0; x <= cells.x1; ++x) entries_.push_back({x, y, static_cast<std::uint32_t>(k)});
+  }
   std::uint32_t buckets = 1;
   while (buckets < entries_.size()) buckets *= 2;
   mask_ = buckets - 1;

@@ -19,9 +19,20 @@ class Grid {
   /// Sort the boxes that were added; queries are possible afterwards.
   void build();
 
+  /// Call `fetch` with the array that a query reads first.
+  template <class Fetch>
+  void fetch(Fetch&& fetch) const {
+    fetch(items_);
+  }
+
   template <class Report>
   void query(const Box& box, Report&& report) const {
     if (!box.finite()) return;
+    if (items_.size() <= kMaxLinearItems) {
+      for (const Item& item : items_)
+        if (item.box.meets(box)) report(item.id);
+      return;
+    }
     const Cells cells = covered(box);
     if (cells.count() > kMaxCellsPerBox) {
       for (const Item& item : items_)
@@ -50,6 +61,7 @@ class Grid {
 
  private:
   static constexpr std::int64_t kMaxCellsPerBox = 64;  // boxes that cover more cells are kept in a list
+  static constexpr std::size_t kMaxLinearItems = 16;   // up to this many boxes are tested one by one, without cells
   struct Cells {
     std::int32_t x0, y0, x1, y1;
     std::int64_t count() const { return (std::int64_t{x1} - x0 + 1) * (std::int64_t{y1} - y0 + 1); }

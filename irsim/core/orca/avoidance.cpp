@@ -184,7 +184,7 @@ bool avoid_discs(const World& world, const State& state, int w, int self, int ot
   };
   for (int k = 0; k < discs[0].count; ++k) {
     for (int n = 0; n < discs[1].count; ++n) {
-      planes.push_back(avoid_agent(disc(0, k), disc(1, n), share, horizon, world.step_time, self < other));
+      avoid_agent(disc(0, k), disc(1, n), share, horizon, world.step_time, self < other, planes.emplace_back());
     }
   }
   return true;
@@ -217,7 +217,7 @@ void avoid_movers(const OrcaSettings& options, const World& world, const State& 
       share = reciprocity->share(m, taken);
       other = &taken;
     }
-    if (mutual) {
+    if (mutual && !state.routes.empty()) {
       const Precedence order = precedence(world, state, w, object, world.moving[m]);
       if (order == Precedence::first) continue;
       if (order == Precedence::second) share = 1.0;
@@ -226,7 +226,7 @@ void avoid_movers(const OrcaSettings& options, const World& world, const State& 
     const bool routed = state.route_of(w * world.objects + object) != nullptr;
     if (routed && avoid_discs(world, state, w, self, m, agent, *other, share, options.timeHorizon, all.planes))
       continue;
-    all.planes.push_back(avoid_agent(agent, *other, share, options.timeHorizon, world.step_time, self < m));
+    avoid_agent(agent, *other, share, options.timeHorizon, world.step_time, self < m, all.planes.emplace_back());
   }
 }
 

@@ -30,41 +30,37 @@ HalfPlane tangent_to_disc(Vec2 centre, double radius, Vec2 velocity) {
   return {centre + out * radius, right_of(out)};
 }
 
-/// `escape`, which is worth compiling into each of its callers.
-inline Escape nearest_escape(const OrcaAgent& agent, const OrcaAgent& other, double horizon, double dt, bool first) {
+}  // namespace
+
+void avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt, bool first,
+                 HalfPlane& plane) {
   const Vec2 offset = other.position - agent.position, velocity = agent.velocity - other.velocity;
   const double distance2 = squared(offset), radius = agent.radius + other.radius;
   const bool apart = distance2 > radius * radius;
   const double rate = 1.0 / (apart ? horizon : dt);
   const Vec2 relative = velocity - offset * rate;  // relative to the centre of the disc that truncates the cone
   const double length2 = squared(relative), ahead = dot(relative, offset);
+  Vec2 change;  // smallest change of the relative velocity
   if (!apart || (ahead < 0.0 && ahead * ahead > radius * radius * length2)) {
     const double length = std::sqrt(length2);
     const Vec2 out = length > 0.0 ? relative * (1.0 / length) : Vec2{first ? 1.0 : -1.0, 0.0};
-    return {out * (radius * rate - length), right_of(out)};
+    plane.direction = right_of(out);
+    change = out * (radius * rate - length);
+  } else {
+    const Tangents legs = tangents(offset, radius);
+    plane.direction = cross(offset, relative) > 0.0 ? legs.left : legs.right * -1.0;
+    change = plane.direction * dot(velocity, plane.direction) - velocity;
   }
-  const Tangents legs = tangents(offset, radius);
-  const Vec2 direction = cross(offset, relative) > 0.0 ? legs.left : legs.right * -1.0;
-  return {direction * dot(velocity, direction) - velocity, direction};
-}
-
-}  // namespace
-
-Escape escape(const OrcaAgent& agent, const OrcaAgent& other, double horizon, double dt, bool first) {
-  return nearest_escape(agent, other, horizon, dt, first);
-}
-
-HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt,
-                      bool first) {
-  const Escape least = nearest_escape(agent, other, horizon, dt, first);
-  return {agent.velocity + least.change * share, least.direction};
+  plane.point = agent.velocity + change * share;
 }
 
 HalfPlane avoid_disc(const OrcaAgent& agent, Vec2 centre, double radius, double horizon) {
   const Vec2 offset = centre - agent.position;
   const double sum = agent.radius + radius;
   if (squared(offset) <= sum * sum) return away_from(offset);
-  return avoid_agent(agent, {centre, {}, radius}, 1.0, horizon, horizon, true);
+  HalfPlane plane;
+  avoid_agent(agent, {centre, {}, radius}, 1.0, horizon, horizon, true, plane);
+  return plane;
 }
 
 bool avoid_edge(const OrcaAgent& agent, const Edge& edge, double horizon, HalfPlane& out) {

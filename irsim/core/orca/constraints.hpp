@@ -29,23 +29,15 @@ struct Edge {
   bool faces(Vec2 p) const { return cross(direction(), p - left.point) < 0.0; }
 };
 
-/// The smallest change of the velocity of an agent relative to another with which they just avoid each other.
-struct Escape {
-  Vec2 change;     // [m/s]; it leads out of the velocity obstacle, or back to its border from outside
-  Vec2 direction;  // unit vector along the border, whose left side is free
-};
-
-/// How `agent` and `other` just avoid each other before `horizon` [s]; the arguments are those of `avoid_agent`.
-Escape escape(const OrcaAgent& agent, const OrcaAgent& other, double horizon, double dt, bool first);
-
 /// Velocities with which `agent` does not meet `other` before `horizon` [s] if it makes `share` of the smallest change
 /// of velocity and `other` makes the rest. Agents that overlap are to be apart after `dt` [s].
 ///
 /// Args:
 ///   first: Whether this is the first of the two. It decides the direction for agents with equal positions and
 ///   velocities.
-HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt,
-                      bool first);
+///   plane: The result.
+void avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt, bool first,
+                 HalfPlane& plane);
 
 /// Velocities with which `agent` does not meet a static disc before `horizon` [s]. They include zero.
 HalfPlane avoid_disc(const OrcaAgent& agent, Vec2 centre, double radius, double horizon);

@@ -57,86 +57,111 @@ struct NeighborsOptions {
 inline std::size_t members(const NeighborsOptions& o) { return o.count; }
 inline std::size_t width(const NeighborsOptions& o) { return o.features.size(); }
 
-inline void neighbor(const NeighborsOptions& o, const Seen& seen, const Neighbor& other, Vec2 axis, double gap,
-                     double* out) {
-  const Vec2 away = other.position - seen.pose.position();
-  const Vec2 position = unrotate(away, axis);
-  const Vec2 velocity = unrotate(o.relative_velocity ? other.velocity - seen.velocity : other.velocity, axis);
-  for (const auto feature : o.features) {
-    switch (feature) {
+/// Another object in the frame of an observation, and where its numbers go.
+struct RelativeNeighbor {
+  const Neighbor* other;
+  double* out;
+  Vec2 position, velocity;
+  double distance, gap;
+};
+
+/// Write the numbers of several neighbors, feature by feature.
+inline void write_features(const NeighborsOptions& o, const Seen& seen, Vec2 axis, const RelativeNeighbor* all,
+                           std::size_t count) {
+  for (std::size_t f = 0; f < o.features.size(); ++f) {
+    const auto each = [&](auto&& value) {
+      for (std::size_t k = 0; k < count; ++k) all[k].out[f] = value(all[k], *all[k].other);
+    };
+    using R = RelativeNeighbor;
+    using N = Neighbor;
+    switch (o.features[f]) {
       case NeighborsOptions::kX:
-        *out++ = share(position.x, o.distance_max, o.clip);
+        each([&](const R& r, const N&) { return share(r.position.x, o.distance_max, o.clip); });
         break;
       case NeighborsOptions::kY:
-        *out++ = share(position.y, o.distance_max, o.clip);
+        each([&](const R& r, const N&) { return share(r.position.y, o.distance_max, o.clip); });
         break;
       case NeighborsOptions::kVx:
-        *out++ = share(velocity.x, o.speed_max, o.clip);
+        each([&](const R& r, const N&) { return share(r.velocity.x, o.speed_max, o.clip); });
         break;
       case NeighborsOptions::kVy:
-        *out++ = share(velocity.y, o.speed_max, o.clip);
+        each([&](const R& r, const N&) { return share(r.velocity.y, o.speed_max, o.clip); });
         break;
       case NeighborsOptions::kHeadingCos:
-        *out++ = facing(unit(other.heading), axis).x;
+        each([&](const R&, const N& n) { return facing(n.ahead, axis).x; });
         break;
       case NeighborsOptions::kHeadingSin:
-        *out++ = facing(unit(other.heading), axis).y;
+        each([&](const R&, const N& n) { return facing(n.ahead, axis).y; });
         break;
       case NeighborsOptions::kRadius:
-        *out++ = share(other.radius, o.radius_max, o.clip);
+        each([&](const R&, const N& n) { return share(n.radius, o.radius_max, o.clip); });
         break;
       case NeighborsOptions::kRadii:
-        *out++ = share(other.radius + seen.radius, o.radius_max, o.clip);
+        each([&](const R&, const N& n) { return share(n.radius + seen.radius, o.radius_max, o.clip); });
         break;
       case NeighborsOptions::kDistance:
-        *out++ = share(norm(away), o.distance_max, o.clip);
+        each([&](const R& r, const N&) { return share(r.distance, o.distance_max, o.clip); });
         break;
       case NeighborsOptions::kGap:
-        *out++ = share(gap, o.distance_max, o.clip);
+        each([&](const R& r, const N&) { return share(r.gap, o.distance_max, o.clip); });
         break;
       case NeighborsOptions::kExtent:
-        *out++ = share(other.extent, o.radius_max, o.clip);
+        each([&](const R&, const N& n) { return share(n.extent, o.radius_max, o.clip); });
         break;
       case NeighborsOptions::kOwnExtent:
-        *out++ = share(other.own_extent, o.radius_max, o.clip);
+        each([&](const R&, const N& n) { return share(n.own_extent, o.radius_max, o.clip); });
         break;
       case NeighborsOptions::kExtentGap:
-        *out++ = share(norm(away) - other.extent - other.own_extent, o.distance_max, o.clip);
+        each([&](const R& r, const N& n) {
+          return share(r.distance - n.extent - n.own_extent, o.distance_max, o.clip);
+        });
         break;
       case NeighborsOptions::kNearness:
-        *out++ = networks::exponential(-std::max(gap, 0.0) / o.decay);
+        each([&](const R& r, const N&) { return networks::exponential(-std::max(r.gap, 0.0) / o.decay); });
         break;
       case NeighborsOptions::kGoalDistance:
-        *out++ = share(seen.has_goal() ? norm(seen.goal.position() - other.position) : 0.0, o.distance_max, o.clip);
+        each([&](const R&, const N& n) {
+          return share(seen.has_goal() ? norm(seen.goal.position() - n.position) : 0.0, o.distance_max, o.clip);
+        });
         break;
       case NeighborsOptions::kArrived:
-        *out++ = other.arrived;
+        each([&](const R&, const N& n) { return n.arrived; });
         break;
       case NeighborsOptions::kRobot:
-        *out++ = other.is_robot;
+        each([&](const R&, const N& n) { return n.is_robot; });
         break;
       case NeighborsOptions::kPresent:
-        *out++ = 1.0;
+        each([&](const R&, const N&) { return 1.0; });
         break;
     }
   }
 }
 
 inline void neighbors(const NeighborsOptions& o, const Seen& seen, double* out, std::uint8_t* mask) {
+  constexpr std::size_t kMost = 16;  // neighbors that are written together
   const Vec2 axis = x_axis(o.frame, seen);
   const std::size_t count = o.count, size = o.features.size();
+  RelativeNeighbor found[kMost];
+  std::size_t known = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t place = o.nearest_last ? count - 1 - k : k;
     double* const numbers = out + place * size;
     bool present = k < seen.neighbor_count && seen.neighbors[k].present;
     if (present) {
       const Neighbor& other = seen.neighbors[k];
-      const double gap = norm(other.position - seen.pose.position()) - (other.radius + seen.radius);
+      const Vec2 away = other.position - seen.pose.position();
+      const double distance = norm(away), gap = distance - (other.radius + seen.radius);
       present = !(o.range && !(gap <= *o.range));
-      if (present) neighbor(o, seen, other, axis, gap, numbers);
+      if (present) {
+        const Vec2 velocity = o.relative_velocity ? other.velocity - seen.velocity : other.velocity;
+        found[known++] = {&other, numbers, unrotate(away, axis), unrotate(velocity, axis), distance, gap};
+      }
     }
     if (!present) std::fill(numbers, numbers + size, 0.0);
     mask[place] = present;
+    if (known < kMost && k + 1 < count) continue;
+    write_features(o, seen, axis, found, known);
+    known = 0;
   }
 }
 

@@ -5,6 +5,8 @@
 #include <system_error>
 #include <thread>
 
+#include "runs/fetch_ahead.hpp"
+
 namespace irsim {
 namespace {
 
@@ -40,15 +42,16 @@ long long run_world(const World& world, State& state, int w, Workspace& work, co
 
 long long run_worlds(const World& world, State& state, const Schedule& schedule, std::vector<Recording>* recordings,
                      Scans scans) {
-  const auto run_one = [&](int w, Workspace& work) {
+  const auto run_one = [&](int w, int last, Workspace& work) {  // `last`: end of the worlds that this thread runs
     Recording* recording = recordings != nullptr ? &(*recordings)[w] : nullptr;
+    if (schedule.steps == 1) fetch_ahead(state, w, last);
     return run_world(world, state, w, work, schedule, recording, scans);
   };
   const int threads = std::max(1, std::min(schedule.threads, state.worlds));
   while (static_cast<int>(state.workspaces.size()) < threads) state.workspaces.emplace_back();
   if (threads == 1) {
     long long most = 0;
-    for (int w = 0; w < state.worlds; ++w) most = std::max(most, run_one(w, state.workspaces[0]));
+    for (int w = 0; w < state.worlds; ++w) most = std::max(most, run_one(w, state.worlds, state.workspaces[0]));
     return most;
   }
   std::atomic<int> next{0};
@@ -59,7 +62,7 @@ long long run_worlds(const World& world, State& state, const Schedule& schedule,
     try {
       for (int first = next.fetch_add(share); first < state.worlds; first = next.fetch_add(share)) {
         const int last = std::min(first + share, state.worlds);
-        for (int w = first; w < last; ++w) most[t] = std::max(most[t], run_one(w, state.workspaces[t]));
+        for (int w = first; w < last; ++w) most[t] = std::max(most[t], run_one(w, last, state.workspaces[t]));
       }
     } catch (...) {
       errors[t] = std::current_exception();

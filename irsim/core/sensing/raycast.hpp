@@ -33,6 +33,8 @@ class Fan {
 
   int hit(int i) const { return buffers_.hit[i]; }
   double range(int i) const { return buffers_.range[i]; }
+  const std::int32_t* hits() const { return buffers_.hit.data(); }
+  const double* ranges() const { return buffers_.range.data(); }
   /// World-frame unit direction of beam i.
   Vec2 beam(int i) const { return {buffers_.dx[i], buffers_.dy[i]}; }
 

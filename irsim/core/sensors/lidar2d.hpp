@@ -37,13 +37,18 @@ inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
   const Fan fan = cast_beams(options, s, first_draw + n);
   const bool noisy = options.noise && options.std > 0.0;
   NormalDraws normal(s.draws());
+  // Copies, because for all that the compiler knows, writing a byte of `valid` could change what these point to.
+  const double nearest = options.range_min, farthest = options.range_max, *measured = fan.ranges();
+  const std::int32_t* const hits = fan.hits();
+  double* const ranges = s.ranges;
+  std::uint8_t* const valid = s.valid;
+  std::copy(hits, hits + n, s.hits);
   for (int i = 0; i < n; ++i) {
-    const int hit = fan.hit(i);
-    double range = hit < 0 ? options.range_max : fan.range(i);
-    if (hit >= 0 && noisy) range += s.noise() * options.std * normal(first_draw + i);
-    s.ranges[i] = clip(range, options.range_min, options.range_max);
-    s.hits[i] = hit;
-    s.valid[i] = hit >= 0 && range >= options.range_min && range <= options.range_max;
+    const bool hit = hits[i] >= 0;
+    double range = hit ? measured[i] : farthest;
+    if (hit && noisy) range += s.noise() * options.std * normal(first_draw + i);
+    ranges[i] = clip(range, nearest, farthest);
+    valid[i] = hit && range >= nearest && range <= farthest;
   }
   if (!options.has_velocity) return;
   for (int i = 0; i < n; ++i) {

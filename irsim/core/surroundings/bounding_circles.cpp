@@ -29,9 +29,11 @@ std::vector<BoundingCircle> bounding_circles(const World& world, const State& st
 
 void nearest_objects(const World& world, const State& state, const std::vector<BoundingCircle>& circles, int row,
                      int most, double reach, bool statics, NearestRows& out) {
-  out.object.clear();
-  out.gap.clear();
-  if (most == 0) return;
+  const std::size_t room = std::min(std::max(most, 0), world.objects);
+  std::size_t count = 0;
+  out.object.resize(room);
+  out.gap.resize(room);
+  if (room == 0) return;
   const int w = row / world.objects, self = row % world.objects, first = w * world.objects;
   const int roles = world.target_roles[self];
   const Shapes& shapes = *state.scenes[w].shapes;
@@ -41,13 +43,16 @@ void nearest_objects(const World& world, const State& state, const std::vector<B
     if (world.is_static[i] && !(statics && is_compact(world, shapes, i))) continue;
     const BoundingCircle& other = circles[first + i];
     const double gap = norm(other.centre - own.centre) - other.radius - own.radius;
-    const bool full = out.gap.size() == static_cast<std::size_t>(most);
-    if (!(gap <= reach) || (full && gap >= out.gap.back())) continue;
-    if (full) out.gap.pop_back(), out.object.pop_back();
-    const auto place = std::upper_bound(out.gap.begin(), out.gap.end(), gap);  // equal gaps keep the order of indices
-    out.object.insert(out.object.begin() + (place - out.gap.begin()), i);
-    out.gap.insert(place, gap);
+    const bool full = count == room;
+    if (!(gap <= reach) || (full && gap >= out.gap[count - 1])) continue;
+    std::size_t place = full ? count - 1 : count++;
+    for (; place > 0 && out.gap[place - 1] > gap; --place) {  // equal gaps keep the order of indices
+      out.gap[place] = out.gap[place - 1], out.object[place] = out.object[place - 1];
+    }
+    out.gap[place] = gap, out.object[place] = i;
   }
+  out.object.resize(count);
+  out.gap.resize(count);
 }
 
 }  // namespace irsim

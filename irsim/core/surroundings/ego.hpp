@@ -34,10 +34,12 @@ void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& v
   const World& world = decision.world;
   const int w = decision.w();
   const Neighbors& near = neighbors(world, decision.state, decision.work, w);
+  const Shapes& shapes = *decision.state.scenes[w].shapes;
   const double slack = decision.grouped ? std::max(near.off_centre, near.off_origin) : near.off_centre;
   for_neighbors(world, decision.state, decision.work, w, ego.position, reach + slack, [&](int other) {
     if (!is_shown(decision, ego.id, other)) return;
-    Disc disc = disc_of(world, decision.state, decision.work, w, other);
+    Disc disc = world.is_static[other] ? disc_of(world, decision.state, decision.work, w, other)
+                                       : near.discs[shapes.placed[other].object];
     if (decision.grouped && world.group[other] == world.group[ego.id]) {
       disc.centre = decision.state.pose[decision.first_row + other].position();
     }

@@ -15,7 +15,8 @@ Neighbor Observer::neighbor(int row) const {
   const double robot = world_.is_robot[row % world_.objects] ? 1.0 : 0.0, arrived = state_.arrived[row] ? robot : 0.0;
   const Vec3& twist = state_.twist[row];
   const BoundingCircle& circle = circles_[row];
-  return {circle.centre, state_.pose[row].theta, {twist[0], twist[1]}, circle.radius, arrived, robot};
+  return {circle.centre, state_.pose[row].theta, state_.heading(row), {twist[0], twist[1]}, circle.radius, arrived,
+          robot};
 }
 
 void Observer::measure_extents(int row, Vec2 place, int other, Neighbor& neighbor) const {

@@ -7,6 +7,8 @@ namespace {
 
 constexpr double kLookAhead = 10.0;  // objects farther ahead are not in the way [m]
 constexpr double kLaneMargin = 0.1;  // margin on either side of the lane [m]
+constexpr double kSlow = 0.3;        // share of the wanted speed below which an object turns further
+constexpr double kMostTurn = 90.0;   // angle at a stand [degrees]
 
 }  // namespace
 
@@ -24,7 +26,10 @@ Vec2 sidestepped(const Decision& decision, int k, Vec2 wanted, double angle) {
     const double lane = ego.radius + other.radius + kPadding + kLaneMargin;
     blocked = blocked || (dot(offset, ahead) > 0.0 && std::fabs(cross(ahead, offset)) < lane);
   });
-  return blocked ? rotate(wanted, unit(-angle * (kPi / 180.0))) : wanted;
+  if (!blocked) return wanted;
+  const double standing = 1.0 - std::min(1.0, norm(ego.velocity) / (kSlow * speed));
+  const double turn = std::fabs(angle) + std::max(0.0, kMostTurn - std::fabs(angle)) * standing;
+  return rotate(wanted, unit(-std::copysign(turn, angle) * (kPi / 180.0)));
 }
 
 }  // namespace irsim

@@ -8,6 +8,9 @@ namespace irsim {
 
 /// Turn the wanted velocity of object k of a decision to the right while a moving object is in its lane to the goal.
 ///
+/// The slower the object drives, the further it turns, up to 90 degrees at a stand: in a ring that has locked up, only
+/// velocities that point far aside or back are free.
+///
 /// Args:
 ///   wanted: Velocity toward the goal, world frame [m/s].
 ///   angle: Angle to the right; negative to the left, 0 returns `wanted` [degrees].

@@ -19,9 +19,9 @@ class GrowingGrid {
     grid_.build();
   }
   void add(int id, const Box& box) {
-    grid_.add(id, box);
     recent_.push_back({id, box});
     if (recent_.size() < 16 + built_ / 2) return;
+    for (const auto& [one, its_box] : recent_) grid_.add(one, its_box);
     grid_.build();
     built_ += recent_.size();
     recent_.clear();
@@ -39,7 +39,7 @@ class GrowingGrid {
 
  private:
   Grid grid_;
-  std::vector<std::pair<int, Box>> recent_;  // boxes that are not sorted into the grid yet
+  std::vector<std::pair<int, Box>> recent_;  // boxes that are not in the grid yet
   std::size_t built_ = 0;
 };
 

@@ -10,6 +10,8 @@
 #include "planning/problem.hpp"
 #include "routes/sides.hpp"
 #include "rvo/velocity_obstacles.hpp"
+#include "sfm/mutual.hpp"
+#include "sfm/social_force.hpp"
 #include "surroundings/neighbors.hpp"
 
 namespace irsim {
@@ -39,6 +41,8 @@ struct Workspace {
   std::vector<Vec2> velocities;  // velocities of the objects of a world [m/s]
   std::vector<double> extra;     // copy of a row of State::extra
   Neighbors neighbors;
+  MutualForces mutual_forces;
+  SocialForces social_forces;
   ContactBuffers contacts;
   std::vector<int> walls;  // walls found near an object
   VelocityObstacles velocity_obstacles;

@@ -181,7 +181,8 @@ OBJECTS: dict[str, Code] = {
         "A car turns in circles whose radius is its wheelbase over the tangent of its largest steering angle. "
         "'dash' steers as far as it can towards a goal inside such a circle and circles it endlessly. Example: "
         "wheelbase 2.6, steering up to 1 rad and a goal 1.2 m to the left; start with the heading towards the goal,"
-        " or write a larger goal_threshold. 'follow' finds a path.",
+        " or write a larger goal_threshold. 'follow' lets the car back up first, but without reverse ('vel_min' starts "
+        "at 0) it stands still: write vel_min: [-2, -1], or a goal farther ahead.",
     ),
     "static-behavior": Code(
         "static object with a behavior",
@@ -277,7 +278,8 @@ OBJECTS: dict[str, Code] = {
         "starts too symmetric to pass each other",
         "orca, rvo, sfm and avocado without noise choose no side by themselves. Where two objects meet exactly "
         "head-on both brake and may stand for ever (under sfm they touch), and one straight behind a slower one "
-        "trails it. 'sidestep: 10' makes them pass on the right. Example: behavior: {name: orca, sidestep: 10}.",
+        "trails it (under sfm it runs into it; rvo passes). 'sidestep: 10' makes them pass on the right. Example: "
+        "behavior: {name: orca, sidestep: 10}.",
     ),
     "vel-min-default": Code(
         "vel_min keeps its default", "Raising vel_max alone leaves vel_min at -1 for each component."

@@ -49,9 +49,9 @@ class RunFolder:
             settings: The settings.
 
         Raises:
-            ArgumentError: The folder holds another training.
+            ArgumentError: The folder holds a training that has finished a round.
         """
-        if self._progress.exists() or (self.path / "task.yaml").exists():
+        if self._progress.exists():
             raise ArgumentError(
                 f"{self.path} holds a training", "resume it with --resume, or name another folder with -o"
             )
@@ -66,6 +66,10 @@ class RunFolder:
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(file, copy)
         write_atomically(self.path / "task.yaml", yaml.safe_dump(data, sort_keys=False, allow_unicode=True))
+        self.keep(settings)
+
+    def keep(self, settings: TrainingSettings) -> None:
+        """Write the settings."""
         text = yaml.safe_dump(settings.model_dump(mode="json"), sort_keys=False)
         write_atomically(self.path / "settings.yaml", text)
 

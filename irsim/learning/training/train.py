@@ -81,6 +81,8 @@ def train(
     settings: TrainingSettings | None = None,
     *,
     resume: bool = False,
+    steps: int | None = None,
+    max_time: float | None = None,
     threads: int = 1,
     on_round: Callable[[Round], None] | None = None,
 ) -> Path:
@@ -91,6 +93,9 @@ def train(
         folder: Where the training is kept.
         settings: Settings; a resumed training has its own.
         resume: Go on with the training in the folder.
+        steps: Decisions of all learners at most, instead of those of the settings: a finished training goes on with
+            more. The learning rate then falls to its end over all of them.
+        max_time: Wall-clock time after which no further round begins, over all parts of the training [s].
         threads: Number of threads of the simulation and of torch. Rounds are the same with the same number.
         on_round: Called after each round.
 
@@ -107,9 +112,13 @@ def train(
         settings = run.settings()
         task = run.path / "task.yaml"
     settings = settings or TrainingSettings()
+    if steps is not None:
+        settings = settings.model_copy(update={"steps": steps})
     opened, where = open_task(task)
     one = Worlds(task, 1)
-    if not resume:
+    if resume:
+        run.keep(settings)
+    else:
         run.begin(opened, where, one.scenario.map_files, settings)
     torch.set_num_threads(threads)
     worlds = max(1, -(-settings.slots // one.learners))
@@ -127,6 +136,8 @@ def train(
     steps, before = (done[-1]["steps"], done[-1]["seconds"]) if done else (0, 0.0)
     for number in range(len(done) + 1, rounds + 1):
         if done and settings.stop_at is not None and best[0] >= settings.stop_at:
+            break
+        if done and max_time is not None and before >= max_time:
             break
         begin = time.perf_counter()
         counter = _begin_round(model, env, settings, number, rounds)

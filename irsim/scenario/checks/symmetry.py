@@ -16,10 +16,12 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 
 _SIDESTEPPING = ("orca", "avocado", "rvo", "sfm")
 """Behaviors with the key ``sidestep``."""
+_PASSING = ("rvo",)
+"""Those of them that pass a slower object straight ahead all the same."""
 _ANGLE = 10.0
 """Angle that is proposed [degrees]."""
 _OFF_LINE = 0.01
-"""Ways less apart than this count as one line [m]."""
+"""Ways less apart than this count as one line, and middles of ways as one point [m]."""
 _MOST = 2000
 """Scenarios with more such objects are not checked."""
 
@@ -47,6 +49,10 @@ def _findings(context: Context) -> Iterator[Finding]:
     ]  # fmt: skip
     if not 1 < len(records) <= _MOST:
         return
+    for ring in _rings(records):
+        end = "touch or stand" if _options(ring[0]).name == "sfm" else "brake, and may stand there for ever"
+        what = f"meets {len(ring) - 1} others in the middle of their ways, all at the same time: they {end}"
+        yield _finding(context, ring[0], what)
     for ways in _lines(records):
         for a, b in itertools.pairwise(sorted(ways, key=lambda way: way.start)):
             if b.start == a.start:
@@ -55,11 +61,17 @@ def _findings(context: Context) -> Iterator[Finding]:
                 yield _finding(context, a.record, f"meets '{b.record.name}' exactly head-on: {_effect(a.record)}")
                 continue
             behind, ahead = (a, b) if a.end > a.start and b.end > b.start else (b, a)
-            if (a.end > a.start) == (b.end > b.start) and _catches_up(behind, ahead):
+            passes = _options(behind.record).name in _PASSING
+            if (a.end > a.start) == (b.end > b.start) and not passes and _catches_up(behind, ahead):
                 yield _finding(
                     context,
                     behind.record,
-                    f"starts straight behind '{ahead.record.name}', which is slower: it trails it instead of passing",
+                    f"starts straight behind '{ahead.record.name}', which is slower: "
+                    + (
+                        "it drives into it instead of passing"
+                        if _pushes(behind.record)
+                        else "it trails it instead of passing"
+                    ),
                 )
 
 
@@ -72,6 +84,18 @@ def _needs_side(record: ObjectRecord) -> bool:
 def _options(record: ObjectRecord) -> Any:
     options = record.active_behavior
     return getattr(options, "local", options)
+
+
+def _rings(records: Sequence[ObjectRecord]) -> Iterator[list[ObjectRecord]]:
+    """Three or more objects whose straight ways have one middle, one length and one speed."""
+    rings: dict[tuple[int, ...], list[ObjectRecord]] = defaultdict(list)
+    for record in records:
+        (x, y), goal = record.state[:2], record.goals[0]
+        length = math.hypot(goal[0] - x, goal[1] - y)
+        if 0 < length < math.inf:
+            facts = ((x + goal[0]) / 2, (y + goal[1]) / 2, length, top_speed(record))
+            rings[tuple(round(fact / _OFF_LINE) for fact in facts)].append(record)
+    return (ring for ring in rings.values() if len(ring) > 2)
 
 
 def _lines(records: Sequence[ObjectRecord]) -> Iterator[list[_Way]]:
@@ -103,8 +127,13 @@ def _catches_up(behind: _Way, ahead: _Way) -> bool:
     return time * fast < abs(behind.end - behind.start) and time * slow < abs(ahead.end - ahead.start)
 
 
+def _pushes(record: ObjectRecord) -> bool:
+    """Whether it moves by social forces alone; as local behavior of ``follow`` they come with a way to keep apart."""
+    return getattr(record.active_behavior, "name", "") == "sfm"
+
+
 def _effect(record: ObjectRecord) -> str:
-    if _options(record).name == "sfm":
+    if _pushes(record):
         return "social forces along one line only brake them, so they touch"
     return "both brake, and may stand there for ever"
 

@@ -10,7 +10,14 @@ from collections.abc import Iterator
 
 from irsim.scenario.checks import Context
 from irsim.scenario.messages.findings import Finding
-from irsim.validation.feasibility import goal_clearance, random_placement, reachability, shared_goals, time_budget
+from irsim.validation.feasibility import (
+    goal_clearance,
+    random_placement,
+    reachability,
+    shared_goals,
+    time_budget,
+    turning,
+)
 from irsim.validation.feasibility.movers import movers_of
 from irsim.validation.feasibility.scenes import scenes_of
 from irsim.validation.feasibility.tally import Tally
@@ -38,4 +45,5 @@ def feasibility_findings(context: Context) -> Iterator[Finding]:
             shared_goals.check(context, scene, movers, tally)
         legs = reachability.check(context, scene, movers, tally, blocking=not passable, blocked_goals=blocked_goals)
         time_budget.check(context, scene, movers, legs, tally)
+        turning.check(context, scene, movers, legs, tally)
     yield from tally.findings()

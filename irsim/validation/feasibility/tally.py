@@ -41,7 +41,16 @@ class Tally:
     entries: dict[tuple[str, Path], _Entry] = field(default_factory=dict)
 
     def add(
-        self, code: str, path: Path, record: ObjectRecord, message: str, fix: str, seed: int, *, serious: bool = True
+        self,
+        code: str,
+        path: Path,
+        record: ObjectRecord,
+        message: str,
+        fix: str,
+        seed: int,
+        *,
+        serious: bool = True,
+        entry: Path | None = None,
     ) -> None:
         """Add a finding about an object; the first one of an entry of the scenario is kept, further ones are counted.
 
@@ -53,12 +62,14 @@ class Tally:
             fix: What to write instead.
             seed: Seed of the scene.
             serious: Whether it is a warning, not a hint; a serious finding replaces one that is not.
+            entry: The entry of the scenario that it counts for; default: that of the object.
         """
-        entry = self.entries.setdefault((code, record.path), _Entry(path, message, fix, serious, seed))
-        if serious and not entry.serious:
-            entry.path, entry.message, entry.fix, entry.serious, entry.seed = path, message, fix, True, seed
-        entry.scenes.add(seed)
-        entry.others.add(record.id)
+        key = code, record.path if entry is None else entry
+        found = self.entries.setdefault(key, _Entry(path, message, fix, serious, seed))
+        if serious and not found.serious:
+            found.path, found.message, found.fix, found.serious, found.seed = path, message, fix, True, seed
+        found.scenes.add(seed)
+        found.others.add(record.id)
 
     def findings(self) -> Iterator[Finding]:
         """One finding for each code and entry of the scenario."""

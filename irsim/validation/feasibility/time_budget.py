@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from irsim.common.text import metres
+from irsim.diagnostics.diagnostic import Path
 from irsim.episodes.episode import HORIZON_FACTOR, MIN_HORIZON
 from irsim.episodes.stuck import REACTIVE
 from irsim.scenario.checks import Context
@@ -38,6 +40,33 @@ _MARGIN_SHARE = 0.1
 """Margin of `avocado` without a `safe_radius`, as a share of the radius."""
 
 
+@dataclass(frozen=True)
+class _Need:
+    """The time that a robot needs at least.
+
+    Attributes:
+        mover: The robot.
+        length: Length of its path [m].
+        moving: Time that it moves [s].
+        rate: Its greatest acceleration [m/s²] if that costs time, else None.
+    """
+
+    mover: Mover
+    length: float
+    moving: float
+    rate: float | None
+
+    @property
+    def total(self) -> float:
+        """Time from the start of the run [s]."""
+        return self.moving + self.mover.record.moves_from
+
+    @property
+    def ample(self) -> int:
+        """A time limit that leaves as much time again for turning and giving way [s]."""
+        return math.ceil(max(self.total + self.moving, self.total / _TIGHT_TIME_SHARE))
+
+
 def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
     """Report robots that cannot arrive in time, or that their behavior leads to a wall."""
     going = [m for m in movers if m.record.id in legs and not m.record.wander and m.record.role == "robot"]
@@ -45,6 +74,7 @@ def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, l
     limit, limit_reason = _time_limit(context, going, straight)
     grid = scene.owner.kept.get("grid 0.0")
     measured = looked_at = 0
+    needs: list[_Need] = []
     for mover in sorted(going, key=lambda m: (-_time(m, straight[m.record.id]), m.record.id)):
         route = legs[mover.record.id]
         length = straight[mover.record.id]
@@ -68,7 +98,8 @@ def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, l
             length = max(length, around)
         if not mover.behavior or mover.record.loop or len(route) < len(scene.goals[mover.record.id]):
             continue
-        _check_time(mover, length, limit, limit_reason, scene, tally)
+        needs.append(_need(mover, length))
+    _report_time(needs, limit, limit_reason, scene, tally)
 
 
 def _straight(legs: list[Leg]) -> float:
@@ -100,28 +131,46 @@ def _path_length(grid: ClearanceGrid, leg: Leg) -> float:
     return _EIGHT_NEIGHBOUR_BOUND * float(np.hypot(*np.diff(way, axis=0).T).sum()) - leg.mover.reach
 
 
-def _check_time(mover: Mover, length: float, limit: float, limit_reason: str, scene: Scene, tally: Tally) -> None:
-    """Report a robot that needs more time than the limit, or nearly as much."""
+def _need(mover: Mover, length: float) -> _Need:
     rate = _max_acceleration(mover)
-    needed = _least_time(mover, length, rate) + mover.record.moves_from
-    if needed <= _TIGHT_TIME_SHARE * limit:
+    moving = _least_time(mover, length, rate)
+    return _Need(mover, length, moving, rate if moving > 1.01 * _time(mover, length) else None)
+
+
+def _report_time(needs: list[_Need], limit: float, limit_reason: str, scene: Scene, tally: Tally) -> None:
+    """Report robots that need more time than the limit, or nearly as much; one finding if the limit is written."""
+    short = [need for need in needs if need.total > _TIGHT_TIME_SHARE * limit]
+    short.sort(key=lambda need: (-need.total, need.mover.record.id))
+    enough = max((need.ample for need in short), default=0)
+    if limit_reason.startswith("time_limit"):
+        others = sum(need.total > limit for need in short) - 1
+        more = f"; {others} more robot{'s need' if others > 1 else ' needs'} more than that" if others > 0 else ""
+        for need in short[:1]:
+            _add_short(need, ("world", "time_limit"), limit, limit_reason + more, enough, scene, tally)
         return
-    late = needed > limit
-    record = mover.record
+    for need in short:
+        _add_short(need, need.mover.path, limit, limit_reason, enough, scene, tally)
+
+
+def _add_short(
+    need: _Need, path: Path, limit: float, limit_reason: str, enough: float, scene: Scene, tally: Tally
+) -> None:
+    late = need.total > limit
+    record, rate = need.mover.record, need.rate
     key = "appear_time" if record.appear_time > record.start_time else "start_time"
     wait = f" after its {key} of {record.moves_from:g} s" if record.moves_from else ""
-    moving = needed - record.moves_from
-    slowly = f", accelerating with {rate:.3g} m/s²," if moving > 1.01 * _time(mover, length) else ""
+    slowly = "," if rate is None else f", accelerating with {rate:.3g} m/s²,"
     tally.add(
         "time-too-short",
-        ("world", "time_limit") if limit_reason.startswith("time_limit") else mover.path,
-        mover.record,
-        f"'{mover.record.name}' needs at least {needed:.3g} s for the {metres(length)} to its goal "
-        f"at {mover.speed:.3g} m/s{wait}{slowly}{'' if slowly else ','} and "
+        path,
+        record,
+        f"'{record.name}' needs at least {need.total:.3g} s for the {metres(need.length)} to its goal "
+        f"at {need.mover.speed:.3g} m/s{wait}{slowly} and "
         + (limit_reason if late else f"{limit_reason}, which leaves no time for turning and giving way"),
-        f"time_limit: {math.ceil(2 * needed):g}, or {'a larger acce' if slowly else 'a faster robot'}",
+        f"time_limit: {enough:g}, or {'a faster robot' if rate is None else 'a larger acce'}",
         scene.seed,
         serious=late,
+        entry=path if path[0] == "world" else None,
     )
 
 

@@ -179,6 +179,14 @@ def test_the_commands_train_and_export(tmp_path: Path) -> None:
     assert "round 2/2" in done.output
     again = run.invoke(app, ["train", "--resume", "-o", folder])
     assert again.exit_code == 0, again.output
+    more = run.invoke(app, ["train", "--resume", "-o", folder, "--steps", "96"])
+    assert "round 3/3" in more.output
+    late = run.invoke(app, ["train", "--resume", "-o", folder, "--steps", "320", "--max-time", "0"])
+    assert late.exit_code == 0, late.output
+    assert "round 4" not in late.output
+    refused = run.invoke(app, ["train", "--resume", "-o", folder, "--seed", "3"])
+    assert refused.exit_code == 2
+    assert "keeps its settings" in refused.output
     file = tmp_path / "policy.npz"
     assert run.invoke(app, ["export-policy", folder, str(file)]).exit_code == 0
     described = run.invoke(app, ["policies", str(file), "--json"])
