@@ -1,6 +1,7 @@
 // avocado: ORCA whose share of the avoidance follows from how much each other object gives way, which an object learns
 // from what it sees (Martinez-Baselga, Sebastian, Montijano, Riazuelo, Sagues, Montano: AVOCADO: adaptive optimal
-// collision avoidance driven by opinion, IEEE Transactions on Robotics, 2025). Written from the equations of the paper.
+// collision avoidance driven by opinion, IEEE Transactions on Robotics, 2025). It is written from equations, not from
+// the authors' program. The damping d multiplies the opinion and what pulls it, so that opinions stay within -1 and 1.
 #pragma once
 
 #include <optional>
