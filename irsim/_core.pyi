@@ -33,6 +33,28 @@ class AckerOptions(_Options):
     def __init__(self, *, noise: bool, alpha: Sequence[float], mode: str, wheelbase: float, psi_max: float) -> None: ...
 
 # behaviors (core/behaviors/)
+class AvocadoOptions(_Options):
+    def __init__(
+        self,
+        *,
+        neighborDist: float,
+        maxNeighbors: int,
+        timeHorizon: float,
+        timeHorizonObst: float,
+        safe_radius: float | None,
+        maxSpeed: float | None,
+        approach_time: float | None,
+        sidestep: float,
+        forgetting: float,
+        own_weight: float,
+        evidence_weight: float,
+        evidence_gain: float,
+        bias: float,
+        attention_time: float,
+        attention_step: float,
+        noise: float,
+    ) -> None: ...
+
 class DashOptions(_Options):
     def __init__(self, *, angle_tolerance: float) -> None: ...
 
@@ -729,6 +751,11 @@ class State:
         """Make the present pose (and extra rows) or control of the row, or both, the initial one for `reset`."""
     def route(self, row: int) -> Floats | None:
         """(K, 2) corners of the path that a row follows, from the place of planning to the goal; None without one."""
+    def opinions(self, row: int) -> list[tuple[int, float, float]]:
+        """What an object with `avocado` thinks of others: number in :class:`ObjectSpec`, opinion, attention.
+
+        They are those of the last decision, nearest first. An opinion of -1 expects no avoidance, 1 all of it.
+        """
     def initial_state(self, row: int) -> Floats:
         """(3 + E,) initial pose and extra rows, to which `reset` returns."""
     def velocity_world(self, row: int) -> tuple[float, float]:

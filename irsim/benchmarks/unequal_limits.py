@@ -15,7 +15,12 @@ _EQUAL_SHARE = 0.01
 """Limits that differ by less than this share are equal."""
 _RVO_TURN_RATE = 1.5
 """Largest turn rate of ``rvo`` [rad/s]."""
-_FIXES = {"rvo": "vxmax and vymax of rvo", "sfm": "vmax of sfm", "orca": "maxSpeed of orca"}
+_FIXES = {
+    "rvo": "vxmax and vymax of rvo",
+    "sfm": "vmax of sfm",
+    "orca": "maxSpeed of orca",
+    "avocado": "maxSpeed of avocado",
+}
 """Options that limit the speed of a behavior."""
 
 
@@ -102,6 +107,6 @@ def _limit(record: ObjectRecord, own: bool) -> Limit:
         speed, turn = min(speed, options.vxmax, options.vymax), min(turn, _RVO_TURN_RATE) if turn < math.inf else turn
     elif name == "sfm":
         speed = min(speed, options.vmax)
-    elif name == "orca":
+    elif name in ("orca", "avocado"):
         speed = min([*limits[: max(speeds, 1)], *([] if options.maxSpeed is None else [options.maxSpeed])])
     return Limit(float(speed), float(turn), name)

@@ -16,9 +16,10 @@ struct Decision {
   const int* objects;  // (K,) ids within the world
   int count;           // K
   const std::vector<int>&
-      members;      // ids of all objects of the behavior, or of the group, including those that do not decide now
-  bool grouped;     // from `group_behavior`: members know each other
-  Workspace& work;  // scratch memory
+      members;         // ids of all objects of the behavior, or of the group, including those that do not decide now
+  bool grouped;        // from `group_behavior`: members know each other
+  Workspace& work;     // scratch memory
+  Opinions* opinions;  // (R,) memory of `avocado`: only the row of an object that decides is read and written
 
   int w() const { return first_row / world.objects; }
   int row(int k) const { return first_row + objects[k]; }

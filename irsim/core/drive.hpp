@@ -8,7 +8,7 @@
 //
 // The struct has `bool noise`. A field `wheelbase` receives that of the drive, else that of the shape, else 1. `dash`
 // calls `follow` with the top speed toward the goal, unless behaviors/dash.hpp has a law for the drive. Planned paths
-// and `orca` (routes/steering.cpp, behaviors/orca.cpp) take a drive that they do not know for one that turns on the
+// and `orca` (routes/steering.cpp, orca/avoidance.cpp) take a drive that they do not know for one that turns on the
 // spot.
 #pragma once
 

@@ -49,8 +49,8 @@ class Batch:
         goal: (n, N, 3) present goals: x, y [m], heading [rad], world frame; NaN for objects without a goal, and for
             the heading of goals without one.
         arrived, collided, stopped: (n, N) uint8 flags.
-        infeasible: (n, N) number of steps of the episode in which the behavior (`orca`) found no velocity that avoids
-            all objects.
+        infeasible: (n, N) number of steps of the episode in which the behavior (`orca`, `avocado`) found no velocity
+            that avoids all objects.
         ranges: (n, B) ranges of all lidars of a world, one after another [m].
         explored: (n, nx, ny) uint8, 1 for cells of the fog map that robots have seen; empty without ``fog_map``.
         count: (n,) number of steps executed in each episode.

@@ -18,6 +18,8 @@ _VALUES: dict[str, Any] = {
     "angle_tolerance": 0.05,
     "attenuation": 2,
     "avg_radius_range": [0.3, 0.8],
+    "avocado.bias": -0.5,
+    "avocado.noise": 0.001,
     "avoid": ["people_talking"],
     "center": [0.1, 0],
     "center_range": [0, 0, 0, 0],

@@ -28,6 +28,8 @@ EVERYDAY: dict[str, str] = {
     "robot.behavior.sfm": "social force, social force model, pedestrian, human, crowd, people, walker",
     "robot.behavior.orca": "reciprocal collision avoidance, optimal reciprocal collision avoidance, pedestrian, "
     "collision avoidance, obstacle avoidance",
+    "robot.behavior.avocado": "adaptive collision avoidance, opinion, opinion dynamics, cooperation, cooperative, "
+    "non-cooperative, uncooperative, unknown behavior, collision avoidance",
     "robot.behavior.rvo": "velocity obstacle, reciprocal velocity obstacle, vo, hrvo, collision avoidance",
     "robot.behavior.dash": "straight line, drive straight, go straight, go to goal, point to point",
     "robot.behavior.dash.wander": "wander, random walk, roam, wandering, random goals",

@@ -74,8 +74,8 @@ class RobotResult(Result):
     collision_count: int
     """Number of contacts that began."""
     infeasible_steps: int | None = None
-    """Steps in which its behavior found no velocity that avoids all others (only ``orca`` reports this); None
-    if there were none."""
+    """Steps in which its behavior found no velocity that avoids all others (only ``orca`` and ``avocado`` report this);
+    None if there were none."""
     path_length: float
     """Distance travelled until the end of the run [m]."""
     distance_to_goal: float | None

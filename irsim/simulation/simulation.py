@@ -62,7 +62,7 @@ class Simulation:
         start_step: (R,) steps for which an object stands still at its start. appeared: -1 while it is not in the world.
         scans: (owner, first beam, number of beams) of each native sensor of a world.
         velocity_slices: (first row, number of rows) of each native sensor in the measured velocities.
-        infeasible: (R,) number of steps in which the behavior found no collision-free velocity (`orca`).
+        infeasible: (R,) number of steps in which the behavior found no collision-free velocity (`orca`, `avocado`).
         ids: (N + 1,) id of each object of a world; the last entry, -1, stands for no object.
         names: Id -> name of every object that is or was in the simulation.
         passable: Ids of the objects that are ``unobstructed``.

@@ -43,7 +43,7 @@ _CORNER_US = 0.012
 """Time of each corner after the first of a moving body [µs]."""
 _NEIGHBOR_US = {"rvo": 0.5, "sfm": 0.12}
 """Time per moving neighbor in range, for behaviors that consider each neighbor [µs]."""
-_STATIC_BODY_US = {"rvo": 1.5, "sfm": 0.2, "orca": 0.12}
+_STATIC_BODY_US = {"rvo": 1.5, "sfm": 0.2, "orca": 0.12, "avocado": 0.12}
 """Time per static body in range [µs]."""
 _ZONE_US = 0.01
 """Time of one zone per moving body [µs]."""
@@ -185,7 +185,7 @@ def _behavior_time(
     name = getattr(behavior, "name", "")
     if name not in _STATIC_BODY_US:
         return work
-    reach = float(getattr(behavior, "neighborDist" if name == "orca" else "neighbor_threshold", math.inf))
+    reach = float(getattr(behavior, "neighborDist" if name in ("orca", "avocado") else "neighbor_threshold", math.inf))
     static_bodies = near.estimate(reach, "static", lambda: static)[row]
     neighbors = near.estimate(reach, "moving", lambda: ~static)[row]
     return work + _STATIC_BODY_US[name] * float(static_bodies) + _NEIGHBOR_US.get(name, 0.0) * float(neighbors)

@@ -69,6 +69,7 @@ HOSTILE = (
     *(
         "dash",
         "orca",
+        "avocado",
         "rvo",
         "sfm",
         "follow",

@@ -160,6 +160,7 @@ CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
     (robot(behavior={"name": "rvo", "vxmax": 3, "vymax": 3}),
         "hint", "speed-capped", ("robot", 0, "behavior", "vxmax")),
     (robot(behavior={"name": "orca", "maxSpeed": 3}), "hint", "speed-capped", ("robot", 0, "behavior", "maxSpeed")),
+    (robot(behavior={"name": "avocado", "maxSpeed": 3}), "hint", "speed-capped", ("robot", 0, "behavior", "maxSpeed")),
     (robot(kinematics={"name": "acker"}, shape={"name": "rectangle", "wheelbase": 2.6}),
         "hint", "wheelbase-over-length", ("robot", 0, "shape")),
     (robot(kinematics={"name": "acker", "wheelbase": 2.6}, state=[5, 5, 0], goal=[5, 6.2]),

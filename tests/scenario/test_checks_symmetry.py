@@ -29,6 +29,12 @@ def test_head_on_is_reported_until_a_side_is_chosen(behavior: str) -> None:
     assert "exact-symmetry" not in codes(pair(chosen, *places))
 
 
+def test_the_noise_of_avocado_chooses_a_side() -> None:
+    places = "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]"
+    assert "exact-symmetry" not in codes(pair("name: avocado", *places))
+    assert "exact-symmetry" in codes(pair("name: avocado, noise: 0", *places))
+
+
 def test_ways_beside_each_other_are_not_reported() -> None:
     assert "exact-symmetry" not in codes(pair("name: orca", "[1, 5, 0];[12, 5.2, 3.14]", "[12, 5];[1, 5.2]"))
 

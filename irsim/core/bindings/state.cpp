@@ -32,6 +32,14 @@ nb::object goals_of(const BoundState& self, int row) {
   return out;
 }
 
+nb::object opinions_of(const BoundState& self, int row) {
+  self.check_row(row);
+  nb::list out;
+  if (self.state.opinions.empty()) return out;
+  for (const Opinion& o : self.state.opinions[row].of) out.append(nb::make_tuple(o.about, o.opinion, o.attention));
+  return out;
+}
+
 void set_goals(BoundState& self, int row, const std::vector<std::vector<double>>& lists, bool init) {
   self.check_row(row);
   GoalQueue& queue = self.state.goals[row];
@@ -256,6 +264,7 @@ void bind_state(nb::module_& m) {
             return own(std::move(out), {path.size(), 2});
           },
           nb::arg("row"))
+      .def("opinions", &opinions_of, nb::arg("row"))
       .def("initial_state", &initial_state, nb::arg("row"))
       .def("velocity_world", &velocity_of, nb::arg("row"))
       .def("velocities_world", &velocities_of, nb::arg("world"))

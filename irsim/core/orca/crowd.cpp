@@ -1,11 +1,25 @@
 #include "orca/crowd.hpp"
 
+#include <optional>
+
 #include "world/features.hpp"
 #include "world/spec.hpp"
 #include "world/state.hpp"
 #include "world/world.hpp"
 
 namespace irsim {
+namespace {
+
+/// Margin that a behavior adds to the radius of its objects [m]; none for one that is not built on ORCA.
+std::optional<double> margin_of(const Behavior& behavior, double radius) {
+  constexpr double kDefaultShare = 0.1;  // of the radius: `avocado` inflates bodies by a tenth
+  if (const auto* orca = std::get_if<OrcaOptions>(&behavior)) return orca->safe_radius;
+  if (const auto* avocado = std::get_if<AvocadoOptions>(&behavior))
+    return avocado->safe_radius ? *avocado->safe_radius : kDefaultShare * radius;
+  return std::nullopt;
+}
+
+}  // namespace
 
 OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w) {
   OrcaCrowd& all = work.orca;
@@ -28,13 +42,12 @@ OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w)
   all.nearest.build();
   for (std::size_t g = 0; g < world.behaviors.size(); ++g) {
     const BehaviorGroup& behavior = world.behaviors[g];
-    const auto* options = std::get_if<OrcaOptions>(&behavior.behavior);
-    if (options == nullptr) continue;
+    if (!margin_of(behavior.behavior, 0.0)) continue;
     for (const int i : behavior.objects) {
       if (world.is_static[i]) continue;
       const int m = shapes.placed[i].object, row = w * world.objects + i;
       all.member_of[m] = static_cast<int>(g);
-      all.movers[m].radius += options->safe_radius;
+      all.movers[m].radius += *margin_of(behavior.behavior, all.movers[m].radius);
       if (!state.stopped[row] && !state.given[row] && !state.waits(row)) all.group[m] = static_cast<int>(g);
     }
   }

@@ -12,11 +12,12 @@ struct State;
 struct World;
 struct Workspace;
 
-/// Scratch memory of the behavior `orca`. Movers have the indices of World::moving.
+/// Scratch memory of the behaviors that are built on ORCA: `orca` and `avocado`. Movers have the indices of
+/// World::moving.
 struct OrcaCrowd {
   bool known = false;             // whether it holds the present step
-  std::vector<OrcaAgent> movers;  // bounding circles; those of ORCA agents include their margin
-  std::vector<int> group;         // index in World::behaviors of the ORCA group that moves each now; -1 without one
+  std::vector<OrcaAgent> movers;  // bounding circles; those of these behaviors include their margin
+  std::vector<int> group;         // index in World::behaviors of the group that moves each now; -1 without one
   std::vector<int> member_of;     // the same, also for objects that are stopped or have a given command
   Nearest nearest;                // positions of the movers
   std::vector<std::vector<int>> neighbors_before;  // movers that each mover has avoided in an earlier step

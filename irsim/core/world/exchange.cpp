@@ -144,6 +144,9 @@ void continue_from(const World& world, State& state, const World& world_before, 
     const Origin& origin = origins[i];
     if (origin.state == &before) new_row[origin.object] = i;
     copy_row(state, i, *origin.state, origin.object);
+    if (origin.state == &before && !before.opinions.empty() && !state.opinions.empty()) {
+      state.opinions[i] = before.opinions[origin.object];
+    }
     set_limits(world, state, i);
     if (state.keep_history) {
       state.history[i] = track_of(*origin.state, origin.object, state.extra_rows);

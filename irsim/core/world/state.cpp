@@ -13,6 +13,12 @@ Goal goal_of(const std::vector<double>& numbers) {
   return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : kNone};
 }
 
+/// Whether an object runs `avocado`.
+bool forms_opinions(const World& world) {
+  return std::any_of(world.behaviors.begin(), world.behaviors.end(),
+                     [](const BehaviorGroup& group) { return std::holds_alternative<AvocadoOptions>(group.behavior); });
+}
+
 void evaluate(const World& world, State& state, int w, bool with_arrival) {
   Workspace& work = state.workspaces.front();
   collide(world, state, w);
@@ -110,6 +116,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       event_count(worlds) {
   workspaces.emplace_back();
   if (!world.routed.empty()) routes.resize(rows), target.resize(rows);
+  if (forms_opinions(world)) opinions.resize(rows);
   std::copy(seeds, seeds + worlds, seed.data);
   for (int w = 0; w < worlds; ++w) {
     for (const Scan& scan : world.scans) {
@@ -168,6 +175,7 @@ void restart_row(const World& world, State& state, int row) {
   state.infeasible[row] = 0;
   state.goal_draws[row] = 0;
   if (!state.routes.empty()) state.routes[row] = {};
+  if (!state.opinions.empty()) state.opinions[row] = {};
   if (state.keep_history) state.history[row].clear(), state.standings[row].clear();
   if (world.wander[i]) {
     draw_wander_goal(world, state, w, i);

@@ -6,6 +6,7 @@
 
 #include "contact/contact.hpp"
 #include "orca/crowd.hpp"
+#include "orca/opinions.hpp"
 #include "planning/problem.hpp"
 #include "routes/sides.hpp"
 #include "rvo/velocity_obstacles.hpp"
@@ -46,9 +47,10 @@ struct Workspace {
   std::vector<int> walls;  // walls found near an object
   VelocityObstacles velocity_obstacles;
   OrcaCrowd orca;
-  SearchMemory search;      // memory of planners
-  Outlines ghost;           // outline of an object at a pose that is tried
-  std::vector<Side> sides;  // lines that an object on a route must not cross
+  std::vector<Opinion> opinions;  // those of the step before, of the object that decides
+  SearchMemory search;            // memory of planners
+  Outlines ghost;                 // outline of an object at a pose that is tried
+  std::vector<Side> sides;        // lines that an object on a route must not cross
 };
 
 }  // namespace irsim

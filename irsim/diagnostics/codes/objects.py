@@ -156,10 +156,10 @@ OBJECTS: dict[str, Code] = {
     ),
     "needs-planning": Code(
         "behavior does not plan a path around obstacles",
-        "'rvo', 'sfm' and 'orca' choose a velocity for the next seconds. Before a flat wall, or in a dead end, they"
-        " stop where every step aside leads away from the goal. The finding names that place, or compares the path "
-        "around the obstacle with the straight line. Example: a maze with 'rvo'; write behavior: {name: follow, "
-        "planner: astar, local: rvo}, or give waypoints.",
+        "'rvo', 'sfm', 'orca' and 'avocado' choose a velocity for the next seconds. Before a flat wall, or in a dead "
+        "end, they stop where every step aside leads away from the goal. The finding names that place, or compares "
+        "the path around the obstacle with the straight line. Example: a maze with 'rvo'; write behavior: {name: "
+        "follow, planner: astar, local: rvo}, or give waypoints.",
     ),
     "time-too-short": Code(
         "too little time for the path",
@@ -270,15 +270,16 @@ OBJECTS: dict[str, Code] = {
     ),
     "speed-capped": Code(
         "drive slower than its behavior may want",
-        "'vmax' of sfm, 'vxmax' and 'vymax' of rvo and 'maxSpeed' of orca limit the speed that the behavior wants; "
-        "the object drives no faster than its 'vel_max' and 'vel_min' allow, 1 by default. Example: behavior: "
-        "{name: orca, maxSpeed: 3}; write vel_max: [3, 1] beside it.",
+        "'vmax' of sfm, 'vxmax' and 'vymax' of rvo and 'maxSpeed' of orca and avocado limit the speed that the "
+        "behavior wants; the object drives no faster than its 'vel_max' and 'vel_min' allow, 1 by default. Example: "
+        "behavior: {name: orca, maxSpeed: 3}; write vel_max: [3, 1] beside it.",
     ),
     "exact-symmetry": Code(
         "starts too symmetric to pass each other",
-        "orca, rvo and sfm choose no side by themselves. Where two objects meet exactly head-on both brake and may "
-        "stand for ever (under sfm they touch), and one straight behind a slower one trails it (under sfm it runs into "
-        "it; rvo passes). 'sidestep: 10' makes them pass on the right. Example: behavior: {name: orca, sidestep: 10}.",
+        "orca, rvo, sfm and avocado without noise choose no side by themselves. Where two objects meet exactly "
+        "head-on both brake and may stand for ever (under sfm they touch), and one straight behind a slower one "
+        "trails it (under sfm it runs into it; rvo passes). 'sidestep: 10' makes them pass on the right. Example: "
+        "behavior: {name: orca, sidestep: 10}.",
     ),
     "vel-min-default": Code(
         "vel_min keeps its default", "Raising vel_max alone leaves vel_min at -1 for each component."

@@ -14,7 +14,7 @@ from irsim.scenario.messages.findings import Finding, warning
 from irsim.scenario.resolve.body_size import top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
 
-_SIDESTEPPING = ("orca", "rvo", "sfm")
+_SIDESTEPPING = ("orca", "avocado", "rvo", "sfm")
 """Behaviors with the key ``sidestep``."""
 _PASSING = ("rvo",)
 """Those of them that pass a slower object straight ahead all the same."""
@@ -77,7 +77,8 @@ def _findings(context: Context) -> Iterator[Finding]:
 
 def _needs_side(record: ObjectRecord) -> bool:
     options = _options(record)
-    return getattr(options, "name", "") in _SIDESTEPPING and getattr(options, "sidestep", 0.0) == 0.0
+    chooses = getattr(options, "sidestep", 0.0) != 0.0 or getattr(options, "noise", 0.0) > 0.0
+    return getattr(options, "name", "") in _SIDESTEPPING and not chooses
 
 
 def _options(record: ObjectRecord) -> Any:

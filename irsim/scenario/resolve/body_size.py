@@ -122,7 +122,7 @@ def _own_limit(options: Any) -> float:
         return math.hypot(options.vxmax, options.vymax)
     if name == "sfm":
         return float(options.vmax)
-    return math.inf if name != "orca" or options.maxSpeed is None else float(options.maxSpeed)
+    return math.inf if name not in ("orca", "avocado") or options.maxSpeed is None else float(options.maxSpeed)
 
 
 @lru_cache(maxsize=256)  # thousands of objects may have one shape

@@ -36,6 +36,8 @@ _MIN_DETOUR = 1.25
 _CREEP_SPEED = 0.15
 """Speed [m/s] below which a car under `orca` hardly gets to its goal: `orca` drives towards a wall at most at the room
 before it divided by `timeHorizonObst`. Measured with 120 cars in a hall."""
+_MARGIN_SHARE = 0.1
+"""Margin of `avocado` without a `safe_radius`, as a share of the radius."""
 
 
 @dataclass(frozen=True)
@@ -228,12 +230,14 @@ def _check_car(mover: Mover, route: list[Leg], grid: ClearanceGrid | None, scene
 
 
 def _creeps(mover: Mover, leg: Leg, grid: ClearanceGrid) -> bool:
-    """Whether the circle around a car under ``orca`` has so little room at a goal that it hardly gets there."""
+    """Whether the circle around a car under ``orca`` or ``avocado`` has so little room at a goal that it creeps."""
     record = mover.record
     options: Any = record.active_behavior
-    if mover.behavior != "orca" or not grid.holds(leg.goal):
+    if mover.behavior not in ("orca", "avocado") or not grid.holds(leg.goal):
         return False
-    room = float(grid.at(np.array([leg.goal]))[0]) - reach_of(record.shape) - options.safe_radius
+    reach = reach_of(record.shape)
+    margin = _MARGIN_SHARE * reach if options.safe_radius is None else options.safe_radius
+    room = float(grid.at(np.array([leg.goal]))[0]) - reach - margin
     return bool(room + record.goal_threshold < _CREEP_SPEED * options.timeHorizonObst)
 
 

@@ -1,0 +1,83 @@
+"""``avocado``: collision avoidance that learns how much each other object gives way."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+import irsim._core as core
+from irsim.components.behaviors._options import BehaviorOptions
+from irsim.options.registry import BEHAVIORS
+from irsim.options.units import Count, Degrees, Fraction, Hertz, Meters, MetersPerSecond, Number, Seconds
+
+
+class Avocado(BehaviorOptions):
+    """Avoid others as `orca` does, but learn from what each of them does how much of the avoidance is left to make.
+
+    It forms an opinion of every moving object near it: one that does not react gets out of nothing, so the robot makes
+    more of the change of velocity that avoids it; one that gives way is left more of it. `orca` is told who gives way;
+    this is for people and robots whose behavior is unknown. An opinion starts neutral, which is the half that `orca`
+    makes, and is forgotten when the other is no longer among those considered. Walls, limits of speed and turning, cars
+    and the goal are as in `orca`, and so are dead ends: for a way round walls, use `follow` with `avocado` as its
+    `local`. Its weak noise breaks exact symmetry, and follows the seed.
+    """
+
+    in_group: ClassVar[bool] = True
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "avocado", "neighborDist": 5.0}]}
+
+    also_called: ClassVar[dict[str, str]] = {
+        "a": "own_weight",
+        "b": "bias",
+        "c": "evidence_weight",
+        "d": "forgetting",
+        "delta": "attention_step",
+        "epsilon": "evidence_gain",
+        "eta": "noise",
+        "kappa": "attention_time",
+    }
+
+    name: Literal["avocado"] = "avocado"
+    neighborDist: Annotated[Meters, Field(gt=0)] = 2.5
+    """Moving objects farther away than this are ignored, and opinions of them forgotten."""
+    maxNeighbors: Count = 15
+    """Number of moving objects considered, nearest first; walls and static circles do not count."""
+    timeHorizon: Annotated[Seconds, Field(gt=0)] = 2.5
+    """Time horizon within which collisions with moving objects are avoided."""
+    timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 2.5
+    """Time horizon within which collisions with walls and static circles are avoided."""
+    safe_radius: Annotated[Meters, Field(ge=0)] | None = None
+    """Margin added to the radius of the object itself; null is a tenth of that radius."""
+    maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
+    """Largest speed; null is the speed that the object can reach in every direction, which is also the upper limit."""
+    approach_time: Annotated[Seconds, Field(gt=0)] | None = None
+    """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
+    speed."""
+    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
+    """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
+    turns by this angle to the right, to the left if negative. 0 is off."""
+    forgetting: Annotated[Hertz, Field(gt=0)] = 2.0
+    """Rate at which an opinion goes to what attention and evidence say, and to neutral without attention: `d` of the
+    paper."""
+    own_weight: Annotated[Number, Field(ge=0)] = 0.3
+    """Weight of the opinion itself: a larger one is kept against the evidence. `a` of the paper."""
+    evidence_weight: Annotated[Number, Field(ge=0)] = 0.7
+    """Weight of the evidence: how much of the needed change of velocity the other has made in the last step. `c` of the
+    paper; 0 together with an `own_weight` of 0 keeps every opinion neutral."""
+    evidence_gain: Annotated[Number, Field(ge=0)] = 3.22
+    """Steepness with which more than half of the needed change counts as giving way, and less as not: `epsilon` of the
+    paper."""
+    bias: Hertz = 0.0
+    """Constant change of an opinion: positive trusts others, negative distrusts them. An opinion starts at the bias
+    divided by `forgetting`. `b` of the paper."""
+    attention_time: Annotated[Seconds, Field(gt=0)] = 14.15
+    """A collision within about this time gets the full attention, one much later none: `kappa` of the paper."""
+    attention_step: Fraction = 0.57
+    """Share of the attention that is renewed in each step: `delta` of the paper."""
+    noise: Annotated[MetersPerSecond, Field(ge=0)] = 1e-4
+    """Largest noise on the velocity of another object, along and across the line of sight, while it gets no attention:
+    it ends deadlocks. `eta` of the paper."""
+
+
+BEHAVIORS.register(Avocado, kernel=core.AvocadoOptions)

@@ -1,0 +1,120 @@
+// Opinions of how much others give way, and the shares of the avoidance that follow from them.
+#include "behaviors/avocado.hpp"
+
+#include <algorithm>
+
+#include "orca/avoidance.hpp"
+#include "orca/crowd.hpp"
+#include "random.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kMinChange = 1e-6;  // a smaller change of velocity is a rounding error and says nothing [m/s]
+
+/// Time until two discs touch if they keep their velocities [s]: 0 if they overlap, infinite if they never touch.
+double time_to_contact(const OrcaAgent& agent, const OrcaAgent& other) {
+  const Vec2 offset = other.position - agent.position, velocity = agent.velocity - other.velocity;
+  const double radius = agent.radius + other.radius, gap2 = squared(offset) - radius * radius;
+  if (gap2 <= 0.0) return 0.0;
+  const double closing = dot(offset, velocity), root2 = closing * closing - squared(velocity) * gap2;
+  return closing > 0.0 && root2 >= 0.0 ? gap2 / (closing + std::sqrt(root2)) : kInfinity;
+}
+
+/// What the last change of velocity of another object says: from -1, it did not give way, to 1, it did all that was
+/// needed to avoid a collision. 0 if nothing was needed.
+double evidence(const Opinion& before, Vec2 velocity, double gain) {
+  const double needed2 = squared(before.change);
+  if (needed2 < kMinChange * kMinChange) return 0.0;
+  return std::tanh(gain * (std::fabs(dot(velocity - before.velocity, before.change)) / needed2 - 0.5));
+}
+
+/// Advance attention and opinion by one period `dt` [s].
+void observe(const AvocadoOptions& options, const OrcaAgent& agent, const OrcaAgent& other, double dt, Opinion& of) {
+  const double time = time_to_contact(agent, other);
+  of.attention += options.attention_step * (std::tanh(options.attention_time / time) - of.attention);
+  const double seen = evidence(of, other.velocity, options.evidence_gain);
+  const double pull = std::tanh(options.own_weight * of.opinion + options.evidence_weight * seen);
+  const double goal = of.attention * pull + options.bias / options.forgetting;
+  of.opinion += std::min(1.0, dt * options.forgetting) * (goal - of.opinion);
+}
+
+/// Shares that follow from opinions, which are formed once in each step.
+class LearnedShare final : public Reciprocity {
+ public:
+  LearnedShare(const AvocadoOptions& options, const Decision& decision)
+      : options_(options), decision_(decision), all_(decision.work.orca), before_(decision.work.opinions) {}
+
+  void begin(int k, int self) override {
+    self_ = self;
+    now_ = decision_.state.count[decision_.w()];
+    opinions_ = &decision_.opinions[decision_.row(k)];
+    formed_ = opinions_->step == now_;
+    before_.clear();
+    if (formed_) return;
+    if (opinions_->step == now_ - 1) before_.swap(opinions_->of);  // after a break it starts anew
+    opinions_->of.clear();
+    opinions_->step = now_;
+  }
+
+  double share(int m, OrcaAgent& other) override {
+    const World& world = decision_.world;
+    const OrcaAgent& agent = all_.movers[self_];
+    const int number = world.number[world.moving[m]];
+    Opinion& of = remembered(number);
+    if (!formed_) {
+      observe(options_, agent, other, world.step_time, of);
+      of.velocity = other.velocity;
+    }
+    blur(of, agent, other);
+    HalfPlane whole;
+    avoid_agent(agent, other, 1.0, options_.timeHorizon, world.step_time, self_ < m, whole);
+    of.change = whole.point - agent.velocity;
+    return 1.0 - clip(0.5 * (of.opinion + 1.0), 0.0, 1.0);
+  }
+
+ private:
+  /// The opinion of the object with this number, old or new, as an entry of the present ones.
+  Opinion& remembered(int number) {
+    std::vector<Opinion>& present = opinions_->of;
+    std::vector<Opinion>& known = formed_ ? present : before_;
+    const auto found = std::find_if(known.begin(), known.end(), [&](const Opinion& o) { return o.about == number; });
+    if (formed_ && found != known.end()) return *found;
+    const Opinion neutral{number, options_.bias / options_.forgetting, 0.0, {}, {}};
+    present.push_back(found != known.end() ? *found : neutral);
+    return present.back();
+  }
+
+  /// Add noise to the velocity of another object, more without attention, which ends deadlocks. It is drawn along and
+  /// across the line of sight, so that it turns with the world.
+  void blur(const Opinion& of, const OrcaAgent& agent, OrcaAgent& other) const {
+    const double most = options_.noise * (1.0 - of.attention);
+    if (!(most > 0.0)) return;
+    const World& world = decision_.world;
+    const Draws draws(decision_.state.key(decision_.w()), Stream::behavior, world.number[world.moving[self_]]);
+    const auto index = static_cast<std::uint64_t>(now_) << 32 | static_cast<std::uint32_t>(of.about);
+    const auto u = draws.uniforms(index);
+    const Vec2 offset = other.position - agent.position;
+    const double distance = norm(offset);
+    const Vec2 sight = distance > 0.0 ? offset * (1.0 / distance) : Vec2{1.0, 0.0};
+    other.velocity = other.velocity + rotate(Vec2{2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0} * most, sight);
+  }
+
+  const AvocadoOptions& options_;
+  const Decision& decision_;
+  const OrcaCrowd& all_;
+  std::vector<Opinion>& before_;
+  Opinions* opinions_ = nullptr;
+  std::int64_t now_ = 0;
+  int self_ = 0;
+  bool formed_ = false;  // whether the opinions of this step are known, because the object has decided before
+};
+
+}  // namespace
+
+void avocado(const AvocadoOptions& options, const Decision& decision, Intent* intents) {
+  LearnedShare shares(options, decision);
+  avoid(settings_of(options), decision, &shares, intents);
+}
+
+}  // namespace irsim

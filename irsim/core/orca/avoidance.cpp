@@ -1,0 +1,280 @@
+// Half-planes of everything that an object avoids, and the best velocity within them.
+#include "orca/avoidance.hpp"
+
+#include <algorithm>
+
+#include "geometry/predicates.hpp"
+#include "orca/body_discs.hpp"
+#include "orca/crowd.hpp"
+#include "orca/obstacles.hpp"
+#include "routes/right_of_way.hpp"
+#include "surroundings/sidestep.hpp"
+#include "world/spec.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kMinSpeed = 1e-6;           // slower velocities are rounding errors [m/s]
+constexpr double kRouteHorizon = 0.5;        // time horizon for walls on a route, which already avoids them [s]
+constexpr double kMaxCarAngle = 1.2;         // largest angle between the heading and the velocity of a car [rad]
+constexpr double kStuckShare = 0.1;          // a car below this share of its wanted speed backs up
+constexpr double kBackingShare = 0.3;        // share of its speed at which a car wants to back up
+constexpr double kMaxBackingSteering = 0.5;  // largest steering angle of a car that backs up [rad]
+constexpr double kMinCarShare = 0.2;    // smallest share of a wanted speed, because a car turns only while it rolls
+constexpr double kParallelSine = 1e-9;  // a smaller sine of the angle between a heading and a line is a rounding error
+
+/// Largest speed [m/s] in every direction, or forward for drives that cannot move sideways.
+double top_speed(const OrcaSettings& options, const World& world, const State& state, int row, int object) {
+  const Vec3& top = state.vel_max[row];
+  const Drive& drive = world.drive[object];
+  const bool sideways = std::holds_alternative<OmniOptions>(drive) || std::holds_alternative<OmniAngularOptions>(drive);
+  const double own = sideways ? std::min(top[0], top[1]) : top[0];
+  return std::max(0.0, options.maxSpeed ? std::min(*options.maxSpeed * state.pace[row], own) : own);
+}
+
+/// Toward the goal, at full speed or as `approach_time` says; zero without a goal or within `goal_threshold` of it. As
+/// in IR-SIM, an `omni` drive with unequal limits leans toward the axis of the world with the larger limit.
+Vec2 preferred_velocity(const OrcaSettings& options, const World& world, const State& state, int row, int object,
+                        double speed) {
+  const Goal& goal = state.destination(row);
+  if (std::isnan(goal.x)) return {};
+  Vec2 way = goal.position() - state.pose[row].position();
+  const double distance = norm(way);
+  if (!(distance > 0.0 && distance >= world.goal_threshold[object])) return {};
+  if (options.approach_time) speed = std::min(speed, distance / *options.approach_time);
+  const Vec3& top = state.vel_max[row];
+  if (top[0] == top[1] || !std::holds_alternative<OmniOptions>(world.drive[object])) return way * (speed / distance);
+  way = {way.x * top[0], way.y * top[1]};
+  const double length = norm(way);
+  return length > 0.0 ? way * (speed / length) : Vec2{};
+}
+
+/// How a drive that cannot move sideways turns. As in IR-SIM, small changes of direction and slow velocities are
+/// ignored. They count for an object that avoids another one, because the next step would ask for the same change
+/// again.
+Turning turning_for(const World& world, const State& state, int row, bool avoiding) {
+  Turning turning;
+  turning.guarantee_time = world.step_time;
+  turning.max_rate = state.vel_max[row][1];
+  if (avoiding) turning.min_speed = kMinSpeed, turning.tolerance = 0.0;
+  return turning;
+}
+
+/// Restrict the velocities of a car, which turns only while it rolls, to a sector about its heading, and turn
+/// `preferred` into it. `planes` must be empty; both planes added include zero.
+void face_ahead(Vec2 heading, std::vector<HalfPlane>& planes, Vec2& preferred) {
+  const Vec2 most = unit(kMaxCarAngle), left = rotate(heading, most), right = rotate(heading, {most.x, -most.y});
+  planes.push_back({{}, right});
+  planes.push_back({{}, left * -1.0});
+  const bool ahead = planes[0].depth(preferred) >= 0.0 && planes[1].depth(preferred) >= 0.0;
+  if (!ahead) preferred = (cross(heading, preferred) > 0.0 ? left : right) * norm(preferred);
+}
+
+/// Controls with which a car realises `velocity`. Steering acts in the next period, at whose end the heading is right.
+Vec3 car_control(const AckerOptions& car, const World& world, const State& state, int row, Vec2 velocity, double most) {
+  const double speed = norm(velocity), dt = world.step_time, psi = state.extra[std::size_t(row) * state.extra_rows];
+  const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0;
+  Vec3 control;
+  double target = psi;
+  if (speed > kMinSpeed) {
+    const Vec2 heading = state.heading(row);
+    control[0] = std::min(std::max(dot(heading, velocity), kMinCarShare * speed), most);
+    const double rolling = std::max(control[0], kMinCarShare * kMinCarShare);
+    const double error = std::atan2(cross(heading, velocity), dot(heading, velocity));
+    target = std::atan(error * wheelbase / (rolling * dt) - std::tan(psi) * control[0] / rolling);
+  }
+  control[1] = car.mode == Steering::steer ? target : (target - psi) / dt;
+  return control;
+}
+
+/// Largest speed along `direction` within planes that include zero [m/s].
+double fastest_along(Vec2 direction, const HalfPlane* planes, int count) {
+  double most = kInfinity;
+  for (int k = 0; k < count; ++k) {
+    const double rate = cross(planes[k].direction, direction);
+    if (rate < -kParallelSine) most = std::min(most, std::max(0.0, -planes[k].depth({}) / rate));
+  }
+  return most;
+}
+
+/// Find controls with which a blocked car backs up as fast as the obstacles behind it allow, turning toward
+/// `preferred`. Returns false if that is not faster than `ahead` [m/s]. The first two planes are those of `face_ahead`,
+/// which are reversed.
+bool back_off(const AckerOptions& car, const World& world, const State& state, int row, double speed, int hard,
+              double ahead, Vec2 preferred, OrcaCrowd& all, Vec3& control) {
+  const Vec2 heading = state.heading(row), behind = heading * -1.0;
+  for (int k = 0; k < 2; ++k) all.planes[k].direction = all.planes[k].direction * -1.0;
+  Vec2 found;
+  choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, behind * (kBackingShare * speed),
+                  all.scratch, found);
+  const double back = std::min(dot(found, behind), fastest_along(behind, all.planes.data(), hard));
+  if (back <= ahead) return false;
+  const double psi = state.extra[static_cast<std::size_t>(row) * state.extra_rows];
+  const double target =
+      -clip(std::atan2(cross(heading, preferred), dot(heading, preferred)), -kMaxBackingSteering, kMaxBackingSteering);
+  control = {{-back, car.mode == Steering::steer ? target : (target - psi) / world.step_time, 0.0}};
+  return true;
+}
+
+/// Whether the behavior of `viewer` targets the role of an object of another group.
+bool targets_role(const World& world, int viewer, int other) {
+  const int wanted = world.target_roles[viewer];
+  return wanted == 0 || (wanted == 1) == (world.is_robot[other] != 0);
+}
+
+/// Add half-planes of walls and static circles, nearest edges first. Those that other planes cover are left out.
+void avoid_obstacles(double horizon, const World& world, const Obstacles& obstacles, const OrcaAgent& agent, int object,
+                     double speed, OrcaCrowd& all) {
+  if (obstacles.empty()) return;
+  const double reach = horizon * speed + agent.radius;
+  const int edges = static_cast<int>(obstacles.edges.size());
+  std::vector<HalfPlane>& planes = all.planes;
+  all.edges.clear();
+  all.neighbors.clear();  // holds the discs found
+  obstacles.near(box_around(agent.position, reach), [&](int k) {
+    if (k >= edges) {
+      const StaticDisc& disc = obstacles.discs[k - edges];
+      const double gap = norm(disc.centre - agent.position) - disc.radius;
+      if (gap < reach && targets_role(world, object, disc.object)) all.neighbors.push_back({gap, k - edges});
+      return;
+    }
+    const Edge& edge = obstacles.edges[k];
+    if (!edge.faces(agent.position) || (edge.object >= 0 && !targets_role(world, object, edge.object))) return;
+    const Vec2 nearest = nearest_on_segment(edge.left.point, edge.right.point, agent.position);
+    const double distance2 = squared(nearest - agent.position);
+    if (distance2 < reach * reach) all.edges.push_back({distance2, k});
+  });
+  const auto covered = [&](Vec2 a, Vec2 b, double radius) {
+    return std::any_of(planes.begin(), planes.end(),
+                       [&](const HalfPlane& plane) { return covers(plane, agent, a, b, radius, horizon); });
+  };
+  std::sort(all.edges.begin(), all.edges.end());
+  for (const Nearest::Found& found : all.edges) {
+    const Edge& edge = obstacles.edges[found.index];
+    HalfPlane plane;
+    if (covered(edge.left.point, edge.right.point, agent.radius)) continue;
+    if (avoid_edge(agent, edge, horizon, plane)) planes.push_back(plane);
+  }
+  std::sort(all.neighbors.begin(), all.neighbors.end());
+  for (const Nearest::Found& found : all.neighbors) {
+    const StaticDisc& disc = obstacles.discs[found.index];
+    if (covered(disc.centre, disc.centre, agent.radius + disc.radius)) continue;
+    planes.push_back(avoid_disc(agent, disc.centre, disc.radius, horizon));
+  }
+}
+
+/// Add half-planes of two movers, at least one of which is long, from the discs that cover them. On a route this closes
+/// no passage that is wide enough for both. Returns false if both are their bounding circles.
+///
+/// Args:
+///   agent, seen: The bounding circles of `self` and of `other`, with their margins, as `self` takes them.
+bool avoid_discs(const World& world, const State& state, int w, int self, int other, const OrcaAgent& agent,
+                 const OrcaAgent& seen, double share, double horizon, std::vector<HalfPlane>& planes) {
+  const Shapes& shapes = *state.scenes[w].shapes;
+  const int movers[] = {self, other};
+  const OrcaAgent* circles[] = {&agent, &seen};
+  BodyDiscs discs[2];
+  for (int side = 0; side < 2; ++side) discs[side] = body_discs(shapes, world.moving[movers[side]]);
+  if (discs[0].count == 1 && discs[1].count == 1) return false;
+  const auto disc = [&](int side, int k) {
+    const int object = world.moving[movers[side]], row = w * world.objects + object;
+    const double margin = circles[side]->radius - shapes.radius[object];
+    const Vec2 centre = state.pose[row].position() + rotate(discs[side].centres[k], state.heading(row));
+    return OrcaAgent{centre, circles[side]->velocity, discs[side].radius + margin};
+  };
+  for (int k = 0; k < discs[0].count; ++k) {
+    for (int n = 0; n < discs[1].count; ++n) {
+      avoid_agent(disc(0, k), disc(1, n), share, horizon, world.step_time, self < other, planes.emplace_back());
+    }
+  }
+  return true;
+}
+
+/// Add half-planes of the nearest movers.
+void avoid_movers(const OrcaSettings& options, const World& world, const State& state, int w, int self,
+                  Reciprocity* reciprocity, OrcaCrowd& all) {
+  const int object = world.moving[self], group = all.member_of[self];
+  const OrcaAgent& agent = all.movers[self];
+  const int most = std::min(options.maxNeighbors, static_cast<int>(all.movers.size()) - 1);
+  if (most <= 0) return;
+  if (static_cast<int>(all.neighbors.size()) < most) all.neighbors.resize(most);
+  const auto seen = [&](int m) {
+    return m != self && (all.member_of[m] == group || targets_role(world, object, world.moving[m]));
+  };
+  std::vector<int>& before = all.neighbors_before[self];
+  const int count = all.nearest.find(agent.position, options.neighborDist, most, before, seen, all.neighbors.data());
+  before.clear();
+  for (int k = 0; k < count; ++k) before.push_back(all.neighbors[k].index);
+  for (const int m : before) {
+    // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
+    // not give way.
+    const bool mutual = all.group[m] >= 0 && (all.group[m] == group || targets_role(world, world.moving[m], object));
+    double share = options.responsibility ? *options.responsibility : mutual ? 0.5 : 1.0;
+    const OrcaAgent* other = &all.movers[m];
+    OrcaAgent taken;
+    if (reciprocity != nullptr) {
+      taken = *other;
+      share = reciprocity->share(m, taken);
+      other = &taken;
+    }
+    if (mutual && !state.routes.empty()) {
+      const Precedence order = precedence(world, state, w, object, world.moving[m]);
+      if (order == Precedence::first) continue;
+      if (order == Precedence::second) share = 1.0;
+    }
+    if (share == 0.0) continue;
+    const bool routed = state.route_of(w * world.objects + object) != nullptr;
+    if (routed && avoid_discs(world, state, w, self, m, agent, *other, share, options.timeHorizon, all.planes))
+      continue;
+    avoid_agent(agent, *other, share, options.timeHorizon, world.step_time, self < m, all.planes.emplace_back());
+  }
+}
+
+}  // namespace
+
+void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* reciprocity, Intent* intents) {
+  const World& world = decision.world;
+  const State& state = decision.state;
+  const Scene& scene = state.scenes[decision.w()];
+  const Obstacles& obstacles = scene.fixed->obstacles;
+  OrcaCrowd& all = crowd(world, state, decision.work, decision.w());
+  for (int k = 0; k < decision.count; ++k) {
+    const int i = decision.objects[k], row = decision.row(k), self = scene.shapes->placed[i].object;
+    const OrcaAgent& agent = all.movers[self];
+    const double speed = top_speed(options, world, state, row, i);
+    all.planes.clear();
+    Vec2 preferred =
+        sidestepped(decision, k, preferred_velocity(options, world, state, row, i, speed), options.sidestep);
+    const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
+    if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
+    if (const Route* route = state.route_of(row)) {  // a route already avoids static objects
+      const OrcaAgent inner{state.pose[row].position(), agent.velocity, route->wall_radius};
+      avoid_obstacles(std::min(options.timeHorizonObst, kRouteHorizon), world, obstacles, inner, i, speed, all);
+    } else {
+      avoid_obstacles(options.timeHorizonObst, world, obstacles, agent, i, speed, all);
+    }
+    const int hard = static_cast<int>(all.planes.size());
+    if (reciprocity != nullptr) reciprocity->begin(k, self);
+    avoid_movers(options, world, state, decision.w(), self, reciprocity, all);
+    Vec2 velocity;
+    const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
+                                      all.scratch, velocity);
+    Turning turning = turning_for(world, state, row, squared(velocity - preferred) > 0.0);
+    // The heading may lead into a wall even if the wanted velocity does not.
+    if (hard > 0) turning.max_forward = fastest_along(state.heading(row), all.planes.data(), hard);
+    if (car != nullptr) {
+      Vec3 control;
+      const double ahead = std::min(norm(velocity), turning.max_forward);
+      const bool stuck = ahead < kStuckShare * norm(preferred) && state.vel_min[row][0] < 0.0;
+      if (!stuck || !back_off(*car, world, state, row, speed, hard, ahead, preferred, all, control)) {
+        control = car_control(*car, world, state, row, velocity, turning.max_forward);
+      }
+      intents[k] = Intent::of_control(control);
+    } else {
+      intents[k] = Intent::of_velocity(velocity, turning);
+    }
+    intents[k].infeasible = !free;
+  }
+}
+
+}  // namespace irsim

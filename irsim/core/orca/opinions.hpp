@@ -1,0 +1,27 @@
+// What objects with `avocado` think of others. It is a part of the state, so that every episode starts without
+// opinions.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/vec.hpp"
+
+namespace irsim {
+
+/// What one object thinks of another one that it has avoided.
+struct Opinion {
+  int about = -1;          // World::number of the other object
+  double opinion = 0.0;    // how much it gives way: -1 not at all, 0 as much as this object, 1 alone
+  double attention = 0.0;  // 0 while no collision is ahead, 1 if one is near
+  Vec2 velocity;           // of the other object in the last step [m/s]
+  Vec2 change;             // change of the relative velocity that just avoided it then [m/s]
+};
+
+/// The opinions of one object.
+struct Opinions {
+  std::int64_t step = -1;   // step in which they were formed
+  std::vector<Opinion> of;  // of the objects considered in that step, nearest first
+};
+
+}  // namespace irsim
