@@ -11,7 +11,7 @@ from irsim.simulation.outcome import robot_outcomes
 if TYPE_CHECKING:
     from irsim.env import Env
 
-__all__ = ["ended_before", "extent_of", "moved_view", "view_message"]
+__all__ = ["ended_before", "extent_of", "moved_view"]
 
 
 def moved_view(env: Env) -> tuple[float, float, float, float] | None:
@@ -39,16 +39,6 @@ def extent_of(env: Env) -> tuple[float, float, float, float]:
     """x_min, x_max, y_min, y_max [m] of the world."""
     left, low, right, top = env.scenario.world.bounds
     return left, right, low, top
-
-
-def view_message(view: tuple[float, float, float, float]) -> str:
-    """Say which part of the world a picture shows.
-
-    Args:
-        view: x_min, x_max, y_min, y_max [m], from :func:`moved_view`.
-    """
-    x0, x1, y0, y1 = view
-    return f"shows only x {x0:g}..{x1:g} m, y {y0:g}..{y1:g} m, as plot.viewpoint centres the view"
 
 
 def ended_before(env: Env) -> int | None:

@@ -66,9 +66,9 @@ def render(
     import_user_modules(imports)
     with progress("drawing") as report:
         from irsim import api
-        from irsim.api.picture_notes import view_message
         from irsim.common.files import check_suffix
         from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
+        from irsim.results.view_message import view_message
 
         check_suffix(out, [*PICTURE_FORMATS, *MOVING_SUFFIXES])
         result = api.render(

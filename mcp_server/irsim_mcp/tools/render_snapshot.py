@@ -11,8 +11,8 @@ from mcp.types import ImageContent, TextContent
 from pydantic import Field
 
 from irsim.api.film_strip import MAX_MOMENTS, MIN_MOMENTS
-from irsim.api.picture_notes import view_message
 from irsim.common.text import clean, metres
+from irsim.results.view_message import view_message
 from irsim.validation.scene_text import scene_lines
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import MAX_SEED, MAX_STEPS
