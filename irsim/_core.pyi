@@ -41,10 +41,10 @@ class AvocadoOptions(_Options):
         maxNeighbors: int,
         timeHorizon: float,
         timeHorizonObst: float,
-        safe_radius: float | None,
         maxSpeed: float | None,
         approach_time: float | None,
         sidestep: float,
+        safe_radius: float | None,
         forgetting: float,
         own_weight: float,
         evidence_weight: float,
@@ -66,11 +66,11 @@ class OrcaOptions(_Options):
         maxNeighbors: int,
         timeHorizon: float,
         timeHorizonObst: float,
-        safe_radius: float,
         maxSpeed: float | None,
-        responsibility: float | None,
         approach_time: float | None,
         sidestep: float,
+        safe_radius: float,
+        responsibility: float | None,
     ) -> None: ...
 
 class RvoOptions(_Options):

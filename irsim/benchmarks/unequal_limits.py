@@ -107,6 +107,6 @@ def _limit(record: ObjectRecord, own: bool) -> Limit:
         speed, turn = min(speed, options.vxmax, options.vymax), min(turn, _RVO_TURN_RATE) if turn < math.inf else turn
     elif name == "sfm":
         speed = min(speed, options.vmax)
-    elif name in ("orca", "avocado"):
+    elif hasattr(options, "maxSpeed"):
         speed = min([*limits[: max(speeds, 1)], *([] if options.maxSpeed is None else [options.maxSpeed])])
     return Limit(float(speed), float(turn), name)

@@ -113,7 +113,7 @@ def _kind(file: str) -> str:
 
 
 def _check_options(kinds: dict[str, str], **given: bool) -> None:
-    """Refuse options that only scenarios have if there is no scenario; beside one, they leave the other files alone."""
+    """Refuse options of scenarios where no file is one; otherwise they hold for the scenarios among the files."""
     used = next((f"--{name}" for name, on in given.items() if on), None)
     if used is not None and "a scenario" not in kinds.values():
         file, kind = next(iter(kinds.items()))

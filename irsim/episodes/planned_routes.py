@@ -94,7 +94,7 @@ def _routes_of_leg(
 
 
 def _placed(record: ObjectRecord, pose: list[float], goal: Sequence[float] | None) -> ObjectRecord:
-    """An object at a pose, with one goal; one without a goal does nothing, and if it moves it is in nobody's way."""
+    """An object at a pose, with one goal; one without a goal does nothing and, if it moves, is passable."""
     state = [*pose, *record.state[3:]]
     if goal is None and record.static:
         return replace(record, state=state)

@@ -64,8 +64,6 @@ def _bundled(name: str) -> Answer:
         kind="component",
         title=f"bundled task {name}",
         text=f"{task.title}. {task.about.strip()} To change it, write what stands below into a file of your own.",
-        about=None,
-        groups={},
         example=file.read_text(encoding="utf-8"),
         see=["task", "policies"],
     )

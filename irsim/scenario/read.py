@@ -221,15 +221,6 @@ def _not_a_mapping(data: Any) -> Finding:
     )
 
 
-def _other_file(data: Mapping[str, Any]) -> Finding | None:
-    """The error if the file is of another kind, which its first key names; else None."""
-    key = next(iter(data), None)
-    if key not in _OTHER_FILES or any(section in data for section in ("world", "robot", "obstacle")):
-        return None
-    what, fix = _OTHER_FILES[key]
-    return error("not-a-scenario", (), f"this is {what} file, and a scenario was expected", fix=fix)
-
-
 _OTHER_FILES = {
     "task": (
         "a task",
@@ -238,6 +229,15 @@ _OTHER_FILES = {
     "suite": ("a suite", "irsim benchmark FILE runs it"),
 }
 """First key -> kind of the file, and what it is for."""
+
+
+def _other_file(data: Mapping[str, Any]) -> Finding | None:
+    """The error if the file is of another kind, which its first key names; else None."""
+    key = next(iter(data), None)
+    if key not in _OTHER_FILES or any(section in data for section in ("world", "robot", "obstacle")):
+        return None
+    what, fix = _OTHER_FILES[key]
+    return error("not-a-scenario", (), f"this is {what} file, and a scenario was expected", fix=fix)
 
 
 def _too_many_objects(data: Mapping[str, Any], limits: Limits) -> Finding | None:

@@ -15,7 +15,7 @@ __all__ = ["explored_share"]
 def explored_share(simulation: Simulation, world: int = 0) -> float | None:
     """Share of the cells of the fog that the robots have seen, from 0 to 1; None without ``fog_map``.
 
-    The fog covers the whole world, so the insides of obstacles, which nobody sees, count in full.
+    The fog covers the whole world, so the insides of obstacles, which no robot sees, count in full.
     """
     cells = simulation.state.explored[world]
     return float(np.count_nonzero(cells)) / cells.size if cells.size else None

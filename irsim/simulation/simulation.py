@@ -47,7 +47,7 @@ class Simulation:
         scenario: The scenario.
         seeds: (W,) one seed per world.
         threads: Number of threads that the worlds are distributed over; results do not depend on it.
-        history: Store the poses of all steps, for trajectories.
+        history: Store the poses of all steps. crowded: Accept scenes without room for all, which the caller resets.
 
     Attributes:
         world, state: Constant and changing part of the core.
@@ -79,7 +79,7 @@ class Simulation:
         user: Object id in the random stream of ``rng``: 0 for an environment, another number for a lone object.
 
     Raises:
-        PlacementError: A random object could not be placed.
+        PlacementError: A random object could not be placed, unless ``crowded``.
     """
 
     def __init__(

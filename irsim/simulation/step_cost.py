@@ -185,7 +185,7 @@ def _behavior_time(
     name = getattr(behavior, "name", "")
     if name not in _STATIC_BODY_US:
         return work
-    reach = float(getattr(behavior, "neighborDist" if name in ("orca", "avocado") else "neighbor_threshold", math.inf))
+    reach = float(getattr(behavior, "neighborDist", getattr(behavior, "neighbor_threshold", math.inf)))
     static_bodies = near.estimate(reach, "static", lambda: static)[row]
     neighbors = near.estimate(reach, "moving", lambda: ~static)[row]
     return work + _STATIC_BODY_US[name] * float(static_bodies) + _NEIGHBOR_US.get(name, 0.0) * float(neighbors)

@@ -40,7 +40,7 @@ _REACHES = (0.75, 1.0, 1.5, 2.0, 3.0, 4.0)
 _WIDE = 5.0
 """Passages wider than this many widths of the robot are left out."""
 _MAX_EQUAL = 4
-"""Number of places on one leg that are told if they are equally narrow."""
+"""Number of places on one leg that are listed if they are equally narrow."""
 _TOLERANCE_M = 0.005
 """Places and widths that differ by less are the same passage [m]."""
 

@@ -52,7 +52,7 @@ class LearnedShare final : public Reciprocity {
     formed_ = opinions_->step == now_;
     before_.clear();
     if (formed_) return;
-    if (opinions_->step == now_ - 1) before_.swap(opinions_->of);  // after a break it starts anew
+    if (opinions_->step == now_ - 1) before_.swap(opinions_->of);  // after a break all are neutral
     opinions_->of.clear();
     opinions_->step = now_;
   }
@@ -114,7 +114,7 @@ class LearnedShare final : public Reciprocity {
 
 void avocado(const AvocadoOptions& options, const Decision& decision, Intent* intents) {
   LearnedShare shares(options, decision);
-  avoid(settings_of(options), decision, &shares, intents);
+  avoid(options, decision, &shares, intents);
 }
 
 }  // namespace irsim

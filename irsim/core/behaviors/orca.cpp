@@ -5,9 +5,7 @@
 namespace irsim {
 
 void orca(const OrcaOptions& options, const Decision& decision, Intent* intents) {
-  OrcaSettings settings = settings_of(options);
-  settings.responsibility = options.responsibility;
-  avoid(settings, decision, nullptr, intents);
+  avoid(options, decision, nullptr, intents);
 }
 
 }  // namespace irsim

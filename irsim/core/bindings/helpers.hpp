@@ -38,8 +38,8 @@ nb::object own(std::vector<T> values, std::initializer_list<std::size_t> shape) 
   return view<T>(std::shared_ptr<T>(kept, kept->data()), shape);
 }
 
-template <class Owner, class Value>
-void read_field(Owner& owner, const Field<Owner, Value>& field, nb::handle value) {
+template <class Target, class Owner, class Value>
+void read_field(Target& owner, const Field<Owner, Value>& field, nb::handle value) {
   owner.*(field.member) = nb::cast<Value>(value);
 }
 /// The index of a word among the choices of a field.
@@ -50,12 +50,12 @@ std::size_t index_of(const Choices& field, const std::string& word) {
   }
   throw nb::value_error((std::string(field.name) + ": '" + word + "' is not one of the choices").c_str());
 }
-template <class Owner, class Enum, std::size_t N>
-void read_field(Owner& owner, const Choice<Owner, Enum, N>& field, nb::handle value) {
+template <class Target, class Owner, class Enum, std::size_t N>
+void read_field(Target& owner, const Choice<Owner, Enum, N>& field, nb::handle value) {
   owner.*(field.member) = static_cast<Enum>(index_of(field, nb::cast<std::string>(value)));
 }
-template <class Owner, class Enum, std::size_t N>
-void read_field(Owner& owner, const Choices<Owner, Enum, N>& field, nb::handle value) {
+template <class Target, class Owner, class Enum, std::size_t N>
+void read_field(Target& owner, const Choices<Owner, Enum, N>& field, nb::handle value) {
   std::vector<Enum>& list = owner.*(field.member);
   list.clear();
   for (const std::string& word : nb::cast<std::vector<std::string>>(value)) {
@@ -63,17 +63,17 @@ void read_field(Owner& owner, const Choices<Owner, Enum, N>& field, nb::handle v
   }
 }
 
-template <class Owner, class Value>
-nb::object show_field(const Owner& owner, const Field<Owner, Value>& field) {
+template <class Target, class Owner, class Value>
+nb::object show_field(const Target& owner, const Field<Owner, Value>& field) {
   return nb::cast(owner.*(field.member));
 }
-template <class Owner, class Enum, std::size_t N>
-nb::object show_field(const Owner& owner, const Choice<Owner, Enum, N>& field) {
+template <class Target, class Owner, class Enum, std::size_t N>
+nb::object show_field(const Target& owner, const Choice<Owner, Enum, N>& field) {
   return nb::cast(field.words[static_cast<std::size_t>(owner.*(field.member))]);
 }
 
-template <class Owner, class Enum, std::size_t N>
-nb::object show_field(const Owner& owner, const Choices<Owner, Enum, N>& field) {
+template <class Target, class Owner, class Enum, std::size_t N>
+nb::object show_field(const Target& owner, const Choices<Owner, Enum, N>& field) {
   nb::list words;
   for (const Enum one : owner.*(field.member)) words.append(field.words[static_cast<std::size_t>(one)]);
   return words;

@@ -141,7 +141,7 @@ class LabelLayer:
         if extent is None:
             if len(self._extents) >= MAX_CACHED_EXTENTS:
                 self._extents.clear()
-            box = text.get_window_extent(self.figure.canvas.get_renderer())  # type: ignore[attr-defined]
+            box = text.get_window_extent(self.figure.canvas.get_renderer())  # type: ignore[attr-defined] # of Agg
             x, y = self.ax.transData.transform(text.get_position())
             extent = self._extents[key] = float(box.x0 - x), float(box.y0 - y), float(box.x1 - x), float(box.y1 - y)
         return extent

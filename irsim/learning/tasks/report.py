@@ -65,12 +65,15 @@ def _report(file: str, found: list[Diagnostic], valid: str | None = None) -> Val
     findings = [as_finding(item) for item in found]
     warnings = sum(item.severity == "warning" for item in found)
     errors = len(found) - warnings
-    counts = [f"{errors} error{'s' * (errors != 1)}"] if valid is None else []
-    counts += [f"{warnings} warning{'s' * (warnings != 1)}"] if warnings or valid is None else []
+    counts = f"{warnings} warning{'s' * (warnings != 1)}"
+    if valid is None:
+        summary = f"{errors} error{'s' * (errors != 1)}, {counts}"
+    else:
+        summary = f"{valid}; {counts}" if warnings else valid
     return ValidationReport(
         file=file,
         valid=valid is not None,
-        summary="; ".join([*([valid] if valid else []), ", ".join(counts)] if counts else [valid or ""]),
+        summary=summary,
         errors=errors,
         warnings=warnings,
         hints=0,

@@ -114,11 +114,11 @@ def train(
     settings = settings or TrainingSettings()
     if steps is not None:
         settings = settings.model_copy(update={"steps": steps})
+        if resume:
+            run.keep(settings)
     opened, where = open_task(task)
     one = Worlds(task, 1)
-    if resume:
-        run.keep(settings)
-    else:
+    if not resume:
         run.begin(opened, where, one.scenario.map_files, settings)
     torch.set_num_threads(threads)
     worlds = max(1, -(-settings.slots // one.learners))

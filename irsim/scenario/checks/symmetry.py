@@ -63,16 +63,9 @@ def _findings(context: Context) -> Iterator[Finding]:
             behind, ahead = (a, b) if a.end > a.start and b.end > b.start else (b, a)
             passes = _options(behind.record).name in _PASSING
             if (a.end > a.start) == (b.end > b.start) and not passes and _catches_up(behind, ahead):
-                yield _finding(
-                    context,
-                    behind.record,
-                    f"starts straight behind '{ahead.record.name}', which is slower: "
-                    + (
-                        "it drives into it instead of passing"
-                        if _pushes(behind.record)
-                        else "it trails it instead of passing"
-                    ),
-                )
+                end = "drives into" if _pushes(behind.record) else "trails"
+                what = f"starts straight behind '{ahead.record.name}', which is slower: it {end} it instead of passing"
+                yield _finding(context, behind.record, what)
 
 
 def _needs_side(record: ObjectRecord) -> bool:

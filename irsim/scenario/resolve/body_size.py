@@ -122,7 +122,8 @@ def _own_limit(options: Any) -> float:
         return math.hypot(options.vxmax, options.vymax)
     if name == "sfm":
         return float(options.vmax)
-    return math.inf if name not in ("orca", "avocado") or options.maxSpeed is None else float(options.maxSpeed)
+    most = getattr(options, "maxSpeed", None)
+    return math.inf if most is None else float(most)
 
 
 @lru_cache(maxsize=256)  # thousands of objects may have one shape

@@ -174,7 +174,7 @@ def _driven_gaps(
 
 
 def _is_drawn(context: Context, scene: Scene, gap: Gap) -> bool:
-    """Whether a gap is one of a map that is drawn by a seed, whose gaps nobody can widen one by one."""
+    """Whether a gap is one of a map that is drawn by a seed, whose gaps cannot be widened one by one."""
     if not hasattr(context.scenario.world.obstacle_map, "fill"):
         return False
     maps = [thing for thing in scene.owner.things if any(isinstance(part, core.GridCells) for part in thing[0])]

@@ -1,0 +1,31 @@
+// Options that all behaviors built on ORCA have.
+#pragma once
+
+#include <optional>
+
+#include "fields.hpp"
+
+namespace irsim {
+
+struct OrcaSettings {
+  double neighborDist;                  // objects farther away are ignored [m]
+  int maxNeighbors;                     // largest number of other objects considered, nearest first
+  double timeHorizon;                   // time horizon for moving objects [s]
+  double timeHorizonObst;               // time horizon for walls and static circles [s]
+  std::optional<double> maxSpeed;       // [m/s]; none: the limit of the object
+  std::optional<double> approach_time;  // time constant of slowing down at the goal [s]; none: full speed
+  double sidestep;  // angle to the right of the wanted velocity while something moving is ahead [degrees]
+  // share of a change of velocity, without a `Reciprocity`; none: half for objects that give way, else all
+  std::optional<double> responsibility;
+
+  /// The fields of every such behavior; `responsibility` is one of `orca` alone.
+  static constexpr auto shared_fields() {
+    using O = OrcaSettings;
+    return std::make_tuple(field("neighborDist", &O::neighborDist), field("maxNeighbors", &O::maxNeighbors),
+                           field("timeHorizon", &O::timeHorizon), field("timeHorizonObst", &O::timeHorizonObst),
+                           field("maxSpeed", &O::maxSpeed), field("approach_time", &O::approach_time),
+                           field("sidestep", &O::sidestep));
+  }
+};
+
+}  // namespace irsim
