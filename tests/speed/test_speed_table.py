@@ -10,6 +10,8 @@ import yaml
 
 import irsim
 from tests.speed.__main__ import main
+from tests.speed.learning import CASES
+from tests.speed.learning import main as learning
 from tests.speed.measure import measure
 from tests.speed.scenes import SCENES
 
@@ -32,6 +34,17 @@ def test_the_table_compares_with_another_interpreter(capsys: pytest.CaptureFixtu
     assert 0.1 < float(cells[5]) < 10  # irsim against itself
     assert "M beams" in batch
     assert batch.strip("|").split("|")[5].strip() == ""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CASES)
+def test_the_table_of_learning_times_each_task(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("gymnasium")
+    assert learning([name, "--threads", "1", "--seconds", "0.01"]) == 0
+    *_, row = capsys.readouterr().out.splitlines()
+    cells = [cell.strip() for cell in row.strip("|").split("|")]
+    assert cells[:3] == [name, f"{CASES[name].slots:,}", "1"]
+    assert int(cells[3].replace(",", "")) > 0
 
 
 @pytest.mark.slow
