@@ -18,7 +18,15 @@ from typing import Any
 from irsim.benchmarks.cluster import run_on_cluster
 from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
-from irsim.benchmarks.policies import digests_of, job_keys, label_of, listed_policies, naming, opened_policies
+from irsim.benchmarks.policies import (
+    chances_that_count,
+    digests_of,
+    job_keys,
+    label_of,
+    listed_policies,
+    naming,
+    opened_policies,
+)
 from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from, seeds_text
 from irsim.benchmarks.timing import timing_report
@@ -176,6 +184,7 @@ def benchmark(
             chances[name] += [part for part in random_parts(driven) if part not in chances[name]]
             limits_under[behavior] = limits_of(driven, own=isinstance(policy, BehaviorPolicy))
             jobs.append((name, behavior, job, chosen))
+        chances[name] = chances_that_count(chances[name], opened, scenario)
         if (note := unequal_note(limits_under)) is not None:
             unequal[name] = note
     plan = [

@@ -13,8 +13,10 @@ from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import is_network, open_policy
 from irsim.policies.policy import Policy
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
+from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = [
+    "chances_that_count",
     "digests_of",
     "files_of",
     "job_keys",
@@ -73,6 +75,17 @@ def naming(where: str, number: int) -> Iterator[None]:
 def label_of(policy: Policy) -> str:
     """The text of a policy in results: what opens it, or the name of one that only this program has."""
     return policy.text or policy.name
+
+
+def chances_that_count(chances: Sequence[str], policies: Iterable[Policy], scenario: ResolvedScenario) -> list[str]:
+    """The random parts of a scenario that can change an episode under these policies.
+
+    Noise of sensors does so only if somebody reads them: a policy that observes scans or may do anything, or the fog.
+    """
+    readers = any(policy.needs.scan or policy.stochastic for policy in policies)
+    if list(chances) == ["sensor noise"] and not readers and not scenario.world.fog_map:
+        return []
+    return list(chances)
 
 
 def digests_of(policies: Iterable[Policy]) -> dict[str, str]:

@@ -143,8 +143,8 @@ def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]]
     fixed = [name for name, chance in random.items() if not chance]
     if fixed and len(seeds) > 1:
         notes.append(
-            f"{listed(fixed, _MAX_NAMED)}: nothing is random, so every seed gives the same run and only one was "
-            "simulated; random placement, motion noise or perturb would make seeds differ"
+            f"{listed(fixed, _MAX_NAMED)}: nothing is random that these policies notice, so every seed gives the same "
+            "run and only one was simulated; random placement, motion noise or perturb would make seeds differ"
         )
     lost = sorted({episode.scenario for episode in episodes if episode.unreachable})
     if lost:

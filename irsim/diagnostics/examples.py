@@ -104,6 +104,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "unobstructed-robot": ("robot: {unobstructed: true}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0]}", "robot: {behavior: {name: dash}}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0], unobstructed: true}"),
     "goal-reached": ("robot: {state: [1, 1, 0], goal: [1.05, 1]}", "robot: {state: [1, 1, 0], goal: [2, 1]}"),
     "goal-overshoot": ("robot: {vel_max: [3, 1], vel_min: [-3, -1]}", "robot: {vel_max: [3, 1], vel_min: [-3, -1], goal_threshold: 0.2}"),
+    "door-jam": ("robot: {number: 2, state: [[1, 4, 0], [1, 6, 0]], goal: [[9, 4], [9, 6]], behavior: {name: follow, local: sfm}}\nobstacle: {number: 2, shape: {name: rectangle, length: 0.2, width: 4.65}, state: [[5, 2.325, 0], [5, 7.675, 0]]}", "robot: {number: 2, state: [[1, 4, 0], [1, 6, 0]], goal: [[9, 4], [9, 6]], behavior: {name: follow, local: orca}}\nobstacle: {number: 2, shape: {name: rectangle, length: 0.2, width: 4.65}, state: [[5, 2.325, 0], [5, 7.675, 0]]}"),
     "turning-circle": ("robot: {kinematics: {name: acker, wheelbase: 2.6}, state: [5, 5, 0], goal: [5, 6.2]}", "robot: {kinematics: {name: acker, wheelbase: 2.6}, state: [5, 5, 1.5708], goal: [5, 6.2]}"),
     "rate-in-degrees": ("robot: {vel_max: [1, 90], vel_min: [-1, -90]}", "robot: {vel_max: [1, 1.5708], vel_min: [-1, -1.5708]}"),
     "speed-in-centimetres": ("robot: {vel_max: [80, 1], vel_min: [-80, -1]}", "robot: {vel_max: [0.8, 1], vel_min: [-0.8, -1]}"),

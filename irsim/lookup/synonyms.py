@@ -8,7 +8,7 @@ __all__ = ["EVERYDAY", "named"]
 
 EVERYDAY: dict[str, str] = {
     "robot.sensors.lidar2d": "lidar, laser, laser scanner, scanner, lidar scanner, range finder, rangefinder, ladar, "
-    "distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range",
+    "720, 720 beams, 1080 beams, 360 beams, distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range",
     "robot.sensors.fmcw_lidar2d": "lidar, fmcw, fmcw lidar, doppler, radar, velocity lidar, radial velocity",
     "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",
     "robot.sensors": "sensor, camera, depth camera, imu, gps",
@@ -26,7 +26,8 @@ EVERYDAY: dict[str, str] = {
     "robot.kinematics.static": "static obstacle, fixed, immovable",
     "robot.kinematics": "drive, motion model, drive model, kinematic model, dynamics, locomotion, mobile base",
     "robot.behavior.sfm": "social force, social force model, pedestrian, human, crowd, people, walker",
-    "robot.behavior.orca": "reciprocal collision avoidance, optimal reciprocal collision avoidance, pedestrian, "
+    "robot.behavior.orca": "evade, dodge, swerve around, get out of the way, give way, "
+    "reciprocal collision avoidance, optimal reciprocal collision avoidance, pedestrian, "
     "collision avoidance, obstacle avoidance",
     "robot.behavior.avocado": "adaptive collision avoidance, opinion, opinion dynamics, cooperation, cooperative, "
     "non-cooperative, uncooperative, unknown behavior, collision avoidance",
@@ -61,7 +62,8 @@ EVERYDAY: dict[str, str] = {
     "robot.arrive_mode": "goal angle threshold, goal heading, goal angle, goal yaw, final heading, heading tolerance, "
     "heading threshold, yaw tolerance, arrival heading",
     "robot.number": "number of robots, how many robots, number of obstacles, count, fleet size",
-    "robot.vel_max": "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity",
+    "robot.vel_max": "sprint, run fast, hurry, "
+    "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity",
     "robot.acce": "acceleration, acceleration limit, braking, brake, braking distance, stopping distance, deceleration",
     "robot.distribution": "random positions, random placement, random start, scatter, spread, placement",
     "robot.distribution.random": "random positions, random placement, random start, scatter",
@@ -94,6 +96,8 @@ EVERYDAY: dict[str, str] = {
     "way to the goal exist, reachable, free space, draw the path, show the path",
     "avoidance": "between walls, among walls",
     "dead-ends": "deadlock, stuck, trap",
+    "door-jam": "jam, jam at door, jam in a door, jammed, congestion, bottleneck, blocked door",
+    "turning-circle": "three-point turn, u-turn, turning radius, turn around",
     "guard-patrol": "guard, watchman, surveillance, vision cone, sight cone",
     "room-evacuation": "evacuation, evacuate, emergency exit, exit, escape, room exit",
     "l-passage": "bend, l-bend, passage, corner, blind corner",

@@ -36,6 +36,8 @@ class SceneRow(Result):
     """Its sensors in words."""
     appear_time: float
     """Time at which its first object comes into the world [s]; 0 at the start."""
+    start_time: float
+    """Time at which its first object sets off [s]."""
     vel_max: list[float]
     """Upper limits of the controls; empty for objects that never move."""
     starts: tuple[float, float, float, float] | None = None

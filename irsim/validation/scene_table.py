@@ -96,7 +96,7 @@ def _row(
         count=len(records),
         role=first.role,
         drive=None if first.static or first.kinematics is None else str(getattr(first.kinematics, "name", "")),
-        behavior=None if first.static or behavior is None else behavior.name + first.wander * " wander" + _loops(first),
+        behavior=None if first.static or behavior is None else _behavior(behavior) + _task(first),
         footprint=footprint_of(first) + (", each its own" if _differ(records) else ""),
         poses=[_pose(state.pose[shown * objects + k]) for k in some],
         goals=[
@@ -108,6 +108,7 @@ def _row(
         ],
         sensors=sensors_in_words(first.sensors),
         appear_time=first.appear_time,
+        start_time=first.start_time,
         vel_max=[] if first.static else list(first.vel_max),
         starts=_range(starts),
         ends=None if first.static else _range(ends),
@@ -139,8 +140,16 @@ def _differ(records: Sequence[ObjectRecord]) -> bool:
     return any(record.shape != records[0].shape for record in records)
 
 
-def _loops(record: ObjectRecord) -> str:
-    return " loop" if record.loop and not record.wander else ""
+def _behavior(options: Any) -> str:
+    """Name of a behavior, its local one, and whether they step aside."""
+    local: Any = getattr(options, "local", None)
+    aside = getattr(options, "sidestep", 0) or getattr(local, "sidestep", 0)
+    words = [str(options.name), *([f"with {local.name}"] if hasattr(local, "name") else []), *["sidestep"] * bool(aside)]
+    return " ".join(words)
+
+
+def _task(record: ObjectRecord) -> str:
+    return " wander" if record.wander else " loop" if record.loop else ""
 
 
 def _pose(pose: Any) -> tuple[float, float, float]:

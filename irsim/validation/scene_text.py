@@ -58,6 +58,8 @@ def _row_text(row: Mapping[str, Any], labels: Mapping[str, str], seeds: int) -> 
     facts += row["sensors"]
     if row["appear_time"]:
         facts.append(f"appears at {seconds(row['appear_time'])}")
+    if row["start_time"] > row["appear_time"]:
+        facts.append(f"sets off at {seconds(row['start_time'])}")
     if row["starts"]:
         ends = f", goals {_box(row['ends'])}" if row["ends"] else ""
         facts.append(f"over {seeds} seeds starts {_box(row['starts'])}{ends}")

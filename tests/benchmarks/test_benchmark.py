@@ -8,8 +8,11 @@ import json
 import math
 import re
 from dataclasses import asdict
+from pathlib import Path
 
+import numpy as np
 import pytest
+import yaml
 from typer.testing import CliRunner
 
 import irsim
@@ -19,6 +22,7 @@ from irsim.benchmarks.episode import Job, scenario_of
 from irsim.cli.app import app
 from irsim.diagnostics.errors import BehaviorError, OverLimitError, ScenarioNotFoundError
 from irsim.metrics import wilson
+from irsim.policies import Observations
 from irsim.results.labels import labels_of, seeds_of
 from irsim.scenario.behavior_override import parse_behavior
 
@@ -136,6 +140,24 @@ def test_behaviors_meet_the_same_scenes_and_are_compared_pair_by_pair(files) -> 
     assert rvo.paired["path_length"].low <= rvo.paired["path_length"].mean <= rvo.paired["path_length"].high
     assert dash.success.count + dash.collision.count + dash.timeout.count == 5
     assert rvo.success.low <= rvo.success.rate <= rvo.success.high
+
+
+def test_noise_that_no_policy_reads_is_not_chance(tmp_path: Path) -> None:
+    sensor = {"name": "lidar2d", "number": 8, "noise": True}
+    robot = {"kinematics": {"name": "diff"}, "state": [1, 5, 0], "goal": [4, 5], "sensors": [sensor]}
+    file = tmp_path / "noisy.yaml"
+    file.write_text(yaml.safe_dump({"world": {"width": 10, "height": 10}, "robot": [robot]}))
+    found = irsim.benchmark(file, ["dash", "orca"], seeds=5)
+    assert [len(found.episodes), "nothing is random that these policies notice" in found.notes[0]] == [2, True]
+
+    def drive(seen: Observations) -> np.ndarray:
+        return np.tile([1.0, 0.0], (len(seen), 1))
+
+    assert len(irsim.benchmark(file, ["dash", drive], seeds=5).episodes) == 10  # a function may read anything
+    data = yaml.safe_load(file.read_text())
+    data["world"]["fog_map"] = True
+    file.write_text(yaml.safe_dump(data))
+    assert len(irsim.benchmark(file, ["dash"], seeds=5).episodes) == 5  # the fog is lifted by what the lidar has seen
 
 
 def test_what_is_not_random_is_run_once_and_said(files) -> None:

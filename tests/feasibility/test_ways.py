@@ -260,3 +260,45 @@ obstacle: {{name: box, shape: {{name: rectangle, length: 1, width: 3}}, state: [
     assert advice in tried.summary
     mended = text.replace(f"{{name: {behavior}}}", f"{{name: follow, local: {{name: {behavior}}}}}")
     assert irsim.run(text=mended, seed=1).outcome == "success"
+
+
+def _wall(*gap: float) -> list[dict[str, Any]]:
+    """A wall across the world of 12 x 10 m at x = 6, with a gap between two heights."""
+    low, high = gap
+    box = {"name": "rectangle", "length": 0.2, "width": low}, {"name": "rectangle", "length": 0.2, "width": 10 - high}
+    return [{"shape": box[0], "state": [6, low / 2, 0]}, {"shape": box[1], "state": [6, (10 + high) / 2, 0]}]
+
+
+@pytest.mark.parametrize("local", ["orca", "rvo", "sfm"])
+def test_robots_that_share_a_door_are_told_which_behaviors_jam(local: str) -> None:
+    behavior = {"name": "follow", "local": local}
+    robots = [{**ROBOT, "state": [2, y, 0], "goal": [10, y], "behavior": behavior} for y in (4, 5, 6)]
+    data = scenario(robots[0], *_wall(4.5, 5.5))
+    data["robot"] = robots
+    jams = [item for item in found(data) if item.code == "door-jam"]
+    assert len(jams) == (local != "orca")
+    for item in jams:
+        assert "2 other robots drive through a gap of 1 m at (6" in item.message
+        assert "local: {name: orca}" in str(item.fix)
+    data["obstacle"] = _wall(3.5, 6.5)  # two have room side by side
+    assert "door-jam" not in codes(data)
+    data["robot"], data["obstacle"] = robots[:1], _wall(4.5, 5.5)
+    assert "door-jam" not in codes(data)
+
+
+@pytest.mark.parametrize("key", ["within", "avoid"])
+def test_a_region_or_zone_that_leaves_no_path_is_reported(key: str) -> None:
+    box = {"shape": {"name": "rectangle", "length": 1, "width": 2}, "state": [6, 5, 0]}
+    limit = {"rectangle": [0, 4, 12, 6]} if key == "within" else ["closed"]
+    robot = {**ROBOT, "behavior": {"name": "follow", key: limit}}
+    zones = [{"name": "closed", "rectangle": [5, 0, 7, 4]}, {"name": "open", "rectangle": [5, 6, 7, 10]}]
+    data = scenario(robot, box, boundary="walls", zones=zones)
+    if key == "avoid":
+        robot["behavior"] = {"name": "follow", "avoid": ["closed", "open"]}
+        data["robot"] = [robot]
+    item = one(data, "goal-unreachable")
+    assert item.severity == "warning"
+    assert ("stays in 'within'" if key == "within" else "keeps out of 'closed', 'open'") in item.message
+    wider = {"rectangle": [0, 2, 12, 8]} if key == "within" else ["closed"]
+    data["robot"] = [{**ROBOT, "behavior": {"name": "follow", key: wider}}]
+    assert "goal-unreachable" not in codes(data)

@@ -118,7 +118,7 @@ OBJECTS: dict[str, Code] = {
         "The check searches a path around everything static for the largest disc inside the body: where the disc "
         "does not fit, the body does not either. The finding gives the narrowest gap of the widest path, its place,"
         " and the width needed. Example: a door of 0.5 m for a robot of radius 0.3, which needs 0.6 m; widen the "
-        "door, or use a narrower robot.",
+        "door, or use a narrower robot. Under 'follow' the path must also stay in 'within' and keep out of 'avoid'.",
     ),
     "way-unchecked": Code(
         "paths were not checked",
@@ -175,6 +175,13 @@ OBJECTS: dict[str, Code] = {
         "Example: 3 m/s × 0.1 s = 0.3 m with goal_threshold 0.1; write goal_threshold: 0.2, or step_time: 0.05. "
         "With a threshold of 0 no object ever arrives. A car under 'follow' cannot turn round on the spot: it shunts "
         "back and forth at its goal, and without reverse it may never get there.",
+    ),
+    "door-jam": Code(
+        "robots can jam in a narrow passage",
+        "Several robots under 'follow' drive through a passage in which no two of them have room side by side. "
+        "With the local behaviors 'rvo' and 'sfm' they push into it together and can stand there for ever; with "
+        "'orca' they give way by the rest of their paths and pass one after the other. Example: three robots of 0.5 m "
+        "and a door of 0.9 m; write local: {name: orca}.",
     ),
     "turning-circle": Code(
         "goal inside the turning circle",

@@ -94,7 +94,8 @@ class Entry(Options):
     }
 
     number: Annotated[Integer, Field(ge=0)] = 1
-    """Number of objects that this entry makes."""
+    """Number of objects that this entry makes. A random value, as of a start or a shape, is drawn for each of them; a
+    list gives one value to each, and a single value goes to all."""
     distribution: Annotated[Any, Select(DISTRIBUTIONS, null=True)] = None
     """How the objects are placed; null is `manual`: by `state` and `goal`."""
     name: Annotated[Any, PerObject(Text | None)] = None

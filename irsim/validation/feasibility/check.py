@@ -11,6 +11,8 @@ from collections.abc import Iterator
 from irsim.scenario.checks import Context
 from irsim.scenario.messages.findings import Finding
 from irsim.validation.feasibility import (
+    confined,
+    door_jam,
     goal_clearance,
     random_placement,
     reachability,
@@ -46,4 +48,6 @@ def feasibility_findings(context: Context) -> Iterator[Finding]:
         legs = reachability.check(context, scene, movers, tally, blocking=not passable, blocked_goals=blocked_goals)
         time_budget.check(context, scene, movers, legs, tally)
         turning.check(context, scene, movers, legs, tally)
+        confined.check(context, scene, movers, legs, tally)
+        door_jam.check(context, scene, movers, legs, tally)
     yield from tally.findings()
