@@ -144,8 +144,8 @@ def _behavior(options: Any) -> str:
     """Name of a behavior, its local one, and whether they step aside."""
     local: Any = getattr(options, "local", None)
     aside = getattr(options, "sidestep", 0) or getattr(local, "sidestep", 0)
-    words = [str(options.name), *([f"with {local.name}"] if hasattr(local, "name") else []), *["sidestep"] * bool(aside)]
-    return " ".join(words)
+    inner = f"with {local.name}" if hasattr(local, "name") else ""
+    return " ".join(filter(None, [str(options.name), inner, "sidestep" if aside else ""]))
 
 
 def _task(record: ObjectRecord) -> str:

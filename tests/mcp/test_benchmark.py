@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import irsim
+from irsim.lookup.topics import lookup
 from irsim_mcp.recent_texts import RecentTexts
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
 
@@ -127,7 +128,7 @@ async def test_times_beside_failures_are_those_of_robots_that_arrived(workspace:
     assert "success 0; " in told
     assert "; time_to_goal of robots that arrived 3" in told
     assert "; time_to_goal 3" in whole
-    assert "the mean of the robots that arrived" in irsim.lookup.lookup("time_to_goal").text
+    assert "the mean of the robots that arrived" in lookup("time_to_goal").text
 
 
 async def test_what_is_not_random_has_no_interval(workspace: Path) -> None:
