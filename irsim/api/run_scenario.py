@@ -11,7 +11,7 @@ from irsim.api.read_input import policy_of_suite, read_input
 from irsim.api.take_snapshot import snapshot, snapshot_of
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import ArgumentError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import (
@@ -103,7 +103,8 @@ def run(
         PlacementError: There is no room for an object that is placed at random or perturbed; without a seed, with
             none of 20 drawn ones.
         BenchmarkError: There is no such policy, or ``perturb`` is not a valid perturbation.
-        PolicyError: The policy cannot drive these robots, or failed.
+        PolicyError: The policy cannot drive these robots, or failed. One in another process that is lost ends the run
+            with that reason instead.
         ArgumentError: ``steps`` is not a whole number, or both ``policy`` and ``behavior`` are given.
         RunError: The folder to record to is not empty.
         ValueError: Neither or both of ``path`` and ``text`` are given.
@@ -136,11 +137,14 @@ def run(
     with recording(env, path, record, horizon=horizon, options=options) as recorder:
         if recorder is not None and recorded is not None:
             recorded(recorder.run_id)
-        if save is None and not show:
-            advance(env, horizon, progress, recorder=recorder)
-            files: list[str] = []
-        else:
-            files = _animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
+        files, lost = list[str](), None
+        try:
+            if save is None and not show:
+                advance(env, horizon, progress, recorder=recorder)
+            else:
+                files = _animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
+        except PolicyLostError as error:
+            lost = error.message
         result = run_result(
             env,
             path,
@@ -153,7 +157,10 @@ def run(
             behavior=behavior_text,
             policy=driver,
             perturb=perturb_texts,
+            lost=lost,
         )
+        if lost is not None:
+            result.summary += "; the policy was lost, which ended the run"
         if skipped := crowded_message(crowded):
             result.summary += f"; {skipped}"
         if recorder is not None:

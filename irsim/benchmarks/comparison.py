@@ -62,7 +62,7 @@ _SEEDS_PER_TURN = {False: 5, True: MAX_GROUP}
 or where policies are networks as many as are run together."""
 _COPIED = (
     *("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures"),
-    *("human_contacts", "left", "jumped", "zones"),
+    *("human_contacts", "left", "jumped", "lost", "zones"),
 )
 """Keys of the result of an episode that its row repeats."""
 

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from irsim.benchmarks.policies import open_again
-from irsim.diagnostics.errors import PlacementError
+from irsim.diagnostics.errors import PlacementError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of, import_modules
 from irsim.episodes.incidents import find_incidents
@@ -21,7 +21,7 @@ from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
 from irsim.metrics.roles import travelling_humans
-from irsim.policies.driver import driver_of
+from irsim.policies.driver import PolicyDriver, driver_of
 from irsim.policies.policy import Policy
 from irsim.results.labels import CROWDED
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
@@ -32,7 +32,7 @@ from irsim.scenario.yaml.document import load_text
 from irsim.simulation.events import Event, first_collisions, first_events, partner_of, read_events
 from irsim.simulation.explored import explored_share
 from irsim.simulation.simulation import Simulation
-from irsim.simulation.trace import Trace, cut_trace, record
+from irsim.simulation.trace import Trace, cut_trace, join_traces, next_rows, present_row, record
 
 __all__ = [
     "Episode",
@@ -68,6 +68,7 @@ _NOTHING: Mapping[str, Any] = MappingProxyType(
         "human_contacts": 0,
         "left": [],
         "jumped": [],
+        "lost": None,
         "zones": {},
     }
 )
@@ -191,11 +192,25 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
     except PlacementError:
         return crowded()
-    trace, driver = record(env.simulation, horizon), driver_of(env.simulation)
+    driver = driver_of(env.simulation)
+    trace, lost = _recorded(env.simulation, horizon, driver)
     timed = {} if driver is None else {"decisions": list(zip(driver.seconds, driver.decided, strict=True))}
-    result = measure(task, Episode(trace, env.events, horizon), env, env.simulation, ways) | timed
+    result = measure(task, Episode(trace, env.events, horizon, lost=lost), env, env.simulation, ways) | timed
     env.end(ending_time=0.0)
     return result
+
+
+def _recorded(simulation: Simulation, horizon: int, driver: PolicyDriver | None) -> tuple[Trace, str | None]:
+    """The trace of an episode, and why its policy could not go on; None if it could."""
+    if driver is None or not driver.policy.may_be_lost:
+        return record(simulation, horizon), None
+    rows = [present_row(simulation)]
+    try:
+        while len(rows) <= horizon and len((row := next_rows(simulation, 1)).step):
+            rows.append(row)
+    except PolicyLostError as error:
+        return join_traces(rows), error.message
+    return join_traces(rows), None
 
 
 def crowded() -> dict[str, Any]:
@@ -213,12 +228,14 @@ class Episode:
         events: Its events.
         horizon: Its horizon in steps.
         world: Index of its world in the simulation that ran it.
+        lost: Why its policy could not go on, which ended it; None otherwise.
     """
 
     trace: Trace
     events: list[Event]
     horizon: int
     world: int = 0
+    lost: str | None = None
 
 
 def measure(
@@ -271,6 +288,7 @@ def measure(
             :_MAX_NAMES
         ],
         "jumped": list(incidents.jumps)[:_MAX_NAMES],
+        "lost": episode.lost,
         "metrics": measured.episode,
         "zones": measured.zones,
     }
@@ -302,7 +320,7 @@ def _partners(hits: Mapping[str, Event]) -> dict[str, str]:
 def _pedestrian_delay(task: Task, episode: Episode, scene: Env, simulation: Simulation) -> float:
     """``pedestrian_delay`` [s]; advances the simulation until all humans have arrived, at most to the horizon."""
     people = travelling_humans(scene.scenario.objects)
-    if not people or not scene.robot_list:
+    if not people or not scene.robot_list or episode.lost is not None:  # a lost policy cannot go on
         return math.nan
     world, horizon = episode.world, episode.horizon
     done = int(episode.trace.step[-1])

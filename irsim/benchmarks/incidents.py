@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from irsim.common.text import listed
 from irsim.results.benchmark import EpisodeRow
-from irsim.results.labels import CROWDED
+from irsim.results.labels import CROWDED, LOST
 
 __all__ = ["incident_counts", "incident_messages", "incident_seeds", "placed"]
 
@@ -38,6 +38,7 @@ def _episodes_with(episodes: Sequence[EpisodeRow]) -> dict[str, list[EpisodeRow]
         "left": [episode for episode in episodes if episode.left],
         "jumped": [episode for episode in episodes if episode.jumped],
         "seen": [episode for episode in episodes if (episode.metrics.get("seen_ratio") or 0.0) > 0.0],
+        LOST: [episode for episode in episodes if episode.lost],
         CROWDED: [episode for episode in episodes if episode.outcome == CROWDED],
     }
 
@@ -67,6 +68,10 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
             count = f"{contacts} contact{'s' * (contacts != 1)}; " if contacts else ""
             where = f"({count}{_seeds(seeds_of[key])})"
             found.append(f"{what} {len(seeds_of[key])} of {len(placed(episodes))} episodes {where}")
+    if LOST in seeds_of:
+        why = next(episode.lost for episode in episodes if episode.lost)
+        many = f"{len(seeds_of[LOST])} of {len(placed(episodes))} episodes"
+        found.append(f"the policy was lost in {many} ({_seeds(seeds_of[LOST])}), which ended there: {why}")
     for name in dict.fromkeys(episode.scenario for episode in episodes):
         mine = [episode for episode in episodes if episode.scenario == name]
         crowded = sorted({episode.seed for episode in mine if episode.outcome == CROWDED})

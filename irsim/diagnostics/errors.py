@@ -17,6 +17,7 @@ __all__ = [
     "OverLimitError",
     "PlacementError",
     "PolicyError",
+    "PolicyLostError",
     "ScenarioError",
     "ScenarioNotFoundError",
 ]
@@ -101,6 +102,13 @@ class BehaviorError(CodedError, ValueError):
 
 class PolicyError(CodedError, ValueError):
     """A policy failed while it decided (``policy-failed``), or cannot drive these robots (``policy-mismatch``)."""
+
+
+class PolicyLostError(PolicyError):
+    """A policy in another process did not answer as it should; the episode cannot go on."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__("policy-lost", message, "look at what its process prints; a slow one needs a longer timeout")
 
 
 class NotSimulatedError(ScenarioError):

@@ -57,6 +57,7 @@ def run_result(
     behavior: str | None = None,
     policy: Policy | None = None,
     perturb: Sequence[str] = (),
+    lost: str | None = None,
 ) -> RunResult:
     """Make the result of an episode.
 
@@ -72,6 +73,7 @@ def run_result(
         behavior: Behavior that every robot had instead of its own.
         policy: Policy in Python that drove the robots.
         perturb: Perturbations of the scenario, as on the command line.
+        lost: Why the policy could not go on, which ended the run.
     """
     events = env.events
     hits, counts = _collisions(env, events)
@@ -92,6 +94,9 @@ def run_result(
         extra += ["--policy", policy.text or policy.name]
     for perturbation in perturb:
         extra += ["--perturb", perturbation]
+    because = (
+        reason_message(env, robots, hits, events, source, parked, held) if lost is None else f"{lost}; the run ended"
+    )
     given = horizon if source in ("argument", "limits") else None
     return RunResult(
         scenario="(text)" if path is None else str(path),
@@ -115,7 +120,8 @@ def run_result(
             nearest_to_goals(env, incidents.jumps),
             zones,
         ),
-        reason=None if outcome == "success" else reason_message(env, robots, hits, events, source, parked, held),
+        reason=None if outcome == "success" else because,
+        lost=lost,
         decisive_step=decisive_step(env, robots, hits, events, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,

@@ -16,6 +16,23 @@ class Guide(NamedTuple):
     words: tuple[str, ...]
 
 
+_PROCESS = """\
+import json, sys
+for line in sys.stdin:
+    asked = json.loads(line)
+    if asked["type"] == "hello":
+        answer = {"type": "policy", "output": "velocity", "stochastic": False}
+    elif asked["type"] == "reset":
+        answer = {"type": "ready"}
+    else:
+        decision = []
+        for (x, y, _), (gx, gy, _) in zip(asked["pose"], asked["goal"]):
+            d = max(((gx - x) ** 2 + (gy - y) ** 2) ** 0.5, 1e-9)
+            decision.append([(gx - x) / d, (gy - y) / d])
+        answer = {"type": "decision", "decision": decision}
+    print(json.dumps(answer), flush=True)
+"""
+
 GUIDES: dict[str, Guide] = {
     "program": Guide(
         "the Python loop around a scenario",
@@ -42,6 +59,31 @@ GUIDES: dict[str, Guide] = {
         "perturb lets the seed change its starts.",
         None,
         ("random", "randomness", "reproducible", "reproduce"),
+    ),
+    "process": Guide(
+        "a policy in another process",
+        "For a stack that cannot be imported: another language, another Python, a robot's own software. "
+        '--policy "{name: process, command: [python3, mine.py]}" starts the program and talks to its standard input '
+        "and output; {name: process, address: '127.0.0.1:9000'} (or the path of a socket) connects to one that listens "
+        "on this machine. The MCP tools never start one. Each line is a JSON object, and each that irsim sends is "
+        "answered by one. `hello` (protocol, version): answer `policy` with output (velocity: [vx, vy] in the world "
+        "frame, which every drive follows; control: the controls of the drive) and, if needed, name, needs "
+        "({neighbors: 5, scan: true}), drives, decision_dt, stochastic. `reset` (world, robots, step_time, "
+        "decision_steps, drive, seed): answer `ready`. `act` (the fields of irsim.policies.Observations, one row for "
+        "each robot that decides now; null: not a number or no limit): answer `decision` with one row for each robot. "
+        "timeout (default 5 s) bounds a decision, start_timeout (30 s) the other answers. A process that hangs, ends "
+        "or answers something else ends the episode with that reason (policy-lost); the next episode starts it again.",
+        _PROCESS,
+        (
+            "other process",
+            "another process",
+            "socket",
+            "stdin",
+            "json lines",
+            "external policy",
+            "other language",
+            "c++",
+        ),
     ),
     "perturb": Guide(
         "starts that differ a little with each seed",

@@ -23,6 +23,7 @@ def policies_answer() -> Answer:
             "files": [
                 Key(name="model.npz", text="a network of irsim; irsim policies model.npz describes it"),
                 Key(name="model.onnx", text="a network for onnxruntime"),
+                Key(name="{name: process, command: [python3, mine.py]}", text="a program; irsim describe process"),
             ],
             "where": [
                 Key(name="irsim run FILE --policy NAME", text="one run; also irsim.run(file, policy=…)"),

@@ -101,6 +101,7 @@ class Policy(ABC):
             deterministic policy only once in a scenario that leaves nothing to chance.
         batch_invariant: Whether its decision for a robot has the same bits whatever other robots a call decides for.
             Benchmarks then step many worlds at once; else one after another.
+        may_be_lost: Whether it lives in another process, so that ``act`` may raise :class:`PolicyLostError`.
         text: How it is written in commands, such as ``orca`` or ``model.npz``; None: only this program has it.
         source: What opens it again in another folder, with the full path of its file; None as for ``text``.
         digest: SHA-256 of the file that it was read from; None without one.
@@ -113,6 +114,7 @@ class Policy(ABC):
     decision_dt: float | None = None
     stochastic: bool = True
     batch_invariant: bool = False
+    may_be_lost: bool = False
     text: str | None = None
     source: str | None = None
     digest: str | None = None

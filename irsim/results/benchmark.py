@@ -77,8 +77,8 @@ class BenchmarkRow(Result):
     incidents: dict[str, int] = Field(default_factory=dict)
     """Number of episodes with what outcomes do not say: ``human_contacts`` (people touched each other), ``left`` (an
     object left the world), ``jumped`` (one jumped over its goal), ``seen`` (a robot was in the ``fov`` of another
-    object); and ``placement-crowded``, the number of seeds without room, which are not among ``episodes``. Only those
-    above 0."""
+    object), ``policy-lost`` (the policy could not go on); and ``placement-crowded``, the number of seeds without room,
+    which are not among ``episodes``. Only those above 0."""
     incident_seeds: dict[str, list[int]] = Field(default_factory=dict)
     """Seeds of these episodes by the same names; empty for ``(all)``."""
 
@@ -110,6 +110,9 @@ class EpisodeRow(Result):
     """The first ten moving objects whose position left the world."""
     jumped: list[str] = Field(default_factory=list)
     """The first ten objects that passed a goal within ``goal_threshold`` between two steps and did not arrive later."""
+    lost: str | None = None
+    """Why the policy could not go on, which ended the episode early; its robots then count as they were. None
+    otherwise."""
     metrics: dict[str, float | None]
     """Metrics of the episode by key; None where undefined."""
     zones: dict[str, dict[str, float]] = Field(default_factory=dict)

@@ -6,10 +6,13 @@ from collections.abc import Sequence
 
 from irsim.common.text import listed
 
-__all__ = ["CROWDED", "labels_of", "seeds_of"]
+__all__ = ["CROWDED", "LOST", "labels_of", "seeds_of"]
 
 CROWDED = "placement-crowded"
 """Outcome of an episode of a benchmark whose seed leaves no room for an object."""
+
+LOST = "policy-lost"
+"""Name of what happens to an episode whose policy, in another process, cannot go on."""
 
 MAX_LABEL = 24
 """Characters of a behavior that is its own label; a longer one is numbered."""

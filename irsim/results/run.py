@@ -149,6 +149,9 @@ class RunResult(Result):
     """One sentence: which robots arrived, which did not, and why."""
     reason: str | None = None
     """Why the run failed: the first collision, and what robots that did not arrive were doing; None on success."""
+    lost: str | None = None
+    """Why the policy could not go on, which ended the run early; None otherwise. Only policies in other processes are
+    lost."""
     decisive_step: int | None = None
     """Step that decided the outcome: of the first collision of a robot, or in which the first robot that did not arrive
     ceased to make progress; None on success, and if such robots moved on until the end."""

@@ -17,6 +17,16 @@ ROBOT: dict[str, Any] = {
     "behavior": {"name": "dash"},
 }
 
+FREE = """
+world: {width: 10, height: 10, step_time: 0.1, time_limit: 15}
+robot:
+  - {number: 2, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, state: [[1, 2, 0], [1, 8, 0]],
+     goal: [[4, 2], [4, 8]]}
+obstacle:
+  - {shape: {name: circle, radius: 0.5}, state: [8, 5, 0]}
+"""
+"""Two robots with nothing in their way."""
+
 
 def scenario(*robots: dict[str, Any], obstacles: Any = (), **world: Any) -> ResolvedScenario:
     """A scenario of robots that differ from ``ROBOT`` in some keys."""

@@ -59,6 +59,12 @@ TOOLS: dict[str, Code] = {
         "A policy raised an error, or did not return one row of finite numbers for each robot that decides; the "
         "message names the robot and what to return.",
     ),
+    "policy-lost": Code(
+        "policy in another process lost",
+        "The process of a policy cannot be started or reached, did not answer in time, has ended, or answered "
+        "something else than irsim describe process says. The episode ends there; the next one starts the process "
+        "again.",
+    ),
     "policy-mismatch": Code(
         "policy does not fit the robots",
         "The policy controls other drives than the robots have, or needs something that they lack, such as a lidar "

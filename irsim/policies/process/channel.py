@@ -1,0 +1,191 @@
+"""Lines to and from another process, over its standard streams or a local socket, each within a time limit."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import queue
+import signal
+import socket
+import subprocess
+import threading
+from collections.abc import Callable, Sequence
+from typing import BinaryIO, Protocol, cast
+
+__all__ = ["Channel", "PeerError", "connect", "start"]
+
+MAX_LINE_BYTES = 64_000_000
+"""Longest line that is read."""
+_GRACE_S = 1.0
+"""Time that a process has to end by itself [s]."""
+_LOCAL = ("localhost", "127.0.0.1", "::1")
+"""Hosts of this machine."""
+
+
+class Writer(Protocol):
+    """A stream without a buffer, which may take only the first bytes."""
+
+    def write(self, data: memoryview, /) -> int | None:
+        """Write some bytes and return their number."""
+
+
+class PeerError(Exception):
+    """The other process did not answer as it should; the message completes the sentence ``the policy …``."""
+
+
+class Channel:
+    """A connection to another process.
+
+    Lines are written and read by a thread of their own, so that a process which neither reads nor writes cannot block
+    longer than the time limit.
+
+    Args:
+        reader, writer: Streams from and to the process.
+        close: Ends the connection.
+    """
+
+    def __init__(self, reader: BinaryIO, writer: Writer, close: Callable[[], None]) -> None:
+        self._asked: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
+        self._answers: queue.SimpleQueue[bytes | Exception] = queue.SimpleQueue()
+        self._close, self._closed = close, False
+        talk = threading.Thread(target=_talk, args=(reader, writer, self._asked, self._answers), daemon=True)
+        talk.start()
+
+    def ask(self, line: bytes, seconds: float) -> bytes:
+        """Send a line and return the one that answers it.
+
+        Args:
+            line: One line without its end.
+            seconds: Longest time to wait [s].
+
+        Raises:
+            PeerError: No answer came in time, the process has ended, or its line is too long.
+        """
+        self._asked.put(line)
+        try:
+            answer = self._answers.get(timeout=seconds)
+        except queue.Empty:
+            raise PeerError(f"gave no answer within {seconds:g} s") from None
+        if isinstance(answer, OSError) or answer == b"":
+            raise PeerError("has closed the connection")
+        if isinstance(answer, Exception):
+            raise PeerError(str(answer))
+        return answer
+
+    def close(self) -> None:
+        """End the connection, and the process if it was started for it."""
+        if not self._closed:
+            self._closed = True
+            self._asked.put(None)
+            self._close()
+
+
+def start(command: Sequence[str], folder: str | None = None) -> Channel:
+    """Start a program and talk to its standard input and output; its standard error stays that of this process.
+
+    Raises:
+        PeerError: The program cannot be started.
+    """
+    try:
+        process = subprocess.Popen(
+            list(command),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            bufsize=0,
+            cwd=folder,
+            env={**os.environ, "PYTHONUNBUFFERED": "1"},
+            start_new_session=True,
+        )
+    except (OSError, ValueError) as error:
+        raise PeerError(f"cannot be started: {error}") from error
+    reader, writer = cast(io.FileIO, process.stdout), cast(io.FileIO, process.stdin)  # without a buffer they are these
+    return Channel(io.BufferedReader(reader), writer, lambda: _end(process))
+
+
+def connect(address: str, seconds: float) -> Channel:
+    """Connect to a process that listens on this machine.
+
+    Args:
+        address: ``HOST:PORT`` of this machine, or the path of a socket of the file system.
+        seconds: Longest time to wait [s].
+
+    Raises:
+        PeerError: Nobody listens there, or the address is not one of this machine.
+    """
+    host, _, port = address.rpartition(":")
+    try:
+        if port.isdigit() and "/" not in address:
+            if host.strip("[]") not in _LOCAL:
+                raise PeerError(f"is not on this machine: {host!r} is none of {', '.join(_LOCAL)}")
+            made = socket.create_connection((host.strip("[]"), int(port)), timeout=seconds)
+        else:
+            made = _connect_file(address, seconds)
+    except (OSError, OverflowError, AttributeError) as error:  # some systems have no sockets of the file system
+        raise PeerError(f"does not listen at {address!r}: {error}") from error
+    made.settimeout(None)
+    reader, writer = made.makefile("rb"), made.makefile("wb", buffering=0)
+
+    def close() -> None:
+        with contextlib.suppress(OSError):
+            made.shutdown(socket.SHUT_RDWR)
+        for one in (writer, made):  # the thread closes the reader, from which it may be reading
+            with contextlib.suppress(OSError):
+                one.close()
+
+    return Channel(reader, writer, close)
+
+
+def _connect_file(path: str, seconds: float) -> socket.socket:
+    made = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        made.settimeout(seconds)
+        made.connect(path)
+    except BaseException:
+        made.close()
+        raise
+    return made
+
+
+def _talk(
+    reader: BinaryIO,
+    writer: Writer,
+    asked: queue.SimpleQueue[bytes | None],
+    answers: queue.SimpleQueue[bytes | Exception],
+) -> None:
+    """Send each line that is asked for and read one line after it, until there is nothing more to ask."""
+    with reader:
+        while (line := asked.get()) is not None:
+            try:
+                _send(writer, line + b"\n")
+                answer = reader.readline(MAX_LINE_BYTES + 1)
+            except (OSError, ValueError) as error:  # closed at the other end, or by this one
+                answers.put(OSError(str(error)))
+                return
+            if len(answer) > MAX_LINE_BYTES:
+                answers.put(ValueError(f"answered with a line of more than {MAX_LINE_BYTES:,} bytes"))
+                return
+            answers.put(answer)
+
+
+def _send(writer: Writer, line: bytes) -> None:
+    rest = memoryview(line)
+    while rest:
+        rest = rest[writer.write(rest) or 0 :]
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Let a process end because its input is closed; end it, and what it has started, if it does not."""
+    assert process.stdin is not None
+    threading.Thread(target=_close_input, args=(process.stdin,), daemon=True).start()  # may wait for a full pipe
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        process.wait(_GRACE_S)
+    with contextlib.suppress(OSError, AttributeError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.kill()
+    process.wait()
+
+
+def _close_input(stream: BinaryIO) -> None:
+    with contextlib.suppress(OSError, ValueError):
+        stream.close()

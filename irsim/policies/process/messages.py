@@ -1,0 +1,130 @@
+"""What irsim and a policy in another process tell each other: one JSON object per line.
+
+irsim asks and the policy answers each line with one line. Arrays are nested lists with one row per robot; a number that
+is not finite, such as a goal that is missing or a limit that does not exist, is null.
+
+| irsim sends | the policy answers |
+|---|---|
+| `hello`: `protocol`, `version` | `policy`: `output`, and `name`, `needs`, `drives`, `decision_dt`, `stochastic` |
+| `reset`: `world`, `robots`, `step_time`, `decision_steps`, `drive`, `seed` | `ready` |
+| `act`: the fields of :class:`irsim.policies.Observations` | `decision`: `decision`, one row for each robot |
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from irsim.common.text import clean
+from irsim.common.version import version
+from irsim.policies.observations import Observations
+from irsim.policies.policy import Episode, Needs
+from irsim.policies.process.channel import PeerError
+
+__all__ = ["PROTOCOL", "act", "answer", "declaration", "hello", "reset"]
+
+PROTOCOL = 1
+"""Version of the messages."""
+_MAX_SHOWN = 80
+"""Characters of an answer that an error shows."""
+_DECLARED = ("name", "output", "needs", "drives", "decision_dt", "stochastic")
+"""What a policy says of itself; :class:`irsim.policies.Policy` has the meaning of each."""
+
+
+def hello() -> bytes:
+    """The first line."""
+    return _line({"type": "hello", "protocol": PROTOCOL, "version": version()})
+
+
+def reset(episode: Episode, seed: int) -> bytes:
+    """The line that begins an episode in one world; ``seed`` is for what the policy draws in it."""
+    told = {field.name: getattr(episode, field.name) for field in fields(episode)}
+    return _line({"type": "reset", **told, "robots": list(episode.robots), "seed": seed})
+
+
+def act(observations: Observations) -> bytes:
+    """The line that asks for a decision."""
+    return _line({"type": "act", **_plain(observations)})
+
+
+def answer(line: bytes, kind: str) -> dict[str, Any]:
+    """The object of a line.
+
+    Raises:
+        PeerError: It is no JSON object of that type.
+    """
+    try:
+        data = json.loads(line, parse_constant=lambda name: math.nan)
+    except (ValueError, RecursionError):
+        raise PeerError(f"answered {_shown(line)}, which is no line of JSON") from None
+    if not isinstance(data, dict) or data.get("type") != kind:
+        raise PeerError(f"answered {_shown(line)} where an object with type {kind!r} is expected")
+    return data
+
+
+def declaration(data: dict[str, Any]) -> dict[str, Any]:
+    """What a policy says of itself, as attributes of a policy.
+
+    Raises:
+        PeerError: It says something else, or another version of the messages.
+    """
+    if data.get("protocol", PROTOCOL) != PROTOCOL:
+        raise PeerError(f"speaks protocol {clean(str(data['protocol']), _MAX_SHOWN)}, and irsim speaks {PROTOCOL}")
+    unknown = sorted({*data} - {*_DECLARED, "type", "protocol"})
+    if unknown:
+        raise PeerError(f"declares {clean(unknown[0], _MAX_SHOWN)!r}; it can declare {', '.join(_DECLARED)}")
+    said = {key: data[key] for key in _DECLARED if data.get(key) is not None}
+    if not isinstance(said.get("name", ""), str) or not isinstance(said.get("stochastic", True), bool):
+        raise PeerError("declares a name that is no text, or a stochastic that is neither true nor false")
+    if "drives" in said:
+        if not (isinstance(said["drives"], list) and all(isinstance(name, str) for name in said["drives"])):
+            raise PeerError("declares drives that are no list of names")
+        said["drives"] = frozenset(said["drives"])
+    if "needs" in said:
+        said["needs"] = _needs(said["needs"])
+    return said
+
+
+def _needs(given: Any) -> Needs:
+    known = [field.name for field in fields(Needs)]
+    if not isinstance(given, dict) or not {*given} <= {*known}:
+        raise PeerError(f"declares needs other than {', '.join(known)}")
+    for key in ("static_neighbors", "neighbor_extents", "scan", "map"):
+        if not isinstance(given.get(key, False), bool):
+            raise PeerError(f"declares needs whose {key!r} is neither true nor false")
+    return Needs(**{key: value for key, value in given.items() if value is not None})
+
+
+def _plain(thing: Any) -> Any:
+    """Arrays as lists, and dataclasses as objects."""
+    if isinstance(thing, np.ndarray):
+        if thing.dtype.kind == "f" and not np.isfinite(thing).all():
+            told = thing.astype(object)
+            told[~np.isfinite(thing)] = None
+            return told.tolist()
+        return thing.tolist()
+    if hasattr(thing, "__dataclass_fields__"):
+        return {field.name: _plain(getattr(thing, field.name)) for field in fields(thing)}
+    if isinstance(thing, tuple):  # the maps: rows of one world share theirs
+        numbers: dict[int, int] = {}
+        rows = [numbers.setdefault(id(one), len(numbers)) for one in thing]
+        distinct = {id(one): one for one in thing}
+        maps = [
+            {"occupied": one.occupied.astype(int).tolist(), "origin": list(one.origin), "resolution": one.resolution}
+            for one in distinct.values()
+        ]
+        return {"distinct": maps, "of_row": rows}
+    return None if isinstance(thing, float) and not math.isfinite(thing) else thing
+
+
+def _line(data: dict[str, Any]) -> bytes:
+    return json.dumps(data, separators=(",", ":"), allow_nan=False).encode()
+
+
+def _shown(line: bytes) -> str:
+    text = clean(line.decode("utf-8", "replace").strip(), _MAX_SHOWN)
+    return repr(text) if text else "an empty line"

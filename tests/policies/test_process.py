@@ -1,0 +1,231 @@
+"""Policies in other processes: the lines of JSON, time limits, and what happens when a process is lost."""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import socket
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.diagnostics.errors import ArgumentError, PolicyError, PolicyLostError
+from irsim.lookup.topics import lookup
+from irsim.policies import open_policy
+from irsim.policies.catalog import UnknownPolicyError
+from irsim.policies.process import ProcessPolicy
+from tests.policies.scenes import FREE
+
+PROGRAM = lookup("process").example or ""
+"""The program of the guide: it drives straight to the goal."""
+ACT = 'asked["type"] == "act"'
+
+
+def program(folder: Path, *, before: str = "", text: str = PROGRAM) -> ProcessPolicy:
+    """A policy whose program runs a statement before it answers."""
+    file = folder / f"program{len(list(folder.iterdir()))}.py"
+    file.write_text(text.replace("    print(json", f"    {before}\n    print(json") if before else text)
+    return ProcessPolicy([sys.executable, str(file)], timeout=1.0)
+
+
+def straight(seen: irsim.policies.Observations) -> np.ndarray:
+    """The same as the program of the guide."""
+    away = (seen.goal - seen.pose)[:, :2]
+    return away / np.maximum(np.sqrt(away[:, :1] ** 2 + away[:, 1:] ** 2), 1e-9)
+
+
+straight.output = "velocity"  # type: ignore[attr-defined]
+
+
+def test_the_program_of_the_guide_drives_as_the_same_function_here(tmp_path: Path) -> None:
+    file, there = tmp_path / "scene.yaml", program(tmp_path)
+    file.write_text(FREE)
+    assert (there.output, there.stochastic) == ("velocity", False)
+    here = irsim.make(file, policy=straight, headless=True, seed=3)
+    away = irsim.make(file, policy=there, headless=True, seed=3)
+    for _ in range(40):
+        here.step()
+        away.step()
+    np.testing.assert_array_equal(here.simulation.pose, away.simulation.pose)
+    assert np.abs(here.simulation.pose[:, :2]).max() > 1
+    here.end(ending_time=0)
+    away.end(ending_time=0)
+
+
+@pytest.mark.parametrize(
+    ("before", "why"),
+    [
+        (f"import time; time.sleep(60 * ({ACT}))", "gave no answer within 1 s"),
+        (f"if {ACT}: sys.exit()", "has closed the connection"),
+        (f"if {ACT}: answer = 5", "answered '5' where an object with type 'decision' is expected"),
+        (f"if {ACT}: print('hello')", "answered 'hello', which is no line of JSON"),
+        (f"if {ACT}: answer['decision'] = 'fast'", "decided something that is no table of numbers"),
+        (f"if {ACT}: answer['decision'] = [[1, 2]] * 99", "decided an array of shape (99, 2) where 2 rows"),
+        (f"if {ACT}: answer['decision'][0][0] = float('nan')", "finite numbers are expected"),
+        (f"if {ACT}: answer['decision'] = None", "finite numbers are expected"),
+    ],
+)
+def test_a_process_that_fails_ends_the_run_with_a_reason(before: str, why: str, tmp_path: Path) -> None:
+    began = time.monotonic()
+    found = irsim.run(text=FREE, policy=program(tmp_path, before=before))
+    assert found.outcome == "timeout"
+    assert found.lost is not None
+    assert why in found.lost
+    assert found.reason == f"{found.lost}; the run ended"
+    assert found.steps == 0
+    assert "the policy was lost" in found.summary
+    assert time.monotonic() - began < 20
+
+
+@pytest.mark.parametrize(
+    ("said", "why"),
+    [
+        ('{"type": "policy", "protocol": 7}', "speaks protocol 7, and irsim speaks 1"),
+        ('{"type": "policy", "speed": 7}', "declares 'speed'"),
+        ('{"type": "policy", "drives": "diff"}', "drives that are no list"),
+        ('{"type": "policy", "needs": {"lidar": 7}}', "needs other than neighbors"),
+        ('{"type": "policy", "needs": {"scan": 7}}', "'scan' is neither true nor false"),
+        ("", "has closed the connection"),
+        ("[" * 100_000, "no line of JSON"),
+    ],
+)
+def test_a_process_that_does_not_say_what_it_is_cannot_be_opened(said: str, why: str, tmp_path: Path) -> None:
+    text = f"print({said!r}, flush=True)\ninput()\nimport time; time.sleep(30)" if said else "input()"
+    with pytest.raises(PolicyLostError, match="policy-lost") as raised:
+        program(tmp_path, text=text)
+    assert why in raised.value.message
+
+
+def test_what_is_declared_is_checked_like_that_of_any_policy(tmp_path: Path) -> None:
+    text = PROGRAM.replace('"output": "velocity"', '"output": "speed"')
+    with pytest.raises(PolicyError, match="output of policy 'process' must be 'control' or 'velocity'"):
+        irsim.run(text=FREE, policy=program(tmp_path, text=text))
+    text = PROGRAM.replace('"output": "velocity"', '"drives": ["acker"]')
+    with pytest.raises(PolicyError, match="policy-mismatch"):
+        irsim.run(text=FREE, policy=program(tmp_path, text=text))
+
+
+def test_lost_episodes_of_a_benchmark_are_counted_and_the_others_go_on(tmp_path: Path) -> None:
+    file = tmp_path / "scene.yaml"
+    file.write_text(FREE)
+    before = f'if {ACT} and asked["time"][0] > 1 and seed % 2: sys.exit()'
+    text = PROGRAM.replace('answer = {"type": "ready"}', 'answer, seed = {"type": "ready"}, asked["seed"]')
+    script = tmp_path / "sometimes.py"
+    script.write_text(text.replace("    print(json", f"    {before}\n    print(json"))
+    found = irsim.benchmark(
+        file, ["dash", f"{{name: process, command: [{sys.executable}, {script}]}}"], 8, perturb="position=0.1"
+    )
+    mine = [episode for episode in found.episodes if episode.behavior != "dash"]
+    lost = [episode for episode in mine if episode.lost]
+    assert 0 < len(lost) < 8
+    assert {episode.steps for episode in lost} == {11}
+    assert all("has closed the connection" in episode.lost for episode in lost)
+    assert {episode.outcome for episode in mine if not episode.lost} == {"success"}
+    assert found.rows[1].incidents["policy-lost"] == len(lost)
+    assert any(f"the policy was lost in {len(lost)} of 16 episodes" in text for text in found.incidents)
+    [again] = [irsim.benchmark(file, [found.behaviors[1]], 8, perturb="position=0.1")]
+    assert [episode.lost for episode in again.episodes] == [episode.lost for episode in mine]  # seeds decide
+
+
+def test_a_process_ends_with_its_policy_and_takes_its_children_with_it(tmp_path: Path) -> None:
+    note = tmp_path / "pids"
+    started = "subprocess.Popen(['sleep', '99']).pid"
+    before = f"import os, subprocess; print(os.getpid(), {started}, file=open({str(note)!r}, 'w'))"
+    policy = program(tmp_path, before=f'if asked["type"] == "reset": {before}')
+    irsim.run(text=FREE, policy=policy)
+    pids = [int(pid) for pid in note.read_text().split()]
+    assert all(map(_runs, pids))
+    del policy
+    gc.collect()
+    end = time.monotonic() + 20
+    while any(map(_runs, pids)) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not any(map(_runs, pids))
+
+
+def _runs(pid: int) -> bool:
+    stat = Path(f"/proc/{pid}/stat")
+    if sys.platform != "linux":
+        pytest.skip("reads /proc")
+    return stat.exists() and stat.read_text().rpartition(")")[2].split()[0] != "Z" and os.path.exists(f"/proc/{pid}")
+
+
+@pytest.mark.parametrize("family", ["inet", "unix"])
+def test_one_that_listens_on_a_socket_is_asked_the_same(family: str, tmp_path: Path) -> None:
+    if family == "inet":
+        server = socket.create_server(("127.0.0.1", 0))
+        address = f"127.0.0.1:{server.getsockname()[1]}"
+    else:
+        address = str(tmp_path / "s")
+        server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        server.bind(address)
+        server.listen()
+    asked: list[dict[str, Any]] = []
+    thread = threading.Thread(target=_serve, args=(server, asked), daemon=True)
+    thread.start()
+    policy = open_policy({"name": "process", "address": address})
+    found = irsim.run(text=FREE, policy=policy)
+    assert found.outcome == "success"
+    kinds = [one["type"] for one in asked]
+    assert (kinds[0], kinds[1], set(kinds[2:])) == ("hello", "reset", {"act"})
+    assert asked[1]["robots"] == [0, 1]
+    first = asked[2]
+    assert np.shape(first["pose"]) == (2, 3)
+    assert np.shape(first["neighbors"]["position"]) == (2, 1, 2)
+    assert first["goal"][0][2] is None or isinstance(first["goal"][0][2], float)
+    assert first["maps"]["of_row"] == [0, 0]
+    assert first["maps"]["distinct"][0]["resolution"] > 0
+    policy.close()
+    thread.join(10)
+    assert not thread.is_alive()
+    server.close()
+
+
+def _serve(server: socket.socket, asked: list[dict[str, Any]]) -> None:
+    connection, _ = server.accept()
+    with connection, connection.makefile("rwb") as stream:
+        for line in stream:
+            data = json.loads(line)
+            asked.append(data)
+            answer: dict[str, Any] = {"type": "policy", "output": "velocity", "needs": {"neighbors": 1, "map": True}}
+            if data["type"] == "reset":
+                answer = {"type": "ready"}
+            if data["type"] == "act":
+                pairs = zip(data["goal"], data["pose"], strict=True)
+                answer = {"type": "decision", "decision": [[g[0] - p[0], g[1] - p[1]] for g, p in pairs]}
+            stream.write(json.dumps(answer).encode() + b"\n")
+            stream.flush()
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "why"),
+    [
+        ({}, ArgumentError, "is started by its command, or listens"),
+        ({"command": ["a"], "address": "b"}, ArgumentError, "is started by its command, or listens"),
+        ({"command": "python mine.py"}, ArgumentError, "command must be a list of texts"),
+        ({"command": []}, ArgumentError, "command must be a list of texts"),
+        ({"command": ["python"], "timeout": 0}, ArgumentError, "timeout must be a time"),
+        ({"command": ["no-such-program-here"]}, PolicyLostError, "cannot be started"),
+        ({"address": "example.com:80"}, PolicyLostError, "is not on this machine"),
+        ({"address": "127.0.0.1:9"}, PolicyLostError, "does not listen at"),
+        ({"address": "127.0.0.1:99999"}, PolicyLostError, "does not listen at"),
+        ({"address": "/no/such/socket"}, PolicyLostError, "does not listen at"),
+    ],
+)
+def test_options_that_cannot_be_used(options: dict[str, Any], error: type[Exception], why: str) -> None:
+    with pytest.raises(error, match=why):
+        open_policy({"name": "process", **options})
+
+
+def test_no_program_is_started_where_only_files_of_a_folder_may_be_used(tmp_path: Path) -> None:
+    with pytest.raises(UnknownPolicyError) as raised:
+        open_policy(f"{{name: process, command: [touch, {tmp_path / 'made'}]}}", root=tmp_path)
+    assert "plug-ins are not run here" in str(raised.value.fix)
+    assert not (tmp_path / "made").exists()
