@@ -181,11 +181,16 @@ class PolicyDriver:
         self._begun[:, new] = False
         if type(self.policy).reset is Policy.reset:
             return
+        from irsim.policies.footprint import footprint  # loads shapely
+
         step_time = float(simulation.scenario.world.step_time)
         for group in self._groups:
             for world in np.flatnonzero(~self._begun[group.number]).tolist():
                 robots = tuple(simulation.ids[self._robots[group.places]].tolist())
-                episode = Episode(int(self._slot(world, group)), robots, step_time, self._steps, group.drive)
+                rows = self._rows(simulation)[world, group.places].tolist()
+                footprints = tuple(footprint(simulation.state, row) for row in rows)
+                slot = int(self._slot(world, group))
+                episode = Episode(slot, robots, step_time, self._steps, group.drive, footprints)
                 rng = generator(*simulation.key(world), stream="policy", object_id=group.number)
                 self._guarded(self.policy.reset, episode, rng)
                 self._begun[group.number, world] = True

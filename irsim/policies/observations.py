@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -55,11 +55,13 @@ class Scan:
         ranges: (B, n) [m]; a beam that hits nothing has the range ``range_max``.
         angles: (n,) direction of each beam in the frame of the robot [rad].
         range_max: Largest range [m].
+        position: (2,) where the lidar is in the frame of the robot [m].
     """
 
     ranges: Floats
     angles: Floats
     range_max: float
+    position: Floats = field(default_factory=lambda: np.zeros(2))
 
 
 class Map(Protocol):

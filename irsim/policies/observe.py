@@ -27,10 +27,11 @@ class Beams:
         first: Its first beam.
         angles: (n,) direction of each beam in the frame of the object [rad].
         range_max: Largest range [m].
+        position: (2,) where the lidar is in the frame of the object [m].
     """
 
-    def __init__(self, first: int, angles: Floats, range_max: float) -> None:
-        self.first, self.angles, self.range_max = first, angles, range_max
+    def __init__(self, first: int, angles: Floats, range_max: float, position: Floats) -> None:
+        self.first, self.angles, self.range_max, self.position = first, angles, range_max, position
 
     def equal(self, other: Beams) -> bool:
         """Whether both lidars have the same beams."""
@@ -45,7 +46,7 @@ def beams_of(simulation: Simulation, index: int) -> Beams | None:
     _, first, count = simulation.scans[number]
     options: Any = next(s for s in simulation.scenario.objects[index].sensors if _is_native(s))
     angles = simulation.state.beam_angles[first : first + count] + float(options.offset[2])
-    return Beams(first, angles, float(options.range_max))
+    return Beams(first, angles, float(options.range_max), np.array(options.offset[:2], dtype=np.float64))
 
 
 def _is_native(sensor: Any) -> bool:
@@ -140,4 +141,4 @@ class Observer:
         assert beams is not None, "the driver checks that every robot has a lidar"
         start = world * simulation.world.beams_per_world + self._first_beam[robot]
         ranges = simulation.ranges[start[:, None] + np.arange(len(beams.angles))]
-        return Scan(ranges=ranges, angles=beams.angles, range_max=beams.range_max)
+        return Scan(ranges=ranges, angles=beams.angles, range_max=beams.range_max, position=beams.position)

@@ -76,6 +76,8 @@ class Episode:
         step_time: Period of the simulation [s].
         decision_steps: Number of steps between two decisions.
         drive: Name of the drive of these robots; ``mixed`` where robots with different drives follow velocities.
+        footprints: (K, 2) corners of the convex hull of each robot, counterclockwise, in its own frame [m]; circles and
+            round parts are polygons with 16 corners around them.
     """
 
     world: int
@@ -83,6 +85,7 @@ class Episode:
     step_time: float
     decision_steps: int
     drive: str
+    footprints: tuple[Floats, ...] = ()
 
 
 class Policy(ABC):

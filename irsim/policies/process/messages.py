@@ -6,7 +6,7 @@ is not finite, such as a goal that is missing or a limit that does not exist, is
 | irsim sends | the policy answers |
 |---|---|
 | `hello`: `protocol`, `version` | `policy`: `output`, and `name`, `needs`, `drives`, `decision_dt`, `stochastic` |
-| `reset`: `world`, `robots`, `step_time`, `decision_steps`, `drive`, `seed` | `ready` |
+| `reset`: the fields of :class:`irsim.policies.Episode`, and `seed` | `ready` |
 | `act`: the fields of :class:`irsim.policies.Observations` | `decision`: `decision`, one row for each robot |
 """
 
@@ -43,7 +43,8 @@ def hello() -> bytes:
 def reset(episode: Episode, seed: int) -> bytes:
     """The line that begins an episode in one world; ``seed`` is for what the policy draws in it."""
     told = {field.name: getattr(episode, field.name) for field in fields(episode)}
-    return _line({"type": "reset", **told, "robots": list(episode.robots), "seed": seed})
+    told |= {"robots": list(episode.robots), "footprints": [outline.tolist() for outline in episode.footprints]}
+    return _line({"type": "reset", **told, "seed": seed})
 
 
 def act(observations: Observations) -> bytes:

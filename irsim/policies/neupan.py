@@ -1,0 +1,201 @@
+"""``neupan``: NeuPAN, if the user has installed it; irsim has none of its code."""
+
+from __future__ import annotations
+
+import math
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from irsim.common.arguments import as_given
+from irsim.common.arrays import Floats
+from irsim.diagnostics.errors import ArgumentError, PolicyError
+from irsim.policies.observations import Neighbors, Observations
+from irsim.policies.policy import Episode, Needs, Policy
+
+__all__ = ["NeuPanPolicy"]
+
+_INSTALL = (
+    "git clone https://github.com/hanruihua/NeuPAN && pip install ./NeuPAN; it is on no registry, and its licence is "
+    "GPL-3.0"
+)
+_DRIVES = ("diff", "acker", "omni")
+"""Drives for which NeuPAN plans."""
+_SEEN_M = 0.02
+"""Beams that end closer than this to the largest range have hit nothing [m]."""
+_SAME_M = 0.02
+"""Greatest distance between corners of equal footprints [m]."""
+_ON_NEIGHBOR_M = 0.1
+"""Points up to this far outside the bounding circle of a neighbor move with it [m]."""
+
+
+class NeuPanPolicy(Policy):
+    """NeuPAN (Han et al., T-RO 2025) drives along a straight line to the goal around the points that its lidar sees.
+
+    The package `neupan` must be installed. Its file says what it knows of the robot; the network that it names was
+    trained for one footprint, so robots must have that one. Without vertices, length and width there, NeuPAN gets the
+    footprint of each robot. Each robot has a planner of its own, and its first lidar gives the points.
+
+    Args:
+        config: The YAML file of NeuPAN, with its sections ``robot``, ``pan`` and so on.
+        velocities: Whether points on moving neighbors get their velocities; NeuPAN takes all others as standing.
+        speed: Reference speed [m/s]; None: the ``ref_speed`` of the file.
+
+    Raises:
+        PolicyError: The package is not installed, or the file cannot be used.
+        ArgumentError: An option is not of its kind.
+    """
+
+    name = "neupan"
+    stochastic = False
+
+    def __init__(self, config: str, velocities: bool = False, speed: float | None = None) -> None:
+        if find_spec("neupan") is None:
+            raise PolicyError("missing-extra", "the policy 'neupan' needs the package neupan", _INSTALL)
+        if not isinstance(velocities, bool):
+            raise ArgumentError(f"velocities must be true or false, got {as_given(velocities)}", "write true")
+        if speed is not None and not _is_speed(speed):
+            raise ArgumentError(f"speed must be above 0 m/s, got {as_given(speed)}", "write 1")
+        self._config = _read(config)
+        self._folder = Path(config).resolve().parent
+        self._speed = speed
+        robot = self._config.get("robot") or {}
+        drive = robot.get("kinematics")
+        if drive not in _DRIVES:
+            what = f"{config!r}: the robot has the kinematics {as_given(drive)}"
+            raise PolicyError("policy-failed", what, f"NeuPAN plans for {', '.join(_DRIVES)}")
+        self.output = "velocity" if drive == "omni" else "control"
+        self.drives = None if drive == "omni" else frozenset({drive})
+        self.needs = Needs(scan=True, neighbors=20 if velocities else 0)
+        self._shape = _corners(robot)
+        self._footprints: dict[tuple[int, int], Floats] = {}
+        self._step: dict[int, float] = {}
+        self._planners: dict[tuple[int, int], Any] = {}
+        self._goals: dict[tuple[int, int], tuple[float, ...]] = {}
+
+    def reset(self, episode: Episode, rng: np.random.Generator) -> None:
+        """Keep the footprints; each robot gets its planner at its first decision.
+
+        Raises:
+            PolicyError: A robot has another footprint than the network was trained for (``policy-mismatch``).
+        """
+        self._step[episode.world] = episode.step_time * episode.decision_steps
+        for robot, outline in zip(episode.robots, episode.footprints, strict=True):
+            if self._shape is not None and not _is_same(self._shape, outline):
+                given, own = (np.round(corners, 2).tolist() for corners in (outline, self._shape))
+                what = f"policy 'neupan' was trained for a robot with the corners {own}, and robot {robot} has {given}"
+                raise PolicyError("policy-mismatch", what, "give the robot that shape, or train NeuPAN for this one")
+            self._footprints[episode.world, robot] = outline
+
+    def act(self, observations: Observations) -> Floats:
+        """One decision of the planner of each robot, (B, 2); one without a goal stands still."""
+        o = observations
+        assert o.scan is not None
+        decided = np.zeros((len(o), 2))
+        for b in range(len(o)):
+            key = (int(o.world[b]), int(o.robot[b]))
+            if not np.isfinite(o.goal[b, :2]).all():
+                continue
+            planner = self._planner(key, bool(o.first[b]), float(o.goal_threshold[b]))
+            state = o.pose[b][:, None].copy()
+            self._lead(key, planner, state, o.goal[b])
+            hit = o.scan.ranges[b] < o.scan.range_max - _SEEN_M
+            points = _points(o.pose[b], o.scan.position, o.scan.ranges[b][hit], o.scan.angles[hit])
+            moving = None if o.neighbors is None or points is None else _velocities(points, o.neighbors, b)
+            action, _ = planner(state, points, moving)
+            decided[b] = np.asarray(action, dtype=np.float64).reshape(-1)[:2]
+        return decided
+
+    def _planner(self, key: tuple[int, int], first: bool, threshold: float) -> Any:
+        """The planner of a robot, made at the first decision of its first episode."""
+        if key not in self._planners:
+            self._planners[key] = self._made(key, threshold)
+        elif first:
+            self._planners[key].reset()
+        if first:
+            self._goals.pop(key, None)
+        return self._planners[key]
+
+    def _made(self, key: tuple[int, int], threshold: float) -> Any:
+        from neupan import neupan  # type: ignore[import-not-found] # on no registry
+
+        config = {name: dict(part) if isinstance(part, dict) else part for name, part in self._config.items()}
+        for name in ("robot", "ipath", "pan", "adjust", "train"):
+            config[f"{name}_kwargs"] = dict(config.pop(name, None) or {})
+        if self._shape is None:
+            config["robot_kwargs"]["vertices"] = self._footprints[key].tolist()
+        config["ipath_kwargs"].setdefault("arrive_threshold", threshold)
+        weights = config["pan_kwargs"].get("dune_checkpoint")
+        if weights is not None and not Path(weights).is_absolute() and (self._folder / weights).is_file():
+            config["pan_kwargs"]["dune_checkpoint"] = str(self._folder / weights)
+        config["step_time"] = self._step[key[0]]
+        if self._speed is not None:
+            config["ref_speed"] = float(self._speed)
+        return neupan(**config)
+
+    def _lead(self, key: tuple[int, int], planner: Any, state: Floats, goal: Floats) -> None:
+        """Give a planner a new straight path if the goal is new."""
+        if self._goals.get(key) == tuple(goal.tolist()[:2]):
+            return
+        self._goals[key] = tuple(goal.tolist()[:2])
+        heading = goal[2] if np.isfinite(goal[2]) else math.atan2(goal[1] - state[1, 0], goal[0] - state[0, 0])
+        planner.update_initial_path_from_goal(state, np.array([[goal[0]], [goal[1]], [heading]]))
+
+
+def _read(config: str) -> dict[str, Any]:
+    """The sections of a file of NeuPAN.
+
+    Raises:
+        PolicyError: There is no such file, or it is no mapping.
+    """
+    try:
+        data = yaml.safe_load(Path(config).read_text(encoding="utf-8"))
+    except (OSError, TypeError, ValueError, yaml.YAMLError) as error:
+        what = f"the file of NeuPAN {as_given(config)} cannot be read: {str(error).splitlines()[0]}"
+        raise PolicyError("policy-failed", what, "write {name: neupan, config: planner.yaml}") from error
+    if not isinstance(data, dict):
+        raise PolicyError("policy-failed", f"{config!r} is no file of NeuPAN", "it has sections such as robot and pan")
+    return data
+
+
+def _is_speed(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value < math.inf
+
+
+def _corners(robot: dict[str, Any]) -> Floats | None:
+    """(K, 2) corners of the robot of a file of NeuPAN [m]; None if it names none."""
+    if robot.get("vertices") is not None:
+        return np.asarray(robot["vertices"], dtype=np.float64).reshape(-1, 2)
+    length, width = robot.get("length"), robot.get("width")
+    if length is None or width is None:
+        return None
+    back = (length - float(robot.get("wheelbase") or 0.0)) / 2
+    return np.array([[x, y] for x in (-back, length - back) for y in (-width / 2, width / 2)])
+
+
+def _is_same(a: Floats, b: Floats) -> bool:
+    """Whether each corner of one footprint is a corner of the other."""
+    apart = np.hypot(*(a[:, None] - b[None]).transpose(2, 0, 1))
+    return bool(apart.min(axis=0).max() <= _SAME_M and apart.min(axis=1).max() <= _SAME_M)
+
+
+def _points(pose: Floats, position: Floats, ranges: Floats, angles: Floats) -> Floats | None:
+    """(2, N) where beams end, world frame [m]; None if nothing is hit."""
+    if not len(ranges):
+        return None
+    own = position[:, None] + ranges * np.stack([np.cos(angles), np.sin(angles)])
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    found: Floats = np.array([[cos, -sin], [sin, cos]]) @ own + pose[:2, None]
+    return found
+
+
+def _velocities(points: Floats, neighbors: Neighbors, b: int) -> Floats:
+    """(2, N) velocity of each point [m/s]: that of the neighbor that it lies on, or 0."""
+    found = np.zeros_like(points)
+    for k in np.flatnonzero(neighbors.mask[b]).tolist():
+        away = np.hypot(*(points - neighbors.position[b, k][:, None]))
+        found[:, away <= neighbors.radius[b, k] + _ON_NEIGHBOR_M] = neighbors.velocity[b, k][:, None]
+    return found

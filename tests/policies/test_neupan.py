@@ -1,0 +1,206 @@
+"""The plug-in for NeuPAN, with a stand-in for its package, which is on no registry."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import sys
+from importlib.machinery import ModuleSpec
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+import irsim
+from irsim.diagnostics.errors import ArgumentError, PolicyError
+from irsim.policies import open_policy
+
+ROBOT = {"name": "rectangle", "length": 0.6, "width": 0.4}
+SCENE: dict[str, Any] = {
+    "world": {"width": 10, "height": 10, "step_time": 0.1, "time_limit": 20},
+    "robot": [
+        {
+            "kinematics": {"name": "diff"}, "shape": ROBOT, "state": [1, 5, 0.3], "goal": [5, 5], "goal_threshold": 0.3,
+            "vel_max": [1, 2], "vel_min": [-1, -2],
+            "sensors": [
+                {"name": "lidar2d", "number": 90, "range_max": 4, "angle_range": 6.28, "offset": [0.2, 0.1, 0.5]}
+            ],
+        }
+    ],
+    "obstacle": [
+        {"shape": {"name": "circle", "radius": 0.5}, "state": [3, 7, 0]},
+        {"kinematics": {"name": "omni"}, "shape": {"name": "circle", "radius": 0.4}, "state": [2, 3, 0], "goal": [9, 3],
+         "behavior": {"name": "dash"}, "vel_max": [0.5, 0.5]},
+    ],
+}  # fmt: skip
+
+
+class StandIn:
+    """What the class ``neupan`` of the package has, driving straight to the goal and keeping what it was given."""
+
+    made: list[StandIn]
+
+    def __init__(self, **config: Any) -> None:
+        self.config, self.seen, self.goal, self.resets = config, [], None, 0
+        self.made.append(self)
+
+    def reset(self) -> None:
+        self.resets += 1
+
+    def update_initial_path_from_goal(self, start: np.ndarray, goal: np.ndarray) -> None:
+        assert start.shape == goal.shape == (3, 1)
+        self.goal = goal[:, 0]
+
+    def __call__(self, state: np.ndarray, points: Any, velocities: Any) -> tuple[np.ndarray, dict[str, Any]]:
+        assert state.shape == (3, 1)
+        self.seen.append((state[:, 0], points, velocities))
+        away = self.goal[:2] - state[:2, 0]
+        if self.config["robot_kwargs"]["kinematics"] == "omni":
+            return away[:, None], {}
+        turn = math.remainder(math.atan2(away[1], away[0]) - state[2, 0], math.tau)
+        return np.array([[self.config["ref_speed"] * max(0.0, math.cos(turn))], [2 * turn]]), {}
+
+
+@pytest.fixture
+def package(monkeypatch: pytest.MonkeyPatch) -> list[StandIn]:
+    """The stand-in as the installed package; the planners that it makes."""
+    made: list[StandIn] = []
+    module = ModuleType("neupan")
+    module.__spec__ = ModuleSpec("neupan", None)
+    module.neupan = type("neupan", (StandIn,), {"made": made})  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "neupan", module)
+    return made
+
+
+def config(folder: Path, **robot: Any) -> str:
+    """A file of NeuPAN."""
+    data = {
+        "receding": 10, "ref_speed": 0.8, "robot": {"kinematics": "diff", **robot}, "ipath": {"curve_style": "line"},
+        "pan": {"dune_checkpoint": "model.pth"}, "adjust": {"q_s": 0.1},
+    }  # fmt: skip
+    file = folder / "planner.yaml"
+    file.write_text(yaml.safe_dump(data))
+    return str(file)
+
+
+def scene(folder: Path, **robot: Any) -> Path:
+    file = folder / "scene.yaml"
+    file.write_text(yaml.safe_dump({**SCENE, "robot": [{**SCENE["robot"][0], **robot}]}))
+    return file
+
+
+def test_each_robot_has_a_planner_with_its_footprint_and_arrives(package: list[StandIn], tmp_path: Path) -> None:
+    (tmp_path / "model.pth").touch()
+    policy = open_policy({"name": "neupan", "config": config(tmp_path)})
+    found = irsim.run(scene(tmp_path, number=2, state=[[1, 5, 0.3], [1, 8, 0]], goal=[[5, 5], [5, 8]]), policy=policy)
+    assert found.outcome == "success"
+    assert len(package) == 2
+    given = package[0].config
+    corners = sorted(given["robot_kwargs"]["vertices"])
+    assert corners == sorted([[x, y] for x in (-0.3, 0.3) for y in (-0.2, 0.2)])
+    assert given["step_time"] == pytest.approx(0.1)
+    assert given["ref_speed"] == 0.8
+    assert given["ipath_kwargs"] == {"curve_style": "line", "arrive_threshold": 0.3}
+    assert given["pan_kwargs"]["dune_checkpoint"] == str(tmp_path / "model.pth")
+    assert given["adjust_kwargs"] == {"q_s": 0.1}
+    assert package[1].goal is not None
+    np.testing.assert_allclose(package[1].goal, [5, 8, 0])
+
+
+def test_points_lie_on_what_the_lidar_sees_and_move_with_it(package: list[StandIn], tmp_path: Path) -> None:
+    policy = open_policy({"name": "neupan", "config": config(tmp_path), "velocities": True})
+    irsim.run(scene(tmp_path), policy=policy, steps=5)
+    _, points, velocities = package[0].seen[3]
+    assert points.shape == velocities.shape
+    assert points.shape[1] > 5
+    post = np.abs(np.hypot(points[0] - 3, points[1] - 7) - 0.5) < 0.02
+    walker = ~post
+    assert post.sum() >= 3
+    assert walker.sum() >= 3
+    assert np.hypot(points[0, walker] - 2.15, points[1, walker] - 3).max() < 0.45  # it has moved for 3 steps
+    np.testing.assert_allclose(velocities[:, post], 0.0)
+    np.testing.assert_allclose(velocities[:, walker].T, np.tile([0.5, 0.0], (walker.sum(), 1)), atol=1e-9)
+    irsim.run(scene(tmp_path), policy=open_policy({"name": "neupan", "config": config(tmp_path)}), steps=2)
+    assert package[1].seen[0][2] is None
+
+
+def test_nothing_in_sight_and_no_goal(package: list[StandIn], tmp_path: Path) -> None:
+    sensors = [{**SCENE["robot"][0]["sensors"][0], "range_max": 0.5}]
+    irsim.run(
+        scene(tmp_path, sensors=sensors), policy=open_policy({"name": "neupan", "config": config(tmp_path)}), steps=2
+    )
+    assert package[0].seen[0][1] is None
+
+
+def test_an_omni_robot_follows_velocities_of_the_world(package: list[StandIn], tmp_path: Path) -> None:
+    policy = open_policy({"name": "neupan", "config": config(tmp_path, kinematics="omni")})
+    assert policy.output == "velocity"
+    found = irsim.run(scene(tmp_path, kinematics={"name": "omni"}, state=[1, 5, 1.2]), policy=policy)
+    assert found.outcome == "success"
+
+
+def test_a_new_episode_resets_the_planner_and_the_path(package: list[StandIn], tmp_path: Path) -> None:
+    policy = open_policy({"name": "neupan", "config": config(tmp_path), "speed": 0.5})
+    env = irsim.make(scene(tmp_path), policy=policy, headless=True)
+    for _ in range(3):
+        env.step()
+    package[0].goal = None
+    env.reset()
+    env.step()
+    assert len(package) == 1
+    assert package[0].resets == 1
+    assert package[0].goal is not None
+    assert package[0].config["ref_speed"] == 0.5
+    env.end(ending_time=0)
+
+
+def test_a_robot_with_another_footprint_than_the_network_is_refused(package: list[StandIn], tmp_path: Path) -> None:
+    same = open_policy({"name": "neupan", "config": config(tmp_path, length=0.6, width=0.4)})
+    assert irsim.run(scene(tmp_path), policy=same, steps=2).steps == 2
+    other = open_policy({"name": "neupan", "config": config(tmp_path, length=1.6, width=2.0)})
+    with pytest.raises(PolicyError, match="policy-mismatch") as raised:
+        irsim.run(scene(tmp_path), policy=other, steps=2)
+    assert "trained for a robot with the corners [[-0.8, -1.0]" in raised.value.message
+    car = open_policy(
+        {"name": "neupan", "config": config(tmp_path, kinematics="acker", length=4.6, width=1.6, wheelbase=3)}
+    )
+    shape = {"name": "rectangle", "length": 4.6, "width": 1.6, "wheelbase": 3}
+    driven = scene(tmp_path, kinematics={"name": "acker", "wheelbase": 3}, shape=shape, state=[3, 5, 0], goal=[8, 5])
+    assert irsim.run(driven, policy=car, steps=2).steps == 2
+    with pytest.raises(PolicyError, match="controls acker"):
+        irsim.run(scene(tmp_path), policy=car)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "why"),
+    [
+        ({"config": "no-such.yaml"}, PolicyError, "cannot be read"),
+        ({"config": 5}, PolicyError, "cannot be read"),
+        ({"config": "PLANNER", "velocities": 1}, ArgumentError, "velocities must be true or false"),
+        ({"config": "PLANNER", "speed": 0}, ArgumentError, "speed must be above 0"),
+        ({"config": "PLANNER", "sped": 1}, PolicyError, "has no option 'sped'"),
+        ({}, PolicyError, "config"),
+    ],
+)
+def test_options_that_cannot_be_used(
+    options: dict[str, Any], error: type[Exception], why: str, package: list[StandIn], tmp_path: Path
+) -> None:
+    planner = config(tmp_path)
+    with pytest.raises(error, match=why):
+        open_policy({"name": "neupan", **{k: planner if v == "PLANNER" else v for k, v in options.items()}})
+
+
+def test_other_kinematics_than_those_of_neupan(package: list[StandIn], tmp_path: Path) -> None:
+    with pytest.raises(PolicyError, match="has the kinematics 'legged'"):
+        open_policy({"name": "neupan", "config": config(tmp_path, kinematics="legged")})
+
+
+@pytest.mark.skipif(importlib.util.find_spec("neupan") is not None, reason="NeuPAN is installed")
+def test_without_the_package_the_command_that_installs_it_is_told(tmp_path: Path) -> None:
+    with pytest.raises(PolicyError, match="missing-extra: the policy 'neupan' needs the package neupan") as raised:
+        open_policy({"name": "neupan", "config": config(tmp_path)})
+    assert "git clone https://github.com/hanruihua/NeuPAN" in str(raised.value.fix)
+    assert "neupan" in irsim.policies.registry.POLICIES.names()
