@@ -62,17 +62,18 @@ GUIDES: dict[str, Guide] = {
     ),
     "process": Guide(
         "a policy in another process",
-        "For a stack that cannot be imported: another language, another Python, a robot's own software. "
-        '--policy "{name: process, command: [python3, mine.py]}" starts the program and talks to its standard input '
-        "and output; {name: process, address: '127.0.0.1:9000'} (or the path of a socket) connects to one that listens "
-        "on this machine. The MCP tools never start one. Each line is a JSON object, and each that irsim sends is "
-        "answered by one. `hello` (protocol, version): answer `policy` with output (velocity: [vx, vy] in the world "
-        "frame, which every drive follows; control: the controls of the drive) and, if needed, name, needs "
-        "({neighbors: 5, scan: true}), drives, decision_dt, stochastic. `reset` (world, robots, step_time, "
-        "decision_steps, drive, footprints, seed): answer `ready`. `act` (the fields of irsim.policies.Observations, one "
-        "row for each robot that decides now; null: not a number or no limit): answer `decision` with one row for each robot. "
-        "timeout (default 5 s) bounds a decision, start_timeout (30 s) the other answers. A process that hangs, ends "
-        "or answers something else ends the episode with that reason (policy-lost); the next episode starts it again.",
+        "For a stack that cannot be imported: another language, another Python, a robot's own software. --policy "
+        '"{name: process, command: [python3, mine.py]}" starts the program and talks to its standard input and '
+        "output; {name: process, address: '127.0.0.1:9000'} (or the path of a socket) connects to one that "
+        "listens on this machine. The MCP tools never start one. Each line is a JSON object, and each that irsim "
+        "sends is answered by one. `hello` (protocol, version): answer `policy` with output (velocity: [vx, vy] "
+        "in the world frame, which every drive follows; control: the controls of the drive) and, if needed, name, "
+        "needs ({neighbors: 5, scan: true}), drives, decision_dt, stochastic. `reset` (world, robots, step_time, "
+        "decision_steps, drive, footprints, seed): answer `ready`. `act` (the fields of "
+        "irsim.policies.Observations, one row for each robot that decides now; null: not a number or no limit): "
+        "answer `decision` with one row for each robot. timeout (default 5 s) bounds a decision, start_timeout "
+        "(30 s) the other answers. A process that hangs, ends or answers something else ends the episode with "
+        "that reason (policy-lost); the next episode starts it again.",
         _PROCESS,
         (
             "other process",
