@@ -102,7 +102,13 @@ class Plan(BaseModel):
     @property
     def hash(self) -> str:
         """Hash of everything that decides the numbers; folders and the command do not."""
-        where = {"reproduce": True, "sources": True, "suite_hash": True, "scenarios": {"__all__": {"folder"}}}
+        where = {
+            "reproduce": True,
+            "sources": True,
+            "suite_hash": True,
+            "suite": {"others"},
+            "scenarios": {"__all__": {"folder"}},
+        }
         where |= {} if self.digests else {"digests": True}
         text = self.model_dump_json(exclude=where)  # type: ignore[arg-type]
         return short_hash(text)

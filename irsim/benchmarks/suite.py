@@ -134,6 +134,9 @@ class Suite(_Part):
     """Name in the results → policy that the suite compares, with its options: a behavior (``dash`` or ``{name: orca,
     timeHorizon: 2}``), ``as-written``, ``random``, a plug-in, or a file (``.npz``, ``.onnx``) relative to the suite
     file. Differences are to the first one."""
+    others: dict[Name, str | dict[str, Any]] = {}
+    """Further policies in the same form, which are run only where they are named. They are no part of what identifies
+    the suite."""
     perturb: list[Perturbation] = []
     """How far starts, headings, speeds and departures may differ from the scenarios, drawn per seed, such as
     ``[{position: 0.1}]``."""
@@ -148,6 +151,9 @@ class Suite(_Part):
             raise ValueError(f"two scenarios have the name {twice!r}")
         if len(set(self.protocols)) < len(self.protocols):
             raise ValueError("a protocol is listed twice")
+        both = next((name for name in self.others if name in self.policies), None)
+        if both is not None:
+            raise ValueError(f"policies and others both have {both!r}")
         if self.density is not None and not any(self.density in one.varied() for one in self.scenarios):
             raise ValueError(f"density is {self.density!r}, which no scenario varies")
         return self

@@ -61,7 +61,9 @@ def suite_plan(
     perturbations = read_perturbations(perturb) or tuple(found.perturb)
     words += [word for item in perturb for word in ("--perturb", item)]
     texts = _policies(found, policies)
-    sources, digests = files_of(texts, {name: file.parent for name in texts if name in found.policies})
+    sources, digests = files_of(
+        texts, {name: file.parent for name in texts if name in {*found.policies, *found.others}}
+    )
     chosen = _seeds(found, seeds, full)
     if isinstance(seeds, Sequence):
         words += ["--seeds", _listed(chosen)]
@@ -104,7 +106,7 @@ def _listed(seeds: Sequence[int]) -> str:
 def _hash(suite: Suite, every: Sequence[PlannedScenario]) -> str:
     """Hash of a suite: everything that it says, with the files that it names, whatever part of it is run."""
     texts = [scenario.model_dump_json(exclude={"folder"}) for scenario in every]
-    return short_hash("\n".join([suite.model_dump_json(), *texts]))
+    return short_hash("\n".join([suite.model_dump_json(exclude={"others"}), *texts]))
 
 
 def _names(one: Expanded) -> set[str]:
@@ -125,7 +127,8 @@ def _policies(suite: Suite, wanted: Sequence[str] | None) -> dict[str, str]:
     if wanted is not None and not wanted:
         raise SuiteError("there must be at least one policy, got none", f"choose from {', '.join(suite.policies)}")
     own = {name: behavior_text(policy) for name, policy in suite.policies.items()}
-    return own if wanted is None else {name: own.get(name, name) for name in wanted}
+    known = own | {name: behavior_text(policy) for name, policy in suite.others.items()}
+    return own if wanted is None else {name: known.get(name, name) for name in wanted}
 
 
 def _planned(made: Sequence[Expanded]) -> list[PlannedScenario]:

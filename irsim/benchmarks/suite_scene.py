@@ -37,7 +37,8 @@ def suite_policy(name: str | Path, policy: str) -> str:
         SuiteError: The suite is not valid.
     """
     found = _split(name)
-    own = {} if found is None else load_suite(found[0])[0].policies
+    suite = None if found is None else load_suite(found[0])[0]
+    own = {} if suite is None else suite.policies | suite.others
     return behavior_text(own[policy]) if policy in own else policy
 
 

@@ -23,6 +23,7 @@ def suites(json_output: Json = False) -> None:
             {
                 "suite": suite.suite, "version": suite.version, "title": suite.title, "about": suite.about,
                 "scenarios": [one.name for one in plan.scenarios], "policies": plan.policies,
+                "others": suite.others,
                 "protocols": suite.protocols, "seeds": len(plan.seeds), "steps": suite.steps,
             }
             for suite, plan in found.values()

@@ -11,6 +11,7 @@ from irsim.benchmarks.suite import Seeds, Suite, SuiteScenario
 from irsim.benchmarks.suite_files import load_suite, suite_names
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.lookup.answer import Answer, Key
+from irsim.scenario.behavior_override import behavior_text
 from irsim.scenario.perturbation import Perturbation
 
 __all__ = ["suite_answer", "suite_key_answer", "suite_names", "suites_answer"]
@@ -80,6 +81,9 @@ def suite_answer(name: str) -> Answer:
         groups={
             "scenarios": [Key(name=one.name) for one in plan.scenarios if one.protocol == suite.protocols[0]],
             "policies": [Key(name=label, text=text) for label, text in plan.policies.items()],
+            "policies that run only where --policies names them": [
+                Key(name=label, text=behavior_text(policy)) for label, policy in suite.others.items()
+            ],
             "sources": [Key(name=source) for source in suite.sources],
         },
         example=f"irsim benchmark {name} --seeds 5",

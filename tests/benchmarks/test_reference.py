@@ -11,42 +11,43 @@ import pytest
 
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_files import suite_names
-from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.suite import SuiteResult
-from tests.benchmarks.reference.write import FOLDER, PAGES, lines_of
-
-KEPT = sorted(path.stem for path in FOLDER.glob("*.csv"))
+from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, lines_of
 
 
-def rerun(suite: str, folder: Path, seeds: int) -> None:
-    """Run the first seeds of a suite again, and compare each episode with the kept one."""
-    result = run_plan(suite_plan(suite, seeds=seeds), folder)
+def rerun(name: str, folder: Path, seeds: int) -> None:
+    """Run the first seeds of a table again, and compare each episode with the kept one."""
+    result = run_plan(TABLES[name].plan(seeds=seeds, scenarios=TABLES[name].again), folder)
     assert isinstance(result, SuiteResult)
     labels = {text: name for name, text in result.policies.items()}
-    kept = set((FOLDER / f"{suite}.csv").read_text(encoding="utf-8").splitlines())
+    kept = set((FOLDER / f"{name}.csv").read_text(encoding="utf-8").splitlines())
     found = lines_of(result.episodes, labels)
     assert len(found) == len(result.scenarios) * len(result.behaviors) * seeds
     assert [line for line in found if line not in kept] == []
 
 
-@pytest.mark.parametrize("suite", KEPT)
-def test_first_episodes_are_the_kept_ones(suite: str, tmp_path: Path) -> None:
-    rerun(suite, tmp_path / "again", 1)
+def test_each_kept_file_is_of_a_table() -> None:
+    assert {path.stem for path in FOLDER.glob("*.csv")} == {*TABLES}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_first_episodes_are_the_kept_ones(name: str, tmp_path: Path) -> None:
+    rerun(name, tmp_path / "again", 1)
 
 
 @pytest.mark.slow(15)
-@pytest.mark.parametrize("suite", KEPT)
-def test_many_episodes_are_the_kept_ones(suite: str, tmp_path: Path) -> None:
-    rerun(suite, tmp_path / "again", 12)
+@pytest.mark.parametrize("name", TABLES)
+def test_many_episodes_are_the_kept_ones(name: str, tmp_path: Path) -> None:
+    rerun(name, tmp_path / "again", 12)
 
 
-@pytest.mark.parametrize("suite", KEPT)
-def test_the_table_counts_the_kept_episodes(suite: str) -> None:
-    page = (PAGES / f"{suite}.md").read_text(encoding="utf-8")
-    assert suite in suite_names()
-    plan = suite_plan(suite)
+@pytest.mark.parametrize("name", TABLES)
+def test_the_table_counts_the_kept_episodes(name: str) -> None:
+    page = (PAGES / f"{name}.md").read_text(encoding="utf-8")
+    assert TABLES[name].suite in suite_names()
+    plan = TABLES[name].plan()
     assert f"suite hash {plan.suite_hash}, run hash {plan.hash}, " in page
-    with (FOLDER / f"{suite}.csv").open(encoding="utf-8") as file:
+    with (FOLDER / f"{name}.csv").open(encoding="utf-8") as file:
         outcomes: dict[tuple[str, str], Counter[str]] = {}
         for row in csv.DictReader(file):
             outcomes.setdefault((row["scenario"], row["policy"]), Counter())[row["outcome"]] += 1

@@ -10,10 +10,11 @@ import yaml
 
 import irsim
 from irsim.benchmarks.stored import resume_benchmark, run_plan
+from irsim.benchmarks.suite import Suite
 from irsim.benchmarks.suite_files import SuiteError, is_suite, load_suite, read_suite, suite_names
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.benchmarks.suite_scenarios import expand
-from irsim.benchmarks.suite_scene import suite_scene
+from irsim.benchmarks.suite_scene import suite_policy, suite_scene
 from irsim.env import Env
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import load_text
@@ -250,3 +251,16 @@ def test_policies_of_a_suite_have_their_options_when_one_scenario_is_run() -> No
     result = irsim.run("random_polygons_v1/robots-5/freeze", seed=142, policy="orca")
     options = suite_plan("random_polygons_v1").policies["orca"]
     assert (result.outcome, result.behavior) == ("collision", options)
+
+
+def test_other_policies_run_only_where_they_are_named_and_do_not_change_the_suite() -> None:
+    suite = load_suite("random_polygons_v1")[0]
+    with_them, without = (suite_plan(one) for one in (suite, suite.model_copy(update={"others": {}})))
+    assert (with_them.hash, with_them.suite_hash) == (without.hash, without.suite_hash)
+    assert "ppo" not in with_them.policies
+    named = suite_plan("random_polygons_v1", policies=["orca", "ppo"])
+    assert named.policies["ppo"] == "multi_robot"
+    assert named.hash != without.hash
+    assert suite_policy("random_polygons_v1/robots-5/yield", "ppo") == "multi_robot"
+    with pytest.raises(ValueError, match="policies and others both have 'orca'"):
+        Suite.model_validate({**suite.model_dump(), "others": {"orca": "orca"}})

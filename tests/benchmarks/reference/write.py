@@ -1,6 +1,6 @@
-"""Keeps the result of a suite: ``python -m tests.benchmarks.reference.write SUITE`` (about 1 minute on 2 cores).
+"""Keeps results of suites: ``python -m tests.benchmarks.reference.write NAME`` for a name of ``TABLES``.
 
-It writes the episodes (``SUITE.csv``) and the table with intervals (``skills/irsim-benchmark/results/SUITE.md``).
+It writes the episodes (``NAME.csv``) and the table with intervals (``skills/irsim-benchmark/results/NAME.md``).
 """
 
 from __future__ import annotations
@@ -10,18 +10,45 @@ import io
 import sys
 import tempfile
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import EpisodeRow
 from irsim.results.suite import SuiteResult
 
-__all__ = ["FOLDER", "PAGES", "lines_of", "main"]
+__all__ = ["FOLDER", "PAGES", "TABLES", "Table", "lines_of", "main"]
 
 FOLDER = Path(__file__).parent
 PAGES = FOLDER.parents[2] / "skills" / "irsim-benchmark" / "results"
+
+
+@dataclass(frozen=True)
+class Table:
+    """A kept result.
+
+    Attributes:
+        suite: Name of the suite.
+        policies: The policies; None: those that the suite runs.
+        again: Names of the scenarios that the tests run again; None: all.
+    """
+
+    suite: str
+    policies: tuple[str, ...] | None = None
+    again: tuple[str, ...] | None = None
+
+    def plan(self, **keys: Any) -> Plan:
+        """Its plan, or a part of it."""
+        return suite_plan(self.suite, policies=self.policies, **keys)
+
+
+TABLES = {
+    "random_polygons_v1": Table("random_polygons_v1"),
+}
 _METRICS = ("time_to_goal", "velocity_avg", "path_length", "min_clearance")
 
 
@@ -43,16 +70,16 @@ def lines_of(episodes: Sequence[EpisodeRow], labels: dict[str, str]) -> list[str
     return text.getvalue().splitlines()
 
 
-def main(suite: str) -> None:
+def main(name: str) -> None:
     """Run a suite and keep its result."""
     with tempfile.TemporaryDirectory() as folder:
-        result = run_plan(suite_plan(suite), Path(folder))
+        result = run_plan(TABLES[name].plan(), Path(folder))
     assert isinstance(result, SuiteResult)
     labels = {text: name for name, text in result.policies.items()}
     head = ",".join(("scenario", "policy", "seed", "outcome", "steps", *_METRICS))
     lines = "\n".join([head, *lines_of(result.episodes, labels)])
-    (FOLDER / f"{suite}.csv").write_text(lines + "\n", encoding="utf-8")
-    (PAGES / f"{suite}.md").write_text(markdown(result), encoding="utf-8")
+    (FOLDER / f"{name}.csv").write_text(lines + "\n", encoding="utf-8")
+    (PAGES / f"{name}.md").write_text(markdown(result), encoding="utf-8")
 
 
 if __name__ == "__main__":
