@@ -197,6 +197,7 @@ def render(
     path: str | Path,
     out: str | Path,
     *,
+    policy: PolicySource | None = None,
     seed: int | None = None,
     steps: int | None = None,
     size: int | None = None,
@@ -213,6 +214,7 @@ def render(
     Args:
         path: Scenario file.
         out: File to write; its suffix determines the format.
+        policy: What drives every robot, see :func:`irsim.open_policy`; default: the behaviors of the scenario.
         seed: Overrides the file's seed.
         steps: Number of steps before the picture (default 0: the start), or greatest number of steps of an animation.
         size: Longer side of the picture [px]; default from ``world.plot``.
@@ -228,6 +230,8 @@ def render(
 
     Raises:
         ScenarioError: The scenario has errors.
+        BenchmarkError: There is no such policy.
+        PolicyError: The policy cannot drive these robots, or failed.
         ValueError: The suffix is unsupported, the region is invalid, or there are too few or too many moments.
     """
     target = Path(out)
@@ -236,7 +240,11 @@ def render(
     as_snapshot = strip is not None or overlays is not None
     if as_snapshot:
         check_suffix(target, ["png"])
-    scenario, warnings = read_input(path, None, strict=strict, limits=limits)
+    driver, behavior = _opened(policy_of_suite(path, policy), None, limits)
+    scenario, warnings = read_input(path, None, strict=strict, limits=limits, behavior=behavior)
+    if driver is not None:
+        warnings = findings_under_policy(warnings, scenario)
+    driven = driver.text or driver.name if driver is not None else behavior
     if as_snapshot:
         sheet = snapshot_of(
             scenario,
@@ -253,10 +261,12 @@ def render(
             progress=progress,
             imports=imports,
             out=out,
+            policy=driver,
+            driven=driven,
         )
         return _write_sheet(sheet, target, scene_table(scenario, sheet.seed))
     animated = target.suffix.lower() in MOVING_SUFFIXES
-    env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR")
+    env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
     if region is not None:
         env._env_plot.set_region(region)
     if size is not None:
@@ -269,6 +279,7 @@ def render(
         advance(env, steps or 0, progress, until_done=False)
         files, frames = [str(env.save_figure(target.absolute()))], 1
     sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
+    sized += [] if driven is None else ["--policy", driven]
     result = RenderResult(
         scenario=str(path),
         seed=env.seed,

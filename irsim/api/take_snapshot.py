@@ -26,6 +26,7 @@ from irsim.simulation.random_streams import fresh_seed
 
 if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
+    from irsim.policies.policy import Policy
 
 __all__ = ["OVERLAYS", "Overlay", "snapshot", "snapshot_of", "snapshot_of_env"]
 
@@ -104,10 +105,13 @@ def snapshot_of(
     imports: Sequence[str] = (),
     out: str | Path = "snapshot.png",
     tries: Iterable[int] | None = None,
+    policy: Policy | None = None,
+    driven: str | None = None,
 ) -> SnapshotResult:
     """Like :func:`snapshot`, for a scenario already read, with its warnings; ``path`` is only used in the result.
 
-    Without a seed the first of ``tries`` that leaves room for every object counts; by default they are drawn.
+    A ``policy`` in Python drives the robots; ``driven`` is the text of what does, for the result. Without a seed the
+    first of ``tries`` that leaves room for every object counts; by default they are drawn.
     """
     if region is not None:
         from irsim.graphics.scene.scene import region_extent
@@ -116,7 +120,7 @@ def snapshot_of(
     shown = None if overlays is None else overlays_from(overlays)
     chosen_seed = seed_of(scenario, seed)
     env, _ = first_with_room(
-        lambda drawn: Env(scenario, seed=drawn, headless=True, log_level="ERROR"),
+        lambda drawn: Env(scenario, seed=drawn, headless=True, log_level="ERROR", policy=policy),
         (tries or (fresh_seed() for _ in range(MAX_TRIES))) if chosen_seed is None else [chosen_seed],
     )
     if strip is not None:
@@ -131,10 +135,10 @@ def snapshot_of(
         chosen = moments_of(last, strip)
         if steps is None:  # the number of steps was unknown, so the moments are simulated again
             env.end(ending_time=0.0)
-            env = Env(scenario, seed=env.seed, headless=True, log_level="ERROR")
+            env = Env(scenario, seed=env.seed, headless=True, log_level="ERROR", policy=policy)
     count = int(env.simulation.count[0]) if chosen is None else chosen[-1]
     options = [*region_options(region), *strip_options(strip), *overlay_options(shown)]
-    extra = ["--size", str(size), *options, "-o", str(out)]
+    extra = ["--size", str(size), *options, *([] if driven is None else ["--policy", driven]), "-o", str(out)]
     result = snapshot_of_env(
         env,
         path,

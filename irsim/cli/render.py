@@ -18,6 +18,12 @@ def render(
     out: Annotated[
         Path, typer.Option("-o", "--out", metavar="OUT", help="File to write: .png, .svg, .pdf, or .gif, .mp4, .apng.")
     ],
+    policy: Annotated[
+        str | None,
+        typer.Option(
+            "--policy", help="What drives every robot instead: a behavior, a policy, or a file (irsim policies)."
+        ),
+    ] = None,
     seed: Seed = None,
     steps: Annotated[
         int | None,
@@ -74,6 +80,7 @@ def render(
         result = api.render(
             file,
             out,
+            policy=policy,
             seed=seed,
             steps=steps,
             size=size,
