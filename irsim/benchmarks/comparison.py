@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.benchmarks.cluster import run_on_cluster
+from irsim.benchmarks.decision_timer import time_behavior
 from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.policies import (
@@ -263,15 +264,18 @@ def _sources(files: Any) -> list[str]:
 def _timing(
     opened: Sequence[Policy], plan: Sequence[tuple[str, str, Task]], found: Mapping[int, Mapping[str, Any]]
 ) -> dict[str, Any]:
-    """The times of decisions in the episodes that were run now."""
+    """The times of decisions in the episodes that were run now; of behaviors, in the first one of each scenario."""
     labels = [behavior for _, behavior, _ in plan]
-    times: dict[str, dict[str, Any] | None] = {
-        label_of(policy): None if isinstance(policy, BehaviorPolicy) else {} for policy in opened
-    }
-    for number, result in found.items():
-        own = times[labels[number]]
-        if own is not None and "decisions" in result:
-            own[str(number)] = result["decisions"]
+    times: dict[str, dict[str, Any]] = {label_of(policy): {} for policy in opened}
+    engine = {label_of(policy) for policy in opened if isinstance(policy, BehaviorPolicy)}
+    timed: set[tuple[str, str]] = set()
+    for number, result in sorted(found.items()):
+        scenario, behavior, task = plan[number]
+        if "decisions" in result:
+            times[behavior][str(number)] = result["decisions"]
+        elif behavior in engine and (scenario, behavior) not in timed:
+            timed.add((scenario, behavior))
+            times[behavior][str(number)] = time_behavior(task.job, task.seed)
     return timing_report(times, {name: labels.count(name) for name in times})
 
 

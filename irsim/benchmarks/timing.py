@@ -7,23 +7,19 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["IN_ENGINE", "Decisions", "timing_report", "was_timed"]
+__all__ = ["Decisions", "timing_report", "was_timed"]
 
 Decisions = Sequence[tuple[float, int]]
 """Wall-clock time [s] of each decision of a policy, and the number of robots that it decided for."""
-IN_ENGINE = "it runs inside the steps of the engine, which does not time it"
-"""Why there are no times of a behavior."""
 _EARLIER = "its episodes were run before the benchmark was resumed"
 _NONE = "no robot needed a decision"
 
 
-def timing_report(
-    policies: Mapping[str, Mapping[str, Decisions] | None], episodes: Mapping[str, int]
-) -> dict[str, Any]:
+def timing_report(policies: Mapping[str, Mapping[str, Decisions]], episodes: Mapping[str, int]) -> dict[str, Any]:
     """Summarise the times of decisions.
 
     Args:
-        policies: Policy → the decisions of each episode that was timed; None for a behavior.
+        policies: Policy → the decisions of each episode that was timed.
         episodes: Policy → number of its episodes.
 
     Returns:
@@ -37,9 +33,7 @@ def was_timed(report: Mapping[str, Any]) -> bool:
     return any("per_decision" in policy for policy in report["policies"].values())
 
 
-def _summary(found: Mapping[str, Decisions] | None, episodes: int) -> dict[str, Any]:
-    if found is None:
-        return {"reason": IN_ENGINE}
+def _summary(found: Mapping[str, Decisions], episodes: int) -> dict[str, Any]:
     pairs = np.array([pair for decisions in found.values() for pair in decisions], dtype=np.float64).reshape(-1, 2)
     if not len(pairs):
         return {"reason": _NONE if found else _EARLIER}
@@ -56,4 +50,4 @@ def _summary(found: Mapping[str, Decisions] | None, episodes: int) -> dict[str, 
 
 def _milliseconds(seconds: np.ndarray[Any, np.dtype[np.float64]]) -> dict[str, float]:
     values = 1e3 * seconds
-    return {"mean_ms": round(float(values.mean()), 4), "p95_ms": round(float(np.percentile(values, 95)), 4)}
+    return {"mean_ms": round(float(values.mean()), 5), "p95_ms": round(float(np.percentile(values, 95)), 5)}

@@ -233,13 +233,16 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.benchmarks import benchmark
 
     arguments = job["arguments"]
+    timing: dict[str, Any] = {}
+    options: dict[str, Any] = {"limits": _limits(job), "progress": progress, "timing": timing}
     if "plan" in arguments:
         from irsim.benchmarks.plan import Plan
         from irsim.benchmarks.stored import measure_plan
 
-        plan = Plan.model_validate(arguments["plan"])
-        return measure_plan(plan, log=arguments["log"], limits=_limits(job), progress=progress).model_dump_json()
-    return benchmark(**arguments, strict=True, limits=_limits(job), progress=progress).model_dump_json()
+        found = measure_plan(Plan.model_validate(arguments["plan"]), log=arguments["log"], **options)
+    else:
+        found = benchmark(**arguments, strict=True, **options)
+    return json.dumps(found.model_dump(mode="json") | {"timing": timing["policies"]})
 
 
 def _logged(job: dict[str, Any], progress: _Progress) -> str:

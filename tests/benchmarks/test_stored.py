@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 from pathlib import Path
 
@@ -150,3 +151,11 @@ def test_the_folder_has_the_hash_of_what_decides_the_numbers(suite: Path, tmp_pa
     moved.write_text(SUITE.replace("timeHorizon: 2", "timeHorizon: 3"), encoding="utf-8")
     assert suite_plan(str(moved)).hash != plan.hash
     assert suite_plan(str(suite), seeds=3).hash != plan.hash
+
+
+def test_decisions_of_behaviors_are_timed_in_an_episode_of_their_own(tmp_path: Path) -> None:
+    plan = suite_plan("random_polygons_v1", policies=["orca"], seeds=2, scenarios=["robots-5/yield"])
+    first = run_plan(plan, tmp_path).episodes[0]
+    [timed] = json.loads((tmp_path / "timing.json").read_text())["policies"].values()
+    assert (timed["episodes"], timed["episodes_in_all"], timed["decisions"]) == (1, 2, first.steps)
+    assert 0 < timed["per_robot"]["mean_ms"] < timed["per_decision"]["mean_ms"]

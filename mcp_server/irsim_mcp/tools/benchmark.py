@@ -37,8 +37,9 @@ __all__ = ["Benchmark", "answer", "tool"]
 _DESCRIPTION = """
     Compare policies fairly: every scenario under every policy with the same seeds. Rows have shares of
     success, collision and timeout, the mean time as [value, low, high] (95 %), and the seeds that failed; diff
-    is the difference from the first policy, seed by seed. Work over wait_s becomes a job. Next: get_job (detailed:
-    more metrics), inspect_run with the job_id, or run_episode with a seed that failed.
+    is the difference from the first policy, seed by seed; decision_ms: what deciding costs. Work over wait_s
+    becomes a job. Next: get_job (detailed: more metrics), inspect_run with the job_id, or run_episode with a
+    seed that failed.
 """
 _SHARES = ("success", "collision", "timeout")
 """Outcomes whose shares a row has."""
@@ -72,6 +73,7 @@ class Benchmark(BaseModel):
     done: int
     total: int
     rows: list[dict[str, Any]] = []
+    decision_ms: dict[str, list[float]] = {}
     notes: list[str] = []
     artifact: str | None = None
     reproduce: str | None = None
@@ -244,6 +246,7 @@ def _fill(found: Benchmark, result: dict[str, Any], file: str, detailed: bool) -
         for row in result["rows"][:_MAX_ROWS]
     ]
     found.summary = _summary(result, labels)
+    found.decision_ms = _decision_ms(result, labels)
     notes = [f"{label} is {text}" for text, label in labels.items() if label != text] + list(result["notes"])
     if len(result["rows"]) > _MAX_ROWS:
         notes.append(f"{len(result['rows']) - _MAX_ROWS} more rows are in the artifact")
@@ -271,6 +274,12 @@ def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
     periods = ", ".join(f"{period:g}" for period in sorted(set(result["step_time"].values())))
     counts = f"{len(result['episodes'])} episodes, step_time {periods} s; success: {', '.join(shares)}"
     return "; ".join([counts, *(clean(text, 200) for text in result["incidents"])])
+
+
+def _decision_ms(result: dict[str, Any], labels: dict[str, str]) -> dict[str, list[float]]:
+    """Mean and 95th percentile of the wall-clock time of deciding for one robot [ms], of each policy that was timed."""
+    times = {name: found["per_robot"] for name, found in result.get("timing", {}).items() if "per_robot" in found}
+    return {clean(labels[name]): [one["mean_ms"], one["p95_ms"]] for name, one in times.items() if name in labels}
 
 
 def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str], detailed: bool) -> dict[str, Any]:
@@ -332,6 +341,9 @@ def _text(found: Benchmark) -> str:
         elif incidents := row.get("incidents"):
             values.append(f"episodes with {', '.join(f'{name}: {count}' for name, count in incidents.items())}")
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(values)}")
+    if found.decision_ms:
+        each = ", ".join(f"{name} {mean:g} ({p95:g})" for name, (mean, p95) in found.decision_ms.items())
+        lines.append(f"Deciding for one robot takes, in ms, mean (95th percentile): {each}")
     lines += [f"Note: {note}" for note in found.notes]
     if found.artifact:
         lines.append(
