@@ -27,8 +27,8 @@ inline void rvo_self(const RvoSelfOptions& o, const Seen& seen, double* out, std
   const Vec2 offset = seen.to_goal();
   const double distance = norm(offset);
   const Vec2 desired = distance > seen.goal_threshold ? offset * (speed / distance) : Vec2{};
-  const double numbers[] = {seen.velocity.x, seen.velocity.y, desired.x,
-                            desired.y,       seen.pose.theta, seen.radius + o.margin};
+  const double numbers[] = {seen.velocity.x, seen.velocity.y,       desired.x,
+                            desired.y,       wrap(seen.pose.theta), seen.radius + o.margin};
   for (const double number : numbers) *out++ = rounded(number, o.decimals);
 }
 

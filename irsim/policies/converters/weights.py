@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from irsim.common.text import clean
 from irsim.policies.networks.errors import PolicyFileError, Problem
 from irsim.policies.networks.values import Array
@@ -38,13 +40,13 @@ class Weights:
             shape: Its sides; None for any.
 
         Raises:
-            PolicyFileError: There is none, there are several, or it has another shape; the message lists the arrays.
+            PolicyFileError: There is none, several differ, or it has another shape; the message lists the arrays.
         """
         for ending in endings:
             named = [name for name in self.arrays if name == ending or name.endswith(f".{ending}")]
             fitting = [name for name in named if _fits(self.arrays[name].shape, shape)]
-            if len(fitting) == 1:
-                return self.arrays[fitting[0]]
+            if fitting and all(np.array_equal(self.arrays[name], self.arrays[fitting[0]]) for name in fitting):
+                return self.arrays[fitting[0]]  # a part of two modules is stored under two names
             if len(fitting) > 1:
                 raise self.error(ending, f"several arrays may be {what}", ", ".join(map(_short, fitting[:4])))
             if named:

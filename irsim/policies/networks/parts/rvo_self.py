@@ -19,7 +19,7 @@ class RvoSelf(PartOptions):
 
     - `vx`, `vy`: velocity [m/s]
     - `desired_vx`, `desired_vy`: velocity of the desired speed toward the goal [m/s]; 0 at the goal and without one
-    - `heading`: [rad]
+    - `heading`: from -pi to pi [rad]
     - `radius`: radius of the bounding circle plus `margin` [m]
 
     Source: Han et al.: Reinforcement Learned Distributed Multi-Robot Navigation With Reciprocal Velocity Obstacle
