@@ -128,27 +128,18 @@ class GruExtractor(BaseFeaturesExtractor):  # type: ignore[misc] # types of an e
             if part.zero_row:
                 nobody = ~present.any(dim=1, keepdim=True)
                 present = torch.cat([present[:, :-1], present[:, -1:] | nobody], dim=1)
-            reader = self.readers[part.label]
-            found.append(sum(_last_state(reader, suffix, members, present) for suffix in ("", "_reverse")))
+            found.append(_last_states(self.readers[part.label], members, present))
         return self.norm(torch.cat(found, dim=1))
 
 
-def _last_state(reader: nn.GRU, suffix: str, members: torch.Tensor, present: torch.Tensor) -> torch.Tensor:
-    """(B, U) state of one direction of a GRU after the members that are present."""
-    projected = nn.functional.linear(
-        members, getattr(reader, f"weight_ih_l0{suffix}"), getattr(reader, f"bias_ih_l0{suffix}")
-    )
-    weight, bias = getattr(reader, f"weight_hh_l0{suffix}"), getattr(reader, f"bias_hh_l0{suffix}")
-    units = reader.hidden_size
-    state = members.new_zeros(len(members), units)
-    count = members.shape[1]
-    for k in range(count - 1, -1, -1) if suffix else range(count):
-        inner = nn.functional.linear(state, weight, bias)
-        both = torch.sigmoid(projected[:, k, : 2 * units] + inner[:, : 2 * units])
-        reset, update = both.chunk(2, dim=1)
-        new = torch.tanh(projected[:, k, 2 * units :] + reset * inner[:, 2 * units :])
-        state = torch.where(present[:, k, None], new + update * (state - new), state)
-    return state
+def _last_states(reader: nn.GRU, members: torch.Tensor, present: torch.Tensor) -> torch.Tensor:
+    """(B, U) sum of the last states of both directions of a GRU that reads the members that are present, in order."""
+    first = torch.argsort(~present, dim=1, stable=True)
+    moved = torch.gather(members * present[:, :, None], 1, first[:, :, None].expand_as(members))
+    lengths = present.sum(dim=1)
+    packed = nn.utils.rnn.pack_padded_sequence(moved, lengths.clamp(min=1), batch_first=True, enforce_sorted=False)
+    states = reader(packed)[1].sum(dim=0)
+    return torch.where(lengths[:, None] > 0, states, torch.zeros_like(states))
 
 
 def _members(part: PartColumns, observations: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
