@@ -11,7 +11,9 @@ __all__ = ["convert"]
 
 
 def convert(
-    kind: Annotated[str, typer.Argument(metavar="KIND", help="Kind of weights: rl_rvo.")],
+    kind: Annotated[
+        str, typer.Argument(metavar="KIND", help="Kind of weights, such as rl_rvo; irsim describe policies lists all.")
+    ],
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="What torch.save wrote: a state dictionary, or a whole module.")
     ],
