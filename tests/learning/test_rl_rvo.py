@@ -24,7 +24,7 @@ def test_learners_observe_what_a_network_observes_and_their_last_velocity() -> N
         assert seen.commanded is not None
         np.testing.assert_array_equal(seen.commanded[active], (before + actions)[active])
         parts = observe(worlds.task.layout, seen)
-        flat = np.concatenate([parts["rvo_self"].array, parts["rvo_cones"].flat()], axis=1).astype(np.float32)
+        flat = np.concatenate([value.flat() for value in parts.values()], axis=1).astype(np.float32)
         np.testing.assert_array_equal(worlds.observe(), flat)
         urgent += int((parts["rvo_cones"].array[:, :, 7] > 0).sum())
     assert urgent > 0

@@ -202,7 +202,7 @@ def _model(env: SB3VecEnv, task: Any, settings: TrainingSettings) -> Any:
         policy_kwargs={
             "net_arch": {"pi": layers, "vf": layers},
             "activation_fn": torch.nn.ReLU,
-            "log_std_init": -0.5,
+            "log_std_init": settings.log_std,
             **(extractor if sets else {}),
         },
         seed=settings.seed,

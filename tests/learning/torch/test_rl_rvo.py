@@ -86,10 +86,10 @@ def test_an_exported_gru_decides_as_in_its_training(tmp_path: Path) -> None:
     for _ in range(60):
         flat = worlds.observe()
         seen = observer.observe(worlds.rows, np.zeros(len(worlds.rows), bool), worlds.rows // 10)
-        change = np.clip(model.predict(flat, deterministic=True)[0], -1, 1)
+        change = 0.5 * np.clip(model.predict(flat, deterministic=True)[0], -1, 1)
         assert seen.commanded is not None
         np.testing.assert_allclose(policy.act(seen) - seen.velocity, change, atol=1e-5)
-        nobody += int((flat[:, 6:] == 0).all(axis=1).sum())
+        nobody += int((flat[:, 8:] == 0).all(axis=1).sum())
         worlds.step(np.random.default_rng(nobody).uniform(-1, 1, change.shape))
     assert nobody > 0
     assert seen.commanded.any()
