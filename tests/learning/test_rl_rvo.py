@@ -22,7 +22,7 @@ def test_learners_observe_what_a_network_observes_and_their_last_velocity() -> N
         worlds.step(actions)
         seen = observer.observe(rows, np.zeros(len(rows), bool), rows // simulation.objects)
         assert seen.commanded is not None
-        np.testing.assert_array_equal(seen.commanded[active], (before + actions)[active])
+        np.testing.assert_array_equal(seen.commanded[active], (before + 0.5 * actions)[active])
         parts = observe(worlds.task.layout, seen)
         flat = np.concatenate([value.flat() for value in parts.values()], axis=1).astype(np.float32)
         np.testing.assert_array_equal(worlds.observe(), flat)
