@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import struct
 import zipfile
 import zlib
 from collections.abc import Iterable, Mapping
@@ -26,7 +27,7 @@ _END_SIZE, _LOCATOR_SIZE, _RECORD_SIZE = 22, 20, 56
 _ENTRY_BYTES = 1024
 """Most bytes of an entry in the directory of an archive: PyTorch fills entries up to 64 bytes."""
 _BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError, KeyError, OSError,
-           OverflowError, MemoryError, IndexError, AttributeError)  # fmt: skip
+           OverflowError, MemoryError, IndexError, AttributeError, struct.error)  # fmt: skip
 """What :mod:`zipfile` raises on broken archives."""
 
 
@@ -164,10 +165,14 @@ def _pickles(content: bytes, limits: Limits) -> dict[str, Array]:
     kinds: dict[str, str] = {}
     tensors = named_tensors(read_pickle(stream, kinds), limits)
     keys = read_pickle(stream)
-    if not isinstance(keys, list) or len(keys) > limits.arrays or not all(isinstance(key, (str, int)) for key in keys):
+    if not isinstance(keys, list) or len(keys) > limits.arrays or not all(map(_is_key, keys)):
         raise _FileError("its list of storages is broken or too long", allowed=f"up to {limits.arrays}")
     storages = _storages(stream, len(content), [str(key)[:200] for key in keys], kinds)
     return arrays_of(tensors, storages, limits)
+
+
+def _is_key(key: Any) -> bool:
+    return isinstance(key, str) or (isinstance(key, int) and 0 <= key < 2**63)  # longer ones have no decimal text
 
 
 def _storages(stream: io.BytesIO, end: int, keys: Iterable[str], kinds: Mapping[str, str]) -> dict[str, bytes]:
