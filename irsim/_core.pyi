@@ -149,6 +149,23 @@ class NeighborsOptions(_Options):
         clip: bool,
     ) -> None: ...
 
+class RvoConesOptions(_Options):
+    def __init__(
+        self,
+        *,
+        count: int,
+        nearest: int,
+        range: float,
+        margin: float,
+        horizon: float,
+        velocity: str,
+        decimals: int | None,
+        zero_row: bool,
+    ) -> None: ...
+
+class RvoSelfOptions(_Options):
+    def __init__(self, *, speed: float | None, margin: float, decimals: int | None) -> None: ...
+
 class ScanOptions(_Options):
     def __init__(self, *, sectors: int, range_max: float | None, nearness: bool) -> None: ...
 
@@ -680,6 +697,7 @@ class State:
     control: Floats  # (R, 3) executed control without noise
     twist: Floats  # (R, 3) true vx, vy (world frame), yaw rate of the last step
     command: Floats  # (R, 3) control wanted for the next step
+    commanded: Floats  # (R, 2) velocity that `follow_rows` last asked a row to follow, world frame; zero before [m/s]
     drive: Floats  # (R, 3) control of the drives in `collision_mode: contact`, before contacts change it
     contact_time: Floats  # (R,) time for which the row has touched something [s]
     air_time: Floats  # (R,) time for which the row has touched nothing [s]
@@ -964,6 +982,7 @@ class SeenRows:
         pose: Floats,
         steering: Floats,
         velocity: Floats,
+        commanded: Floats,
         yaw_rate: Floats,
         control: Floats,
         low: Floats,

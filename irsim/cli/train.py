@@ -13,7 +13,8 @@ __all__ = ["SETTINGS", "train"]
 
 SETTINGS = (
     "Their defaults: slots=128, rollout=64, batch=1024, epochs=6, rate=0.0007, gamma=0.98, gae_lambda=0.95, clip=0.2, "
-    "entropy=0.002, units=[128, 128], set_units=[64, 64], round_updates=8."
+    "entropy=0.002, units=[128, 128], set_units=[64, 64], "
+    "set_reader=pool, log_std=-0.5, round_updates=8."
 )
 """Help on the settings; a literal, so that the help needs no pydantic."""
 

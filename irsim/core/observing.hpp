@@ -37,6 +37,7 @@ struct Seen {
   Vec2 ahead;  // cosine and sine of the heading
   double steering;
   Vec2 velocity;
+  Vec2 commanded;  // world-frame velocity that the robot was last asked to follow; zero before [m/s]
   double yaw_rate;
   Vec3 control, low, high;
   Pose goal;

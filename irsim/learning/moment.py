@@ -32,6 +32,10 @@ class Moment:
         gaps: Function that measures, for each learner, the distance [m] between its footprint and the nearest one of
             the robots, the obstacles that move and the static objects, (n, A, 3). Larger ones than its argument [m] are
             infinite; negative ones are overlaps.
+        direction_before: (n, A, 2) unit vector to the goal at the start of the step, world frame; 0 without one.
+        commanded: (n, A, 2) velocity that the action asked for [m/s], world frame; 0 for actions that are controls.
+        urgency: Function that returns (n, A) 1 / (t + 0.2 s), with the time t after which this velocity would have
+            touched another one, as at the start of the step; 0 if it would not within 5 s.
     """
 
     step_time: float
@@ -47,3 +51,6 @@ class Moment:
     velocity: Floats
     yaw_rate: Floats
     gaps: Callable[[float], Floats]
+    direction_before: Floats
+    commanded: Floats
+    urgency: Callable[[], Floats]

@@ -21,6 +21,7 @@ from irsim.learning.observing import Eyes
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
+from irsim.learning.threats import Threats
 from irsim.metrics.roles import kinds_of
 from irsim.policies.networks.output import Present, decide
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -113,6 +114,8 @@ class Worlds:
         horizons = [max(1, round(self.task.horizon_of(k) / step_time)) for k in range(len(self.task.levels))]
         self._horizons = np.array(horizons, dtype=np.int64)
         self._terms = [(REWARDS.get(term.name), term) for term in self.task.reward]
+        wary = any(term.name == "rvo" for term in self.task.reward)
+        self._threats = Threats(simulation, team.indices, threads) if wary else None
         self._shape = (n, self.learners)
         self._begun = np.zeros(n, dtype=bool)
         self._over = np.zeros(n, dtype=bool)
@@ -229,6 +232,8 @@ class Worlds:
         goal, before = simulation.goal.take(rows, axis=0), simulation.pose.take(rows, axis=0)
         control_before = simulation.control.take(rows, axis=0)
         self._impose(self._read(actions), before, goal, control_before)
+        commanded = simulation.state.commanded.take(rows, axis=0)
+        threat = None if self._threats is None else self._threats.urgency(rows)
         simulation.step()
         after, twist = simulation.pose.take(rows, axis=0), simulation.twist.take(rows, axis=0)
         reached = ~_same(simulation.goal.take(rows, axis=0), goal)
@@ -252,6 +257,9 @@ class Worlds:
             velocity=twist[:, :2].reshape(*shape, 2),
             yaw_rate=twist[:, 2].reshape(shape),
             gaps=self._gaps(),
+            direction_before=_direction(before, goal).reshape(*shape, 2),
+            commanded=commanded.reshape(*shape, 2),
+            urgency=lambda: np.zeros(shape) if threat is None else threat.reshape(shape),
         )
         terms = np.stack([self._value(feature, options, moment) for feature, options in self._terms])
         terms *= active
@@ -340,6 +348,14 @@ class Worlds:
 def _distance(pose: Floats, goal: Floats) -> Floats:
     away = goal[:, :2] - pose[:, :2]
     result: Floats = np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1])
+    return result
+
+
+def _direction(pose: Floats, goal: Floats) -> Floats:
+    """(B, 2) unit vectors to goals; 0 without one, and at it."""
+    away, distance = goal[:, :2] - pose[:, :2], _distance(pose, goal)
+    far = distance > 0  # not for NaN either
+    result: Floats = np.where(far[:, None], away / np.where(far, distance, 1.0)[:, None], 0.0)
     return result
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from irsim.lookup.answer import Answer, Key
+from irsim.policies.converters.features import CONVERTERS
 from irsim.policies.description import list_policies
 
 __all__ = ["policies_answer"]
@@ -10,6 +11,7 @@ __all__ = ["policies_answer"]
 
 def policies_answer() -> Answer:
     """List the policies, and say how one of your own is written."""
+    kinds = ", ".join(CONVERTERS.names())
     listed = [Key(name=one.name, text=f"{one.kind}: {one.about}") for one in list_policies()]
     return Answer(
         topic="policies",
@@ -24,6 +26,7 @@ def policies_answer() -> Answer:
                 Key(name="model.npz", text="a network of irsim; irsim policies model.npz describes it"),
                 Key(name="model.onnx", text="a network for onnxruntime"),
                 Key(name="{name: process, command: [python3, mine.py]}", text="a program; irsim describe process"),
+                Key(name="irsim convert KIND FILE -o model.npz", text=f"weights of PyTorch; kinds: {kinds}"),
             ],
             "where": [
                 Key(name="irsim run FILE --policy NAME", text="one run; also irsim.run(file, policy=…)"),

@@ -218,6 +218,7 @@ class PolicyDriver:
             return
         for world, place in np.argwhere(self._active & self._python).tolist():
             row = int(rows[world, place])
+            simulation.state.commanded[row] = self._held[world, place]
             control = simulation.drives.control_for(row, self._held[world, place])
             if control is not None:
                 simulation.impose(row, control)

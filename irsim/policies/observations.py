@@ -105,6 +105,8 @@ class Observations:
         neighbors: The nearest other objects.
         scan: Ranges of a lidar.
         maps: One map per row; rows of one world share it.
+        commanded: (B, 2) velocity that a policy of velocities commanded last [m/s], world frame; zero before its first
+            decision, and for policies of controls.
     """
 
     world: NDArray[np.int64]
@@ -126,6 +128,7 @@ class Observations:
     neighbors: Neighbors | None = None
     scan: Scan | None = None
     maps: tuple[Map, ...] | None = None
+    commanded: Floats | None = None
 
     def __len__(self) -> int:
         return len(self.world)

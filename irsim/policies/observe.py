@@ -124,6 +124,7 @@ class Observer:
             neighbors=self._neighbors(rows) if needs.neighbors > 0 else None,
             scan=self._scan(world, robot) if needs.scan else None,
             maps=None if self._grids is None else self._grids.of(world),
+            commanded=simulation.state.commanded[rows],
         )
 
     def _neighbors(self, rows: NDArray[np.int64]) -> Neighbors:

@@ -285,3 +285,24 @@ def test_policies_that_do_not_fit_are_refused_before_the_first_step(robots: Any,
 
 def test_a_policy_of_velocities_is_not_asked_for_its_drives() -> None:
     drive(simulation({}), Straight(output="velocity", drives=frozenset({"diff"})))
+
+
+def test_a_policy_of_velocities_sees_what_it_commanded_last_not_what_came_of_it() -> None:
+    made = simulation(
+        {"kinematics": {"name": "diff"}, "vel_max": [0.5, 1.0]},
+        {"state": [1, 5, 0], "vel_max": [0.3, 0.3]},
+        seeds=(0, 1),
+    )
+    policy = Straight([0.1, -0.75], output="velocity")
+    attach_policy(made, policy)
+    for _ in range(3):
+        made.step()
+    made.reset(np.array([True, False]))
+    made.step()
+    seen = [one.commanded.tolist() for one in policy.asked if one.commanded is not None]
+    assert seen == [[[0, 0]] * 4, [[0.1, -0.75]] * 4, [[0.1, -0.75]] * 4, [[0, 0]] * 2 + [[0.1, -0.75]] * 2]
+    controlled = Straight()
+    attach_policy(made, controlled)
+    made.reset(np.array([True, True]))
+    made.step(), made.step()
+    assert not np.concatenate([one.commanded for one in controlled.asked]).any()

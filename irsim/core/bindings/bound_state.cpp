@@ -39,6 +39,7 @@ void BoundState::expose() {
   control = view<double>(state.control.memory, {rows, 3});
   twist = view<double>(state.twist.memory, {rows, 3});
   command = view<double>(state.command.memory, {rows, 3});
+  commanded = view<double>(state.commanded.memory, {rows, 2});
   drive = view<double>(state.drive.memory, {rows, 3});
   contact_time = view<double>(state.contact_time.memory, {rows});
   air_time = view<double>(state.air_time.memory, {rows});

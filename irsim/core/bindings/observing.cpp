@@ -46,7 +46,7 @@ Triple triple_at(const double* numbers, std::size_t k) {
 
 /// What a part observes without a simulation: the arrays of `irsim.policies.Observations`.
 struct SeenRows {
-  Given<double, 2> pose, velocity, control, low, high, goal;
+  Given<double, 2> pose, velocity, commanded, control, low, high, goal;
   Given<double, 1> steering, yaw_rate, goal_threshold, radius;
   Given<std::uint8_t, 1> arrived;
   std::size_t neighbors = 0;  // those of each robot; the arrays below have no memory without any
@@ -61,11 +61,13 @@ struct SeenRows {
   std::vector<int> picture_of;  // (B,), empty without pictures
 
   SeenRows(const Given<double, 2>& pose_, const Given<double, 1>& steering_, const Given<double, 2>& velocity_,
-           const Given<double, 1>& yaw_rate_, const Given<double, 2>& control_, const Given<double, 2>& low_,
-           const Given<double, 2>& high_, const Given<double, 2>& goal_, const Given<double, 1>& goal_threshold_,
-           const Given<double, 1>& radius_, const Given<std::uint8_t, 1>& arrived_)
+           const Given<double, 2>& commanded_, const Given<double, 1>& yaw_rate_, const Given<double, 2>& control_,
+           const Given<double, 2>& low_, const Given<double, 2>& high_, const Given<double, 2>& goal_,
+           const Given<double, 1>& goal_threshold_, const Given<double, 1>& radius_,
+           const Given<std::uint8_t, 1>& arrived_)
       : pose(pose_),
         velocity(velocity_),
+        commanded(commanded_),
         control(control_),
         low(low_),
         high(high_),
@@ -78,7 +80,9 @@ struct SeenRows {
     for (const auto* array : {&pose, &control, &low, &high, &goal}) {
       expect_fit(array->shape(0) == size() && array->shape(1) == 3, "a robot has three numbers here");
     }
-    expect_fit(velocity.shape(0) == size() && velocity.shape(1) == 2, "a velocity has two numbers");
+    for (const auto* array : {&velocity, &commanded}) {
+      expect_fit(array->shape(0) == size() && array->shape(1) == 2, "a velocity has two numbers");
+    }
     for (const auto* array : {&steering, &yaw_rate, &goal_threshold, &radius})
       expect_fit(array->size() == size(), kRow);
     expect_fit(arrived.size() == size(), kRow);
@@ -132,6 +136,7 @@ struct SeenRows {
     seen.ahead = unit(seen.pose.theta);
     seen.steering = steering.data()[row];
     seen.velocity = vector_at(velocity.data(), row);
+    seen.commanded = vector_at(commanded.data(), row);
     seen.yaw_rate = yaw_rate.data()[row];
     seen.control = triple_at<Vec3>(control.data(), row);
     seen.low = triple_at<Vec3>(low.data(), row), seen.high = triple_at<Vec3>(high.data(), row);
@@ -279,12 +284,13 @@ void bind_observing(nb::module_& m) {
            nb::arg("neighbors"), nb::arg("reach"), nb::arg("statics"), nb::arg("extents"), nb::arg("steered"),
            nb::arg("first_beam"), nb::arg("beams"), nb::arg("range_max"));
   nb::class_<SeenRows>(m, "SeenRows")
-      .def(nb::init<const Given<double, 2>&, const Given<double, 1>&, const Given<double, 2>&, const Given<double, 1>&,
-                    const Given<double, 2>&, const Given<double, 2>&, const Given<double, 2>&, const Given<double, 2>&,
-                    const Given<double, 1>&, const Given<double, 1>&, const Given<std::uint8_t, 1>&>(),
-           nb::kw_only(), nb::arg("pose"), nb::arg("steering"), nb::arg("velocity"), nb::arg("yaw_rate"),
-           nb::arg("control"), nb::arg("low"), nb::arg("high"), nb::arg("goal"), nb::arg("goal_threshold"),
-           nb::arg("radius"), nb::arg("arrived"))
+      .def(nb::init<const Given<double, 2>&, const Given<double, 1>&, const Given<double, 2>&, const Given<double, 2>&,
+                    const Given<double, 1>&, const Given<double, 2>&, const Given<double, 2>&, const Given<double, 2>&,
+                    const Given<double, 2>&, const Given<double, 1>&, const Given<double, 1>&,
+                    const Given<std::uint8_t, 1>&>(),
+           nb::kw_only(), nb::arg("pose"), nb::arg("steering"), nb::arg("velocity"), nb::arg("commanded"),
+           nb::arg("yaw_rate"), nb::arg("control"), nb::arg("low"), nb::arg("high"), nb::arg("goal"),
+           nb::arg("goal_threshold"), nb::arg("radius"), nb::arg("arrived"))
       .def("set_neighbors", &SeenRows::set_neighbors, nb::arg("present"), nb::arg("position"), nb::arg("heading"),
            nb::arg("velocity"), nb::arg("radius"), nb::arg("arrived"), nb::arg("robot"), nb::arg("extent"),
            nb::arg("own_extent"))

@@ -22,6 +22,7 @@ void follow_rows(World& world, BoundState& bound, const Rows& rows, const Veloci
   for (std::size_t k = 0; k < rows.shape(0); ++k) {
     const int row = static_cast<int>(rows.data()[k]);
     const Vec2 velocity{velocities.data()[2 * k], velocities.data()[2 * k + 1]};
+    state.commanded[row] = velocity;
     command_velocity(world, state, row / world.objects, row % world.objects, velocity, {});
   }
 }

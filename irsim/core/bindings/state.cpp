@@ -174,6 +174,7 @@ void bind_state(nb::module_& m) {
       .def_ro("control", &S::control)
       .def_ro("twist", &S::twist)
       .def_ro("command", &S::command)
+      .def_ro("commanded", &S::commanded)
       .def_ro("drive", &S::drive)
       .def_ro("contact_time", &S::contact_time)
       .def_ro("air_time", &S::air_time)

@@ -36,6 +36,7 @@ Seen Observer::see(int row, Near& near) const {
   seen.ahead = state_.heading(row);
   seen.steering = looking_.steered[object] ? state_.extra[static_cast<std::size_t>(row) * state_.extra_rows] : 0.0;
   seen.velocity = {twist[0], twist[1]};
+  seen.commanded = state_.commanded[row];
   seen.yaw_rate = twist[2];
   seen.control = state_.control[row];
   seen.low = state_.vel_min[row], seen.high = state_.vel_max[row];

@@ -13,6 +13,7 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.control[row] = from.control[old_row];
   to.twist[row] = from.twist[old_row];
   to.command[row] = from.command[old_row];
+  to.commanded[row] = from.commanded[old_row];
   to.drive[row] = from.drive[old_row];
   to.contact_time[row] = from.contact_time[old_row];
   to.air_time[row] = from.air_time[old_row];

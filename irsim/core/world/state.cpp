@@ -64,6 +64,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       control(rows),
       twist(rows),
       command(rows),
+      commanded(rows),
       drive(rows),
       contact_time(rows),
       air_time(rows),
@@ -167,6 +168,7 @@ void restart_row(const World& world, State& state, int row) {
   state.before[row] = state.pose[row].position();
   state.control[row] = state.start_step[row] > 0 ? Vec3{} : state.initial_control[row];
   state.twist[row] = state.command[row] = {};
+  state.commanded[row] = {};
   state.drive[row] = world.dynamics[i].driven ? state.control[row] : Vec3{};
   state.contact_time[row] = state.air_time[row] = 0.0;
   state.touching[row] = 0;

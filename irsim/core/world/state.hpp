@@ -47,6 +47,7 @@ struct State {
   Array<Pose> pose;
   Array<double> extra;
   Array<Vec3> control, twist, command;
+  Array<Vec2> commanded;                 // velocity that the caller last asked a row to follow, world frame [m/s]
   Array<Vec3> drive;                     // controls of the drives before contacts change them, command frame
   Array<double> contact_time, air_time;  // time for which an object has touched something, or nothing [s]
   Array<std::uint8_t> given, arrived, collided, stopped;

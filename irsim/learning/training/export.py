@@ -17,7 +17,7 @@ from irsim.learning.tasks.scene import task_scenario
 from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.team import team_of
 from irsim.learning.training.curve import draw_curve
-from irsim.learning.training.extractor import PartColumns, columns_of
+from irsim.learning.training.extractor import GruExtractor, PartColumns, columns_of
 from irsim.learning.training.run_folder import RunFolder, merit
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.document import PolicyDocument
@@ -129,16 +129,35 @@ class _Layers:
 
     def read(self, policy: Any, columns: Sequence[PartColumns]) -> str:
         """Add the layers of a policy, and return the label of the last one."""
+        features = self._read_features(policy.features_extractor, columns)
+        hidden = self._perceptron(policy.mlp_extractor.policy_net, features, "hidden")
+        return self._perceptron(nn.Sequential(policy.action_net), hidden, "decision")
+
+    def _read_features(self, extractor: Any, columns: Sequence[PartColumns]) -> str:
         vectors = [part.label for part in columns if part.members is None]
+        if isinstance(extractor, GruExtractor):
+            read = [
+                self._gru(extractor.readers[part.label], part.label) for part in columns if part.members is not None
+            ]
+            joined = self._add("concat", "joined", [*vectors, *read])
+            features = self._add("layer_norm", "features", [joined], epsilon=float(extractor.norm.eps))
+            self.arrays["features.scale"] = _numbers(extractor.norm.weight)
+            self.arrays["features.shift"] = _numbers(extractor.norm.bias)
+            return features
         pooled = []
         for part in columns:
             if part.members is not None:
                 each = self._add("concat", f"each_{part.label}", [part.label, *vectors])
-                hidden = self._perceptron(policy.features_extractor.members[part.label], each, f"member_{part.label}")
+                hidden = self._perceptron(extractor.members[part.label], each, f"member_{part.label}")
                 pooled.append(self._add("pool", f"pool_{part.label}", [hidden], method="max"))
-        features = self._add("concat", "features", [*vectors, *pooled])
-        hidden = self._perceptron(policy.mlp_extractor.policy_net, features, "hidden")
-        return self._perceptron(nn.Sequential(policy.action_net), hidden, "decision")
+        return self._add("concat", "features", [*vectors, *pooled])
+
+    def _gru(self, reader: nn.GRU, label: str) -> str:
+        made = self._add("gru", f"read_{label}", [label], units=reader.hidden_size, direction="both", merge="sum")
+        for ending, suffix in (("", ""), ("_back", "_reverse")):
+            for ours, theirs in (("wx", "weight_ih"), ("bx", "bias_ih"), ("wh", "weight_hh"), ("bh", "bias_hh")):
+                self.arrays[f"{made}.{ours}{ending}"] = _numbers(getattr(reader, f"{theirs}_l0{suffix}"))
+        return made
 
     def _add(self, name: str, label: str, inputs: list[str], **options: Any) -> str:
         self.layers.append({"name": name, "label": label, "inputs": inputs, **options})
@@ -150,10 +169,15 @@ class _Layers:
             following = modules[k + 1] if k + 1 < len(modules) else None
             activation = "none" if following is None else _ACTIVATIONS[type(following)]
             before = self._add("dense", f"{stem}_{number}", [before], units=module.out_features, activation=activation)
-            with torch.no_grad():
-                self.arrays[f"{before}.w"] = module.weight.T.contiguous().numpy().astype("float32")
-                self.arrays[f"{before}.b"] = module.bias.numpy().astype("float32")
+            self.arrays[f"{before}.w"] = _numbers(module.weight)
+            self.arrays[f"{before}.b"] = _numbers(module.bias)
         return before
+
+
+def _numbers(tensor: torch.Tensor) -> Array:
+    """Weights as an array; matrices are transposed, because layers of irsim have a column for each output."""
+    array: Array = tensor.detach().T.contiguous().numpy() if tensor.ndim == 2 else tensor.detach().numpy()
+    return array.astype("float32")
 
 
 def _card_text(file: Path, task: Task, card: Mapping[str, Any]) -> str:

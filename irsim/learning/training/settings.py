@@ -51,6 +51,13 @@ class TrainingSettings(Options):
     """Widths of the layers of the policy and of the value."""
     set_units: list[Count] = [64, 64]
     """Widths of the layers of the network that reads each member of a set."""
+    set_reader: Literal["pool", "gru"] = "pool"
+    """How sets are read: `pool` keeps the largest features of the members; `gru` reads them in their order, forward and
+    backward, by a gated recurrent unit as wide as the last of `set_units`, adds both last states, and normalizes all
+    features together (after Han et al. 2022)."""
+    log_std: Annotated[Number, Field(ge=-5, le=2)] = -0.5
+    """Natural logarithm of the standard deviation of exploration at the start, for actions from -1 to 1. With less of
+    it a training meets the places where a policy without exploration stops for good."""
     round_updates: Count = 8
     """Updates of a round; after each round the success is measured and everything is saved."""
     stop_at: Fraction | None = None

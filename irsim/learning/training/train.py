@@ -19,7 +19,7 @@ import numpy as np
 from irsim.common.extras import require
 from irsim.learning.sb3_env import SB3VecEnv
 from irsim.learning.tasks.files import TaskSource, open_task
-from irsim.learning.training.extractor import PartsExtractor, columns_of
+from irsim.learning.training.extractor import READERS, columns_of
 from irsim.learning.training.masked_buffer import MaskedRolloutBuffer
 from irsim.learning.training.run_folder import RunFolder, merit
 from irsim.learning.training.settings import TrainingSettings
@@ -183,7 +183,7 @@ def _model(env: SB3VecEnv, task: Any, settings: TrainingSettings) -> Any:
     columns = columns_of(env.worlds.eyes, task.observation)
     sets = any(part.members is not None for part in columns)
     extractor = {
-        "features_extractor_class": PartsExtractor,
+        "features_extractor_class": READERS[settings.set_reader],
         "features_extractor_kwargs": {"columns": columns, "units": tuple(settings.set_units)},
     }
     layers = list(settings.units)
@@ -202,7 +202,7 @@ def _model(env: SB3VecEnv, task: Any, settings: TrainingSettings) -> Any:
         policy_kwargs={
             "net_arch": {"pi": layers, "vf": layers},
             "activation_fn": torch.nn.ReLU,
-            "log_std_init": -0.5,
+            "log_std_init": settings.log_std,
             **(extractor if sets else {}),
         },
         seed=settings.seed,

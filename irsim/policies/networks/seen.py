@@ -17,6 +17,7 @@ def seen_rows(observations: Observations) -> core.SeenRows:
         pose=o.pose,
         steering=o.steering,
         velocity=o.velocity,
+        commanded=np.zeros_like(o.velocity) if o.commanded is None else o.commanded,
         yaw_rate=o.yaw_rate,
         control=o.control,
         low=o.low,

@@ -64,6 +64,7 @@ def observations(count: int = 7, seed: int = 0, neighbors: int = 5) -> Observati
         neighbors=others,
         scan=Scan(rng.uniform(0.1, 8, (count, BEAMS)), np.linspace(-1.5, 1.5, BEAMS), 8.0),
         maps=tuple(maps[w] for w in world),
+        commanded=rng.uniform(-1, 1, (count, 2)),
     )
 
 

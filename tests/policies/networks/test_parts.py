@@ -25,7 +25,10 @@ ALL: dict[str, dict[str, Any]] = {
     "scan": {"sectors": 7},
     "neighbors": {"features": list(get_args(neighbors.Feature)), "count": 4, "range": 3.0},
     "map": {"cells": 5, "size": 2.0},
+    "rvo_cones": {"nearest": 5},
+    "rvo_self": {},
 }
+WITHOUT_FRAME = ("scan", "rvo_cones", "rvo_self")
 """Every part, with all of its features."""
 
 
@@ -56,7 +59,9 @@ def test_declaration(feature: Feature) -> None:
 
 @pytest.mark.parametrize("frame", ["own", "goal", "world"])
 def test_a_robot_observes_the_same_alone_and_in_any_company(frame: str) -> None:
-    framed = {name: {**options} if name == "scan" else {**options, "frame": frame} for name, options in ALL.items()}
+    framed = {
+        name: {**options} if name in WITHOUT_FRAME else {**options, "frame": frame} for name, options in ALL.items()
+    }
     chosen = layout(**framed)
     for count in (1, 2, 3, 9, 33):
         whole = observations(count, seed=count)
