@@ -30,7 +30,7 @@ def train(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the training.")] = Path(
         "training"
     ),
-    algo: Annotated[str | None, typer.Option("--algo", help="Algorithm: ppo, which is the default.")] = None,
+    algo: Annotated[str | None, typer.Option("--algo", help="Algorithm: ppo, which is the default, or sarl.")] = None,
     steps: Annotated[
         float | None,
         typer.Option(
@@ -75,7 +75,11 @@ def train(
         typer.echo("a resumed training keeps its settings, except --steps: leave out the others", err=True)
         raise typer.Exit(INVALID)
     settings = RunFolder(out).settings() if resume else read_settings(given, options or [])
-    from irsim.learning.training.train import train as run
+    run: Any
+    if settings.algo == "sarl":
+        from irsim.learning.training.sarl.train import train_sarl as run
+    else:
+        from irsim.learning.training.train import train as run
 
     if task is not None:
         print_findings(

@@ -68,6 +68,7 @@ def sarl_network(
     *,
     lookahead: Mapping[str, Any],
     neighbors: int = 10,
+    range: float | None = None,
     decision_dt: float | None = 0.25,
     card: Mapping[str, Any] | None = None,
     source: str = "weights",
@@ -79,6 +80,7 @@ def sarl_network(
             is a global state follows from their shapes.
         lookahead: Keys of :class:`irsim.policies.networks.lookahead.Lookahead`.
         neighbors: Number of people that it sees, the nearest ones.
+        range: Gap between bounding circles beyond which people are not seen [m]; None sees everyone.
         decision_dt: Time between two decisions [s].
         card: Where the weights come from.
         source: Name of the weights for messages.
@@ -107,7 +109,7 @@ def sarl_network(
     made.add("concat", "state", ["self", "crowd"])
     value = made.perceptron("value", parts["mlp3"], "state")
     data = {
-        "layout": {"parts": joint_state_parts(neighbors, heading=unicycle)},
+        "layout": {"parts": joint_state_parts(neighbors, heading=unicycle, range=range)},
         "network": made.layers,
         "output": {"input": value, "returns": "control" if unicycle else "velocity"},
         "lookahead": dict(lookahead),
