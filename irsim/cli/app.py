@@ -8,6 +8,7 @@ import typer
 
 from irsim.cli import (
     benchmark,
+    convert,
     demo,
     describe,
     diff,
@@ -76,6 +77,7 @@ for _command in (
     policies.policies,
     train.train,
     export_policy.export_policy,
+    convert.convert,
     render.render,
     describe.describe,
     schema.schema,

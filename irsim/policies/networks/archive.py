@@ -34,12 +34,13 @@ _BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, Runtim
 """What the modules that read archives and headers raise on broken files."""
 
 
-def read_bytes(path: Path, most: int) -> bytes:
+def read_bytes(path: Path, most: int, kind: str = "a .npz or .onnx file") -> bytes:
     """The content of a regular file.
 
     Args:
         path: The file.
         most: Largest size in bytes.
+        kind: What the file should be, for messages.
 
     Raises:
         PolicyFileError: There is no such file, it cannot be read, or it is too large.
@@ -54,9 +55,9 @@ def read_bytes(path: Path, most: int) -> bytes:
             os.close(descriptor)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it cannot be opened"
-        raise PolicyFileError(clean(str(path)), [Problem("", reason)], "name a .npz or .onnx file") from None
+        raise PolicyFileError(clean(str(path)), [Problem("", reason)], f"name {kind}") from None
     if not regular:
-        raise PolicyFileError(clean(str(path)), [Problem("", "it is not a file")], "name a .npz or .onnx file")
+        raise PolicyFileError(clean(str(path)), [Problem("", "it is not a file")], f"name {kind}")
     size = max(status.st_size, len(content))
     if size > most:
         large = Problem("", "the file is too large", f"{size} bytes", f"up to {most}")

@@ -1,0 +1,38 @@
+"""``irsim convert``: make a policy file of weights that a user brings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["convert"]
+
+
+def convert(
+    kind: Annotated[str, typer.Argument(metavar="KIND", help="Kind of weights: rl_rvo.")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="What torch.save wrote: a state dictionary, or a whole module.")
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Policy file to write, .npz.")],
+    options: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="An option of the kind, such as license=MIT; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Make a policy file of weights that others trained with PyTorch; no code of their file runs, and no torch.
+
+    The file may be a state dictionary or a whole module, in both formats of torch.save. Tensors are found by their
+    names and shapes; the message names what is missing.
+    """
+    from irsim.policies.converters.convert import convert_policy, parse_options
+
+    network = convert_policy(kind, file, out, parse_options(options or []))
+    parameters = sum(array.size for array in network.arrays.values())
+    typer.echo(f"wrote {out} with {parameters:,} parameters; try it: irsim run SCENARIO --policy {out}")

@@ -1,0 +1,1 @@
+"""The kinds of weights that can be converted, one module each."""

@@ -1,0 +1,78 @@
+"""Weights of a file, taken one by one by the converter that knows what they mean."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from irsim.common.text import clean
+from irsim.policies.networks.errors import PolicyFileError, Problem
+from irsim.policies.networks.values import Array
+
+__all__ = ["Weights"]
+
+_LISTED = 24
+"""Largest number of arrays that a message lists."""
+
+
+@dataclass(frozen=True)
+class Weights:
+    """The arrays of a file.
+
+    Attributes:
+        source: Name of the file for messages.
+        arrays: Name -> array of float32.
+        digest: SHA-256 of the file.
+    """
+
+    source: str
+    arrays: Mapping[str, Array]
+    digest: str = ""
+
+    def take(self, what: str, endings: Sequence[str], shape: Sequence[int | None]) -> Array:
+        """The one array whose name has one of these endings and whose shape fits.
+
+        Args:
+            what: What is looked for, in words.
+            endings: Ends of its name in whole words between dots, such as ``ln.weight``; the first that fits counts.
+            shape: Its sides; None for any.
+
+        Raises:
+            PolicyFileError: There is none, there are several, or it has another shape; the message lists the arrays.
+        """
+        for ending in endings:
+            named = [name for name in self.arrays if name == ending or name.endswith(f".{ending}")]
+            fitting = [name for name in named if _fits(self.arrays[name].shape, shape)]
+            if len(fitting) == 1:
+                return self.arrays[fitting[0]]
+            if len(fitting) > 1:
+                raise self.error(ending, f"several arrays may be {what}", ", ".join(map(_short, fitting[:4])))
+            if named:
+                given = sides(self.arrays[named[0]].shape)
+                raise self.error(_short(named[0]), f"{what} has another shape", given, sides(shape))
+        wanted = " or ".join(endings)
+        raise self.error("", f"{what} is missing: no array is called {wanted}", self.listed())
+
+    def error(self, where: str, message: str, given: str = "", allowed: str = "") -> PolicyFileError:
+        """The error about these weights."""
+        fix = "convert a file of the structure that irsim convert --help names, or another kind"
+        return PolicyFileError(self.source, [Problem(where, message, given, allowed)], fix)
+
+    def listed(self) -> str:
+        """Names and shapes of the arrays, as text."""
+        names = list(self.arrays)
+        more = f", and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+        return ", ".join(f"{_short(name)} ({sides(self.arrays[name].shape)})" for name in names[:_LISTED]) + more
+
+
+def _short(name: str) -> str:
+    return clean(name, 80)
+
+
+def sides(shape: Sequence[int | None]) -> str:
+    """A shape as text."""
+    return " x ".join("any" if side is None else str(side) for side in shape) or "one number"
+
+
+def _fits(given: Sequence[int], wanted: Sequence[int | None]) -> bool:
+    return len(given) == len(wanted) and all(w is None or g == w for g, w in zip(given, wanted, strict=True))
