@@ -11,7 +11,7 @@ __all__ = ["convert"]
 
 
 def convert(
-    kind: Annotated[str, typer.Argument(metavar="KIND", help="Kind of weights: rl_rvo.")],
+    kind: Annotated[str, typer.Argument(metavar="KIND", help="Kind of weights: rl_rvo or sarl.")],
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="What torch.save wrote: a state dictionary, or a whole module.")
     ],

@@ -71,7 +71,9 @@ def settings_class(algo: str) -> type[AnySettings]:
     """
     if algo not in _CLASSES:
         known = ", ".join(_CLASSES)
-        raise ArgumentError(f"there is no algorithm {clean(algo)!r}", suggestion(algo, list(_CLASSES), f"choose from {known}"))
+        raise ArgumentError(
+            f"there is no algorithm {clean(algo)!r}", suggestion(algo, list(_CLASSES), f"choose from {known}")
+        )
     return _CLASSES[algo]
 
 

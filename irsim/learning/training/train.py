@@ -25,7 +25,7 @@ from irsim.learning.training.masked_buffer import MaskedRolloutBuffer
 from irsim.learning.training.round import Round
 from irsim.learning.training.run_folder import RunFolder, merit
 from irsim.learning.training.settings import TrainingSettings
-from irsim.learning.training.success import Success, measure_success
+from irsim.learning.training.success import measure_success
 from irsim.learning.worlds import Worlds
 
 require("learn", "torch", "stable_baselines3")

@@ -135,7 +135,9 @@ def _value_problems(document: PolicyDocument, plan: GraphPlan, limits: Limits) -
         yield Problem("network", "a network with lookahead remembers nothing", ", ".join(plan.memory))
     work = plan.work * document.lookahead.moves.count
     if work > limits.work:
-        yield Problem("lookahead.moves", "too many multiplications for each decision", str(work), f"up to {limits.work}")
+        yield Problem(
+            "lookahead.moves", "too many multiplications for each decision", str(work), f"up to {limits.work}"
+        )
 
 
 def output_problems(head: PolicyHead, shapes: Mapping[str, Shape]) -> Iterator[Problem]:

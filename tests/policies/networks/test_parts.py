@@ -25,6 +25,7 @@ ALL: dict[str, dict[str, Any]] = {
     "scan": {"sectors": 7},
     "neighbors": {"features": list(get_args(neighbors.Feature)), "count": 4, "range": 3.0},
     "map": {"cells": 5, "size": 2.0},
+    "self_state": {"heading": True},
 }
 """Every part, with all of its features."""
 
@@ -56,7 +57,8 @@ def test_declaration(feature: Feature) -> None:
 
 @pytest.mark.parametrize("frame", ["own", "goal", "world"])
 def test_a_robot_observes_the_same_alone_and_in_any_company(frame: str) -> None:
-    framed = {name: {**options} if name == "scan" else {**options, "frame": frame} for name, options in ALL.items()}
+    fixed = ("scan", "self_state")
+    framed = {name: {**options} if name in fixed else {**options, "frame": frame} for name, options in ALL.items()}
     chosen = layout(**framed)
     for count in (1, 2, 3, 9, 33):
         whole = observations(count, seed=count)
@@ -230,3 +232,16 @@ def test_a_layout_declares_what_all_of_its_parts_need() -> None:
 def test_bad_layouts_are_refused(parts: Any, message: str) -> None:
     with pytest.raises(ValidationError, match=message):
         Layout.model_validate({"parts": parts})
+
+
+def test_the_robot_itself_in_the_frame_of_its_goal() -> None:
+    limit = np.array([[1.5, 3.0, 0.0]])
+    seen = alone([1, 1, 0.5], goal=np.array([[1.0, 4.0, np.nan]]), velocity=np.array([[0.4, 0.3]]), high=limit)
+    seen = replace(seen, radius=np.array([0.25]))
+    np.testing.assert_allclose(numbers(seen, "self_state"), [[3, 1.5, 0, 0.25, 0.3, -0.4]], atol=1e-15)
+    turned = [[3, 1.5, 0.5 - math.pi / 2, 0.25, 0.3, -0.4]]
+    np.testing.assert_allclose(numbers(seen, "self_state", heading=True), turned, atol=1e-15)
+    without = replace(seen, goal=np.full((1, 3), np.nan), pose=np.array([[1.0, 1, 0]]))
+    np.testing.assert_allclose(numbers(without, "self_state"), [[0, 1.5, 0, 0.25, 0.4, 0.3]], atol=1e-15)
+    with pytest.raises(PolicyInputError, match="the largest speed"):
+        numbers(replace(seen, high=np.full((1, 3), np.inf)), "self_state")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from irsim.common.extras import require
 from irsim.learning.training.sarl.settings import SarlSettings
@@ -65,7 +66,7 @@ class ValueNet(nn.Module):
 
 def _perceptron(units: Sequence[int], last: bool = False) -> nn.Sequential:
     layers: list[nn.Module] = []
-    for number, (inputs, outputs) in enumerate(zip(units, units[1:], strict=False)):
+    for number, (inputs, outputs) in enumerate(pairwise(units)):
         layers.append(nn.Linear(inputs, outputs))
         if last or number + 2 < len(units):
             layers.append(nn.ReLU())

@@ -1,7 +1,8 @@
 """Trains a value network for a task, in rounds that can be resumed.
 
-The first round imitates the behaviors of the scenario. What a round does depends on the model and the memory before it
-and on its number alone, of which all seeds are made. A resumed training therefore equals one that was never interrupted.
+The first round imitates the behaviors of the scenario. What a round does depends on the model and the memory
+before it and on its number alone, of which all seeds are made. A resumed training therefore equals one that was never
+interrupted.
 """
 
 from __future__ import annotations
