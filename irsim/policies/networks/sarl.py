@@ -1,8 +1,8 @@
 """SARL: the value network with attention over people, as layers of irsim.
 
 A person and the robot together are a joint state of 13 numbers. ``mlp1`` embeds each joint state, ``mlp2`` makes the
-features of a person of it, and ``attention`` scores it, beside the mean of all if there is a global state. The features,
-weighted by their scores, and the 6 numbers of the robot itself go through ``mlp3``, which returns the value.
+features of a person of it, and ``attention`` scores it, beside the mean of all if there is a global state. The
+features, weighted by their scores, and the 6 numbers of the robot itself go through ``mlp3``, which returns the value.
 
 References:
     Chen, Liu, Kreiss, Alahi: Crowd-Robot Interaction: Crowd-aware Robot Navigation with Attention-based Deep
@@ -21,6 +21,7 @@ from irsim.common.text import clean
 from irsim.policies.networks.document import PolicyDocument
 from irsim.policies.networks.errors import PolicyFileError, Problem
 from irsim.policies.networks.network import Network, check_network, read_document
+from irsim.policies.networks.parts.self_state import Heading
 from irsim.policies.networks.values import Array
 
 __all__ = ["ORDER", "PERCEPTRONS", "joint_state_parts", "sarl_network"]
@@ -47,12 +48,12 @@ class _Perceptron:
         return int(self.layers[-1][0].shape[1])
 
 
-def joint_state_parts(neighbors: int, *, heading: bool = False, range: float | None = None) -> list[dict[str, Any]]:
+def joint_state_parts(neighbors: int, *, heading: Heading = "zero", range: float | None = None) -> list[dict[str, Any]]:
     """The parts of an observation that together are the joint states with up to ``neighbors`` people.
 
     Args:
         neighbors: Largest number of people.
-        heading: Whether the third number is the heading relative to the goal; else it is 0.
+        heading: What the third number is.
         range: Gap between bounding circles beyond which people are not seen [m]; None sees everyone.
     """
     people = {
@@ -69,6 +70,7 @@ def sarl_network(
     lookahead: Mapping[str, Any],
     neighbors: int = 10,
     range: float | None = None,
+    heading: Heading | None = None,
     decision_dt: float | None = 0.25,
     card: Mapping[str, Any] | None = None,
     source: str = "weights",
@@ -76,11 +78,12 @@ def sarl_network(
     """A network of the weights of SARL, named as in its published code.
 
     Args:
-        weights: ``mlp1.0.weight`` (outputs, inputs), ``mlp1.0.bias`` (outputs), … of the four perceptrons. Whether there
-            is a global state follows from their shapes.
+        weights: ``mlp1.0.weight`` (outputs, inputs), ``mlp1.0.bias`` (outputs), … of the four perceptrons. Whether
+            there is a global state follows from their shapes.
         lookahead: Keys of :class:`irsim.policies.networks.lookahead.Lookahead`.
         neighbors: Number of people that it sees, the nearest ones.
         range: Gap between bounding circles beyond which people are not seen [m]; None sees everyone.
+        heading: What the third number of a joint state is; None: 0, or the unwrapped heading of a unicycle, as published.
         decision_dt: Time between two decisions [s].
         card: Where the weights come from.
         source: Name of the weights for messages.
@@ -96,6 +99,7 @@ def sarl_network(
     if problems:
         raise PolicyFileError(source, problems, _FIX)
     unicycle = dict(lookahead.get("moves", {})).get("kind") == "unicycle"
+    turned = heading or ("unwrapped" if unicycle else "zero")
     made = _Layers()
     made.add("concat", "joint", ["self", "people"])
     embedded = made.perceptron("embed", parts["mlp1"], "joint", last="relu")
@@ -109,7 +113,7 @@ def sarl_network(
     made.add("concat", "state", ["self", "crowd"])
     value = made.perceptron("value", parts["mlp3"], "state")
     data = {
-        "layout": {"parts": joint_state_parts(neighbors, heading=unicycle, range=range)},
+        "layout": {"parts": joint_state_parts(neighbors, heading=turned, range=range)},
         "network": made.layers,
         "output": {"input": value, "returns": "control" if unicycle else "velocity"},
         "lookahead": dict(lookahead),

@@ -1,4 +1,4 @@
-"""Value networks as policies: moves, predictions, rewards, and the decisions that follow in situations worked by hand."""
+"""Value networks as policies: moves, predictions, rewards, and what follows in situations worked by hand."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def test_joint_states_after_a_move() -> None:
 def test_the_heading_of_a_unicycle_is_that_after_the_move() -> None:
     seen = scene([0, 0, -math.pi / 2], [4, 0], FAR)
     later = look_ahead(Lookahead(moves=MoveSet(kind="unicycle", headings=3)), seen)
-    parts = observe(Layout.model_validate({"parts": joint_state_parts(3, heading=True)}), later.observations)
+    parts = observe(Layout.model_validate({"parts": joint_state_parts(3, heading="unwrapped")}), later.observations)
     straight_on, left = 1 + 5 + 4, 1 + 10 + 4  # full speed with the second and the third change of the heading
     np.testing.assert_allclose(later.move[0, straight_on], [1, 0], atol=1e-15)
     np.testing.assert_allclose(later.move[0, left], [1, math.pi / 4], atol=1e-15)
@@ -233,7 +233,11 @@ robot:
     vel_max: [1, {most}]
     vel_min: [-1, -{most}]
 obstacle:
-  - {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.3}}, state: [{person}], goal: [1, 6.5], behavior: {{name: dash}}}}
+  - kinematics: {{name: omni}}
+    shape: {{name: circle, radius: 0.3}}
+    state: [9, 6.5, 0]
+    goal: [1, 6.5]
+    behavior: {{name: dash}}
 """
 
 
@@ -242,7 +246,7 @@ def test_every_drive_reaches_its_goal_beside_a_person(tmp_path: Path, drive: str
     unicycle = {"output": {"input": "value", "returns": "control"}, "drives": ["diff"]} if moves == "unicycle" else {}
     ahead = {"moves": {"kind": moves, "headings": 16 if moves == "holonomic" else 7}}
     save_network(tmp_path / "net.npz", greedy(ahead, slope=-0.1, **unicycle))
-    text = SCENE.format(drive=drive, most=1 if drive == "omni" else 3, person="9, 6.5, 0")
+    text = SCENE.format(drive=drive, most=1 if drive == "omni" else 3)
     (tmp_path / "scene.yaml").write_text(text)
     found = irsim.benchmark(tmp_path / "scene.yaml", policies=[str(tmp_path / "net.npz")], seeds=1, workers=1)
     assert found.rows[0].success.rate == 1

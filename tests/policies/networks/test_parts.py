@@ -25,7 +25,7 @@ ALL: dict[str, dict[str, Any]] = {
     "scan": {"sectors": 7},
     "neighbors": {"features": list(get_args(neighbors.Feature)), "count": 4, "range": 3.0},
     "map": {"cells": 5, "size": 2.0},
-    "self_state": {"heading": True},
+    "self_state": {"heading": "wrapped"},
 }
 """Every part, with all of its features."""
 
@@ -240,7 +240,10 @@ def test_the_robot_itself_in_the_frame_of_its_goal() -> None:
     seen = replace(seen, radius=np.array([0.25]))
     np.testing.assert_allclose(numbers(seen, "self_state"), [[3, 1.5, 0, 0.25, 0.3, -0.4]], atol=1e-15)
     turned = [[3, 1.5, 0.5 - math.pi / 2, 0.25, 0.3, -0.4]]
-    np.testing.assert_allclose(numbers(seen, "self_state", heading=True), turned, atol=1e-15)
+    np.testing.assert_allclose(numbers(seen, "self_state", heading="unwrapped"), turned, atol=1e-15)
+    away = replace(seen, pose=np.array([[1.0, 1, -2.0]]))
+    assert numbers(away, "self_state", heading="unwrapped")[0, 2] == pytest.approx(-2 - math.pi / 2)
+    assert numbers(away, "self_state", heading="wrapped")[0, 2] == pytest.approx(1.5 * math.pi - 2)
     without = replace(seen, goal=np.full((1, 3), np.nan), pose=np.array([[1.0, 1, 0]]))
     np.testing.assert_allclose(numbers(without, "self_state"), [[0, 1.5, 0, 0.25, 0.4, 0.3]], atol=1e-15)
     with pytest.raises(PolicyInputError, match="the largest speed"):

@@ -16,7 +16,7 @@ from torch import nn
 __all__ = ["ValueNet"]
 
 
-class ValueNet(nn.Module):
+class ValueNet(nn.Module):  # type: ignore[misc] # types of an extra are not read
     """The value of joint states, as :mod:`irsim.policies.networks.sarl` describes it, with the same names of weights.
 
     Args:

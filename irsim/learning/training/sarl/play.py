@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ _MOVES_AT_ONCE = 4_000
 
 
 class Driver:
-    """Chooses velocities of learners by lookahead, and some of them at random.
+    """Chooses moves of learners by lookahead, and some of them at random.
 
     Args:
         worlds: The worlds.
@@ -40,8 +41,8 @@ class Driver:
         self._observer = Observer(worlds.simulation, layout_needs(self._layout), indices)
         self._objects = worlds.simulation.objects
 
-    def velocities(self, rows: NDArray[np.int64], explore: float, rng: np.random.Generator) -> Floats:
-        """(B, 2) velocities in the world frame [m/s].
+    def moves(self, rows: NDArray[np.int64], explore: float, rng: np.random.Generator) -> Floats:
+        """(B, 2) moves, as in :class:`irsim.policies.networks.lookahead.Futures`.
 
         Args:
             rows: (B,) rows of the learners.
@@ -86,7 +87,7 @@ def play(worlds: Worlds, plan: Plan, driver: Driver | None, explore: float, rng:
     Args:
         worlds: The worlds, whose episodes have just begun.
         plan: How the task is learnt.
-        driver: Chooses velocities; None lets the behaviors of the scenario decide.
+        driver: Chooses moves; None lets the behaviors of the scenario decide.
         explore: Probability of a random move.
         rng: Where random moves are drawn from.
     """
@@ -94,7 +95,7 @@ def play(worlds: Worlds, plan: Plan, driver: Driver | None, explore: float, rng:
     held = max(1, int(plan.lookahead.dt / step_time + 0.5))
     speed = worlds.simulation.state.vel_max[worlds.rows, 0]
     fade = np.array([plan.lookahead.gamma ** (step_time * v) for v in speed.tolist()])
-    moves = []
+    moves: list[tuple[Any, ...]] = []
     arrived, collided = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     total, seconds = np.zeros(shape), np.zeros(worlds.n)
     active, going = worlds.present.copy(), np.ones(worlds.n, dtype=bool)
@@ -103,8 +104,8 @@ def play(worlds: Worlds, plan: Plan, driver: Driver | None, explore: float, rng:
         before = worlds.observe()
         actions = np.zeros((len(worlds.rows), 2))
         if driver is not None and slots.size:
-            velocity = driver.velocities(worlds.rows[slots], explore, rng)
-            actions[slots] = plan.numbers(worlds.task, velocity)
+            chosen = driver.moves(worlds.rows[slots], explore, rng)
+            actions[slots] = plan.numbers(worlds.task, chosen, held * step_time)
         reward, factor, ended = np.zeros(len(speed)), np.ones(len(speed)), ~active.reshape(-1)
         for _ in range(held):
             result = worlds.step(None if driver is None else actions)
@@ -132,7 +133,7 @@ def play(worlds: Worlds, plan: Plan, driver: Driver | None, explore: float, rng:
     return Played(_joined(moves, len(speed)), success)
 
 
-def _joined(moves: list[tuple[NDArray[np.int64], ...]], count: int) -> Experience:
+def _joined(moves: list[tuple[Any, ...]], count: int) -> Experience:
     """All decisions, with the sums of the rewards that follow."""
     gain, gains = np.zeros(count), []
     for slots, _, reward, _, factor in reversed(moves):

@@ -69,7 +69,8 @@ class SarlSettings(Options):
     speeds: Count = 5
     """Speeds that are compared."""
     headings: Count = 16
-    """Headings that are compared, from the direction of the goal on."""
+    """Headings that are compared, from the direction of the goal on; or changes of the heading, where the action of the
+    task returns controls."""
     dt: Annotated[Seconds, Field(gt=0)] = 0.25
     """Time between two decisions, and how far it looks ahead."""
     gap: Literal["end", "smallest"] = "end"

@@ -276,5 +276,6 @@ def sarl_network_of(file: Path, source: Any, settings: SarlSettings, card: dict[
     weights = {name: x.numpy() for name, x in torch.load(file, weights_only=True)["net"].items()}
     ahead = plan.lookahead.model_dump(mode="json")
     return sarl_network(
-        weights, lookahead=ahead, neighbors=plan.people, range=plan.range, decision_dt=settings.dt, card=card
-    )
+        weights, lookahead=ahead, neighbors=plan.people, range=plan.range, heading=plan.heading,
+        decision_dt=settings.dt, card=card,
+    )  # fmt: skip

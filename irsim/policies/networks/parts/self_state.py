@@ -7,13 +7,14 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from irsim.options.units import Bool
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.features import PARTS
 from irsim.policies.networks.frames import turn_back, x_axis
 from irsim.policies.networks.parts._options import PartOptions
 from irsim.policies.networks.values import Channel, Value
 from irsim.policies.observations import Observations
+
+Heading = Literal["zero", "wrapped", "unwrapped"]
 
 
 class SelfState(PartOptions):
@@ -33,14 +34,14 @@ class SelfState(PartOptions):
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "self_state"}]}
 
     name: Literal["self_state"] = "self_state"
-    heading: Bool = False
-    """Whether the third number is the heading of the robot minus the direction of its goal [rad], which is not wrapped;
-    otherwise it is 0, as for robots that move in all directions."""
+    heading: Heading = "zero"
+    """The third number: 0, as for robots that move in all directions, or the heading minus the direction of the goal
+    [rad], `wrapped` into -pi to pi, or `unwrapped` as published."""
 
     def channels(self) -> tuple[Channel, ...]:
         """The six numbers."""
         most = math.inf
-        turned = most if self.heading else 0.0
+        turned = {"zero": 0.0, "wrapped": math.pi, "unwrapped": most}[self.heading]
         return (
             Channel("goal_distance", 0.0, most),
             Channel("preferred_speed", -most, most),
@@ -68,8 +69,11 @@ def self_state(observations: Observations, options: SelfState) -> Value:
     found = np.zeros((len(o), 6))
     found[:, 0] = np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1])
     found[:, 1] = o.high[:, 0]
-    if options.heading:  # math.atan2, because that of NumPy has other last bits on other processors
+    if options.heading == "unwrapped":  # math.atan2, because that of NumPy has other last bits on other processors
         found[:, 2] = o.pose[:, 2] - np.array([math.atan2(y, x) for x, y in axis.tolist()])
+    elif options.heading == "wrapped":
+        ahead = turn_back(x_axis("own", o.pose, o.goal), axis)
+        found[:, 2] = [math.atan2(y, x) for x, y in ahead.tolist()]
     found[:, 3] = o.radius
     found[:, 4:] = velocity
     return Value(found)
