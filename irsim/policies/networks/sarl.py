@@ -83,7 +83,7 @@ def sarl_network(
         lookahead: Keys of :class:`irsim.policies.networks.lookahead.Lookahead`.
         neighbors: Number of people that it sees, the nearest ones.
         range: Gap between bounding circles beyond which people are not seen [m]; None sees everyone.
-        heading: What the third number of a joint state is; None: 0, or the unwrapped heading of a unicycle, as published.
+        heading: The third number of a joint state; None: 0, or the unwrapped heading of a unicycle, as published.
         decision_dt: Time between two decisions [s].
         card: Where the weights come from.
         source: Name of the weights for messages.
