@@ -89,7 +89,6 @@ def _lookahead(options: dict[str, Any] | None) -> str:
     moves, reward = options["moves"], options["reward"]
     count = 1 + moves["speeds"] * moves["headings"]
     kind = "velocities" if moves["kind"] == "holonomic" else "speeds and changes of the heading"
-    return (
-        f"the best of {count} {kind}, {options['dt']:g} s ahead, by reward (goal {reward['goal']:g}, collision "
-        f"{reward['collision']:g}, discomfort below {reward['distance']:g} m) + {options['gamma']:g}^(time x speed) x value"
-    )
+    rewards = f"goal {reward['goal']:g}, collision {reward['collision']:g}, discomfort below {reward['distance']:g} m"
+    returns = f"reward ({rewards}) + {options['gamma']:g}^(time x speed) x value"
+    return f"the best of {count} {kind}, {options['dt']:g} s ahead, by {returns}"

@@ -15,8 +15,13 @@ from irsim.scenario.perturbation import perturbation_text
 
 RECIPES = Path(irsim.__file__).parents[1] / "skills" / "irsim-runner" / "recipes"
 LEAST = {
-    "goal_lidar": 0.9, "crowd": 0.9, "corridor_social": 0.9, "multi_robot": 0.9, "multi_robot_freeze": 0.75, "sarl": 0.9,
-}  # fmt: skip
+    "goal_lidar": 0.9,
+    "crowd": 0.9,
+    "corridor_social": 0.9,
+    "multi_robot": 0.9,
+    "multi_robot_freeze": 0.75,
+    "sarl": 0.9,
+}
 """Success that each must reach in 20 scenes that it was not trained on; in all it has reached more."""
 
 TASKS = {"sarl": "sarl_circle"}

@@ -146,7 +146,7 @@ def test_trainings_of_other_algorithms_are_not_mixed_up(tmp_path: Path) -> None:
     ("changed", "message"),
     [
         ({"observation": [{"name": "goal"}]}, "observes joint states"),
-        ({"action": {}}, "chooses velocities in the world frame"),
+        ({"action": {"returns": "velocity", "frame": "own"}}, "chooses velocities in the world frame"),
         ({"reward": [{"name": "progress"}]}, "progress cannot be predicted"),
     ],
 )
