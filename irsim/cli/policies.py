@@ -75,7 +75,20 @@ def _network(facts: dict[str, Any]) -> dict[str, str]:
     return {
         "observes": "; ".join(parts),
         "output": ", ".join(words),
+        "lookahead": _lookahead(facts.get("lookahead")),
         "layers": "; ".join(map(str, facts.get("layers", ()))),
         "size": f"{facts['parameters']:,} parameters" if "parameters" in facts else "",
         "card": ", ".join(f"{key}: {value}" for key, value in card_words.items()),
     }
+
+
+def _lookahead(options: dict[str, Any] | None) -> str:
+    """How moves are compared, in words; empty for networks that decide themselves."""
+    if options is None:
+        return ""
+    moves, reward = options["moves"], options["reward"]
+    count = 1 + moves["speeds"] * moves["headings"]
+    kind = "velocities" if moves["kind"] == "holonomic" else "speeds and changes of the heading"
+    rewards = f"goal {reward['goal']:g}, collision {reward['collision']:g}, discomfort below {reward['distance']:g} m"
+    returns = f"reward ({rewards}) + {options['gamma']:g}^(time x speed) x value"
+    return f"the best of {count} {kind}, {options['dt']:g} s ahead, by {returns}"

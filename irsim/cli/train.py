@@ -9,7 +9,7 @@ import typer
 
 from irsim.cli.guard import INVALID
 
-__all__ = ["SETTINGS", "train"]
+__all__ = ["SARL_SETTINGS", "SETTINGS", "train"]
 
 SETTINGS = (
     "Their defaults: slots=128, rollout=64, batch=1024, epochs=6, rate=0.0007, gamma=0.98, gae_lambda=0.95, clip=0.2, "
@@ -17,6 +17,13 @@ SETTINGS = (
     "set_reader=pool, log_std=-0.5, round_updates=8."
 )
 """Help on the settings; a literal, so that the help needs no pydantic."""
+SARL_SETTINGS = (
+    "With --algo sarl: demonstrations=2000, demonstration_epochs=20, slots=100, batch=500, updates=100, "
+    "round_episodes=10, memory=100000, rate=0.001, decay=1e-05, gamma=0.9, explore=0.5, explore_end=0.1, "
+    "explore_until=0.4, target_updates=200, global_state=True, embed_units=[150, 100], feature_units=[100, 50], "
+    "score_units=[100, 100], value_units=[150, 100, 100], speeds=5, headings=16, dt=0.25, gap=end."
+)
+"""The same for value networks."""
 
 
 def train(
@@ -31,14 +38,14 @@ def train(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Folder of the training.")] = Path(
         "training"
     ),
-    algo: Annotated[str | None, typer.Option("--algo", help="Algorithm: ppo, which is the default.")] = None,
+    algo: Annotated[str | None, typer.Option("--algo", help="Algorithm: ppo, which is the default, or sarl.")] = None,
     steps: Annotated[
         float | None,
         typer.Option(
             "--steps",
             min=1,
             help="Decisions of all learners, at most, such as 5e6; with --resume a finished training goes on to them. "
-            "Default: 1e6.",
+            "Default: 1e6; 450,000 after the demonstrations with sarl.",
         ),
     ] = None,
     max_time: Annotated[
@@ -54,7 +61,9 @@ def train(
     ] = None,
     options: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help=f"Another setting; may be repeated. {SETTINGS}"),
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help=f"Another setting; may be repeated. {SETTINGS} {SARL_SETTINGS}"
+        ),
     ] = None,
     threads: Annotated[int, typer.Option("--threads", min=1, help="Threads of simulation and torch.")] = 1,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the training in the folder.")] = False,
@@ -76,7 +85,11 @@ def train(
         typer.echo("a resumed training keeps its settings, except --steps: leave out the others", err=True)
         raise typer.Exit(INVALID)
     settings = RunFolder(out).settings() if resume else read_settings(given, options or [])
-    from irsim.learning.training.train import train as run
+    run: Any
+    if settings.algo == "sarl":
+        from irsim.learning.training.sarl.train import train_sarl as run
+    else:
+        from irsim.learning.training.train import train as run
 
     if task is not None:
         print_findings(

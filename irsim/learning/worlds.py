@@ -223,7 +223,8 @@ class Worlds:
         """Advance all worlds by one period.
 
         Args:
-            actions: (n * A, C) numbers from -1 to 1, or (n * A,) numbers of choices.
+            actions: (n * A, C) numbers from -1 to 1, or (n * A,) numbers of choices; None leaves the learners to the
+                behaviors of the scenario.
 
         Raises:
             ArgumentError: The actions have another shape, or are not finite.
@@ -231,7 +232,8 @@ class Worlds:
         simulation, rows, shape = self._simulation, self.rows, self._shape
         goal, before = simulation.goal.take(rows, axis=0), simulation.pose.take(rows, axis=0)
         control_before = simulation.control.take(rows, axis=0)
-        self._impose(self._read(actions), before, goal, control_before)
+        if actions is not None:
+            self._impose(self._read(actions), before, goal, control_before)
         commanded = simulation.state.commanded.take(rows, axis=0)
         threat = None if self._threats is None else self._threats.urgency(rows)
         simulation.step()

@@ -8,9 +8,10 @@ import yaml
 from PIL import Image
 
 import irsim
-from irsim.cli.train import SETTINGS
+from irsim.cli.train import SARL_SETTINGS, SETTINGS
 from irsim.learning.tasks.files import open_task
 from irsim.learning.training.run_folder import RunFolder, merit
+from irsim.learning.training.sarl.settings import SarlSettings
 from irsim.learning.training.settings import TrainingSettings
 from irsim.learning.worlds import Worlds
 from tests.learning.tasks import corridor, task
@@ -46,6 +47,8 @@ def test_the_help_of_train_has_every_setting_with_its_default() -> None:
     options = {"algo", "steps", "seed", "stop_at"}
     settings = TrainingSettings().model_dump(exclude=options)
     assert SETTINGS.endswith(": " + ", ".join(f"{key}={value}" for key, value in settings.items()) + ".")
+    sarl = SarlSettings().model_dump(exclude=options)
+    assert SARL_SETTINGS.endswith(": " + ", ".join(f"{key}={value}" for key, value in sarl.items()) + ".")
 
 
 def test_a_training_without_a_finished_round_does_not_block_its_folder(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from irsim.learning.tasks.team import team_of
 from irsim.learning.training.curve import draw_curve
 from irsim.learning.training.extractor import GruExtractor, PartColumns, columns_of
 from irsim.learning.training.run_folder import RunFolder, merit
+from irsim.learning.training.sarl.settings import SarlSettings
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.document import PolicyDocument
 from irsim.policies.networks.files import save_network
@@ -68,7 +69,7 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
     card = {
         "description": description or task.title,
         "license": license,
-        "source": f"irsim {version()}, {settings.algo} of Stable-Baselines3",
+        "source": f"irsim {version()}, {settings.algo}" + (" of Stable-Baselines3" if settings.algo == "ppo" else ""),
         "task": f"{task.task} version {task.version}, SHA-256 {hashlib.sha256(file.read_bytes()).hexdigest()}",
         "protocol": task.protocol,
         "seeds": [settings.seed, task.seeds.train],
@@ -81,7 +82,12 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
             "training_seconds": best["seconds"],
         },
     }
-    network = network_of(PPO.load(run.best, device="cpu").policy, file, card)
+    if isinstance(settings, SarlSettings):
+        from irsim.learning.training.sarl.train import sarl_network_of
+
+        network = sarl_network_of(run.best, file, settings, card)
+    else:
+        network = network_of(PPO.load(run.best, device="cpu").policy, file, card)
     if target.suffix == ".onnx":
         save_onnx(target, network)
     else:

@@ -14,7 +14,7 @@ from irsim.common.files import replacing, write_atomically
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.scene import scenario_text
 from irsim.learning.tasks.task import Task
-from irsim.learning.training.settings import TrainingSettings
+from irsim.learning.training.settings import AnySettings, settings_class
 
 __all__ = ["RunFolder", "merit"]
 
@@ -28,7 +28,7 @@ class RunFolder:
     """Files of a training.
 
     ``task.yaml``, its scenario ``scenario.yaml`` and ``settings.yaml`` say what was asked for, ``progress.jsonl`` has a
-    line for each round, ``latest.zip`` and ``best.zip`` are models of Stable-Baselines3.
+    line for each round, ``latest.zip`` and ``best.zip`` are models of the algorithm.
 
     Args:
         path: The folder.
@@ -39,7 +39,7 @@ class RunFolder:
         self.latest, self.best = path / "latest.zip", path / "best.zip"
         self._progress = path / "progress.jsonl"
 
-    def begin(self, task: Task, folder: Path, maps: Mapping[str, str], settings: TrainingSettings) -> None:
+    def begin(self, task: Task, folder: Path, maps: Mapping[str, str], settings: AnySettings) -> None:
         """Write what was asked for.
 
         Args:
@@ -68,12 +68,12 @@ class RunFolder:
         write_atomically(self.path / "task.yaml", yaml.safe_dump(data, sort_keys=False, allow_unicode=True))
         self.keep(settings)
 
-    def keep(self, settings: TrainingSettings) -> None:
+    def keep(self, settings: AnySettings) -> None:
         """Write the settings."""
         text = yaml.safe_dump(settings.model_dump(mode="json"), sort_keys=False)
         write_atomically(self.path / "settings.yaml", text)
 
-    def settings(self) -> TrainingSettings:
+    def settings(self) -> AnySettings:
         """The settings of the training in the folder.
 
         Raises:
@@ -82,7 +82,8 @@ class RunFolder:
         file = self.path / "settings.yaml"
         if not file.is_file():
             raise ArgumentError(f"{self.path} holds no training", "leave out --resume to begin one")
-        return TrainingSettings.model_validate(yaml.safe_load(file.read_text(encoding="utf-8")))
+        data = yaml.safe_load(file.read_text(encoding="utf-8"))
+        return settings_class(str(data["algo"])).model_validate(data)
 
     def rounds(self) -> list[dict[str, Any]]:
         """What each finished round has reached."""

@@ -12,10 +12,11 @@ from irsim.common.arguments import as_given
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.training.sarl.settings import SarlSettings
 from irsim.options.base import Options
 from irsim.options.units import Fraction, Integer, Number
 
-__all__ = ["TrainingSettings", "read_settings"]
+__all__ = ["AnySettings", "TrainingSettings", "read_settings", "settings_class"]
 
 Count = Annotated[Integer, Field(ge=1)]
 
@@ -64,7 +65,26 @@ class TrainingSettings(Options):
     """Success on the validation seeds at which the training stops; null uses all steps."""
 
 
-def read_settings(given: Mapping[str, Any], texts: Sequence[str]) -> TrainingSettings:
+AnySettings = TrainingSettings | SarlSettings
+"""Settings of a training with any algorithm."""
+_CLASSES: dict[str, type[AnySettings]] = {"ppo": TrainingSettings, "sarl": SarlSettings}
+
+
+def settings_class(algo: str) -> type[AnySettings]:
+    """The settings of an algorithm.
+
+    Raises:
+        ArgumentError: There is no such algorithm.
+    """
+    if algo not in _CLASSES:
+        known = ", ".join(_CLASSES)
+        raise ArgumentError(
+            f"there is no algorithm {clean(algo)!r}", suggestion(algo, list(_CLASSES), f"choose from {known}")
+        )
+    return _CLASSES[algo]
+
+
+def read_settings(given: Mapping[str, Any], texts: Sequence[str]) -> AnySettings:
     """Settings of a command.
 
     Args:
@@ -75,12 +95,13 @@ def read_settings(given: Mapping[str, Any], texts: Sequence[str]) -> TrainingSet
         ArgumentError: A text is none, or a value is not allowed.
     """
     values = {key: value for key, value in given.items() if value is not None}
+    model = settings_class(str(values.get("algo", "ppo")))
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals:
             raise ArgumentError(f"{as_given(text)} is not a setting", "write KEY=VALUE, such as rate=3e-4")
-        if key not in TrainingSettings.model_fields:
-            known = list(TrainingSettings.model_fields)
+        if key not in model.model_fields:
+            known = list(model.model_fields)
             raise ArgumentError(
                 f"there is no setting {clean(key)!r}", suggestion(key, known, f"choose from {', '.join(known)}")
             )
@@ -88,7 +109,7 @@ def read_settings(given: Mapping[str, Any], texts: Sequence[str]) -> TrainingSet
         number = number_of(read) if isinstance(read, str) else read
         values[key] = number
     try:
-        return TrainingSettings.model_validate(values)
+        return model.model_validate(values)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(map(str, first["loc"]))

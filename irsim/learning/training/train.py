@@ -10,20 +10,22 @@ import random
 import time
 import warnings
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from irsim.common.extras import require
+from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.sb3_env import SB3VecEnv
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.training.extractor import READERS, columns_of
 from irsim.learning.training.masked_buffer import MaskedRolloutBuffer
+from irsim.learning.training.round import Round
 from irsim.learning.training.run_folder import RunFolder, merit
 from irsim.learning.training.settings import TrainingSettings
-from irsim.learning.training.success import Success, measure_success
+from irsim.learning.training.success import measure_success
 from irsim.learning.worlds import Worlds
 
 require("learn", "torch", "stable_baselines3")
@@ -38,27 +40,6 @@ _LOWEST_RATE = 0.1
 """Share of the learning rate that is left at the end."""
 _SCENES_PER_ROUND = 1_000_003
 """Distance between the seeds of two rounds: more than there are worlds."""
-
-
-@dataclass(frozen=True)
-class Round:
-    """A finished round.
-
-    Attributes:
-        number: Its number, from 1.
-        steps: Decisions of all learners so far, without those of learners that waited.
-        seconds: Wall-clock time of all rounds so far [s].
-        success: What the policy reaches on the validation seeds.
-        best: Whether it is better than every earlier round: in success or, with equal success, in reward.
-        rounds: Number of rounds of the whole training.
-    """
-
-    number: int
-    steps: int
-    seconds: float
-    success: Success
-    best: bool
-    rounds: int
 
 
 class _Active(BaseCallback):  # type: ignore[misc] # types of an extra are not read
@@ -109,8 +90,10 @@ def train(
     """
     run = RunFolder(Path(folder))
     if resume:
-        settings = run.settings()
-        task = run.path / "task.yaml"
+        kept = run.settings()
+        if not isinstance(kept, TrainingSettings):
+            raise ArgumentError(f"{folder} holds a training with {kept.algo}", "resume it with irsim train --resume")
+        settings, task = kept, run.path / "task.yaml"
     settings = settings or TrainingSettings()
     if steps is not None:
         settings = settings.model_copy(update={"steps": steps})

@@ -12,7 +12,8 @@ from irsim.options.units import Bool, Integer, Number, Seconds
 from irsim.policies.networks.features import LAYERS
 from irsim.policies.networks.frames import Frame
 from irsim.policies.networks.layers._options import LayerOptions
-from irsim.policies.networks.layout import Layout
+from irsim.policies.networks.layout import Layout, layout_needs
+from irsim.policies.networks.lookahead import Lookahead
 from irsim.policies.networks.parts._options import Label
 
 __all__ = ["FORMAT", "VERSION", "Card", "Meaning", "OutputOptions", "PolicyDocument", "PolicyHead"]
@@ -133,3 +134,27 @@ class PolicyDocument(PolicyHead):
     """Type of all arrays, and of the arithmetic."""
     network: Annotated[list[Annotated[LayerOptions, Select(LAYERS)]], Field(min_length=1)]
     """The layers in the order in which they run."""
+    lookahead: Lookahead | None = None
+    """Let the result be the value of a state, and choose the move after which reward and value are best; null lets
+    the result be the decision."""
+
+    @model_validator(mode="after")
+    def _can_look_ahead(self) -> PolicyDocument:
+        if self.lookahead is None:
+            return self
+        unicycle, output = self.lookahead.moves.kind == "unicycle", self.output
+        if output.model_fields_set - {"input", "returns"} and output != type(output)(
+            input=output.input, returns=output.returns
+        ):
+            message = "with 'lookahead' the output is a value, which has only 'input' and 'returns'"
+            raise problem("policy-file", message, fix="remove the other keys of output")
+        wanted = "control" if unicycle else "velocity"
+        if output.returns != wanted:
+            raise problem("policy-file", f"these moves are of the kind {wanted}", fix=f'set "returns": "{wanted}"')
+        if unicycle and self.drives != ["diff"]:
+            raise problem("policy-file", "moves of a unicycle are those of diff", fix='set "drives": ["diff"]')
+        needs = layout_needs(self.layout)
+        if needs.scan or needs.map or needs.neighbor_extents or not needs.neighbors:
+            message = "what is observed after a move is predicted, which takes neighbors and no scan, map or extents"
+            raise problem("policy-file", message, fix="observe self_state, own, goal and neighbors")
+        return self

@@ -103,7 +103,8 @@ def check_network(network: Network, source: str, limits: Limits = LIMITS) -> Gra
     problems = list(plan.problems)
     if not problems:
         problems += _size_problems(plan, limits)
-        problems += output_problems(document, plan.shapes)
+        problems += _value_problems(document, plan, limits) if document.lookahead else []
+        problems += [] if document.lookahead else output_problems(document, plan.shapes)
     if not problems:
         problems += _array_problems(network.arrays, plan, np.dtype(document.precision))
     if problems:
@@ -120,6 +121,23 @@ def _size_problems(plan: GraphPlan, limits: Limits) -> Iterator[Problem]:
     for what, size, most in sizes:
         if size > most:
             yield Problem("network", f"too many {what}", str(size), f"up to {most}")
+
+
+def _value_problems(document: PolicyDocument, plan: GraphPlan, limits: Limits) -> Iterator[Problem]:
+    """What is wrong with a network whose result is the value of a state."""
+    assert document.lookahead is not None
+    label, shape = document.output.input, plan.shapes.get(document.output.input)
+    if shape is None:
+        yield Problem("output.input", "no part and no layer has this name", label, ", ".join(list(plan.shapes)[-5:]))
+    elif shape.members is not None or shape.features != 1:
+        yield Problem("output.input", "a value is one number", f"{label} ({shape})", "a vector of 1")
+    if plan.memory:
+        yield Problem("network", "a network with lookahead remembers nothing", ", ".join(plan.memory))
+    work = plan.work * document.lookahead.moves.count
+    if work > limits.work:
+        yield Problem(
+            "lookahead.moves", "too many multiplications for each decision", str(work), f"up to {limits.work}"
+        )
 
 
 def output_problems(head: PolicyHead, shapes: Mapping[str, Shape]) -> Iterator[Problem]:

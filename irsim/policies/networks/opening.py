@@ -10,6 +10,7 @@ from irsim.policies.networks.archive import read_bytes
 from irsim.policies.networks.errors import PolicyFileError, Problem
 from irsim.policies.networks.files import read_network
 from irsim.policies.networks.limits import LIMITS, Limits
+from irsim.policies.networks.lookahead_policy import LookaheadPolicy
 from irsim.policies.networks.network import check_network
 from irsim.policies.networks.network_policy import LayerPolicy, NetworkPolicy
 
@@ -44,4 +45,5 @@ def open_network(path: str | Path, *, limits: Limits = LIMITS) -> NetworkPolicy:
         return open_onnx(path, content, facts, limits)
     network = read_network(content, source, limits)
     plan = check_network(network, source, limits)
-    return LayerPolicy(path.stem, network, plan, {"format": "irsim-policy 1", **facts})
+    kind = LayerPolicy if network.document.lookahead is None else LookaheadPolicy
+    return kind(path.stem, network, plan, {"format": "irsim-policy 1", **facts})

@@ -27,8 +27,9 @@ ALL: dict[str, dict[str, Any]] = {
     "map": {"cells": 5, "size": 2.0},
     "rvo_cones": {"nearest": 5},
     "rvo_self": {},
+    "self_state": {"heading": "wrapped"},
 }
-WITHOUT_FRAME = ("scan", "rvo_cones", "rvo_self")
+WITHOUT_FRAME = ("scan", "rvo_cones", "rvo_self", "self_state")
 """Every part, with all of its features."""
 
 
@@ -235,3 +236,19 @@ def test_a_layout_declares_what_all_of_its_parts_need() -> None:
 def test_bad_layouts_are_refused(parts: Any, message: str) -> None:
     with pytest.raises(ValidationError, match=message):
         Layout.model_validate({"parts": parts})
+
+
+def test_the_robot_itself_in_the_frame_of_its_goal() -> None:
+    limit = np.array([[1.5, 3.0, 0.0]])
+    seen = alone([1, 1, 0.5], goal=np.array([[1.0, 4.0, np.nan]]), velocity=np.array([[0.4, 0.3]]), high=limit)
+    seen = replace(seen, radius=np.array([0.25]))
+    np.testing.assert_allclose(numbers(seen, "self_state"), [[3, 1.5, 0, 0.25, 0.3, -0.4]], atol=1e-15)
+    turned = [[3, 1.5, 0.5 - math.pi / 2, 0.25, 0.3, -0.4]]
+    np.testing.assert_allclose(numbers(seen, "self_state", heading="unwrapped"), turned, atol=1e-15)
+    away = replace(seen, pose=np.array([[1.0, 1, -2.0]]))
+    assert numbers(away, "self_state", heading="unwrapped")[0, 2] == pytest.approx(-2 - math.pi / 2)
+    assert numbers(away, "self_state", heading="wrapped")[0, 2] == pytest.approx(1.5 * math.pi - 2)
+    without = replace(seen, goal=np.full((1, 3), np.nan), pose=np.array([[1.0, 1, 0]]))
+    np.testing.assert_allclose(numbers(without, "self_state"), [[0, 1.5, 0, 0.25, 0.4, 0.3]], atol=1e-15)
+    with pytest.raises(PolicyInputError, match="the largest speed"):
+        numbers(replace(seen, high=np.full((1, 3), np.inf)), "self_state")

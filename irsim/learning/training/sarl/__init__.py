@@ -1,0 +1,1 @@
+"""Training of value networks that look ahead, as SARL does: imitation of a behavior, then reinforcement."""

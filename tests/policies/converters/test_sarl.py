@@ -1,0 +1,108 @@
+"""Weights of SARL that a user brings become a policy file, or are refused with a reason."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import irsim
+from irsim.cli.app import app
+from irsim.diagnostics.errors import ArgumentError
+from irsim.policies.converters.convert import convert_policy
+from irsim.policies.networks import PolicyFileError, observe, open_network
+from tests.policies.converters.torch_bytes import as_files, closed, name, text, zip_file
+from tests.policies.networks.observed import observations
+from tests.policies.networks.sarl_weights import sarl_weights, value_of
+
+SCENE = """
+world: {width: 10, height: 10, step_time: 0.25, time_limit: 2}
+robot:
+  - number: 3
+    distribution: {name: random, range_low: [1, 1, -3], range_high: [9, 9, 3]}
+    kinematics: {name: diff}
+    vel_max: [1, 3]
+    vel_min: [-1, -3]
+"""
+
+
+@pytest.mark.parametrize("old", [False, True], ids=["zip", "old"])
+@pytest.mark.parametrize(("global_state", "kind"), [(True, "holonomic"), (False, "unicycle")])
+def test_a_converted_file_has_the_values_of_its_weights(
+    tmp_path: Path, old: bool, global_state: bool, kind: str
+) -> None:
+    weights = sarl_weights(global_state, seed=3)
+    (tmp_path / "rl_model.pth").write_bytes(as_files(weights)[old])
+    convert_policy("sarl", tmp_path / "rl_model.pth", tmp_path / "net.npz", {"license": "MIT", "neighbors": 5})
+    policy: Any = open_network(tmp_path / "net.npz")
+    moves = policy.lookahead.moves
+    assert (moves.kind, moves.count) == ((kind, 81) if kind == "holonomic" else (kind, 36))
+    assert moves.frame == "world"
+    assert policy.head.card.license == "MIT"
+    seen = observations(20)
+    observed = observe(policy.head.layout, seen)
+    own, people = observed["self"].array, observed["people"]
+    assert people.mask is not None
+    assert (own[:, 2] != 0).any() == (kind == "unicycle")
+    expected = [value_of(weights, own[b], people.array[b, people.mask[b]]) for b in range(20)]
+    np.testing.assert_allclose(policy.compute(observed, seen)[:, 0], expected, rtol=1e-5, atol=1e-5)
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    found = irsim.benchmark(tmp_path / "scene.yaml", policies=[str(tmp_path / "net.npz")], seeds=2, workers=1)
+    assert found.rows[0].episodes == 2
+
+
+def test_names_of_a_wrapping_module_do_not_matter(tmp_path: Path) -> None:
+    wrapped = {f"policy.model.{key}": x for key, x in sarl_weights().items()}
+    other = {"other.weight": np.zeros((2, 2), np.float32)}
+    (tmp_path / "net.pth").write_bytes(as_files({**wrapped, **other})[0])
+    made = convert_policy("sarl", tmp_path / "net.pth", tmp_path / "net.npz", {"kinematics": "unicycle", "headings": 9})
+    ahead = made.document.lookahead
+    assert ahead is not None
+    assert ahead.moves.count == 46
+
+
+def test_the_command_writes_a_file_that_drives(tmp_path: Path) -> None:
+    (tmp_path / "net.pth").write_bytes(as_files(sarl_weights())[0])
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    out = tmp_path / "net.npz"
+    made = CliRunner().invoke(app, ["convert", "sarl", str(tmp_path / "net.pth"), "-o", str(out)])
+    assert made.exit_code == 0, made.output
+    assert "96,502 parameters" in made.output
+    run = CliRunner().invoke(app, ["run", str(tmp_path / "scene.yaml"), "--policy", str(out), "--steps", "5"])
+    assert run.exit_code == 0, run.output
+
+
+def refused(tmp_path: Path, content: bytes) -> str:
+    (tmp_path / "net.pth").write_bytes(content)
+    with pytest.raises(PolicyFileError) as caught:
+        convert_policy("sarl", tmp_path / "net.pth", tmp_path / "net.npz")
+    assert not (tmp_path / "net.npz").exists()
+    assert caught.value.fix
+    return caught.value.message
+
+
+def test_files_of_something_else_are_refused(tmp_path: Path) -> None:
+    weights = sarl_weights()
+    wrong = {**weights, "mlp3.0.weight": np.zeros((150, 60), np.float32)}
+    assert "mlp3.0.weight: has another number of inputs, given: 60" in refused(tmp_path, as_files(wrong)[0])
+    broken = {**weights, "mlp2.2.bias": np.full(50, np.inf, np.float32)}
+    assert "mlp2.2.bias" in refused(tmp_path, as_files(broken)[0])
+    assert "mlp1.0.weight" in refused(tmp_path, as_files({"actor.weight": np.zeros((2, 2), np.float32)})[0])
+    twice = {**weights, **{f"target.{key}": x for key, x in weights.items()}}
+    assert "several arrays are called mlp1.0.weight" in refused(tmp_path, as_files(twice)[1])
+    with pytest.raises(ArgumentError, match="kinematics"):
+        convert_policy("sarl", tmp_path / "net.pth", tmp_path / "net.npz", {"kinematics": "car"})
+
+
+def test_files_with_code_or_huge_sizes_are_refused(tmp_path: Path) -> None:
+    harmful = name("os", "system") + b"(" + text("touch " + str(tmp_path / "harm")) + b"tR"
+    refused(tmp_path, zip_file(harmful, {}))
+    refused(tmp_path, closed(harmful))
+    assert not (tmp_path / "harm").exists()
+    shrunk = sarl_weights()
+    content = bytearray(as_files(shrunk)[0])
+    content[-22 + 12 : -22 + 16] = (0xFFFFFFF0).to_bytes(4, "little")  # a directory of 4 GB
+    refused(tmp_path, bytes(content))
