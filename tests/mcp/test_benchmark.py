@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -258,3 +259,14 @@ async def test_what_inspect_run_cannot_tell_of_a_benchmark(workspace: Path) -> N
         told = error_of(await client.call_tool("inspect_run", {"run_id": begun}))
         assert "is cancelled" in told
         assert told.endswith("Fix: call benchmark again.")
+
+
+async def test_a_note_tells_what_deciding_costs(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        result = await client.call_tool("benchmark", {"scenarios": [ROOM], "policies": ["orca", "random"], "seeds": 2})
+    [note] = [note for note in data_of(result)["notes"] if note.startswith("deciding for one robot takes, in ms")]
+    for name in ("orca", "random"):
+        mean, p95 = re.search(rf"{name} ([0-9.e-]+) \(([0-9.e-]+)\)", note).groups()
+        assert 0 < float(mean) < 1000
+        assert 0 < float(p95) < 1000
+    assert note in text_of(result)

@@ -35,9 +35,9 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Benchmark", "answer", "tool"]
 
 _DESCRIPTION = """
-    Compare policies fairly: every scenario under every policy with the same seeds. Rows have shares of
-    success, collision and timeout, the mean time as [value, low, high] (95 %), and the seeds that failed; diff
-    is the difference from the first policy, seed by seed; decision_ms: what deciding costs. Work over wait_s
+    Compare policies: every scenario under every policy with the same seeds. Rows have shares of
+    success, collision and timeout, the mean time as [value, low, high] (95 %), and seeds that failed; diff
+    is the difference from the first, seed by seed; a note: what deciding costs. Work over wait_s
     becomes a job. Next: get_job (detailed: more metrics), inspect_run with the job_id, or run_episode with a
     seed that failed.
 """
@@ -73,7 +73,6 @@ class Benchmark(BaseModel):
     done: int
     total: int
     rows: list[dict[str, Any]] = []
-    decision_ms: dict[str, list[float]] = {}
     notes: list[str] = []
     artifact: str | None = None
     reproduce: str | None = None
@@ -246,8 +245,8 @@ def _fill(found: Benchmark, result: dict[str, Any], file: str, detailed: bool) -
         for row in result["rows"][:_MAX_ROWS]
     ]
     found.summary = _summary(result, labels)
-    found.decision_ms = _decision_ms(result, labels)
     notes = [f"{label} is {text}" for text, label in labels.items() if label != text] + list(result["notes"])
+    notes += _decision_times(result, labels)
     if len(result["rows"]) > _MAX_ROWS:
         notes.append(f"{len(result['rows']) - _MAX_ROWS} more rows are in the artifact")
     for name, warnings in result["warnings"].items():
@@ -276,10 +275,11 @@ def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
     return "; ".join([counts, *(clean(text, 200) for text in result["incidents"])])
 
 
-def _decision_ms(result: dict[str, Any], labels: dict[str, str]) -> dict[str, list[float]]:
-    """Mean and 95th percentile of the wall-clock time of deciding for one robot [ms], of each policy that was timed."""
+def _decision_times(result: dict[str, Any], labels: dict[str, str]) -> list[str]:
+    """A note on the wall-clock time that deciding takes; none if nothing was timed."""
     times = {name: found["per_robot"] for name, found in result.get("timing", {}).items() if "per_robot" in found}
-    return {clean(labels[name]): [one["mean_ms"], one["p95_ms"]] for name, one in times.items() if name in labels}
+    each = [f"{clean(labels[name])} {one['mean_ms']:g} ({one['p95_ms']:g})" for name, one in times.items()]
+    return [f"deciding for one robot takes, in ms, mean (95th percentile): {', '.join(each)}"] if each else []
 
 
 def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str], detailed: bool) -> dict[str, Any]:
@@ -341,9 +341,6 @@ def _text(found: Benchmark) -> str:
         elif incidents := row.get("incidents"):
             values.append(f"episodes with {', '.join(f'{name}: {count}' for name, count in incidents.items())}")
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(values)}")
-    if found.decision_ms:
-        each = ", ".join(f"{name} {mean:g} ({p95:g})" for name, (mean, p95) in found.decision_ms.items())
-        lines.append(f"Deciding for one robot takes, in ms, mean (95th percentile): {each}")
     lines += [f"Note: {note}" for note in found.notes]
     if found.artifact:
         lines.append(
