@@ -242,7 +242,11 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
         found = measure_plan(Plan.model_validate(arguments["plan"]), log=arguments["log"], **options)
     else:
         found = benchmark(**arguments, strict=True, **options)
-    return json.dumps(found.model_dump(mode="json") | {"timing": timing["policies"]})
+    from irsim.benchmarks.stored import TIMING
+    from irsim.runs.files import replace_file
+
+    replace_file(os.path.join(os.path.dirname(arguments["log"]), TIMING), json.dumps(timing).encode())
+    return found.model_dump_json()
 
 
 def _logged(job: dict[str, Any], progress: _Progress) -> str:

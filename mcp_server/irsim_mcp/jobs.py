@@ -53,6 +53,8 @@ PARTIAL = "partial.json"
 """The result of the episodes that a stopped job had completed, made from its log when it is first requested."""
 _LOG = "episodes.jsonl"
 """Every episode of a job, written as soon as it is done."""
+_TIMING = "timing.json"
+"""Wall-clock times of the decisions of a job, which no result has."""
 _PERIOD_S = 0.5
 """Time between two checks for cancellation, and between two notes of the progress [s]."""
 _EXTRA_CPU_SECONDS = 10
@@ -215,7 +217,7 @@ def _state(job: Path) -> dict[str, Any]:
         answer = json_of(job, RESULT)
         if isinstance(answer, dict) and "error" in answer:
             return state | {"status": "failed", "error": answer["error"]}
-        return state | {"result": answer, "done": state["total"]}
+        return state | {"result": answer, "timing": json_of(job, _TIMING), "done": state["total"]}
     if status == "running":
         return state
     if isinstance(about, dict) and "why" in about:

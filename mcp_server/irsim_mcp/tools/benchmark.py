@@ -226,7 +226,7 @@ def answer(state: dict[str, Any], detailed: bool = False) -> CallToolResult:
     elif "result" not in state:
         found.next = "No episode was completed; call benchmark again."
     else:
-        _fill(found, state["result"], RESULT if state["status"] == "finished" else PARTIAL, detailed)
+        _fill(found, state, RESULT if state["status"] == "finished" else PARTIAL, detailed)
         found.done, found.total = state["done"], state["total"]
         if state["status"] != "finished":
             why, more = "", "call benchmark again for all"
@@ -237,7 +237,8 @@ def answer(state: dict[str, Any], detailed: bool = False) -> CallToolResult:
     return CallToolResult(content=[text], structured_content=found.model_dump(exclude_none=True))
 
 
-def _fill(found: Benchmark, result: dict[str, Any], file: str, detailed: bool) -> None:
+def _fill(found: Benchmark, state: dict[str, Any], file: str, detailed: bool) -> None:
+    result, timing = state["result"], state.get("timing")
     extra = [key for key in _SOMETIMES if any(row["metrics"][key]["n"] for row in result["rows"])]
     labels = policy_names(result)
     found.rows = [
@@ -246,7 +247,7 @@ def _fill(found: Benchmark, result: dict[str, Any], file: str, detailed: bool) -
     ]
     found.summary = _summary(result, labels)
     notes = [f"{label} is {text}" for text, label in labels.items() if label != text] + list(result["notes"])
-    notes += _decision_times(result, labels)
+    notes += _decision_times(timing, labels)
     if len(result["rows"]) > _MAX_ROWS:
         notes.append(f"{len(result['rows']) - _MAX_ROWS} more rows are in the artifact")
     for name, warnings in result["warnings"].items():
@@ -275,9 +276,10 @@ def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
     return "; ".join([counts, *(clean(text, 200) for text in result["incidents"])])
 
 
-def _decision_times(result: dict[str, Any], labels: dict[str, str]) -> list[str]:
+def _decision_times(timing: dict[str, Any] | None, labels: dict[str, str]) -> list[str]:
     """A note on the wall-clock time that deciding takes; none if nothing was timed."""
-    times = {name: found["per_robot"] for name, found in result.get("timing", {}).items() if "per_robot" in found}
+    policies = (timing or {}).get("policies", {})
+    times = {name: found["per_robot"] for name, found in policies.items() if "per_robot" in found}
     each = [f"{clean(labels[name])} {one['mean_ms']:g} ({one['p95_ms']:g})" for name, one in times.items()]
     return [f"deciding for one robot takes, in ms, mean (95th percentile): {', '.join(each)}"] if each else []
 
