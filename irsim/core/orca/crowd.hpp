@@ -4,6 +4,9 @@
 #include <vector>
 
 #include "orca/constraints.hpp"
+#include "orca/detour.hpp"
+#include "orca/free_cells.hpp"
+#include "orca/hulls.hpp"
 #include "orca/nearest.hpp"
 
 namespace irsim {
@@ -11,6 +14,32 @@ namespace irsim {
 struct State;
 struct World;
 struct Workspace;
+
+struct Threat {
+  VelocityCone cone;
+  Vec2 base;  // the relative velocity is that of the object times `gain` minus this [m/s]
+  double gain;
+  bool standing;
+};
+struct Option {
+  double cost;
+  Vec2 velocity;
+};
+
+/// The outlines of the movers, which `footprint_orca` makes when it first decides in a step.
+struct FootprintCrowd {
+  bool known = false;
+  Hulls hulls;  // of the movers
+  std::vector<Blocker> blockers;
+  DetourMemory search;
+  // for the object that decides
+  Hulls walls;
+  std::vector<Border> borders;
+  std::vector<double> extra;
+  std::vector<Threat> threats;
+  std::vector<Face> faces;
+  std::vector<Option> tries;
+};
 
 /// Scratch memory of the behaviors that are built on ORCA: `orca` and `avocado`. Movers have the indices of
 /// World::moving.
@@ -25,6 +54,7 @@ struct OrcaCrowd {
   std::vector<Nearest::Found> neighbors;  // movers, or static discs, nearest first
   std::vector<Nearest::Found> edges;      // edges that face it, nearest first
   std::vector<HalfPlane> planes, scratch;
+  FootprintCrowd outlines;
 };
 
 /// The movers of world w, which the first call of a step computes.

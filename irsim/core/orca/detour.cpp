@@ -1,0 +1,136 @@
+#include "orca/detour.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/predicates.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kFinestCell = 0.1;     // [m]
+constexpr int kMostCells = 120;         // per side of the grid
+constexpr double kAround = 1.5;         // free space round everything, through which a way may lead [m]
+constexpr double kComfort = 0.15;       // clearance that a way keeps if it is not much longer [m]
+constexpr double kTight = 0.06;         // overlap of the disc that is tried if there is no other way [m]
+constexpr double kTightCost = 30.0;     // factor on the length of such a part
+constexpr double kComfortCost = 2.0;    // factor on the length of a part without clearance, added to 1
+constexpr double kLeaving = 0.3;        // distance from the start within which any overlap may be left [m]
+constexpr double kPullClearance = 0.03; // clearance of the straight parts [m]
+
+Hull capsule(const Vec2* ends, const Vec2* normals, double radius) { return {ends, normals, 2, radius}; }
+
+/// Distance of a point from a hull [m]; 0 inside.
+double distance_to(const Hull& hull, Vec2 p) {
+  if (hull.count == 1) return std::max(0.0, norm(p - hull.corner[0]) - hull.round);
+  bool inside = hull.count > 2;
+  double least = kInfinity;
+  for (int k = 0; k < hull.count; ++k) {
+    const Vec2 a = hull.corner[k], b = hull.corner[(k + 1) % hull.count];
+    if (dot(hull.normal[k], p - a) > 0.0) inside = false;
+    least = std::min(least, squared(nearest_on_segment(a, b, p) - p));
+  }
+  return inside ? 0.0 : std::max(0.0, std::sqrt(least) - hull.round);
+}
+
+}  // namespace
+
+bool is_open(Vec2 a, Vec2 b, double radius, const std::vector<Blocker>& blockers) {
+  const Vec2 ends[] = {a, b}, along = b - a;
+  const double length = norm(along);
+  const Vec2 side = length > 0.0 ? Vec2{along.y, -along.x} * (1.0 / length) : Vec2{};
+  const Vec2 normals[] = {side, side * -1.0};
+  for (const Blocker& one : blockers) {
+    const double reach = one.radius + radius;
+    if (squared(nearest_on_segment(a, b, one.centre) - one.centre) >= reach * reach) continue;
+    if (separation(capsule(ends, normals, radius), one.hull).gap < 0.0) return false;
+  }
+  return true;
+}
+
+bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, const std::vector<Blocker>& blockers,
+                 DetourMemory& memory, std::vector<Vec2>& points) {
+  Box box;
+  box.include(start);
+  box.include(goal);
+  for (const Blocker& one : blockers) box.include(one.centre);
+  box = {box.x0 - kAround, box.y0 - kAround, box.x1 + kAround, box.y1 + kAround};
+  const double cell = std::max(kFinestCell, std::max(box.x1 - box.x0, box.y1 - box.y0) / kMostCells);
+  const int columns = static_cast<int>((box.x1 - box.x0) / cell) + 1, rows = static_cast<int>((box.y1 - box.y0) / cell) + 1;
+  const auto centre = [&](int k) { return Vec2{box.x0 + (k % columns + 0.5) * cell, box.y0 + (k / columns + 0.5) * cell}; };
+  const auto cell_of = [&](Vec2 p) {
+    const int x = static_cast<int>(clip((p.x - box.x0) / cell, 0.0, columns - 1.0));
+    const int y = static_cast<int>(clip((p.y - box.y0) / cell, 0.0, rows - 1.0));
+    return y * columns + x;
+  };
+  const std::size_t size = static_cast<std::size_t>(columns) * rows;
+  memory.clearance.assign(size, static_cast<float>(kComfort));
+  memory.cost.assign(size, std::numeric_limits<float>::infinity());
+  memory.parent.resize(size);
+  for (const Blocker& one : blockers) {
+    const double far = one.radius + radius + kComfort;
+    const int low = cell_of(one.centre - Vec2{far, far}), high = cell_of(one.centre + Vec2{far, far});
+    for (int y = low / columns; y <= high / columns; ++y) {
+      for (int x = low % columns; x <= high % columns; ++x) {
+        const int k = y * columns + x;
+        const Vec2 p = centre(k);
+        if (norm(p - one.centre) > far) continue;
+        const double clear = distance_to(one.hull, p) - radius;
+        memory.clearance[k] = std::min(memory.clearance[k], static_cast<float>(clear));
+      }
+    }
+  }
+  const auto price = [&](int k) {
+    const double clear = memory.clearance[k];
+    if (clear >= 0.0) return 1.0 + kComfortCost * (1.0 - clear / kComfort);
+    return clear > -kTight || norm(centre(k) - start) < kLeaving ? kTightCost : kInfinity;
+  };
+  const auto remaining = [&](int k) { return std::max(0.0, norm(centre(k) - goal) - reach); };
+  using Entry = std::pair<float, std::int32_t>;
+  const auto later = [](const Entry& a, const Entry& b) { return a > b; };
+  memory.heap.clear();
+  const int first = cell_of(start);
+  int best = first, found = -1;
+  memory.cost[first] = 0.0f, memory.parent[first] = -1;
+  memory.heap.push_back({static_cast<float>(remaining(first)), first});
+  while (!memory.heap.empty()) {
+    std::pop_heap(memory.heap.begin(), memory.heap.end(), later);
+    const auto [key, k] = memory.heap.back();
+    memory.heap.pop_back();
+    const double left = remaining(k), cost = memory.cost[k];
+    if (key > cost + left + 1e-4) continue;
+    if (left < remaining(best)) best = k;
+    if (left <= 0.0) {
+      found = k;
+      break;
+    }
+    const int x = k % columns, y = k / columns;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if ((dx == 0 && dy == 0) || x + dx < 0 || x + dx >= columns || y + dy < 0 || y + dy >= rows) continue;
+        const int other = k + dy * columns + dx;
+        const double step = cell * (dx != 0 && dy != 0 ? 1.41421356 : 1.0) * price(other);
+        const float total = static_cast<float>(cost + step);
+        if (!(total < memory.cost[other])) continue;
+        memory.cost[other] = total;
+        memory.parent[other] = k;
+        memory.heap.push_back({static_cast<float>(total + remaining(other)), other});
+        std::push_heap(memory.heap.begin(), memory.heap.end(), later);
+      }
+    }
+  }
+  memory.cells.clear();
+  for (int k = found >= 0 ? found : best; k >= 0; k = memory.parent[k]) memory.cells.push_back(centre(k));
+  std::reverse(memory.cells.begin(), memory.cells.end());
+  points.clear();
+  Vec2 from = start;
+  std::size_t k = 1;
+  while (k < memory.cells.size()) {
+    while (k + 1 < memory.cells.size() && is_open(from, memory.cells[k + 1], radius + kPullClearance, blockers)) ++k;
+    from = memory.cells[k++];
+    points.push_back(from);
+  }
+  return found >= 0;
+}
+
+}  // namespace irsim
