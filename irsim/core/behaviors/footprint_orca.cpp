@@ -112,6 +112,17 @@ Vec2 wanted_velocity(Self& self) {
   const Goal& goal = state.destination(self.row);
   if (std::isnan(goal.x)) return {};
   const double left = norm(goal.position() - self.position);
+  static const double yield_gap = tune("FO_YIELD", 0.3);
+  if (state.arrived[self.row] && yield_gap > 0.0) {
+    Vec2 push;
+    for (const int m : self.all.neighbors_before[self.mover]) {
+      const int other = self.decision.first_row + world.moving[m];
+      if (state.arrived[other] || state.stopped[other]) continue;
+      const Separation apart = separation(self.hull, self.outlines.hulls[m]);
+      if (apart.gap < yield_gap) push = push + apart.axis * (1.0 - apart.gap / yield_gap);
+    }
+    if (squared(push) > 0.0) return push * (self.speed / std::max(1.0, norm(push)));
+  }
   if (!(left > 0.0 && left >= world.goal_threshold[self.object])) return {};
   const Vec2 way = aim(self, goal.position()) - self.position;
   const double distance = norm(way);
@@ -165,8 +176,10 @@ void meet_static(Self& self, double horizon) {
       scratch.add(disc.centre, disc.radius);
     }
     Separation apart;
-    add_threat(self, scratch[scratch.count() - 1], true, {}, 1.0, true, apart);
-    self.outlines.borders.push_back(border(self.hull, apart, kLeastGap));
+    const Hull wall = scratch[scratch.count() - 1];
+    add_threat(self, wall, true, {}, 1.0, true, apart);
+    if (apart.gap < 2.0 * world.step_time * (self.speed + self.fast_turn))
+      self.outlines.borders.push_back(border(self.hull, apart, kLeastGap));
   }
 }
 
@@ -191,7 +204,7 @@ void meet_mover(Self& self, int m, bool standing) {
     apart.axis = apart.axis * -1.0;
   }
   if (standing) {
-    self.outlines.borders.push_back(border(self.hull, apart, kLeastGap));
+    self.outlines.fixed.push_back({other, std::min(kLeastGap, apart.gap)});
   } else if (alike) {
     const double own = std::max(0.0, -dot(apart.axis, self.velocity));
     const double others = std::max(0.0, dot(apart.axis, moves));
@@ -265,7 +278,18 @@ Tried attempt(Self& self, Vec3 control) {
   Tried tried{control, {}, kInfinity};
   tried.pose = after(self, limited(self, control), self.outlines.extra);
   const Vec2 turn = unit(tried.pose.theta - self.decision.state.pose[self.row].theta);
-  tried.room = room(self.hull, self.position, tried.pose.position() - self.position, turn, self.outlines.borders);
+  const Vec2 shift = tried.pose.position() - self.position;
+  tried.room = room(self.hull, self.position, shift, turn, self.outlines.borders);
+  if (tried.room < 0.0 || self.outlines.fixed.empty()) return tried;
+  std::vector<Vec2>& moved = self.outlines.moved;
+  moved.resize(2 * static_cast<std::size_t>(self.hull.count));
+  for (int k = 0; k < self.hull.count; ++k) {
+    moved[k] = self.position + shift + rotate(self.hull.corner[k] - self.position, turn);
+    moved[self.hull.count + k] = rotate(self.hull.normal[k], turn);
+  }
+  const Hull body{moved.data(), moved.data() + self.hull.count, self.hull.count, self.hull.round};
+  for (const Fixture& one : self.outlines.fixed)
+    tried.room = std::min(tried.room, separation(body, one.hull).gap - one.gap);
   return tried;
 }
 
@@ -331,6 +355,12 @@ Vec3 best_control(Self& self, Vec2 preferred) {
       consider(way * (share * self.speed));
     }
   }
+  if (!slides) {
+    for (const double share : {1.0, 0.5, 0.15}) {
+      consider(self.heading * (share * self.speed));
+      if (reverses) consider(self.heading * (-share * self.speed));
+    }
+  }
   Tried best = attempt(self, {});
   for (std::size_t tried = 0; tried < tries.size(); ++tried) {
     std::size_t least = tried;
@@ -362,7 +392,9 @@ void footprint_orca(const FootprintOrcaOptions& options, const Decision& decisio
     outlines.blockers.clear();
     for (const int i : world.moving) {
       const int mover = scene.shapes->placed[i].object;
-      if (!state.stopped[decision.first_row + i]) continue;
+      const int other = decision.first_row + i;
+      const bool rests = state.arrived[other] && squared(all.movers[mover].velocity) < 0.01;
+      if (!state.stopped[other] && !rests) continue;
       outlines.blockers.push_back({outlines.hulls[mover], all.movers[mover].position, scene.shapes->radius[i]});
     }
   }
@@ -374,7 +406,7 @@ void footprint_orca(const FootprintOrcaOptions& options, const Decision& decisio
     const double reach = norm(scene.shapes->centre[i]) + scene.shapes->radius[i];
     if (std::holds_alternative<DiffOptions>(world.drive[i])) self.fast_turn = state.vel_max[row][1] * reach;
     outlines.borders.clear();
-    outlines.threats.clear(), outlines.faces.clear();
+    outlines.threats.clear(), outlines.faces.clear(), outlines.fixed.clear();
     find_movers(self);
     meet_static(self, options.timeHorizonObst);
     meet_movers(self);

@@ -21,6 +21,10 @@ struct Threat {
   double gain;
   bool standing;
 };
+struct Fixture {
+  Hull hull;
+  double gap;
+};
 struct Option {
   double cost;
   Vec2 velocity;
@@ -37,6 +41,8 @@ struct FootprintCrowd {
   std::vector<Border> borders;
   std::vector<double> extra;
   std::vector<Threat> threats;
+  std::vector<Fixture> fixed;
+  std::vector<Vec2> moved;
   std::vector<Face> faces;
   std::vector<Option> tries;
 };
