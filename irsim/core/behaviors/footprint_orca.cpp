@@ -5,10 +5,9 @@
 #include <cstdlib>
 
 #include "orca/crowd.hpp"
-#include "orca/detour.hpp"
-#include "orca/free_cells.hpp"
-#include "orca/hull_planes.hpp"
+#include "orca/footprint_crowd.hpp"
 #include "orca/obstacles.hpp"
+#include "random.hpp"
 #include "surroundings/sidestep.hpp"
 #include "world/features.hpp"
 
@@ -42,6 +41,7 @@ struct Self {
   Hull hull;
   Vec2 position, velocity, heading;
   double speed;      // largest [m/s]
+  bool stalled = false;
   double fast_turn;  // speed at which a turn moves the outermost point [m/s]
 };
 
@@ -63,18 +63,11 @@ double half_width(const Self& self) {
   return most + self.hull.round;
 }
 
-/// The point to head for: the goal, or the next corner of a way round what stands.
-Vec2 aim(Self& self, Vec2 goal) {
+Vec2 way_point(Self& self, Vec2 goal, Detour& detour, std::int64_t now) {
   static const double lane = tune("FO_LANE", 0.02);
   static const int again = static_cast<int>(tune("FO_AGAIN", 30));
-  const Decision& decision = self.decision;
-  const State& state = decision.state;
-  Detour& detour = decision.detours[self.row];
-  const std::int64_t now = state.count[decision.w()];
-  if (detour.step != now - 1 && detour.step != now) detour = {};
-  if (squared(detour.goal - goal) > 0.0) detour.points.clear(), detour.planned = -1, detour.goal = goal;
-  detour.step = now;
   const std::vector<Blocker>& blockers = self.outlines.blockers;
+  const Decision& decision = self.decision;
   if (blockers.empty()) return goal;
   const double radius = half_width(self) + lane;
   const Vec2 way = goal - self.position;
@@ -106,6 +99,27 @@ Vec2 aim(Self& self, Vec2 goal) {
   return detour.points[detour.next];
 }
 
+/// The point to head for: the goal, or the next corner of a way round what stands.
+Vec2 aim(Self& self, Vec2 goal) {
+  const Decision& decision = self.decision;
+  const State& state = decision.state;
+  Detour& detour = decision.detours[self.row];
+  const std::int64_t now = state.count[decision.w()];
+  if (squared(detour.goal - goal) > 0.0) detour.points.clear(), detour.planned = -1, detour.goal = goal;
+  detour.step = now;
+  std::vector<Blocker>& blockers = self.outlines.blockers;
+  const std::size_t standing_now = blockers.size();
+  if (self.stalled) {
+    for (const int m : self.all.neighbors_before[self.mover]) {
+      const int row = decision.first_row + decision.world.moving[m];
+      if (state.stopped[row] || state.arrived[row] || squared(self.all.movers[m].velocity) > 0.01) continue;
+      blockers.push_back({self.outlines.hulls[m], self.all.movers[m].position, self.all.movers[m].radius});
+    }
+  }
+  const Vec2 point = way_point(self, goal, detour, now);
+  blockers.resize(standing_now);
+  return point;
+}
 Vec2 wanted_velocity(Self& self) {
   const State& state = self.decision.state;
   const World& world = self.decision.world;
@@ -124,10 +138,23 @@ Vec2 wanted_velocity(Self& self) {
     if (squared(push) > 0.0) return push * (self.speed / std::max(1.0, norm(push)));
   }
   if (!(left > 0.0 && left >= world.goal_threshold[self.object])) return {};
+  static const int patience = static_cast<int>(tune("FO_PATIENCE", 12)), period = static_cast<int>(tune("FO_PERIOD", 10));
+  static const double progress = tune("FO_PROGRESS", 0.3), least_turn = tune("FO_LEAST", 60) * kPi / 180, most_turn = tune("FO_MOST", 180) * kPi / 180;
+  Detour& detour = self.decision.detours[self.row];
+  const std::int64_t now = state.count[self.decision.w()];
+  if (detour.step != now - 1 && detour.step != now) detour = {};
+  if (detour.anchored < 0 || squared(detour.anchor - self.position) > progress * progress)
+    detour.anchor = self.position, detour.anchored = now;
+  const std::int64_t stalled = now - detour.anchored - patience;
+  self.stalled = stalled >= 0;
   const Vec2 way = aim(self, goal.position()) - self.position;
   const double distance = norm(way);
   if (!(distance > 0.0)) return {};
-  return way * (std::min(self.speed, left / world.step_time) / distance);
+  const Vec2 wanted = way * (std::min(self.speed, left / world.step_time) / distance);
+  if (stalled < 0 || (stalled / period) % 2 == 1) return wanted;
+  const Draws draws(state.key(self.decision.w()), Stream::behavior, world.number[self.object]);
+  const auto u = draws.uniforms(static_cast<std::uint64_t>(detour.anchored + patience + stalled / period * period));
+  return rotate(wanted, unit((u[0] < 0.5 ? -1.0 : 1.0) * (least_turn + u[1] * (most_turn - least_turn))));
 }
 
 void add_threat(Self& self, Hull other, bool mine_first, Vec2 moves, double share, bool standing, Separation& apart) {
@@ -381,7 +408,8 @@ void footprint_orca(const FootprintOrcaOptions& options, const Decision& decisio
   const State& state = decision.state;
   const Scene& scene = state.scenes[decision.w()];
   OrcaCrowd& all = crowd(world, state, decision.work, decision.w());
-  FootprintCrowd& outlines = all.outlines;
+  if (!all.outlines) all.outlines = std::make_shared<FootprintCrowd>();
+  FootprintCrowd& outlines = *all.outlines;
   if (!outlines.known) {
     outlines.known = true;
     outlines.hulls.clear();
@@ -401,7 +429,7 @@ void footprint_orca(const FootprintOrcaOptions& options, const Decision& decisio
   for (int k = 0; k < decision.count; ++k) {
     const int i = decision.objects[k], row = decision.row(k), mover = scene.shapes->placed[i].object;
     Self self{options, decision, all,  outlines, i, row, mover, outlines.hulls[mover], state.pose[row].position(),
-              all.movers[mover].velocity, state.heading(row), 0.0, 0.0};
+              all.movers[mover].velocity, state.heading(row), 0.0, false, 0.0};
     self.speed = top(options, world, state, row, i);
     const double reach = norm(scene.shapes->centre[i]) + scene.shapes->radius[i];
     if (std::holds_alternative<DiffOptions>(world.drive[i])) self.fast_turn = state.vel_max[row][1] * reach;

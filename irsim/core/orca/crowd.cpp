@@ -1,5 +1,7 @@
 #include "orca/crowd.hpp"
 
+#include "orca/footprint_crowd.hpp"
+
 #include <optional>
 
 #include "world/features.hpp"
@@ -26,7 +28,7 @@ OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w)
   OrcaCrowd& all = work.orca;
   if (all.known) return all;
   all.known = true;
-  all.outlines.known = false;
+  if (all.outlines) all.outlines->known = false;
   const Neighbors& near = neighbors(world, state, work, w);
   const Shapes& shapes = *state.scenes[w].shapes;
   const std::size_t count = world.moving.size();

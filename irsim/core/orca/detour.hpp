@@ -16,7 +16,9 @@ struct Detour {
   Vec2 goal;
   std::size_t next = 0;
   std::vector<Vec2> points;  // corners of the way; empty: straight to the goal
-  int stalled = 0;           // steps without progress
+  Vec2 anchor;                // where it was in step `anchored`; it has stayed near since
+  std::int64_t anchored = -1;
+  double spare = 0.0;
 };
 
 /// Bodies that stand, as the planner sees them.
