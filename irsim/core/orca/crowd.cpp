@@ -1,6 +1,6 @@
 #include "orca/crowd.hpp"
 
-#include "orca/footprint_crowd.hpp"
+#include "footprints/crowd.hpp"
 
 #include <optional>
 

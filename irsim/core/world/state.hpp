@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "orca/detour.hpp"
+#include "footprints/detour.hpp"
 #include "orca/opinions.hpp"
 #include "random.hpp"
 #include "routes/route.hpp"

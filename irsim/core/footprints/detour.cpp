@@ -1,4 +1,4 @@
-#include "orca/detour.hpp"
+#include "footprints/detour.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,21 +4,20 @@
 #include <cstdint>
 #include <vector>
 
-#include "orca/hulls.hpp"
+#include "footprints/hulls.hpp"
 
 namespace irsim {
 
 /// What an object remembers of its way. It is a part of the state, so that every episode starts without one.
 struct Detour {
   std::int64_t step = -1;     // step in which it was last used
-  std::int64_t planned = -1;  // step in which a way was last searched
-  int standing = 0;           // number of bodies that stood then
+  std::int64_t planned = -1;  // step in which a way was last searched; -1: the goal is straight ahead
+  int blockers = 0;           // number of bodies that stood in the way then
   Vec2 goal;
-  std::size_t next = 0;
   std::vector<Vec2> points;  // corners of the way; empty: straight to the goal
-  Vec2 anchor;                // where it was in step `anchored`; it has stayed near since
+  std::size_t next = 0;      // the corner ahead
+  Vec2 anchor;               // where it was in step `anchored`; it has stayed near since
   std::int64_t anchored = -1;
-  double spare = 0.0;
 };
 
 /// Bodies that stand, as the planner sees them.

@@ -1,4 +1,4 @@
-#include "orca/hulls.hpp"
+#include "footprints/hulls.hpp"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "orca/hulls.hpp"
+#include "footprints/hulls.hpp"
 
 namespace irsim {
 
@@ -33,10 +33,16 @@ struct VelocityCone {
   }
 };
 
-/// Find the cone of two bodies, and how they are apart. Its faces are appended to `faces`.
+/// Find the cone of two hulls, and how they are apart. Its faces are appended to `faces`.
 ///
 /// Args:
 ///   margin: Distance to keep, as far as they keep it now [m].
-Separation cone_of(const Hull& a, const Hull& b, double margin, std::vector<Face>& faces, VelocityCone& cone);
+///   mirrored: Swap the bodies in the computation, not in the result. Two objects that look at each other with opposite
+///   values find the same axis to the last bit.
+Separation cone_of(const Hull& a, const Hull& b, double margin, bool mirrored, std::vector<Face>& faces,
+                   VelocityCone& cone);
+
+/// Find the cone of two discs that are apart, with `offset` from a to b and the sum of their radii.
+void cone_of(Vec2 offset, double radius, std::vector<Face>& faces, VelocityCone& cone);
 
 }  // namespace irsim
