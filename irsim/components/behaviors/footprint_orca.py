@@ -20,11 +20,11 @@ class FootprintOrca(BehaviorOptions):
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "footprint_orca"}]}
 
     name: Literal["footprint_orca"] = "footprint_orca"
-    neighborDist: Annotated[Meters, Field(gt=0)] = 5.0
+    neighborDist: Annotated[Meters, Field(gt=0)] = 3.0
     """Moving objects farther away than this are ignored."""
-    maxNeighbors: Count = 10
+    maxNeighbors: Count = 8
     """Number of moving objects considered, nearest first."""
-    timeHorizon: Annotated[Seconds, Field(gt=0)] = 2.0
+    timeHorizon: Annotated[Seconds, Field(gt=0)] = 1.5
     """Time horizon within which collisions with moving objects are avoided."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 0.5
     """Time horizon within which collisions with what stands are avoided."""

@@ -16,7 +16,11 @@ constexpr double kMinSpeed = 1e-6;     // slower velocities are rounding errors 
 constexpr double kSoon = 0.1;          // added to the time to a collision, so that none weighs infinitely much [s]
 constexpr double kKeepDirection = 0.3;  // angle beyond a right angle before forward and backward are swapped [rad]
 constexpr double kMinCarShare = 0.3;    // smallest share of a wanted speed of a car, which turns only while it rolls
-constexpr int kDirections = 12;
+
+/// Cosines and sines of the directions that are tried, seen from the wanted one, nearest first.
+constexpr double kRoot = 0.86602540378443865;
+constexpr Vec2 kDirections[] = {{1.0, 0.0},    {kRoot, -0.5}, {kRoot, 0.5},   {0.5, -kRoot},  {0.5, kRoot},   {0.0, -1.0},
+                                {0.0, 1.0},    {-0.5, -kRoot}, {-0.5, kRoot}, {-kRoot, -0.5}, {-kRoot, 0.5}, {-1.0, 0.0}};
 
 /// A control, and how far the object stays within its cell with it.
 struct Trial {
@@ -175,12 +179,8 @@ Intent best_intent(FootprintSelf& self, Vec2 wanted) {
   choice.consider(wanted);
   const double speed = norm(wanted);
   const Vec2 ahead = speed > 0.0 ? wanted * (1.0 / speed) : self.heading;
-  for (int k = 0; k <= kDirections / 2; ++k) {
-    const Vec2 turn = unit(kTurn * k / kDirections);
-    for (const double share : {1.0, 0.5}) {
-      choice.consider(rotate(ahead, {turn.x, -turn.y}) * (share * self.speed));
-      if (turn.y > 1e-9) choice.consider(rotate(ahead, turn) * (share * self.speed));
-    }
+  for (const Vec2 turn : kDirections) {
+    for (const double share : {1.0, 0.5}) choice.consider(rotate(ahead, turn) * (share * self.speed));
   }
   if (!self.slides) {
     for (const double share : {1.0, 0.5, 0.15}) {

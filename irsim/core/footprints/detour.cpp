@@ -33,6 +33,17 @@ double distance_to(const Hull& hull, Vec2 p) {
   return inside ? 0.0 : std::max(0.0, std::sqrt(least) - hull.round);
 }
 
+/// Factor on the length of a way through a point; infinite if it is closed.
+double price_of(Vec2 p, Vec2 start, double radius, const std::vector<Blocker>& blockers) {
+  double clear = kComfort;
+  for (const Blocker& one : blockers) {
+    const double far = one.radius + radius + clear;
+    if (squared(p - one.centre) < far * far) clear = std::min(clear, distance_to(one.hull, p) - radius);
+  }
+  if (clear >= 0.0) return 1.0 + kComfortCost * (1.0 - clear / kComfort);
+  return clear > -kTight || squared(p - start) < kLeaving * kLeaving ? kTightCost : kInfinity;
+}
+
 }  // namespace
 
 bool is_open(Vec2 a, Vec2 b, double radius, const std::vector<Blocker>& blockers) {
@@ -64,26 +75,13 @@ bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, const std::
     return y * columns + x;
   };
   const std::size_t size = static_cast<std::size_t>(columns) * rows;
-  memory.clearance.assign(size, static_cast<float>(kComfort));
+  memory.price.assign(size, 0.0f);
   memory.cost.assign(size, std::numeric_limits<float>::infinity());
   memory.parent.resize(size);
-  for (const Blocker& one : blockers) {
-    const double far = one.radius + radius + kComfort;
-    const int low = cell_of(one.centre - Vec2{far, far}), high = cell_of(one.centre + Vec2{far, far});
-    for (int y = low / columns; y <= high / columns; ++y) {
-      for (int x = low % columns; x <= high % columns; ++x) {
-        const int k = y * columns + x;
-        const Vec2 p = centre(k);
-        if (norm(p - one.centre) > far) continue;
-        const double clear = distance_to(one.hull, p) - radius;
-        memory.clearance[k] = std::min(memory.clearance[k], static_cast<float>(clear));
-      }
-    }
-  }
   const auto price = [&](int k) {
-    const double clear = memory.clearance[k];
-    if (clear >= 0.0) return 1.0 + kComfortCost * (1.0 - clear / kComfort);
-    return clear > -kTight || norm(centre(k) - start) < kLeaving ? kTightCost : kInfinity;
+    float& known = memory.price[k];
+    if (known == 0.0f) known = static_cast<float>(price_of(centre(k), start, radius, blockers));
+    return known;
   };
   const auto remaining = [&](int k) { return std::max(0.0, norm(centre(k) - goal) - reach); };
   using Entry = std::pair<float, std::int32_t>;

@@ -29,7 +29,7 @@ struct Blocker {
 
 /// Memory of searches.
 struct DetourMemory {
-  std::vector<float> clearance, cost;
+  std::vector<float> price, cost;
   std::vector<std::int32_t> parent;
   std::vector<std::pair<float, std::int32_t>> heap;
   std::vector<Vec2> cells;

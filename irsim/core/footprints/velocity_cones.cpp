@@ -46,8 +46,10 @@ Separation cone_of(const Hull& a, const Hull& b, double margin, bool mirrored, s
 }
 
 void cone_of(Vec2 offset, double radius, std::vector<Face>& faces, VelocityCone& cone) {
-  const double distance = norm(offset);
-  cone.left = tangent(offset, radius, 1.0), cone.right = tangent(offset, radius, -1.0);
+  const double distance2 = squared(offset), distance = std::sqrt(distance2), rate = 1.0 / distance2;
+  const Vec2 along = offset * (std::sqrt(std::max(distance2 - radius * radius, 0.0)) * rate);
+  const Vec2 aside = Vec2{-offset.y, offset.x} * (radius * rate);
+  cone.left = along + aside, cone.right = along - aside;
   cone.first = static_cast<int>(faces.size()), cone.count = 1;
   faces.push_back({offset * (-1.0 / distance), distance - radius});
 }
