@@ -3,18 +3,22 @@
 
 #include <algorithm>
 
-#include "geometry/predicates.hpp"
 #include "footprints/decider.hpp"
+#include "geometry/predicates.hpp"
 #include "orca/obstacles.hpp"
 #include "world/features.hpp"
 
 namespace irsim {
 namespace {
 
-constexpr double kLeastGap = 0.005;       // part of a gap that nobody uses [m]
-constexpr double kOutlineDistance = 0.5;  // gap of bounding circles from which these stand for outlines [m]
-constexpr double kRestingSpeed = 0.1;     // an arrived object that is slower rests [m/s]
-constexpr double kBlockerReach = 8.0;     // half the side of the box in which static obstacles block a way [m]
+constexpr double kLeastGap = 0.005;        // part of a gap that nobody uses [m]
+constexpr double kOutlineDistance = 0.5;   // gap of bounding circles from which these stand for outlines [m]
+constexpr double kRestingSpeed = 0.1;      // an arrived object that is slower rests [m/s]
+constexpr double kStrangerDistance = 0.1;  // distance kept in addition from movers that do something else [m]
+constexpr double kStrangerHorizons = 2.0;  // time horizon for them, in those of the options
+constexpr double kStrangerSteps = 2.0;     // steps for which the space that they head for is left to them
+constexpr double kWallReach = 5.0;         // half the side of the box in which static obstacles block a way [m]
+constexpr double kRestingReach = 10.0;     // farther bodies that rest do not block a way [m]
 
 bool sees_role(const World& world, int viewer, int other) {
   const int wanted = world.target_roles[viewer];
@@ -75,14 +79,17 @@ void meet_static(FootprintSelf& self) {
   const World& world = self.world();
   const Obstacles& obstacles = self.state().scenes[self.decision.w()].fixed->obstacles;
   FootprintCrowd& crowd = self.crowd;
-  crowd.blockers = crowd.resting;
+  crowd.blockers.clear();
+  for (const Blocker& one : crowd.resting) {
+    if (squared(one.centre - self.position) < kRestingReach * kRestingReach) crowd.blockers.push_back(one);
+  }
   if (obstacles.empty()) return;
   crowd.walls.clear();
   const int edges = static_cast<int>(obstacles.edges.size());
   std::vector<int>& found = crowd.others;
   found.clear();
   const Vec2 centre = self.all.movers[self.mover].position;
-  obstacles.near(box_around(centre, kBlockerReach), [&](int k) {
+  obstacles.near(box_around(centre, kWallReach), [&](int k) {
     const int object = k < edges ? obstacles.edges[k].object : obstacles.discs[k - edges].object;
     if (object < 0 || sees_role(world, self.object, object)) found.push_back(k);
   });
@@ -141,11 +148,14 @@ void meet_mover(FootprintSelf& self, int m) {
   const bool alike = mutual && std::holds_alternative<FootprintOrcaOptions>(world.behaviors[theirs].behavior);
   const Vec2 moves = standing ? Vec2{} : all.movers[m].velocity;
   const double gain = mutual ? 2.0 : 1.0;
-  const double horizon = standing ? self.options.timeHorizonObst : self.options.timeHorizon;
+  const bool strange = !standing && !alike;
+  const double margin = self.options.safe_distance + (strange ? kStrangerDistance : 0.0);
+  const double horizon =
+      standing ? self.options.timeHorizonObst : self.options.timeHorizon * (strange ? kStrangerHorizons : 1.0);
   Threat threat{{}, gain, self.velocity * (gain - 1.0) + moves, horizon, standing};
   const Shapes& shapes = *self.state().scenes[self.decision.w()].shapes;
   const Vec2 offset = all.movers[m].position - all.movers[self.mover].position;
-  const double radii = shapes.radius[self.object] + shapes.radius[world.moving[m]] + self.options.safe_distance;
+  const double radii = shapes.radius[self.object] + shapes.radius[world.moving[m]] + margin;
   const double gap = norm(offset) - radii, stride = 2.0 * self.stride() + norm(moves) * world.step_time;
   if (gap > horizon * (gain * self.speed + norm(threat.base))) return;
   if (gap > std::max(kOutlineDistance, stride)) {
@@ -154,8 +164,7 @@ void meet_mover(FootprintSelf& self, int m) {
     return;
   }
   const Hull body = crowd.hulls[m];
-  const Separation apart =
-      cone_of(self.hull, body, self.options.safe_distance, m < self.mover, crowd.faces, threat.cone);
+  const Separation apart = cone_of(self.hull, body, margin, m < self.mover, crowd.faces, threat.cone);
   crowd.threats.push_back(threat);
   if (apart.gap > 2.0 * stride) return;
   const double toward = std::max(0.0, dot(apart.axis, moves));
@@ -164,8 +173,8 @@ void meet_mover(FootprintSelf& self, int m) {
   } else if (alike) {
     const double own = std::max(0.0, -dot(apart.axis, self.velocity));
     crowd.cell.borders.push_back(border(self.hull, apart, own, toward, kLeastGap));
-  } else {  // it may come as near as its velocity says
-    const Separation then{apart.axis, apart.gap - toward * world.step_time};
+  } else {
+    const Separation then{apart.axis, apart.gap - toward * kStrangerSteps * world.step_time};
     crowd.cell.borders.push_back(border(self.hull, then, kLeastGap));
   }
 }

@@ -1,26 +1,28 @@
-// Which velocity an object with `footprint_orca` takes.
+// Which velocity an object with `footprint_orca` takes: the best of some tens, as in a dynamic window (Fox, Burgard,
+// Thrun: The dynamic window approach to collision avoidance, 1997), by the time to a collision as for reciprocal
+// velocity obstacles (van den Berg, Lin, Manocha: Reciprocal velocity obstacles for real-time multi-agent navigation,
+// 2008). Only controls that leave the object within its cell are taken.
 #include <algorithm>
-#include <cstdlib>
 
 #include "footprints/decider.hpp"
 
 namespace irsim {
 namespace {
 
-double tune(const char* name, double value) {
-  const char* text = std::getenv(name);
-  return text ? std::atof(text) : value;
-}
+constexpr double kMinSpeed = 1e-6;       // slower velocities are rounding errors [m/s]
+constexpr double kSoon = 0.1;            // added to the time to a collision, so that none weighs infinitely much [s]
+constexpr double kMoverWeight = 0.5;     // cost of a collision with a mover in a second, roughly [s]
+constexpr double kStandingWeight = 0.2;  // cost of a collision with what stands in a second, roughly [s]
+constexpr double kTurnWeight = 0.15;     // cost of a velocity at a right angle to the heading
+constexpr double kLeftWeight = 0.02;     // cost of a velocity at a right angle to the left of the wanted one
+constexpr double kStopWeight = 0.3;      // cost of standing, besides the way that it loses
+constexpr double kKeepDirection = 0.3;   // angle beyond a right angle before forward and backward are swapped [rad]
+constexpr double kMinCarShare = 0.3;     // smallest share of a wanted speed of a car, which turns only while it rolls
 
-constexpr double kMinSpeed = 1e-6;     // slower velocities are rounding errors [m/s]
-constexpr double kSoon = 0.1;          // added to the time to a collision, so that none weighs infinitely much [s]
-constexpr double kKeepDirection = 0.3;  // angle beyond a right angle before forward and backward are swapped [rad]
-constexpr double kMinCarShare = 0.3;    // smallest share of a wanted speed of a car, which turns only while it rolls
-
-/// Cosines and sines of the directions that are tried, seen from the wanted one, nearest first.
-constexpr double kRoot = 0.86602540378443865;
-constexpr Vec2 kDirections[] = {{1.0, 0.0},    {kRoot, -0.5}, {kRoot, 0.5},   {0.5, -kRoot},  {0.5, kRoot},   {0.0, -1.0},
-                                {0.0, 1.0},    {-0.5, -kRoot}, {-0.5, kRoot}, {-kRoot, -0.5}, {-kRoot, 0.5}, {-1.0, 0.0}};
+constexpr double kRoot = 0.86602540378443865;  // cosine of 30 degrees
+/// Cosines and sines of the directions that are tried, seen from the wanted one: nearest first, right before left.
+constexpr Vec2 kDirections[] = {{1.0, 0.0}, {kRoot, -0.5},  {kRoot, 0.5},  {0.5, -kRoot},  {0.5, kRoot},  {0.0, -1.0},
+                                {0.0, 1.0}, {-0.5, -kRoot}, {-0.5, kRoot}, {-kRoot, -0.5}, {-kRoot, 0.5}, {-1.0, 0.0}};
 
 /// A control, and how far the object stays within its cell with it.
 struct Trial {
@@ -73,8 +75,7 @@ struct Course {
 Course course_to(const FootprintSelf& self, Vec2 velocity) {
   const double error = std::atan2(cross(self.heading, velocity), dot(self.heading, velocity));
   if (!self.reverses) return {1.0, error};
-  const double limit =
-      0.5 * kPi + (self.state().control[self.row][0] < 0.0 ? -kKeepDirection : kKeepDirection);
+  const double limit = 0.5 * kPi + (self.state().control[self.row][0] < 0.0 ? -kKeepDirection : kKeepDirection);
   return std::fabs(error) > limit ? Course{-1.0, wrap(error + kPi)} : Course{1.0, error};
 }
 
@@ -144,14 +145,12 @@ class BestVelocity {
 
   /// What a velocity loses on the way to the goal, plus what it risks. The sum stops where it exceeds the best so far.
   double cost_of(Vec2 velocity) const {
-    static const double danger = tune("FO_DANGER", 0.5), danger_still = tune("FO_STILL", 0.2),
-                        turning = tune("FO_TURN", 0.15), side = tune("FO_SIDE", 0.02), lazy = tune("FO_LAZY", 0.3);
     const double speed = norm(velocity);
-    double cost = wanted_ > 0.0 ? 1.0 - dot(velocity, ahead_) * rate_ + lazy * (1.0 - speed * rate_) : speed;
-    cost += side * std::max(0.0, cross(ahead_, velocity)) * rate_;
+    double cost = wanted_ > 0.0 ? 1.0 - dot(velocity, ahead_) * rate_ + kStopWeight * (1.0 - speed * rate_) : speed;
+    cost += kLeftWeight * std::max(0.0, cross(ahead_, velocity)) * rate_;
     if (!self_.slides && speed > kMinSpeed) {
       const double cosine = dot(velocity, self_.heading) / speed;
-      cost += turning * (1.0 - (self_.reverses ? std::fabs(cosine) : cosine));
+      cost += kTurnWeight * (1.0 - (self_.reverses ? std::fabs(cosine) : cosine));
     }
     double moving = 0.0, still = 0.0;
     for (const Threat& threat : self_.crowd.threats) {
@@ -160,7 +159,7 @@ class BestVelocity {
       if (time >= threat.horizon) continue;
       const double urgency = 1.0 / (time + kSoon) - 1.0 / (threat.horizon + kSoon);
       double& most = threat.standing ? still : moving;
-      most = std::max(most, urgency * (threat.standing ? danger_still : danger));
+      most = std::max(most, urgency * (threat.standing ? kStandingWeight : kMoverWeight));
     }
     return cost + moving + still;
   }

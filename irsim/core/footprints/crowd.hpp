@@ -21,12 +21,12 @@ struct Threat {
 
 /// Scratch memory. The first object that decides in a step fills the first part, each object the second one.
 struct FootprintCrowd {
-  bool known = false;           // whether it holds the present step
-  Hulls hulls;                  // of the movers
+  bool known = false;            // whether it holds the present step
+  Hulls hulls;                   // of the movers
   std::vector<Blocker> resting;  // movers that stand for good, or have arrived and rest
 
-  std::vector<int> others;        // movers that the object avoids, nearest first
-  Hulls walls;                    // static obstacles near it
+  std::vector<int> others;  // movers that the object avoids, nearest first
+  Hulls walls;              // static obstacles near it
   std::vector<Threat> threats;
   std::vector<Face> faces;
   FreeCell cell;                  // where it may be after the step

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "behaviors/footprint_orca.hpp"
-#include "orca/crowd.hpp"
 #include "footprints/crowd.hpp"
+#include "orca/crowd.hpp"
 
 namespace irsim {
 

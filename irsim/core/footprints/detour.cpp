@@ -8,15 +8,15 @@
 namespace irsim {
 namespace {
 
-constexpr double kFinestCell = 0.1;     // [m]
-constexpr int kMostCells = 120;         // per side of the grid
-constexpr double kAround = 1.5;         // free space round everything, through which a way may lead [m]
-constexpr double kComfort = 0.15;       // clearance that a way keeps if it is not much longer [m]
-constexpr double kTight = 0.06;         // overlap of the disc that is tried if there is no other way [m]
-constexpr double kTightCost = 30.0;     // factor on the length of such a part
-constexpr double kComfortCost = 2.0;    // factor on the length of a part without clearance, added to 1
-constexpr double kLeaving = 0.3;        // distance from the start within which any overlap may be left [m]
-constexpr double kPullClearance = 0.03; // clearance of the straight parts [m]
+constexpr double kFinestCell = 0.1;      // [m]
+constexpr int kMostCells = 120;          // per side of the grid
+constexpr double kAround = 1.5;          // free space round everything, through which a way may lead [m]
+constexpr double kComfort = 0.15;        // clearance that a way keeps if it is not much longer [m]
+constexpr double kTight = 0.06;          // overlap of the disc that is tried if there is no other way [m]
+constexpr double kTightCost = 30.0;      // factor on the length of such a part
+constexpr double kComfortCost = 2.0;     // factor on the length of a part without clearance, added to 1
+constexpr double kLeaving = 0.3;         // distance from the start within which any overlap may be left [m]
+constexpr double kPullClearance = 0.03;  // clearance of the straight parts [m]
 
 Hull capsule(const Vec2* ends, const Vec2* normals, double radius) { return {ends, normals, 2, radius}; }
 
@@ -67,8 +67,11 @@ bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, const std::
   for (const Blocker& one : blockers) box.include(one.centre);
   box = {box.x0 - kAround, box.y0 - kAround, box.x1 + kAround, box.y1 + kAround};
   const double cell = std::max(kFinestCell, std::max(box.x1 - box.x0, box.y1 - box.y0) / kMostCells);
-  const int columns = static_cast<int>((box.x1 - box.x0) / cell) + 1, rows = static_cast<int>((box.y1 - box.y0) / cell) + 1;
-  const auto centre = [&](int k) { return Vec2{box.x0 + (k % columns + 0.5) * cell, box.y0 + (k / columns + 0.5) * cell}; };
+  const int columns = static_cast<int>((box.x1 - box.x0) / cell) + 1,
+            rows = static_cast<int>((box.y1 - box.y0) / cell) + 1;
+  const auto centre = [&](int k) {
+    return Vec2{box.x0 + (k % columns + 0.5) * cell, box.y0 + (k / columns + 0.5) * cell};
+  };
   const auto cell_of = [&](Vec2 p) {
     const int x = static_cast<int>(clip((p.x - box.x0) / cell, 0.0, columns - 1.0));
     const int y = static_cast<int>(clip((p.y - box.y0) / cell, 0.0, rows - 1.0));

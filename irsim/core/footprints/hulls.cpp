@@ -32,8 +32,10 @@ void make_hull(std::vector<Vec2>& points) {
     hull.pop_back();
     std::reverse(points.begin(), points.end());
   }
-  if (!hull.empty()) points = std::move(hull);
-  else points.resize(1);
+  if (!hull.empty())
+    points = std::move(hull);
+  else
+    points.resize(1);
 }
 
 }  // namespace

@@ -66,9 +66,8 @@ Vec2 next_point(FootprintSelf& self, Detour& detour, Vec2 goal, std::int64_t now
   update_way(self, detour, to, reach, radius, now);
   if (detour.points.empty()) return goal;
   const std::size_t last = detour.points.size() - 1;
-  while (detour.next < last &&
-         (squared(detour.points[detour.next] - self.position) < kCornerReached * kCornerReached ||
-          is_open(self.position, detour.points[detour.next + 1], radius, blockers))) {
+  while (detour.next < last && (squared(detour.points[detour.next] - self.position) < kCornerReached * kCornerReached ||
+                                is_open(self.position, detour.points[detour.next + 1], radius, blockers))) {
     ++detour.next;
   }
   return detour.points[detour.next];
