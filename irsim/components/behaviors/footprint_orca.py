@@ -13,7 +13,18 @@ from irsim.options.units import Bool, Count, Meters, MetersPerSecond, Seconds
 
 
 class FootprintOrca(BehaviorOptions):
-    """Avoid others as `orca` does, with true outlines instead of circles, and never touch those that do the same."""
+    """Avoid others by the outlines of their bodies instead of circles, walk round what stands, and never touch alike ones.
+
+    It is for crowds of robots, above all where robots that have arrived stay in the way. As under `orca` each of two
+    makes half of the avoidance, and all of it for those that do not give way. Of some tens of velocities it takes the
+    one that loses least on the way to the goal and risks least within the time horizon. It only takes what leaves it in
+    its own part of the gap to each other one, so that robots which all run it do not touch, as long as their drives are
+    exact and `acce` does not limit how they brake. Robots that stand, arrived ones and static obstacles within 5 m are
+    passed on a way that is searched on a grid of 0.1 m; others that stay longer are passed, too, once it has made no
+    progress for 1.2 s; then it also tries random directions, which follow the seed. Arrived robots make room for
+    others, and come back. It sees no goals of others. Around larger walls use `follow` with `footprint_orca` as its
+    `local`.
+    """
 
     in_group: ClassVar[bool] = True
 
@@ -21,19 +32,21 @@ class FootprintOrca(BehaviorOptions):
 
     name: Literal["footprint_orca"] = "footprint_orca"
     neighborDist: Annotated[Meters, Field(gt=0)] = 3.0
-    """Moving objects farther away than this are ignored."""
+    """Moving objects farther away than this are ignored, unless they stand in the way."""
     maxNeighbors: Count = 8
-    """Number of moving objects considered, nearest first."""
+    """Number of moving objects considered, nearest first; walls and static circles do not count."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 1.5
-    """Time horizon within which collisions with moving objects are avoided."""
+    """Time horizon within which collisions with moving objects are avoided; twice this for those that run something
+    else."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 0.5
-    """Time horizon within which collisions with what stands are avoided."""
+    """Time horizon within which collisions with walls and with everything that has stopped are avoided."""
     safe_distance: Annotated[Meters, Field(ge=0)] = 0.02
-    """Distance kept from others."""
+    """Distance kept from others where there is room, 0.1 m more from moving ones that run something else."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Largest speed; null is the limit of the object."""
+    """Largest speed; null is the speed that the object can reach in every direction, which is also the upper limit."""
     backward: Bool = True
-    """Whether an object with a drive that cannot move sideways also drives backward, where `vel_min` allows it."""
+    """Whether an object that cannot move sideways also drives backward, if its `vel_min` allows it: turning round takes
+    longer."""
 
 
 BEHAVIORS.register(FootprintOrca, kernel=core.FootprintOrcaOptions)

@@ -17,7 +17,7 @@ constexpr double kRestingSpeed = 0.1;      // an arrived object that is slower r
 constexpr double kStrangerDistance = 0.1;  // distance kept in addition from movers that do something else [m]
 constexpr double kStrangerHorizons = 2.0;  // time horizon for them, in those of the options
 constexpr double kStrangerSteps = 2.0;     // steps for which the space that they head for is left to them
-constexpr double kWallReach = 5.0;         // half the side of the box in which static obstacles block a way [m]
+constexpr double kWayReach = 5.0;         // half the side of the box in which static obstacles block a way [m]
 constexpr double kRestingReach = 10.0;     // farther bodies that rest do not block a way [m]
 
 bool sees_role(const World& world, int viewer, int other) {
@@ -89,7 +89,7 @@ void meet_static(FootprintSelf& self) {
   std::vector<int>& found = crowd.others;
   found.clear();
   const Vec2 centre = self.all.movers[self.mover].position;
-  obstacles.near(box_around(centre, kWallReach), [&](int k) {
+  obstacles.near(box_around(centre, kWayReach), [&](int k) {
     const int object = k < edges ? obstacles.edges[k].object : obstacles.discs[k - edges].object;
     if (object < 0 || sees_role(world, self.object, object)) found.push_back(k);
   });

@@ -19,6 +19,8 @@ constexpr double kStopWeight = 0.3;      // cost of standing, besides the way th
 constexpr double kKeepDirection = 0.3;   // angle beyond a right angle before forward and backward are swapped [rad]
 constexpr double kMinCarShare = 0.3;     // smallest share of a wanted speed of a car, which turns only while it rolls
 
+constexpr double kLeastGain = 1e-6;  // smaller gains of a small step are rounding errors
+
 constexpr double kRoot = 0.86602540378443865;  // cosine of 30 degrees
 /// Cosines and sines of the directions that are tried, seen from the wanted one: nearest first, right before left.
 constexpr Vec2 kDirections[] = {{1.0, 0.0}, {kRoot, -0.5},  {kRoot, 0.5},  {0.5, -kRoot},  {0.5, kRoot},  {0.0, -1.0},
@@ -131,9 +133,31 @@ class BestVelocity {
     const double cost = cost_of(velocity);
     if (cost < cost_) offer(velocity, {{speed, 0.0, 0.0}}, cost);
   }
+  /// Turn or move a little toward the wanted direction, if the object would stand otherwise: a body that is wedged
+  /// between others gets free in small steps.
+  void inch() {
+    if (!(wanted_ > 0.0) || self_.turn_rate == 0.0 || squared(best_.velocity) > kMinSpeed || best_.room < 0.0) return;
+    const double dt = self_.world().step_time;
+    double most = aligned(self_.heading) + kLeastGain;
+    for (const double share : {0.0, 0.1, -0.1, 0.3, -0.3}) {
+      if (share < 0.0 && !self_.reverses) continue;
+      for (const double turn : {0.0, 0.03, -0.03, 0.1, -0.1, 0.4, -0.4}) {
+        const Vec3 control{{share * self_.speed, turn * self_.turn_rate, 0.0}};
+        const Vec2 velocity = self_.heading * control[0];
+        const double gain = aligned(rotate(self_.heading, unit(control[1] * dt))) + dot(velocity, ahead_) * rate_;
+        if (gain <= most) continue;
+        const double room = room_with(self_, control);
+        if (room >= 0.0) best_ = {control, velocity, room}, most = gain;
+      }
+    }
+  }
   const Trial& best() const { return best_; }
 
  private:
+  double aligned(Vec2 heading) const {
+    const double cosine = dot(heading, ahead_);
+    return self_.reverses ? std::fabs(cosine) : cosine;
+  }
   void offer(Vec2 velocity, Vec3 control, double cost) {
     const double room = room_with(self_, control);
     if (room >= 0.0) {
@@ -188,6 +212,7 @@ Intent best_intent(FootprintSelf& self, Vec2 wanted) {
     }
   }
   choice.consider({});
+  choice.inch();
   const Trial& best = choice.best();
   const Drive& drive = self.world().drive[self.object];
   Intent intent = std::holds_alternative<std::monostate>(drive) ? Intent::of_velocity(best.velocity)

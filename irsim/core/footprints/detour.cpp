@@ -61,20 +61,27 @@ bool is_open(Vec2 a, Vec2 b, double radius, const std::vector<Blocker>& blockers
 
 bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, const std::vector<Blocker>& blockers,
                  DetourMemory& memory, std::vector<Vec2>& points) {
+  // The grid lies along the straight line, so that a turned world gives turned ways.
+  const double distance = norm(goal - start);
+  const Vec2 ahead = distance > 0.0 ? (goal - start) * (1.0 / distance) : Vec2{1.0, 0.0};
+  const auto local = [&](Vec2 p) { return unrotate(p - start, ahead); };
   Box box;
-  box.include(start);
-  box.include(goal);
-  for (const Blocker& one : blockers) box.include(one.centre);
+  box.include(Vec2{});
+  box.include(Vec2{distance, 0.0});
+  for (const Blocker& one : blockers) box.include(local(one.centre));
   box = {box.x0 - kAround, box.y0 - kAround, box.x1 + kAround, box.y1 + kAround};
   const double cell = std::max(kFinestCell, std::max(box.x1 - box.x0, box.y1 - box.y0) / kMostCells);
-  const int columns = static_cast<int>((box.x1 - box.x0) / cell) + 1,
-            rows = static_cast<int>((box.y1 - box.y0) / cell) + 1;
+  // A cell has its centre at the start.
+  box.x0 = (std::floor(box.x0 / cell) - 0.5) * cell, box.y0 = (std::floor(box.y0 / cell) - 0.5) * cell;
+  const int columns = static_cast<int>((box.x1 - box.x0) / cell) + 1;
+  const int rows = static_cast<int>((box.y1 - box.y0) / cell) + 1;
   const auto centre = [&](int k) {
-    return Vec2{box.x0 + (k % columns + 0.5) * cell, box.y0 + (k / columns + 0.5) * cell};
+    return start + rotate({box.x0 + (k % columns + 0.5) * cell, box.y0 + (k / columns + 0.5) * cell}, ahead);
   };
   const auto cell_of = [&](Vec2 p) {
-    const int x = static_cast<int>(clip((p.x - box.x0) / cell, 0.0, columns - 1.0));
-    const int y = static_cast<int>(clip((p.y - box.y0) / cell, 0.0, rows - 1.0));
+    const Vec2 at = local(p);
+    const int x = static_cast<int>(clip((at.x - box.x0) / cell, 0.0, columns - 1.0));
+    const int y = static_cast<int>(clip((at.y - box.y0) / cell, 0.0, rows - 1.0));
     return y * columns + x;
   };
   const std::size_t size = static_cast<std::size_t>(columns) * rows;
