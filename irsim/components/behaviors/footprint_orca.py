@@ -31,7 +31,7 @@ class FootprintOrca(BehaviorOptions):
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "footprint_orca"}]}
 
     name: Literal["footprint_orca"] = "footprint_orca"
-    neighborDist: Annotated[Meters, Field(gt=0)] = 3.0
+    neighborDist: Annotated[Meters, Field(gt=0)] = 5.0
     """Moving objects farther away than this are ignored, unless they stand in the way."""
     maxNeighbors: Count = 8
     """Number of moving objects considered, nearest first; walls and static circles do not count."""

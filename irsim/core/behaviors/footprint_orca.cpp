@@ -16,8 +16,7 @@ constexpr double kOutlineDistance = 0.5;   // gap of bounding circles from which
 constexpr double kRestingSpeed = 0.1;      // an arrived object that is slower rests [m/s]
 constexpr double kStrangerDistance = 0.1;  // distance kept in addition from movers that do something else [m]
 constexpr double kStrangerHorizons = 2.0;  // time horizon for them, in those of the options
-constexpr double kStrangerSteps = 2.0;     // steps for which the space that they head for is left to them
-constexpr double kWayReach = 5.0;         // half the side of the box in which static obstacles block a way [m]
+constexpr double kWayReach = 5.0;          // half the side of the box in which static obstacles block a way [m]
 constexpr double kRestingReach = 10.0;     // farther bodies that rest do not block a way [m]
 
 bool sees_role(const World& world, int viewer, int other) {
@@ -113,7 +112,7 @@ void meet_static(FootprintSelf& self) {
     Threat threat{{}, 1.0, {}, horizon, true};
     const Separation apart = cone_of(self.hull, wall, self.options.safe_distance, false, crowd.faces, threat.cone);
     crowd.threats.push_back(threat);
-    if (apart.gap < 2.0 * self.stride()) crowd.cell.fixtures.push_back({wall, std::min(kLeastGap, apart.gap)});
+    if (apart.gap < 2.0 * self.stride()) crowd.cell.fixtures.push_back({wall, std::min(kLeastGap, apart.gap), {}});
   }
 }
 
@@ -158,24 +157,24 @@ void meet_mover(FootprintSelf& self, int m) {
   const double radii = shapes.radius[self.object] + shapes.radius[world.moving[m]] + margin;
   const double gap = norm(offset) - radii, stride = 2.0 * self.stride() + norm(moves) * world.step_time;
   if (gap > horizon * (gain * self.speed + norm(threat.base))) return;
-  if (gap > std::max(kOutlineDistance, stride)) {
-    cone_of(offset, radii, crowd.faces, threat.cone);
-    crowd.threats.push_back(threat);
-    return;
-  }
+  // Circles stand for bodies that are far, and for those whose way is not known as long as they do not overlap.
+  const bool discs = strange ? gap > 0.0 : gap > std::max(kOutlineDistance, stride);
   const Hull body = crowd.hulls[m];
-  const Separation apart = cone_of(self.hull, body, margin, m < self.mover, crowd.faces, threat.cone);
+  Separation apart{{}, gap};
+  if (discs) {
+    cone_of(offset, radii, crowd.faces, threat.cone);
+  } else {
+    apart = cone_of(self.hull, body, margin, m < self.mover, crowd.faces, threat.cone);
+  }
   crowd.threats.push_back(threat);
   if (apart.gap > 2.0 * stride) return;
-  const double toward = std::max(0.0, dot(apart.axis, moves));
   if (standing) {
-    crowd.cell.fixtures.push_back({body, std::min(kLeastGap, apart.gap)});
-  } else if (alike) {
-    const double own = std::max(0.0, -dot(apart.axis, self.velocity));
-    crowd.cell.borders.push_back(border(self.hull, apart, own, toward, kLeastGap));
+    crowd.cell.fixtures.push_back({body, std::min(kLeastGap, apart.gap), {}});
+  } else if (!alike) {
+    crowd.cell.fixtures.push_back({body, kLeastGap, moves * world.step_time});
   } else {
-    const Separation then{apart.axis, apart.gap - toward * kStrangerSteps * world.step_time};
-    crowd.cell.borders.push_back(border(self.hull, then, kLeastGap));
+    const double own = std::max(0.0, -dot(apart.axis, self.velocity)), toward = std::max(0.0, dot(apart.axis, moves));
+    crowd.cell.borders.push_back(border(self.hull, apart, own, toward, kLeastGap));
   }
 }
 

@@ -12,22 +12,22 @@ Border border(const Hull& body, const Separation& apart, double own, double othe
   return {apart.axis, body.least(apart.axis) - share * std::max(0.0, apart.gap - margin)};
 }
 
-Border border(const Hull& body, const Separation& apart, double margin) {
-  return {apart.axis, body.least(apart.axis) - std::max(0.0, apart.gap - margin)};
-}
-
 double FreeCell::room(const Hull& body, Vec2 place, Vec2 shift, Vec2 turn) {
   double room = kInfinity;
   if (empty()) return room;
   const std::size_t count = body.count;
-  moved.resize(2 * count);
+  moved.resize(3 * count);
   const Vec2 to = place + shift;
   for (std::size_t k = 0; k < count; ++k) moved[k] = to + rotate(body.corner[k] - place, turn);
-  Hull there{moved.data(), moved.data() + count, body.count, body.round};
+  const Hull there{moved.data(), moved.data() + count, body.count, body.round};
   for (const Border& one : borders) room = std::min(room, there.least(one.axis) - one.limit);
   if (room < 0.0 || fixtures.empty()) return room;
   for (std::size_t k = 0; k < count; ++k) moved[count + k] = rotate(body.normal[k], turn);
-  for (const Fixture& one : fixtures) room = std::min(room, separation(there, one.hull).gap - one.gap);
+  for (const Fixture& one : fixtures) {
+    for (std::size_t k = 0; k < count; ++k) moved[2 * count + k] = moved[k] - one.shift;
+    const Hull relative{moved.data() + 2 * count, moved.data() + count, body.count, body.round};
+    room = std::min(room, separation(relative, one.hull).gap - one.gap);
+  }
   return room;
 }
 

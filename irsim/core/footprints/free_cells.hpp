@@ -24,17 +24,15 @@ struct Border {
 ///   margin: Part of the gap that nobody uses [m].
 Border border(const Hull& body, const Separation& apart, double own, double other, double margin);
 
-/// The border of a body that alone uses a gap, except for the margin.
-Border border(const Hull& body, const Separation& apart, double margin);
-
 /// The space of one body.
 struct FreeCell {
   struct Fixture {
     Hull hull;
     double gap;  // least distance [m]
+    Vec2 shift;  // of the hull until the end of the step [m]
   };
   std::vector<Border> borders;
-  std::vector<Fixture> fixtures;  // bodies that stand
+  std::vector<Fixture> fixtures;  // bodies that stand, or move on whatever this one does
   std::vector<Vec2> moved;        // scratch memory
 
   void clear() { borders.clear(), fixtures.clear(); }
