@@ -151,7 +151,15 @@ class BestVelocity {
       }
     }
   }
-  const Trial& best() const { return best_; }
+  /// Whether nothing can be better.
+  bool is_perfect() const { return cost_ <= 0.0; }
+  Intent intent() const {
+    const Drive& drive = self_.world().drive[self_.object];
+    Intent intent = std::holds_alternative<std::monostate>(drive) ? Intent::of_velocity(best_.velocity)
+                                                                  : Intent::of_control(best_.control);
+    intent.infeasible = best_.room < 0.0;
+    return intent;
+  }
 
  private:
   double aligned(Vec2 heading) const {
@@ -200,6 +208,7 @@ class BestVelocity {
 Intent best_intent(FootprintSelf& self, Vec2 wanted) {
   BestVelocity choice(self, wanted);
   choice.consider(wanted);
+  if (choice.is_perfect()) return choice.intent();
   const double speed = norm(wanted);
   const Vec2 ahead = speed > 0.0 ? wanted * (1.0 / speed) : self.heading;
   for (const Vec2 turn : kDirections) {
@@ -213,12 +222,7 @@ Intent best_intent(FootprintSelf& self, Vec2 wanted) {
   }
   choice.consider({});
   choice.inch();
-  const Trial& best = choice.best();
-  const Drive& drive = self.world().drive[self.object];
-  Intent intent = std::holds_alternative<std::monostate>(drive) ? Intent::of_velocity(best.velocity)
-                                                                : Intent::of_control(best.control);
-  intent.infeasible = best.room < 0.0;
-  return intent;
+  return choice.intent();
 }
 
 }  // namespace irsim

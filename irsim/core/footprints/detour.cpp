@@ -8,14 +8,16 @@
 namespace irsim {
 namespace {
 
-constexpr double kFinestCell = 0.1;      // [m]
-constexpr int kMostCells = 120;          // per side of the grid
-constexpr double kAround = 1.5;          // free space round everything, through which a way may lead [m]
-constexpr double kComfort = 0.15;        // clearance that a way keeps if it is not much longer [m]
-constexpr double kTight = 0.06;          // overlap of the disc that is tried if there is no other way [m]
-constexpr double kTightCost = 30.0;      // factor on the length of such a part
-constexpr double kComfortCost = 2.0;     // factor on the length of a part without clearance, added to 1
-constexpr double kLeaving = 0.3;         // distance from the start within which any overlap may be left [m]
+constexpr double kFinestCell = 0.1;   // [m]
+constexpr int kMostCells = 120;       // per side of the grid
+constexpr double kAround = 1.5;       // free space round everything, through which a way may lead [m]
+constexpr double kComfort = 0.15;     // clearance that a way keeps if it is not much longer [m]
+constexpr double kTight = 0.06;       // overlap of the disc that is tried if there is no other way [m]
+constexpr double kTightCost = 30.0;   // factor on the length of such a part
+constexpr double kComfortCost = 2.0;  // factor on the length of a part without clearance, added to 1
+constexpr double kLeaving = 0.3;      // distance from the start within which any overlap may be left [m]
+constexpr double kGreed =
+    1.2;  // factor on the distance that is left: ways may be longer by a fifth, and are found sooner
 constexpr double kPullClearance = 0.03;  // clearance of the straight parts [m]
 
 Hull capsule(const Vec2* ends, const Vec2* normals, double radius) { return {ends, normals, 2, radius}; }
@@ -34,11 +36,13 @@ double distance_to(const Hull& hull, Vec2 p) {
 }
 
 /// Factor on the length of a way through a point; infinite if it is closed.
-double price_of(Vec2 p, Vec2 start, double radius, const std::vector<Blocker>& blockers) {
+double price_of(Vec2 p, Vec2 start, double radius, const std::vector<Blocker>& blockers,
+                const std::vector<DetourMemory::Reach>& reaches) {
   double clear = kComfort;
-  for (const Blocker& one : blockers) {
-    const double far = one.radius + radius + clear;
-    if (squared(p - one.centre) < far * far) clear = std::min(clear, distance_to(one.hull, p) - radius);
+  for (std::size_t k = 0; k < reaches.size(); ++k) {
+    if (squared(p - reaches[k].centre) >= reaches[k].far2) continue;
+    clear = std::min(clear, distance_to(blockers[k].hull, p) - radius);
+    if (clear <= -kTight) break;
   }
   if (clear >= 0.0) return 1.0 + kComfortCost * (1.0 - clear / kComfort);
   return clear > -kTight || squared(p - start) < kLeaving * kLeaving ? kTightCost : kInfinity;
@@ -85,15 +89,20 @@ bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, const std::
     return y * columns + x;
   };
   const std::size_t size = static_cast<std::size_t>(columns) * rows;
+  memory.reaches.clear();
+  for (const Blocker& one : blockers) {
+    const double far = one.radius + radius + kComfort;
+    memory.reaches.push_back({one.centre, far * far});
+  }
   memory.price.assign(size, 0.0f);
   memory.cost.assign(size, std::numeric_limits<float>::infinity());
   memory.parent.resize(size);
   const auto price = [&](int k) {
     float& known = memory.price[k];
-    if (known == 0.0f) known = static_cast<float>(price_of(centre(k), start, radius, blockers));
+    if (known == 0.0f) known = static_cast<float>(price_of(centre(k), start, radius, blockers, memory.reaches));
     return known;
   };
-  const auto remaining = [&](int k) { return std::max(0.0, norm(centre(k) - goal) - reach); };
+  const auto remaining = [&](int k) { return kGreed * std::max(0.0, norm(centre(k) - goal) - reach); };
   using Entry = std::pair<float, std::int32_t>;
   const auto later = [](const Entry& a, const Entry& b) { return a > b; };
   memory.heap.clear();

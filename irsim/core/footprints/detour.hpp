@@ -29,6 +29,11 @@ struct Blocker {
 
 /// Memory of searches.
 struct DetourMemory {
+  struct Reach {
+    Vec2 centre;
+    double far2;  // square of the distance from which a blocker does not matter [m2]
+  };
+  std::vector<Reach> reaches;
   std::vector<float> price, cost;
   std::vector<std::int32_t> parent;
   std::vector<std::pair<float, std::int32_t>> heap;

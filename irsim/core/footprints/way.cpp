@@ -8,7 +8,7 @@ namespace irsim {
 namespace {
 
 constexpr double kLane = 0.02;           // clearance of a straight lane on either side [m]
-constexpr double kSearchAgain = 3.0;     // time after which a way is searched again [s]
+constexpr double kSearchAgain = 3.0;     // time after which a way that is not open is searched again [s]
 constexpr double kHorizon = 8.0;         // ways are planned no farther ahead [m]
 constexpr double kInside = 0.02;         // depth within `goal_threshold` to which a way leads [m]
 constexpr double kCornerReached = 0.1;   // distance at which a corner of a way is left behind [m]
@@ -34,14 +34,16 @@ double half_lane(const FootprintSelf& self) {
 void update_way(FootprintSelf& self, Detour& detour, Vec2 to, double reach, double radius, std::int64_t now) {
   const std::vector<Blocker>& blockers = self.crowd.blockers;
   const int count = static_cast<int>(blockers.size());
-  bool search = detour.planned < 0 || (now - detour.planned) * self.world().step_time >= kSearchAgain;
-  if (!search && detour.blockers != count) {
+  const bool old = (now - detour.planned) * self.world().step_time >= kSearchAgain;
+  bool search = detour.planned < 0 || (old && detour.points.empty());
+  if (!search && (old || detour.blockers != count)) {
     Vec2 from = self.position;
     for (std::size_t k = detour.next; k < detour.points.size() && !search; ++k) {
       search = !is_open(from, detour.points[k], radius, blockers);
       from = detour.points[k];
     }
     detour.blockers = count;
+    if (old) detour.planned = now;
   }
   if (!search) return;
   find_detour(self.position, to, reach, radius, blockers, self.crowd.search, detour.points);
