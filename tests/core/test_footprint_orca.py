@@ -78,7 +78,7 @@ def test_a_gap_as_wide_as_the_true_outline_is_open(behavior: str, arrives: bool)
 def test_a_way_leads_round_robots_that_have_arrived(behavior: str, arrives: bool) -> None:
     """Five robots that stay where they are make a pocket in front of the goal."""
     places = [[7, 6], [6.7, 6.7], [6.7, 5.3], [6.1, 7.0], [6.1, 5.0]]
-    pocket = [entry([x - 0.1, y, 0], [x, y], shape="{name: circle, radius: 0.35}") for x, y in places]
+    pocket = [entry([x - 0.1, y, 0], [x, y], shape="{name: circle, radius: 0.3}") for x, y in places]
     text = world(
         *pocket, entry([2, 6, 0], [10, 6], behavior=behavior, shape="{name: circle, radius: 0.3}"), after="freeze"
     )
@@ -89,7 +89,7 @@ def test_a_way_leads_round_robots_that_have_arrived(behavior: str, arrives: bool
 def test_an_arrived_robot_makes_room_and_comes_back() -> None:
     """A corridor is too narrow for two. The one that has arrived in it leaves it, and returns."""
     walls = "obstacle:\n" + "".join(
-        f"  - {{shape: {{name: rectangle, length: 4, width: 1}}, state: [6, {y}, 0]}}\n" for y in (4.9, 7.1)
+        f"  - {{shape: {{name: rectangle, length: 4, width: 20}}, state: [6, {y}, 0]}}\n" for y in (-4.6, 16.6)
     )
     small = "{name: circle, radius: 0.3}"
     text = world(
