@@ -18,12 +18,12 @@ class FootprintOrca(BehaviorOptions):
     It is for crowds of robots, above all where those that have arrived stay in the way. As under `orca` each of two
     makes half of the avoidance, and all of it for those that do not give way. Of some tens of velocities it takes the
     one that loses least on the way to the goal and risks least within the time horizon. It only takes what leaves it in
-    its own part of the gap to each other one, so that robots which all run it do not touch, as long as their drives are
-    exact and `acce` does not limit how they brake. Robots that stand, arrived ones and static obstacles within 5 m are
-    passed on a way that is searched on a grid of 0.1 m, at most 4 m aside; others that stay longer are passed, too, once it has made no
-    progress for 1.2 s; then it also tries random directions, which follow the seed. Arrived robots make room for
-    others, and come back. It sees no goals of others. Around larger walls use `follow` with `footprint_orca` as its
-    `local`.
+    its own part of the gap to each other one: robots which all run it do not touch, as long as their drives are exact,
+    `acce` does not limit how they brake and no more than `maxNeighbors` are that near. Robots that stand, arrived ones
+    and static obstacles within 5 m are passed on a way that is searched on a grid of 0.1 m, at most 4 m aside; others
+    that stay longer are passed, too, once it has made no progress for 1.2 s; then it also tries random directions,
+    which follow the seed. Arrived robots make room for others, and come back. It sees no goals of others. Around larger
+    walls use `follow` with `footprint_orca` as its `local`.
     """
 
     in_group: ClassVar[bool] = True
