@@ -58,6 +58,19 @@ class AvocadoOptions(_Options):
 class DashOptions(_Options):
     def __init__(self, *, angle_tolerance: float) -> None: ...
 
+class FootprintOrcaOptions(_Options):
+    def __init__(
+        self,
+        *,
+        neighborDist: float,
+        maxNeighbors: int,
+        timeHorizon: float,
+        timeHorizonObst: float,
+        safe_distance: float,
+        maxSpeed: float | None,
+        backward: bool,
+    ) -> None: ...
+
 class OrcaOptions(_Options):
     def __init__(
         self,

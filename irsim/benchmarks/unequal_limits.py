@@ -20,6 +20,7 @@ _FIXES = {
     "sfm": "vmax of sfm",
     "orca": "maxSpeed of orca",
     "avocado": "maxSpeed of avocado",
+    "footprint_orca": "maxSpeed of footprint_orca",
 }
 """Options that limit the speed of a behavior."""
 

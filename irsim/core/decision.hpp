@@ -20,6 +20,7 @@ struct Decision {
   bool grouped;        // from `group_behavior`: members know each other
   Workspace& work;     // scratch memory
   Opinions* opinions;  // (R,) memory of `avocado`: only the row of an object that decides is read and written
+  Detour* detours;     // (R,) memory of `footprint_orca`, likewise
 
   int w() const { return first_row / world.objects; }
   int row(int k) const { return first_row + objects[k]; }

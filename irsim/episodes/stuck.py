@@ -48,7 +48,7 @@ _MAX_OBSTRUCTION_DISTANCE = 0.5
 """Distance [m] up to which an object obstructs one that makes no progress."""
 _MAX_WALL_DISTANCE = 2.0
 """Distance [m] up to which something static obstructs a car that plans no path."""
-REACTIVE = ("rvo", "orca", "avocado", "sfm")
+REACTIVE = ("rvo", "orca", "avocado", "footprint_orca", "sfm")
 """Behaviors that avoid obstacles without planning a path."""
 _MAX_JAM_DISTANCE = 2.0
 """Distance [m] up to which a jammed obstacle obstructs an object, as some behaviors keep this far from people."""

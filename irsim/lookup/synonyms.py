@@ -31,6 +31,8 @@ EVERYDAY: dict[str, str] = {
     "collision avoidance, obstacle avoidance",
     "robot.behavior.avocado": "adaptive collision avoidance, opinion, opinion dynamics, cooperation, cooperative, "
     "non-cooperative, uncooperative, unknown behavior, collision avoidance",
+    "robot.behavior.footprint_orca": "dense crowd, deadlock, jam, blocked goal, arrived robots in the way, polygons, "
+    "true footprint, exact outline, buffered voronoi cells, multi-robot, collision avoidance",
     "robot.behavior.rvo": "velocity obstacle, reciprocal velocity obstacle, vo, hrvo, collision avoidance",
     "robot.behavior.dash": "straight line, drive straight, go straight, go to goal, point to point",
     "robot.behavior.dash.wander": "wander, random walk, roam, wandering, random goals",

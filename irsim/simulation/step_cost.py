@@ -41,9 +41,9 @@ _FOG_CELL_US = 0.0006
 """Time of one beam per cell of fog that it passes [µs]."""
 _CORNER_US = 0.012
 """Time of each corner after the first of a moving body [µs]."""
-_NEIGHBOR_US = {"rvo": 0.5, "sfm": 0.12}
+_NEIGHBOR_US = {"rvo": 0.5, "sfm": 0.12, "footprint_orca": 0.5}
 """Time per moving neighbor in range, for behaviors that consider each neighbor [µs]."""
-_STATIC_BODY_US = {"rvo": 1.5, "sfm": 0.2, "orca": 0.12, "avocado": 0.12}
+_STATIC_BODY_US = {"rvo": 1.5, "sfm": 0.2, "orca": 0.12, "avocado": 0.12, "footprint_orca": 0.3}
 """Time per static body in range [µs]."""
 _ZONE_US = 0.01
 """Time of one zone per moving body [µs]."""

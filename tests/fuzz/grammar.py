@@ -70,6 +70,7 @@ HOSTILE = (
         "dash",
         "orca",
         "avocado",
+        "footprint_orca",
         "rvo",
         "sfm",
         "follow",

@@ -15,7 +15,7 @@ from irsim.options.units import Count, Degrees, Fraction, Meters, MetersPerSecon
 class Orca(BehaviorOptions):
     """Take half of the smallest change of velocity that avoids every collision, and leave the rest to the other.
 
-    It makes the whole change for moving objects that run neither orca nor avocado, and never drives into static ones.
+    It makes the whole change for moving objects that run no kind of orca, and never drives into static ones.
     It respects walls, the largest speed and turn rate and the steering of a car, but not `acce`; every object counts as
     the circle round its footprint, even a long rectangle. Robots that have arrived still give way: they leave their
     goals and come back. It does not get out of dead ends: to find a way round walls, use `follow` with `orca` as its
@@ -41,8 +41,9 @@ class Orca(BehaviorOptions):
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
     """Largest speed; null is the speed that the object can reach in every direction, which is also the upper limit."""
     responsibility: Annotated[Fraction, Field(gt=0)] | None = None
-    """Share of the change of velocity that it makes for a moving object; null is half for one that runs orca or avocado
-    and sees it, and all for others. Most other programs always take 0.5, also for people who do not see the robot."""
+    """Share of the change of velocity that it makes for a moving object; null is half for one that runs a kind of orca
+    (`footprint_orca`, `avocado`) and sees it, and all for others. Most other programs always take 0.5, also for people
+    who do not see the robot."""
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
     """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
     speed."""

@@ -1,5 +1,7 @@
 #include "orca/crowd.hpp"
 
+#include "footprints/crowd.hpp"
+
 #include <optional>
 
 #include "world/features.hpp"
@@ -16,6 +18,7 @@ std::optional<double> margin_of(const Behavior& behavior, double radius) {
   if (const auto* orca = std::get_if<OrcaOptions>(&behavior)) return orca->safe_radius;
   if (const auto* avocado = std::get_if<AvocadoOptions>(&behavior))
     return avocado->safe_radius ? *avocado->safe_radius : kDefaultShare * radius;
+  if (const auto* footprints = std::get_if<FootprintOrcaOptions>(&behavior)) return footprints->safe_distance;
   return std::nullopt;
 }
 
@@ -25,6 +28,7 @@ OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w)
   OrcaCrowd& all = work.orca;
   if (all.known) return all;
   all.known = true;
+  if (all.outlines) all.outlines->known = false;
   const Neighbors& near = neighbors(world, state, work, w);
   const Shapes& shapes = *state.scenes[w].shapes;
   const std::size_t count = world.moving.size();

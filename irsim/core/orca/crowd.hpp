@@ -1,6 +1,7 @@
 // The moving objects of one world as ORCA sees them in one step.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "orca/constraints.hpp"
@@ -11,6 +12,8 @@ namespace irsim {
 struct State;
 struct World;
 struct Workspace;
+
+struct FootprintCrowd;
 
 /// Scratch memory of the behaviors that are built on ORCA: `orca` and `avocado`. Movers have the indices of
 /// World::moving.
@@ -25,6 +28,7 @@ struct OrcaCrowd {
   std::vector<Nearest::Found> neighbors;  // movers, or static discs, nearest first
   std::vector<Nearest::Found> edges;      // edges that face it, nearest first
   std::vector<HalfPlane> planes, scratch;
+  std::shared_ptr<FootprintCrowd> outlines;  // scratch memory of `footprint_orca`, made when it is first needed
 };
 
 /// The movers of world w, which the first call of a step computes.

@@ -37,8 +37,8 @@ void face_goal(const World& world, const State& state, int row, int object, Vec3
 void run_behavior(const World& world, State& state, int w, const BehaviorGroup& group, Workspace& work) {
   const int first = w * world.objects, count = static_cast<int>(work.objects.size());
   if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
-  const Decision decision{world,         state,         first, work.objects.data(),  count,
-                          group.members, group.grouped, work,  state.opinions.data()};
+  const Decision decision{world,         state,         first, work.objects.data(),   count,
+                          group.members, group.grouped, work,  state.opinions.data(), state.detours.data()};
   Intent* intents = work.intents.data();
   with(group.behavior, [&](const auto& options) { run(options, decision, intents); });
   for (int k = 0; k < count; ++k) {

@@ -148,6 +148,9 @@ void continue_from(const World& world, State& state, const World& world_before, 
     if (origin.state == &before && !before.opinions.empty() && !state.opinions.empty()) {
       state.opinions[i] = before.opinions[origin.object];
     }
+    if (origin.state == &before && !before.detours.empty() && !state.detours.empty()) {
+      state.detours[i] = before.detours[origin.object];
+    }
     set_limits(world, state, i);
     if (state.keep_history) {
       state.history[i] = track_of(*origin.state, origin.object, state.extra_rows);

@@ -13,10 +13,11 @@ Goal goal_of(const std::vector<double>& numbers) {
   return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : kNone};
 }
 
-/// Whether an object runs `avocado`.
-bool forms_opinions(const World& world) {
+/// Whether an object runs a behavior with these options.
+template <class Options>
+bool runs(const World& world) {
   return std::any_of(world.behaviors.begin(), world.behaviors.end(),
-                     [](const BehaviorGroup& group) { return std::holds_alternative<AvocadoOptions>(group.behavior); });
+                     [](const BehaviorGroup& group) { return std::holds_alternative<Options>(group.behavior); });
 }
 
 void evaluate(const World& world, State& state, int w, bool with_arrival) {
@@ -117,7 +118,8 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       event_count(worlds) {
   workspaces.emplace_back();
   if (!world.routed.empty()) routes.resize(rows), target.resize(rows);
-  if (forms_opinions(world)) opinions.resize(rows);
+  if (runs<AvocadoOptions>(world)) opinions.resize(rows);
+  if (runs<FootprintOrcaOptions>(world)) detours.resize(rows);
   std::copy(seeds, seeds + worlds, seed.data);
   for (int w = 0; w < worlds; ++w) {
     for (const Scan& scan : world.scans) {
@@ -178,6 +180,7 @@ void restart_row(const World& world, State& state, int row) {
   state.goal_draws[row] = 0;
   if (!state.routes.empty()) state.routes[row] = {};
   if (!state.opinions.empty()) state.opinions[row] = {};
+  if (!state.detours.empty()) state.detours[row] = {};
   if (state.keep_history) state.history[row].clear(), state.standings[row].clear();
   if (world.wander[i]) {
     draw_wander_goal(world, state, w, i);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "footprints/detour.hpp"
 #include "orca/opinions.hpp"
 #include "random.hpp"
 #include "routes/route.hpp"
@@ -84,6 +85,7 @@ struct State {
   std::vector<Route> routes;              // (R,), empty if no object has a route
   std::vector<Goal> target;               // (R,), empty likewise: points that behaviors head for
   std::vector<Opinions> opinions;         // (R,), empty if no object runs `avocado`
+  std::vector<Detour> detours;            // (R,), empty if no object runs `footprint_orca`
   std::vector<std::uint32_t> goal_draws;  // (R,) wander goals drawn in this episode
   std::vector<Vec2> before;               // (R,) positions at the beginning of the step
   std::vector<std::uint8_t> overshot;     // (R,) whether an overshoot of the present goal was reported

@@ -277,7 +277,7 @@ OBJECTS: dict[str, Code] = {
     ),
     "speed-capped": Code(
         "drive slower than its behavior may want",
-        "'vmax' of sfm, 'vxmax' and 'vymax' of rvo and 'maxSpeed' of orca and avocado limit the speed that the "
+        "'vmax' of sfm, 'vxmax' and 'vymax' of rvo and 'maxSpeed' of the kinds of orca limit the speed that the "
         "behavior wants; the object drives no faster than its 'vel_max' and 'vel_min' allow, 1 by default. Example: "
         "behavior: {name: orca, maxSpeed: 3}; write vel_max: [3, 1] beside it.",
     ),

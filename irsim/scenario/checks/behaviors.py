@@ -19,7 +19,13 @@ _OWN = (
     "use one of the allowed names, or register your own behavior in Python before the scenario is read "
     "(irsim.register_behavior, or --import MODULE on the command line)"
 )
-_SPEEDS = {"sfm": ("vmax",), "rvo": ("vxmax", "vymax"), "orca": ("maxSpeed",), "avocado": ("maxSpeed",)}
+_SPEEDS = {
+    "sfm": ("vmax",),
+    "rvo": ("vxmax", "vymax"),
+    "orca": ("maxSpeed",),
+    "avocado": ("maxSpeed",),
+    "footprint_orca": ("maxSpeed",),
+}
 """Keys with the highest speed that a behavior asks for."""
 
 

@@ -23,7 +23,7 @@ _MAX_TURNS = 3
 """Full turns of a simulated car after which it counts as circling its goal."""
 _MAX_STEPS = 5000
 """Steps of that simulation; longer ones are skipped."""
-_AVOIDING = ("rvo", "sfm", "orca", "avocado", "follow")
+_AVOIDING = ("rvo", "sfm", "orca", "avocado", "footprint_orca", "follow")
 """Behaviors that avoid other objects."""
 
 

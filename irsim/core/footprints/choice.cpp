@@ -1,0 +1,228 @@
+// Which velocity an object with `footprint_orca` takes: the best of some tens, as in a dynamic window (Fox, Burgard,
+// Thrun: The dynamic window approach to collision avoidance, 1997), by the time to a collision as for reciprocal
+// velocity obstacles (van den Berg, Lin, Manocha: Reciprocal velocity obstacles for real-time multi-agent navigation,
+// 2008). Only controls that leave the object within its cell are taken.
+#include <algorithm>
+
+#include "footprints/decider.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kMinSpeed = 1e-6;       // slower velocities are rounding errors [m/s]
+constexpr double kSoon = 0.1;            // added to the time to a collision, so that none weighs infinitely much [s]
+constexpr double kMoverWeight = 0.5;     // cost of a collision with a mover in a second, roughly [s]
+constexpr double kStandingWeight = 0.2;  // cost of a collision with what stands in a second, roughly [s]
+constexpr double kTurnWeight = 0.15;     // cost of a velocity at a right angle to the heading
+constexpr double kLeftWeight = 0.02;     // cost of a velocity at a right angle to the left of the wanted one
+constexpr double kStopWeight = 0.3;      // cost of standing, besides the way that it loses
+constexpr double kKeepDirection = 0.3;   // angle beyond a right angle before forward and backward are swapped [rad]
+constexpr double kMinCarShare = 0.3;     // smallest share of a wanted speed of a car, which turns only while it rolls
+
+constexpr double kLeastGain = 1e-6;  // smaller gains of a small step are rounding errors
+
+constexpr double kRoot = 0.86602540378443865;  // cosine of 30 degrees
+/// Cosines and sines of the directions that are tried, seen from the wanted one: nearest first, right before left.
+constexpr Vec2 kDirections[] = {{1.0, 0.0}, {kRoot, -0.5},  {kRoot, 0.5},  {0.5, -kRoot},  {0.5, kRoot},  {0.0, -1.0},
+                                {0.0, 1.0}, {-0.5, -kRoot}, {-0.5, kRoot}, {-kRoot, -0.5}, {-kRoot, 0.5}, {-1.0, 0.0}};
+
+/// A control, and how far the object stays within its cell with it.
+struct Trial {
+  Vec3 control;
+  Vec2 velocity;
+  double room = -kInfinity;
+};
+
+/// The control that the limits of the object leave of a wanted one.
+Vec3 limited(const FootprintSelf& self, Vec3 wanted) {
+  const World& world = self.world();
+  const State& state = self.state();
+  const Vec3& now = state.control[self.row];
+  Vec3 next;
+  for (int c = 0; c < 3; ++c) {
+    const double change = state.acce[self.row][c] * world.step_time;
+    next[c] = clip(wanted[c], std::max(state.vel_min[self.row][c], now[c] - change),
+                   std::min(state.vel_max[self.row][c], now[c] + change));
+  }
+  with(world.drive[self.object], [&](const auto& drive) { next = constrain(drive, next); });
+  return next;
+}
+
+/// How far the object stays within its cell, at the end of the step and after it has braked.
+double room_with(FootprintSelf& self, Vec3 control) {
+  if (self.crowd.cell.empty()) return kInfinity;
+  const World& world = self.world();
+  const State& state = self.state();
+  const Pose now = state.pose[self.row];
+  Pose pose = now;
+  Vec3 twist;
+  const double* extra = &state.extra[static_cast<std::size_t>(self.row) * state.extra_rows];
+  self.crowd.extra.assign(extra, extra + state.extra_rows);
+  with(world.drive[self.object], [&](const auto& drive) {
+    run(drive, Motion{pose, self.crowd.extra.data(), twist, self.heading, limited(self, control), world.step_time});
+  });
+  const Vec2 shift = pose.position() - now.position(), turn = unit(pose.theta - now.theta);
+  double room = self.crowd.cell.room(self.hull, self.position, shift, turn);
+  const double brake = state.acce[self.row][0];
+  if (room < 0.0 || !std::isfinite(brake) || !(brake > 0.0)) return room;
+  const double speed = norm(shift) / world.step_time;
+  const Vec2 rest = shift * (1.0 + 0.5 * speed / (brake * world.step_time));
+  return std::min(room, self.crowd.cell.room(self.hull, self.position, rest, turn));
+}
+
+/// Forward or backward, and the heading error that is left.
+struct Course {
+  double sign, error;
+};
+Course course_to(const FootprintSelf& self, Vec2 velocity) {
+  const double error = std::atan2(cross(self.heading, velocity), dot(self.heading, velocity));
+  if (!self.reverses) return {1.0, error};
+  const double limit = 0.5 * kPi + (self.state().control[self.row][0] < 0.0 ? -kKeepDirection : kKeepDirection);
+  return std::fabs(error) > limit ? Course{-1.0, wrap(error + kPi)} : Course{1.0, error};
+}
+
+Vec3 car_control(const FootprintSelf& self, const AckerOptions& car, Vec2 velocity) {
+  const State& state = self.state();
+  const double psi = state.extra[static_cast<std::size_t>(self.row) * state.extra_rows];
+  const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0, dt = self.world().step_time;
+  const double speed = norm(velocity);
+  if (speed < kMinSpeed) return {{0.0, car.mode == Steering::steer ? psi : 0.0, 0.0}};
+  const Course course = course_to(self, velocity);
+  const double rolls = course.sign * speed * std::max(kMinCarShare, std::cos(course.error));
+  const double target = clip(std::atan(course.error * wheelbase / (rolls * 2.0 * dt)), -0.25 * kPi, 0.25 * kPi);
+  return {{rolls, car.mode == Steering::steer ? target : (target - psi) / dt, 0.0}};
+}
+
+/// The control with which the object takes up a velocity.
+Vec3 control_toward(const FootprintSelf& self, Vec2 velocity) {
+  const World& world = self.world();
+  const State& state = self.state();
+  const Drive& drive = world.drive[self.object];
+  const double speed = norm(velocity), dt = world.step_time;
+  if (const auto* car = std::get_if<AckerOptions>(&drive)) return car_control(self, *car, velocity);
+  if (std::holds_alternative<DiffOptions>(drive)) {
+    if (speed < kMinSpeed) return {};
+    const Course course = course_to(self, velocity);
+    const double most = state.vel_max[self.row][1];
+    return {{course.sign * speed * std::max(0.0, std::cos(course.error)), clip(course.error / dt, -most, most), 0.0}};
+  }
+  const Turning turning{kMinSpeed, 0.0, dt, state.vel_max[self.row][1], kInfinity};
+  const Wish wish{velocity, state.pose[self.row], &state.extra[static_cast<std::size_t>(self.row) * state.extra_rows],
+                  self.heading, turning};
+  Vec3 control{{velocity.x, velocity.y, 0.0}};
+  with(drive, [&](const auto& one) { control = follow(one, wish); });
+  return control;
+}
+
+/// The search for the best velocity.
+class BestVelocity {
+ public:
+  BestVelocity(FootprintSelf& self, Vec2 wanted) : self_(self), wanted_(norm(wanted)) {
+    ahead_ = wanted_ > 0.0 ? wanted * (1.0 / wanted_) : self.heading;
+    rate_ = self.speed > 0.0 ? 1.0 / self.speed : 0.0;
+  }
+  /// Keep a velocity if it is better than those before it and leads nowhere else than into the cell.
+  void consider(Vec2 velocity) {
+    const double cost = cost_of(velocity);
+    if (!(cost < cost_)) return;
+    offer(velocity, control_toward(self_, velocity), cost);
+  }
+  /// The same for driving straight ahead or back.
+  void consider_straight(double speed) {
+    const Vec2 velocity = self_.heading * speed;
+    const double cost = cost_of(velocity);
+    if (cost < cost_) offer(velocity, {{speed, 0.0, 0.0}}, cost);
+  }
+  /// Turn or move a little toward the wanted direction, if the object would stand otherwise: a body that is wedged
+  /// between others gets free in small steps.
+  void inch() {
+    if (!(wanted_ > 0.0) || self_.turn_rate == 0.0 || squared(best_.velocity) > kMinSpeed || best_.room < 0.0) return;
+    const double dt = self_.world().step_time;
+    double most = aligned(self_.heading) + kLeastGain;
+    for (const double share : {0.0, 0.1, -0.1, 0.3, -0.3}) {
+      if (share < 0.0 && !self_.reverses) continue;
+      for (const double turn : {0.0, 0.03, -0.03, 0.1, -0.1, 0.4, -0.4}) {
+        const Vec3 control{{share * self_.speed, turn * self_.turn_rate, 0.0}};
+        const Vec2 velocity = self_.heading * control[0];
+        const double gain = aligned(rotate(self_.heading, unit(control[1] * dt))) + dot(velocity, ahead_) * rate_;
+        if (gain <= most) continue;
+        const double room = room_with(self_, control);
+        if (room >= 0.0) best_ = {control, velocity, room}, most = gain;
+      }
+    }
+  }
+  /// Whether nothing can be better.
+  bool is_perfect() const { return cost_ <= 0.0; }
+  Intent intent() const {
+    const Drive& drive = self_.world().drive[self_.object];
+    Intent intent = std::holds_alternative<std::monostate>(drive) ? Intent::of_velocity(best_.velocity)
+                                                                  : Intent::of_control(best_.control);
+    intent.infeasible = best_.room < 0.0;
+    return intent;
+  }
+
+ private:
+  double aligned(Vec2 heading) const {
+    const double cosine = dot(heading, ahead_);
+    return self_.reverses ? std::fabs(cosine) : cosine;
+  }
+  void offer(Vec2 velocity, Vec3 control, double cost) {
+    const double room = room_with(self_, control);
+    if (room >= 0.0) {
+      best_ = {control, velocity, room}, cost_ = cost;
+    } else if (room > best_.room && best_.room < 0.0) {
+      best_ = {control, velocity, room};
+    }
+  }
+
+  /// What a velocity loses on the way to the goal, plus what it risks. The sum stops where it exceeds the best so far.
+  double cost_of(Vec2 velocity) const {
+    const double speed = norm(velocity);
+    double cost = wanted_ > 0.0 ? 1.0 - dot(velocity, ahead_) * rate_ + kStopWeight * (1.0 - speed * rate_) : speed;
+    cost += kLeftWeight * std::max(0.0, cross(ahead_, velocity)) * rate_;
+    if (!self_.slides && speed > kMinSpeed) {
+      const double cosine = dot(velocity, self_.heading) / speed;
+      cost += kTurnWeight * (1.0 - (self_.reverses ? std::fabs(cosine) : cosine));
+    }
+    double moving = 0.0, still = 0.0;
+    for (const Threat& threat : self_.crowd.threats) {
+      if (cost + moving + still >= cost_) return kInfinity;
+      const double time = threat.cone.time(velocity * threat.gain - threat.base, self_.crowd.faces.data());
+      if (time >= threat.horizon) continue;
+      const double urgency = 1.0 / (time + kSoon) - 1.0 / (threat.horizon + kSoon);
+      double& most = threat.standing ? still : moving;
+      most = std::max(most, urgency * (threat.standing ? kStandingWeight : kMoverWeight));
+    }
+    return cost + moving + still;
+  }
+
+  FootprintSelf& self_;
+  double wanted_, rate_;
+  Vec2 ahead_;
+  Trial best_;
+  double cost_ = kInfinity;
+};
+
+}  // namespace
+
+Intent best_intent(FootprintSelf& self, Vec2 wanted) {
+  BestVelocity choice(self, wanted);
+  choice.consider(wanted);
+  if (choice.is_perfect()) return choice.intent();
+  const double speed = norm(wanted);
+  const Vec2 ahead = speed > 0.0 ? wanted * (1.0 / speed) : self.heading;
+  for (const Vec2 turn : kDirections) {
+    for (const double share : {1.0, 0.5}) choice.consider(rotate(ahead, turn) * (share * self.speed));
+  }
+  if (!self.slides) {
+    for (const double share : {1.0, 0.5, 0.15}) {
+      choice.consider_straight(share * self.speed);
+      if (self.reverses) choice.consider_straight(-share * self.speed);
+    }
+  }
+  choice.consider({});
+  choice.inch();
+  return choice.intent();
+}
+
+}  // namespace irsim

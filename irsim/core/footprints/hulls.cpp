@@ -1,0 +1,105 @@
+#include "footprints/hulls.hpp"
+
+#include <algorithm>
+
+namespace irsim {
+namespace {
+
+constexpr int kCircleCorners = 12;  // corners of the polygon that stands for a circle of a compound
+
+/// Whether corners go round a convex polygon counter-clockwise.
+bool is_convex(const std::vector<Vec2>& points) {
+  const std::size_t n = points.size();
+  if (n < 3) return false;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec2 a = points[k], b = points[(k + 1) % n], c = points[(k + 2) % n];
+    if (!(cross(b - a, c - b) > 0.0)) return false;
+  }
+  return true;
+}
+
+/// Replace points by the corners of their hull, counter-clockwise (Andrew's monotone chain).
+void make_hull(std::vector<Vec2>& points) {
+  std::sort(points.begin(), points.end(), [](Vec2 a, Vec2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  std::vector<Vec2> hull;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t first = hull.size();
+    for (const Vec2 p : points) {
+      while (hull.size() >= first + 2 && !(cross(hull.back() - hull[hull.size() - 2], p - hull.back()) > 0.0))
+        hull.pop_back();
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  if (!hull.empty())
+    points = std::move(hull);
+  else
+    points.resize(1);
+}
+
+}  // namespace
+
+void Hulls::add(const Shapes& shapes, int object, Vec2 position, Vec2 direction) {
+  const Slot slot{static_cast<int>(corners_.size()), 0, 0.0};
+  slots_.push_back(slot);
+  const irsim::Slot& body = shapes.body[object];
+  const int parts = shapes.part_count(object);
+  const Vec2* vertices = shapes.vertices.data() + body.vertex;
+  points_.clear();
+  double round = 0.0;
+  if (parts == 1 && shapes.parts[body.part].kind == Kind::circle) {
+    points_.push_back(vertices[shapes.parts[body.part].first]);
+    round = shapes.parts[body.part].radius;
+  } else {
+    for (int p = 0; p < parts; ++p) {
+      const Part& part = shapes.parts[body.part + p];
+      if (part.kind != Kind::circle) {
+        for (int v = part.first; v < part.last + !is_closed(part.kind); ++v) points_.push_back(vertices[v]);
+        continue;
+      }
+      const double reach = part.radius / std::cos(kPi / kCircleCorners);
+      for (int k = 0; k < kCircleCorners; ++k)
+        points_.push_back(vertices[part.first] + unit(kTurn * k / kCircleCorners) * reach);
+    }
+    if (parts == 1 && shapes.parts[body.part].turn < 0.0) std::reverse(points_.begin(), points_.end());
+    if (!is_convex(points_)) make_hull(points_);
+  }
+  for (const Vec2 p : points_) corners_.push_back(position + rotate(p, direction));
+  close(slot.first, round);
+}
+
+void Hulls::add(Vec2 a, Vec2 b) {
+  const int first = static_cast<int>(corners_.size());
+  slots_.push_back({first, 0, 0.0});
+  corners_.push_back(a);
+  corners_.push_back(b);
+  close(first, 0.0);
+}
+
+void Hulls::add(Vec2 centre, double radius) {
+  const int first = static_cast<int>(corners_.size());
+  slots_.push_back({first, 0, 0.0});
+  corners_.push_back(centre);
+  close(first, radius);
+}
+
+void Hulls::close(int first, double round) {
+  const int count = static_cast<int>(corners_.size()) - first;
+  for (int k = 0; k < count; ++k) {
+    const Vec2 along = corners_[first + (k + 1) % count] - corners_[first + k];
+    const double length = norm(along);
+    normals_.push_back(length > 0.0 ? Vec2{along.y, -along.x} * (1.0 / length) : Vec2{});
+  }
+  slots_.back() = {first, count, round};
+}
+
+Separation separation(const Hull& a, const Hull& b) {
+  Separation best{{1.0, 0.0}, -kInfinity};
+  for_axes(a, b, [&](Vec2 axis, double gap) {
+    if (gap > best.gap) best = {axis, gap};
+  });
+  return best;
+}
+
+}  // namespace irsim
