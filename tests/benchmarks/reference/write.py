@@ -48,6 +48,11 @@ class Table:
 
 TABLES = {
     "random_polygons_v1": Table("random_polygons_v1"),
+    "table_2": Table(
+        "random_polygons_v1",
+        ("orca", "avocado", "sarl_multi_robot", "rl_rvo", "ppo", "ppo_freeze", "footprint_orca"),
+        ("robots-5", "robots-10"),
+    ),
 }
 _METRICS = ("time_to_goal", "velocity_avg", "path_length", "min_clearance")
 
