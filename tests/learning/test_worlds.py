@@ -283,3 +283,13 @@ def test_first_scenes_without_room_are_skipped_as_later_ones_are() -> None:
     scenes = [worlds.simulation.key(k)[1] for k in range(60)]
     assert 0 < sum(scene > 0 for scene in scenes) < 60
     assert Worlds(task({"number": 2, "distribution": far}), 1, seed=7).simulation.key(0) == worlds.simulation.key(6)
+
+
+def test_without_actions_the_behaviors_of_the_scenario_drive_the_learners() -> None:
+    worlds = Worlds(task({"behavior": {"name": "dash"}}, horizon=20), 2)
+    arrived = np.zeros((2, 1), dtype=bool)
+    while not arrived.all():
+        result = worlds.step(None)
+        arrived |= result.arrived
+        assert result.reward[result.active].min() > 0  # progress
+    assert not result.collided.any()
