@@ -14,7 +14,14 @@ from irsim.policies.trained import trained_policies, trained_policy
 from irsim.scenario.perturbation import perturbation_text
 
 RECIPES = Path(irsim.__file__).parents[1] / "skills" / "irsim-runner" / "recipes"
-LEAST = {"goal_lidar": 0.9, "crowd": 0.9, "corridor_social": 0.9, "multi_robot": 0.9, "multi_robot_freeze": 0.75, "rl_rvo": 0.7}
+LEAST = {
+    "goal_lidar": 0.9,
+    "crowd": 0.9,
+    "corridor_social": 0.9,
+    "multi_robot": 0.9,
+    "multi_robot_freeze": 0.75,
+    "rl_rvo": 0.7,
+}
 """Success that each must reach in 20 scenes that it was not trained on; in all it has reached more."""
 
 
