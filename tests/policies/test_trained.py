@@ -21,7 +21,7 @@ LEAST = {
     "multi_robot": 0.9,
     "multi_robot_freeze": 0.75,
     "sarl": 0.9,
-    "rl_rvo": 0.8,
+    "rl_rvo": 0.7,
     "sarl_multi_robot": 0.75,
 }
 """Success that each must reach in 20 scenes that it was not trained on; in all it has reached more."""

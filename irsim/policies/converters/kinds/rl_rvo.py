@@ -32,7 +32,8 @@ class RlRvo(ConverterOptions):
     A GRU, forward or in both directions, reads the velocity obstacles of the others; the sum of its last states and
     what the robot knows of itself are normalized and pass linear layers with ReLU. The hyperbolic tangent of the two
     results times `acceler` is added to the velocity in the world frame, which every drive follows. Arrays are found by
-    their shapes and by the ends of their names, such as `pi.rnn_reader.rnn_net.weight_ih_l0`.
+    their shapes and by the ends of their names, such as `pi.rnn_reader.rnn_net.weight_ih_l0`. The authors' tests also
+    round the two results to two decimals; this policy does not.
     """
 
     name: Literal["rl_rvo"] = "rl_rvo"
