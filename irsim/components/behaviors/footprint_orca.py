@@ -13,17 +13,11 @@ from irsim.options.units import Bool, Count, Meters, MetersPerSecond, Seconds
 
 
 class FootprintOrca(BehaviorOptions):
-    """Avoid others by their true outlines instead of circles, go round what stands, and never touch alike ones.
+    """Avoid others by their true outlines instead of circles, and go round what stands: for dense crowds of robots.
 
-    It is for crowds of robots, above all where those that have arrived stay in the way. As under `orca` each of two
-    makes half of the avoidance, and all of it for those that do not give way. Of some tens of velocities it takes the
-    one that loses least on the way to the goal and risks least within the time horizon. It only takes what leaves it in
-    its own part of the gap to each other one: robots which all run it do not touch, as long as their drives are exact,
-    `acce` does not limit how they brake and no more than `maxNeighbors` are that near. Robots that stand, arrived ones
-    and static obstacles within 5 m are passed on a way that is searched on a grid of 0.1 m, at most 4 m aside; others
-    that stay longer are passed, too, once it has made no progress for 1.2 s; then it also tries random directions,
-    which follow the seed. Arrived robots make room for others, and come back. It sees no goals of others. Around larger
-    walls use `follow` with `footprint_orca` as its `local`.
+    Robots that all run it do not touch, if drives are exact and `acce` does not limit how they brake. It plans a way
+    round robots that stand and static obstacles, at most 4 m aside; after 1.2 s without progress it tries random
+    directions. Arrived robots make room and come back. Around larger walls use it as the `local` of `follow`.
     """
 
     in_group: ClassVar[bool] = True
@@ -32,21 +26,19 @@ class FootprintOrca(BehaviorOptions):
 
     name: Literal["footprint_orca"] = "footprint_orca"
     neighborDist: Annotated[Meters, Field(gt=0)] = 5.0
-    """Moving objects farther away than this are ignored, unless they stand in the way."""
+    """Moving objects farther away are ignored."""
     maxNeighbors: Count = 8
-    """Number of moving objects considered, nearest first; walls and static circles do not count."""
+    """Number of moving objects considered, nearest first."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 1.5
-    """Time horizon within which collisions with moving objects are avoided; twice this for those that run something
-    else."""
+    """Time horizon for moving objects; twice this for those of other behaviors."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 0.5
-    """Time horizon within which collisions with walls and with everything that has stopped are avoided."""
+    """Time horizon for walls and all that has stopped."""
     safe_distance: Annotated[Meters, Field(ge=0)] = 0.02
-    """Distance kept from others where there is room, 0.1 m more from moving ones that run something else."""
+    """Distance kept where there is room; 0.1 m more from movers of other behaviors."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Largest speed; null is the speed that the object can reach in every direction, which is also the upper limit."""
+    """Largest speed."""
     backward: Bool = True
-    """Whether an object that cannot move sideways also drives backward, if its `vel_min` allows it: turning round takes
-    longer."""
+    """Whether drives that cannot move sideways also drive backward, if `vel_min` allows it."""
 
 
 BEHAVIORS.register(FootprintOrca, kernel=core.FootprintOrcaOptions)

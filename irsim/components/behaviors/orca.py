@@ -42,8 +42,7 @@ class Orca(BehaviorOptions):
     """Largest speed; null is the speed that the object can reach in every direction, which is also the upper limit."""
     responsibility: Annotated[Fraction, Field(gt=0)] | None = None
     """Share of the change of velocity that it makes for a moving object; null is half for one that runs a kind of orca
-    (`footprint_orca`, `avocado`) and sees it, and all for others. Most other programs always take 0.5, also for people
-    who do not see the robot."""
+    and sees it, and all for others. Most other programs always take 0.5, also for people who do not see the robot."""
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
     """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
     speed."""

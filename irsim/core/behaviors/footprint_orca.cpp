@@ -11,13 +11,14 @@
 namespace irsim {
 namespace {
 
-constexpr double kLeastGap = 0.005;        // part of a gap that nobody uses [m]
-constexpr double kOutlineDistance = 0.5;   // gap of bounding circles from which these stand for outlines [m]
-constexpr double kRestingSpeed = 0.1;      // an arrived object that is slower rests [m/s]
-constexpr double kStrangerDistance = 0.1;  // distance kept in addition from movers that do something else [m]
-constexpr double kStrangerHorizons = 2.0;  // time horizon for them, in those of the options
-constexpr double kWayReach = 5.0;          // half the side of the box in which static obstacles block a way [m]
-constexpr double kRestingReach = 10.0;     // farther bodies that rest do not block a way [m]
+constexpr double kLeastGap = 0.005;          // part of a gap that nobody uses [m]
+constexpr double kLeastStandingGap = 0.001;  // gap that is kept from what stands [m]
+constexpr double kOutlineDistance = 0.5;     // gap of bounding circles from which these stand for outlines [m]
+constexpr double kRestingSpeed = 0.1;        // an arrived object that is slower rests [m/s]
+constexpr double kStrangerDistance = 0.1;    // distance kept in addition from movers that do something else [m]
+constexpr double kStrangerHorizons = 2.0;    // time horizon for them, in those of the options
+constexpr double kWayReach = 5.0;            // half the side of the box in which static obstacles block a way [m]
+constexpr double kRestingReach = 10.0;       // farther bodies that rest do not block a way [m]
 
 bool sees_role(const World& world, int viewer, int other) {
   const int wanted = world.target_roles[viewer];
@@ -112,7 +113,8 @@ void meet_static(FootprintSelf& self) {
     Threat threat{{}, 1.0, {}, horizon, true};
     const Separation apart = cone_of(self.hull, wall, self.options.safe_distance, false, crowd.faces, threat.cone);
     crowd.threats.push_back(threat);
-    if (apart.gap < 2.0 * self.stride()) crowd.cell.fixtures.push_back({wall, std::min(kLeastGap, apart.gap), {}});
+    if (apart.gap < 2.0 * self.stride())
+      crowd.cell.fixtures.push_back({wall, std::min(kLeastStandingGap, apart.gap), {}});
   }
 }
 
@@ -169,7 +171,7 @@ void meet_mover(FootprintSelf& self, int m) {
   crowd.threats.push_back(threat);
   if (apart.gap > 2.0 * stride) return;
   if (standing) {
-    crowd.cell.fixtures.push_back({body, std::min(kLeastGap, apart.gap), {}});
+    crowd.cell.fixtures.push_back({body, std::min(kLeastStandingGap, apart.gap), {}});
   } else if (!alike) {
     crowd.cell.fixtures.push_back({body, kLeastGap, moves * world.step_time});
   } else {

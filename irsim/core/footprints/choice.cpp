@@ -139,9 +139,9 @@ class BestVelocity {
     if (!(wanted_ > 0.0) || self_.turn_rate == 0.0 || squared(best_.velocity) > kMinSpeed || best_.room < 0.0) return;
     const double dt = self_.world().step_time;
     double most = aligned(self_.heading) + kLeastGain;
-    for (const double share : {0.0, 0.1, -0.1, 0.3, -0.3}) {
+    for (const double share : {0.0, 0.03, -0.03, 0.1, -0.1, 0.3, -0.3}) {
       if (share < 0.0 && !self_.reverses) continue;
-      for (const double turn : {0.0, 0.03, -0.03, 0.1, -0.1, 0.4, -0.4}) {
+      for (const double turn : {0.0, 0.01, -0.01, 0.03, -0.03, 0.1, -0.1, 0.4, -0.4}) {
         const Vec3 control{{share * self_.speed, turn * self_.turn_rate, 0.0}};
         const Vec2 velocity = self_.heading * control[0];
         const double gain = aligned(rotate(self_.heading, unit(control[1] * dt))) + dot(velocity, ahead_) * rate_;
