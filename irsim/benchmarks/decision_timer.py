@@ -63,4 +63,5 @@ def time_behavior(job: Job, seed: int) -> Decisions:
     env.simulation.decisions.append(timer)
     env.simulation.advance(_MAX_STEPS if job.steps is None else min(job.steps, _MAX_STEPS), until_done=True)
     env.end(ending_time=0.0)
-    return [pair for pair in zip(timer.seconds, timer.decided, strict=True) if pair[1]]
+    pairs = [pair for pair in zip(timer.seconds, timer.decided, strict=True) if pair[1]]
+    return pairs[1:]  # the first step also fills the caches of the processor

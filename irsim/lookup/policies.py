@@ -2,11 +2,66 @@
 
 from __future__ import annotations
 
+from irsim.benchmarks.suite import Suite
+from irsim.benchmarks.suite_files import load_suite, suite_names
 from irsim.lookup.answer import Answer, Key
 from irsim.policies.converters.features import CONVERTERS
-from irsim.policies.description import list_policies
+from irsim.policies.description import describe_policy, list_policies
+from irsim.policies.registry import POLICIES
+from irsim.policies.trained import trained_policies
 
-__all__ = ["policies_answer"]
+__all__ = ["policies_answer", "policy_answer"]
+
+
+def policy_answer(topic: str) -> Answer | None:
+    """Describe a policy that ships with irsim or comes from a plug-in, by its name there or in a suite; None: no such.
+
+    Args:
+        topic: What is asked for: ``sarl``, ``RL-RVO``, or ``ppo``, as a suite calls another one.
+    """
+    name = topic.strip().lower().replace("-", "_").replace(" ", "_")
+    known = {*trained_policies(), *POLICIES.names()}
+    if name in known:
+        return _policy(name, [])
+    for suite in map(_suite, suite_names()):
+        text = {**suite.policies, **suite.others}.get(name)
+        if isinstance(text, str) and text in known:
+            return _policy(text, [f"The suite {suite.suite} calls it {name}."])
+    return None
+
+
+def _suite(name: str) -> Suite:
+    return load_suite(name)[0]
+
+
+def _policy(name: str, notes: list[str]) -> Answer:
+    """The answer about a policy that is no behavior."""
+    info = describe_policy(name)
+    card = info.facts.get("card", {})
+    period = "in every step" if info.decision_dt is None else f"every {info.decision_dt:g} s"
+    facts = {
+        "needs": ", ".join(info.needs) or "only the robot and its goal",
+        "drives": ", ".join(info.drives),
+        "returns": info.output,
+        "decides": period,
+        "trained on": card.get("task", "").partition(",")[0],
+        "protocol": card.get("protocol", ""),
+        "scenes of the training": f"seeds from {card['seeds'][-1]}" if card.get("seeds") else "",
+        "decisions of the training": f"{card['steps']:,}" if card.get("steps") else "",
+        "license": card.get("license", ""),
+    }
+    groups = {"facts": [Key(name=key, text=text) for key, text in facts.items() if text]}
+    if info.options:
+        groups["options"] = [Key(name=key, text=f"default {text}") for key, text in info.options.items()]
+    return Answer(
+        topic=name,
+        kind="policy",
+        title=f"{info.kind} policy {name}",
+        text=" ".join([f"{info.about.rstrip('.')}.", *notes]),
+        groups=groups,
+        example=f"irsim benchmark scenario.yaml --policies orca,{name}",
+        see=["policies"],
+    )
 
 
 def policies_answer() -> Answer:

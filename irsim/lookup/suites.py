@@ -77,7 +77,8 @@ def suite_answer(name: str) -> Answer:
         kind="suite",
         title=f"suite {name}: {suite.title}",
         text=f"{suite.about} Seeds {plan.seeds[0]} to {plan.seeds[-1]}{full}, at most {suite.steps} steps; protocols: "
-        f"{', '.join(suite.protocols)}.",
+        f"{', '.join(suite.protocols)}. One scenario is named {name}/{plan.scenarios[0].name}, for irsim run and for "
+        "the tools.",
         groups={
             "scenarios": [Key(name=one.name) for one in plan.scenarios if one.protocol == suite.protocols[0]],
             "policies": [Key(name=label, text=text) for label, text in plan.policies.items()],

@@ -22,7 +22,7 @@ from irsim.lookup.index import (
     templates_answer,
 )
 from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_topic
-from irsim.lookup.policies import policies_answer
+from irsim.lookup.policies import policies_answer, policy_answer
 from irsim.lookup.schema_walk import (
     COLOR,
     Node,
@@ -94,6 +94,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return suite_answer(topic.strip())
     if words[:1] == ["suites"] and (found_key := suite_key_answer(words[1:])) is not None:
         return found_key
+    if words[:1] == ["policy"] and (found_policy := policy_answer(" ".join(words[1:]))) is not None:
+        return found_policy
     if words[:1] in (["task"], ["tasks"]) and (found_task := task_answer(words[1:])) is not None:
         return found_task
     if topic.strip() in DIFFERENCES:
@@ -106,6 +108,9 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     if guide is not None:
         asked = f"metric {name}"
         return guide_answer(guide, ([asked] if asked in METRIC_TOPICS else []) + named(topic)[:MAX_HITS])
+    policy = policy_answer(topic)
+    if policy is not None:
+        return policy
     component = _component_called(topic)
     if component is not None:
         return lookup(component, schema=schema)

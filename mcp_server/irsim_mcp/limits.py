@@ -24,7 +24,7 @@ MAX_STEPS = 5_000
 """Number of steps of one run."""
 MAX_SCENARIOS = 20
 """Number of scenarios of a benchmark."""
-MAX_BEHAVIORS = 5
+MAX_BEHAVIORS = 8
 """Number of behaviors of a benchmark."""
 MAX_SEEDS = 100
 """Number of seeds of a benchmark."""

@@ -143,7 +143,10 @@ async def test_limits(workspace: Path) -> None:
         for arguments, product in (
             ({"scenarios": [ROOM], "seeds": 101}, "1 scenarios x 1 policies x 101 seeds = 101 episodes"),
             ({"scenarios": [ROOM] * 21, "seeds": 1}, "21 scenarios x 1 policies x 1 seeds = 21 episodes"),
-            ({"scenarios": [ROOM], "behaviors": list("abcdef")}, "1 scenarios x 6 policies x 10 seeds = 60 episodes"),
+            (
+                {"scenarios": [ROOM], "behaviors": list("abcdefghi")},
+                "1 scenarios x 9 policies x 10 seeds = 90 episodes",
+            ),
             ({"scenarios": [ROOM] * 20, "behaviors": list("abc"), "seeds": 100}, "= 6,000 episodes"),
         ):
             told = error_of(await client.call_tool("benchmark", arguments))
@@ -264,7 +267,11 @@ async def test_what_inspect_run_cannot_tell_of_a_benchmark(workspace: Path) -> N
 async def test_a_note_tells_what_deciding_costs(workspace: Path) -> None:
     async with connected(workspace) as client:
         result = await client.call_tool("benchmark", {"scenarios": [ROOM], "policies": ["orca", "random"], "seeds": 2})
-    [note] = [note for note in data_of(result)["notes"] if note.startswith("deciding for one robot takes, in ms")]
+    [note] = [
+        note
+        for note in data_of(result)["notes"]
+        if note.startswith("deciding for one robot takes, in ms on this machine")
+    ]
     for name in ("orca", "random"):
         mean, p95 = re.search(rf"{name} ([0-9.e-]+) \(([0-9.e-]+)\)", note).groups()
         assert 0 < float(mean) < 1000

@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 import irsim
+from irsim.learning.tasks.bundled_tasks import bundled_tasks
 from irsim.learning.tasks.files import open_task
 from irsim.learning.tasks.scene import scenario_text
+from irsim.lookup.topics import lookup
 from irsim.policies.trained import trained_policies, trained_policy
 from irsim.scenario.perturbation import perturbation_text
 
@@ -50,3 +52,21 @@ def test_its_card_and_its_curve_are_those_of_the_file(name: str) -> None:
     assert f"![learning curve]({name}.png)" in card
     assert (RECIPES / f"{name}.png").is_file()
     assert f"[{name}]({name}.md)" in (RECIPES / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", trained_policies())
+def test_a_lookup_tells_what_a_policy_is_for(name: str) -> None:
+    answer = lookup(f"policy {name}")
+    facts = {key.name: key.text for key in answer.groups["facts"]}
+    assert (answer.kind, answer.topic) == ("policy", name)
+    assert facts["trained on"].split()[0] in {*bundled_tasks()}
+    assert facts["license"] == "MIT"
+    assert name in (answer.example or "")
+    if name != "crowd":  # a template has that name
+        assert lookup(name.upper().replace("_", "-")) == answer
+
+
+def test_a_name_that_a_suite_gives_leads_to_the_policy() -> None:
+    answer = lookup("PPO")
+    assert answer.topic == "multi_robot"
+    assert "The suite random_polygons_v1 calls it ppo." in answer.text

@@ -49,7 +49,7 @@ _DETAILED = (*_METRICS, "path_length", "velocity_avg", "spl", "min_clearance")
 """Metrics of a detailed row."""
 _SOMETIMES = ("distance_to_human_min", "time_in_zone", "zone_crossings", "seen_ratio")
 """Metrics that a row has if they are defined anywhere."""
-_DIFFERENCES = (*_SHARES, "time_to_goal")
+_DIFFERENCES = (*_SHARES, "time_to_goal", "path_length")
 """Values of which a row has differences to the first behavior."""
 _MAX_ROWS = 50
 _MAX_NOTES = 10
@@ -281,7 +281,11 @@ def _decision_times(timing: dict[str, Any] | None, labels: dict[str, str]) -> li
     policies = (timing or {}).get("policies", {})
     times = {name: found["per_robot"] for name, found in policies.items() if "per_robot" in found}
     each = [f"{clean(labels[name])} {one['mean_ms']:g} ({one['p95_ms']:g})" for name, one in times.items()]
-    return [f"deciding for one robot takes, in ms, mean (95th percentile): {', '.join(each)}"] if each else []
+    return (
+        [f"deciding for one robot takes, in ms on this machine, mean (95th percentile): {', '.join(each)}"]
+        if each
+        else []
+    )
 
 
 def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str], detailed: bool) -> dict[str, Any]:
