@@ -15,8 +15,8 @@ from irsim.options.units import Bool, Count, Meters, MetersPerSecond, Seconds
 class FootprintOrca(BehaviorOptions):
     """Avoid others by their true outlines instead of circles, and go round what stands: for dense crowds of robots.
 
-    Robots that all run it do not touch, if drives are exact and `acce` does not limit how they brake. It plans a way
-    round robots that stand and static obstacles, at most 4 m aside; after 1.2 s without progress it tries random
+    Robots that all run it do not touch if drives are exact and `acce` lets them brake. It plans a way
+    round robots that stand and static obstacles, at most 4 m aside; without progress it tries random
     directions. Arrived robots make room and come back. Around larger walls use it as the `local` of `follow`.
     """
 

@@ -93,6 +93,16 @@ Vec3 car_control(const FootprintSelf& self, const AckerOptions& car, Vec2 veloci
   return {{rolls, car.mode == Steering::steer ? target : (target - psi) / dt, 0.0}};
 }
 
+/// The control of a car with a steering angle, and the angle by which it then turns in some steps.
+Vec3 steered(const FootprintSelf& self, const AckerOptions& car, double speed, double steering, double& angle) {
+  constexpr double kSteps = 5.0;
+  const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0, dt = self.world().step_time;
+  const double psi = self.state().extra[static_cast<std::size_t>(self.row) * self.state().extra_rows];
+  const double target = clip(steering, -0.25 * kPi, 0.25 * kPi);
+  angle = kSteps * speed * dt * std::tan(target) / wheelbase;
+  return {{speed, car.mode == Steering::steer ? target : (target - psi) / dt, 0.0}};
+}
+
 /// The control with which the object takes up a velocity.
 Vec3 control_toward(const FootprintSelf& self, Vec2 velocity) {
   const World& world = self.world();
@@ -136,18 +146,21 @@ class BestVelocity {
   /// Turn or move a little toward the wanted direction, if the object would stand otherwise: a body that is wedged
   /// between others gets free in small steps.
   void inch() {
-    if (!(wanted_ > 0.0) || self_.turn_rate == 0.0 || squared(best_.velocity) > kMinSpeed || best_.room < 0.0) return;
-    const double dt = self_.world().step_time;
+    const auto* car = std::get_if<AckerOptions>(&self_.world().drive[self_.object]);
+    const bool turns = self_.turn_rate > 0.0 || car != nullptr;
+    if (!(wanted_ > 0.0) || !turns || squared(best_.velocity) > kMinSpeed || best_.room < 0.0) return;
     double most = aligned(self_.heading) + kLeastGain;
     for (const double share : {0.0, 0.03, -0.03, 0.1, -0.1, 0.3, -0.3}) {
       if (share < 0.0 && !self_.reverses) continue;
+      const double speed = share * self_.speed;
       for (const double turn : {0.0, 0.01, -0.01, 0.03, -0.03, 0.1, -0.1, 0.4, -0.4}) {
-        const Vec3 control{{share * self_.speed, turn * self_.turn_rate, 0.0}};
-        const Vec2 velocity = self_.heading * control[0];
-        const double gain = aligned(rotate(self_.heading, unit(control[1] * dt))) + dot(velocity, ahead_) * rate_;
+        Vec3 control{{speed, turn * self_.turn_rate, 0.0}};
+        double angle = control[1] * self_.world().step_time;
+        if (car != nullptr) control = steered(self_, *car, speed, kPi * turn, angle);
+        const double gain = aligned(rotate(self_.heading, unit(angle))) + speed * dot(self_.heading, ahead_) * rate_;
         if (gain <= most) continue;
         const double room = room_with(self_, control);
-        if (room >= 0.0) best_ = {control, velocity, room}, most = gain;
+        if (room >= 0.0) best_ = {control, self_.heading * speed, room}, most = gain;
       }
     }
   }
