@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-import time
+import signal
+import threading
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, NamedTuple
@@ -179,9 +180,15 @@ def _watch(
         changes: Finds what has changed.
         json_output: Print JSON.
     """
+    stopped = threading.Event()
+
+    def stop(*_: object) -> None:
+        stopped.set()  # the exception is lost where Python ignores it, as in a finalizer
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, stop)
     try:
-        while True:
-            time.sleep(_PERIOD_S)
+        while not stopped.wait(_PERIOD_S):
             try:
                 works = {work.folder: work for work in _works(folder, case)}
             except (ArgumentError, OSError):  # folders may come and go meanwhile
@@ -193,3 +200,5 @@ def _watch(
                 show_verdicts([verdicts[path] for path in changed], json_output)
     except KeyboardInterrupt:
         return
+    finally:
+        signal.signal(signal.SIGINT, before)

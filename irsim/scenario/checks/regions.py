@@ -61,6 +61,19 @@ def _avoided(context: Context, path: Path, record: ObjectRecord, options: Follow
             yield from _ends_in_zone(where, record, zones[name])
 
 
+def ends_fit(options: Follow, places: Sequence[Sequence[float]], zones: Sequence[Zone], radius: float) -> bool:
+    """Whether a start and goals are in the region of `within` and not in the zones that are avoided.
+
+    Args:
+        options: The behavior.
+        places: x, y of the start and of each goal [m].
+        zones: The avoided zones, each with one outline.
+        radius: Radius of the object if it is a circle, otherwise 0 [m].
+    """
+    inside = options.within is None or all(_is_inside(options.within.points, *place[:2]) for place in places)
+    return inside and all(_distance(zone, *place[:2]) > radius for zone in zones for place in places)
+
+
 def _ends_in_zone(path: Path, record: ObjectRecord, zone: Zone) -> Iterator[Finding]:
     """A start or goal in a zone that the object avoids: there is no path to such a goal."""
     if len([key for key in ZONE_OUTLINES if getattr(zone, key) is not None]) != 1:

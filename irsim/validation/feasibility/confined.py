@@ -6,6 +6,7 @@ from typing import Any
 
 from irsim.episodes.planned_routes import planned_routes
 from irsim.scenario.checks import Context
+from irsim.scenario.checks.regions import ends_fit
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.reachability import Leg
 from irsim.validation.feasibility.scenes import Scene
@@ -19,7 +20,11 @@ _MAX_SCENES = 3
 
 def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
     """Report goals to which a path leads, but none that stays in ``within`` and out of ``avoid``."""
-    confined = {mover.record.id: mover for mover in movers if _is_confined(mover) and legs.get(mover.record.id)}
+    confined = {
+        mover.record.id: mover
+        for mover in movers
+        if _is_confined(mover) and legs.get(mover.record.id) and _ends_fit(context, scene, mover)
+    }
     if not confined or scene.seed >= _MAX_SCENES:
         return
     goals = {key: scene.goals[key][: len(legs[key])] for key in confined}
@@ -33,6 +38,15 @@ def _is_confined(mover: Mover) -> bool:
     options: Any = mover.record.active_behavior
     confined = mover.behavior == "follow" and (options.within is not None or bool(options.avoid))
     return confined and not mover.record.wander
+
+
+def _ends_fit(context: Context, scene: Scene, mover: Mover) -> bool:
+    """Whether start and goals are where the object may be; other checks report those that are not."""
+    record = mover.record
+    options: Any = record.active_behavior
+    zones = [zone for zone in context.scenario.world.zones if zone.name in options.avoid]
+    radius = record.shape.radius if record.shape.name == "circle" else 0.0
+    return ends_fit(options, [scene.pose[record.id], *scene.goals[record.id]], zones, radius)
 
 
 def _report(mover: Mover, index: int, scene: Scene, tally: Tally) -> None:
