@@ -143,6 +143,11 @@ class Suite(_Part):
     density: str | None = None
     """Key of ``vary`` that charts show from left to right, such as ``robot[0].number``."""
 
+    @property
+    def known_policies(self) -> dict[str, str | dict[str, Any]]:
+        """All policies that the suite has a name for, whether it runs them by itself or not."""
+        return self.policies | self.others
+
     @model_validator(mode="after")
     def _is_consistent(self) -> Suite:
         names = [scenario.name for scenario in self.scenarios]

@@ -61,9 +61,7 @@ def suite_plan(
     perturbations = read_perturbations(perturb) or tuple(found.perturb)
     words += [word for item in perturb for word in ("--perturb", item)]
     texts = _policies(found, policies)
-    sources, digests = files_of(
-        texts, {name: file.parent for name in texts if name in {*found.policies, *found.others}}
-    )
+    sources, digests = files_of(texts, {name: file.parent for name in texts if name in found.known_policies})
     chosen = _seeds(found, seeds, full)
     if isinstance(seeds, Sequence):
         words += ["--seeds", _listed(chosen)]
@@ -126,9 +124,8 @@ def _policies(suite: Suite, wanted: Sequence[str] | None) -> dict[str, str]:
     """Label → policy as text. A name that the suite does not have is a policy of its own."""
     if wanted is not None and not wanted:
         raise SuiteError("there must be at least one policy, got none", f"choose from {', '.join(suite.policies)}")
-    own = {name: behavior_text(policy) for name, policy in suite.policies.items()}
-    known = own | {name: behavior_text(policy) for name, policy in suite.others.items()}
-    return own if wanted is None else {name: known.get(name, name) for name in wanted}
+    known = {name: behavior_text(policy) for name, policy in suite.known_policies.items()}
+    return {name: known.get(name, name) for name in (suite.policies if wanted is None else wanted)}
 
 
 def _planned(made: Sequence[Expanded]) -> list[PlannedScenario]:

@@ -38,7 +38,7 @@ def suite_policy(name: str | Path, policy: str) -> str:
     """
     found = _split(name)
     suite = None if found is None else load_suite(found[0])[0]
-    own = {} if suite is None else suite.policies | suite.others
+    own = {} if suite is None else suite.known_policies
     return behavior_text(own[policy]) if policy in own else policy
 
 

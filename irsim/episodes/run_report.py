@@ -94,9 +94,10 @@ def run_result(
         extra += ["--policy", policy.text or policy.name]
     for perturbation in perturb:
         extra += ["--perturb", perturbation]
-    because = (
-        reason_message(env, robots, hits, events, source, parked, held) if lost is None else f"{lost}; the run ended"
-    )
+    because: str | None = None
+    if outcome != "success":
+        ended = None if lost is None else f"{lost}; the run ended"
+        because = ended or reason_message(env, robots, hits, events, source, parked, held)
     given = horizon if source in ("argument", "limits") else None
     return RunResult(
         scenario="(text)" if path is None else str(path),
@@ -120,7 +121,7 @@ def run_result(
             nearest_to_goals(env, incidents.jumps),
             zones,
         ),
-        reason=None if outcome == "success" else because,
+        reason=because,
         lost=lost,
         decisive_step=decisive_step(env, robots, hits, events, parked, held),
         steps=int(env.simulation.count[0]),

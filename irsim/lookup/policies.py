@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from irsim.benchmarks.suite import Suite
 from irsim.benchmarks.suite_files import load_suite, suite_names
 from irsim.lookup.answer import Answer, Key
 from irsim.policies.converters.features import CONVERTERS
@@ -23,19 +22,15 @@ def policy_answer(topic: str) -> Answer | None:
     known = {*trained_policies(), *POLICIES.names()}
     if name in known:
         return _policy(name, [])
-    for suite in map(_suite, suite_names()):
-        text = {**suite.policies, **suite.others}.get(name)
+    for suite in (load_suite(each)[0] for each in suite_names()):
+        text = suite.known_policies.get(name)
         if isinstance(text, str) and text in known:
             return _policy(text, [f"The suite {suite.suite} calls it {name}."])
     return None
 
 
-def _suite(name: str) -> Suite:
-    return load_suite(name)[0]
-
-
 def _policy(name: str, notes: list[str]) -> Answer:
-    """The answer about a policy that is no behavior."""
+    """The answer about a trained policy, or one of a plug-in."""
     info = describe_policy(name)
     card = info.facts.get("card", {})
     period = "in every step" if info.decision_dt is None else f"every {info.decision_dt:g} s"

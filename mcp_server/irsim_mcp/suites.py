@@ -80,7 +80,7 @@ def plan_of(scenarios: Sequence[str], policies: Sequence[str] | None, seeds: int
     for name in names:
         if not any(name in (one, one.rsplit("/", 1)[0], one.split("/", 1)[0]) for one in known):
             raise _unknown(suite, known, name, "scenarios")
-    own = {*_whole(suite).policies, *_others(suite)}
+    own = _known_policies(suite)
     chosen = [text if text in own else _inside(text, root) for text in policies] if policies else None
     return suite_plan(suite, policies=chosen, seeds=seeds, scenarios=names or None)
 
@@ -99,10 +99,10 @@ def _whole(suite: str) -> Plan:
     return suite_plan(suite)
 
 
-def _others(suite: str) -> list[str]:
-    """Names of the policies of a suite that run only where they are named."""
+def _known_policies(suite: str) -> set[str]:
+    """Names of the policies of a suite, whether it runs them by itself or not."""
     found = _whole(suite).suite
-    return [] if found is None else list(found.others)
+    return set() if found is None else {*found.known_policies}
 
 
 def _unknown(suite: str, known: Sequence[str], given: str, argument: str) -> ArgumentError:

@@ -11,7 +11,7 @@
 namespace irsim {
 namespace {
 
-constexpr double kLeastGap = 0.005;          // part of a gap that nobody uses [m]
+constexpr double kLeastGap = 0.005;          // part of a gap that stays free [m]
 constexpr double kLeastStandingGap = 0.001;  // gap that is kept from what stands [m]
 constexpr double kOutlineDistance = 0.5;     // gap of bounding circles from which these stand for outlines [m]
 constexpr double kRestingSpeed = 0.1;        // an arrived object that is slower rests [m/s]

@@ -21,7 +21,7 @@ struct Border {
 ///
 /// Args:
 ///   own, other: Speeds toward each other along the axis, at least 0 [m/s].
-///   margin: Part of the gap that nobody uses [m].
+///   margin: Part of the gap that stays free [m].
 Border border(const Hull& body, const Separation& apart, double own, double other, double margin);
 
 /// The space of one body.
