@@ -181,19 +181,23 @@ class PolicyDriver:
         self._begun[:, new] = False
         if type(self.policy).reset is Policy.reset:
             return
-        from irsim.policies.footprint import footprint  # loads shapely
-
         step_time = float(simulation.scenario.world.step_time)
         for group in self._groups:
             for world in np.flatnonzero(~self._begun[group.number]).tolist():
                 robots = tuple(simulation.ids[self._robots[group.places]].tolist())
-                rows = self._rows(simulation)[world, group.places].tolist()
-                footprints = tuple(footprint(simulation.state, row) for row in rows)
+                footprints = self._footprints(simulation, world, group) if self.policy.needs.footprints else ()
                 slot = int(self._slot(world, group))
                 episode = Episode(slot, robots, step_time, self._steps, group.drive, footprints)
                 rng = generator(*simulation.key(world), stream="policy", object_id=group.number)
                 self._guarded(self.policy.reset, episode, rng)
                 self._begun[group.number, world] = True
+
+    def _footprints(self, simulation: Simulation, world: int, group: _Group) -> tuple[Floats, ...]:
+        """The footprints of the robots of a group in a world."""
+        from irsim.policies.footprint import footprint  # loads shapely
+
+        rows = self._rows(simulation)[world, group.places].tolist()
+        return tuple(footprint(simulation.state, row) for row in rows)
 
     def _decide(self, simulation: Simulation, group: _Group, rows: NDArray[np.int64], due: NDArray[np.bool_]) -> None:
         world, place = np.nonzero(due[:, group.places])

@@ -69,7 +69,7 @@ class NeuPanPolicy(Policy):
             raise PolicyError("policy-failed", what, f"NeuPAN plans for {', '.join(_DRIVES)}")
         self.output = "velocity" if drive == "omni" else "control"
         self.drives = None if drive == "omni" else frozenset({drive})
-        self.needs = Needs(scan=True, neighbors=20 if velocities else 0)
+        self.needs = Needs(scan=True, footprints=True, neighbors=20 if velocities else 0)
         self._shape = _corners(robot)
         self._footprints: dict[tuple[int, int], Floats] = {}
         self._step: dict[int, float] = {}

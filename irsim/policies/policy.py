@@ -32,6 +32,7 @@ class Needs:
         neighbor_range: Distance beyond which others are not seen [m], between bounding circles.
         static_neighbors: Whether static objects count as neighbors; each is then seen as its bounding circle.
         neighbor_extents: Whether it needs to know how far footprints reach toward each other.
+        footprints: Whether it needs to know the footprints of its robots, which are found at the start of each episode.
         scan: Whether it needs the ranges of a lidar; every robot must then carry one, with equal beams.
         beams: Number of beams that this lidar must have; None: any.
         map: Whether it needs the grid of static objects.
@@ -42,6 +43,7 @@ class Needs:
     neighbor_range: float = float("inf")
     static_neighbors: bool = False
     neighbor_extents: bool = False
+    footprints: bool = False
     scan: bool = False
     beams: int | None = None
     map: bool = False
@@ -76,8 +78,8 @@ class Episode:
         step_time: Period of the simulation [s].
         decision_steps: Number of steps between two decisions.
         drive: Name of the drive of these robots; ``mixed`` where robots with different drives follow velocities.
-        footprints: (K, 2) corners of the convex hull of each robot, counterclockwise, in its own frame [m]; circles and
-            round parts are polygons with 16 corners around them.
+        footprints: (K, 2) corners of the convex hull of each robot, counterclockwise, in its own frame [m], if the
+            policy needs them; circles and round parts are polygons with 16 corners around them.
     """
 
     world: int

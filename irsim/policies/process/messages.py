@@ -94,7 +94,7 @@ def _needs(given: Any) -> Needs:
     known = [field.name for field in fields(Needs)]
     if not isinstance(given, dict) or not {*given} <= {*known}:
         raise PeerError(f"declares needs other than {', '.join(known)}")
-    for key in ("static_neighbors", "neighbor_extents", "scan", "map"):
+    for key in ("static_neighbors", "neighbor_extents", "footprints", "scan", "map"):
         if not isinstance(given.get(key, False), bool):
             raise PeerError(f"declares needs whose {key!r} is neither true nor false")
     return Needs(**{key: value for key, value in given.items() if value is not None})
