@@ -18,6 +18,7 @@ install()
 if TYPE_CHECKING:
     from irsim.api import diff, fix, render, run, validate
     from irsim.benchmarks import benchmark
+    from irsim.bridges.export.export import export_run
     from irsim.diagnostics.errors import (
         IrsimError,
         NotSimulatedError,
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from irsim.objects.handlers.registration import register_behavior
     from irsim.policies import Policy, open_policy
     from irsim.runs.comparison import diff_runs
-    from irsim.runs.export.export import export_run
     from irsim.runs.replay.export import replay
 
     __version__: str

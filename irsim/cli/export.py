@@ -60,9 +60,9 @@ def export(
     """
     from rich.text import Text
 
+    from irsim.bridges.export.episode import CHOICES
+    from irsim.bridges.export.export import export_run
     from irsim.cli.output import console, print_json, progress
-    from irsim.runs.export.episode import CHOICES
-    from irsim.runs.export.export import export_run
 
     chosen = objects if objects in CHOICES else [name.strip() for name in objects.split(",") if name.strip()]
     with progress("exporting") as report:

@@ -19,7 +19,7 @@ PUBLIC_HOMES = {
     "benchmark": "irsim.benchmarks",
     "diff": "irsim.api",
     "diff_runs": "irsim.runs.comparison",
-    "export_run": "irsim.runs.export.export",
+    "export_run": "irsim.bridges.export.export",
     "fix": "irsim.api",
     "make": "irsim.env",
     "open_policy": "irsim.policies",

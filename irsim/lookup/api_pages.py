@@ -40,10 +40,10 @@ def make_page(title: str, *parts: str) -> str:
 
 def runner() -> Pages:
     """Return the pages of the skill ``irsim-runner``."""
+    from irsim.bridges.export.registry import format_names
     from irsim.env import Env
     from irsim.env.batch import Batch
     from irsim.objects.view import ObjectView
-    from irsim.runs.export.registry import format_names
 
     functions = (
         *("make", "run", "render", "validate", "benchmark", "batch", "export_run", "diff_runs"),
@@ -183,7 +183,7 @@ def _function(name: str, function: Any) -> str:
 
 def _format(name: str) -> str:
     """Return what the module of an export format says about it."""
-    doc = inspect.cleandoc(importlib.import_module(f"irsim.runs.export.formats.{name}").__doc__ or "")
+    doc = inspect.cleandoc(importlib.import_module(f"irsim.bridges.export.formats.{name}").__doc__ or "")
     text = _markup(doc.removeprefix(f"``{name}``: "))
     return f"## {name}\n\n{text[0].upper()}{text[1:]}"
 

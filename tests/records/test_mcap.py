@@ -151,7 +151,7 @@ def test_messages_are_in_the_order_of_time(hall: Run, monkeypatch: pytest.Monkey
     from mcap.records import Message
     from mcap.stream_reader import StreamReader
 
-    monkeypatch.setattr("irsim.runs.export.episode._BLOCK_NUMBERS", 700)
+    monkeypatch.setattr("irsim.bridges.export.episode._BLOCK_NUMBERS", 700)
     irsim.export_run(hall, "run.mcap")
     with open("run.mcap", "rb") as file:
         messages = [record for record in StreamReader(file).records if isinstance(record, Message)]

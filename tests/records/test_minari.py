@@ -82,7 +82,7 @@ def test_scans_of_all_lidars_are_one_observation(hall: Run, minari: Any) -> None
 @pytest.mark.parametrize("numbers", [1, 800])
 def test_size_of_blocks_changes_nothing(hall: Run, minari: Any, monkeypatch: pytest.MonkeyPatch, numbers: int) -> None:
     irsim.export_run(hall, "whole-v0", to="minari")
-    monkeypatch.setattr("irsim.runs.export.episode._BLOCK_NUMBERS", numbers)
+    monkeypatch.setattr("irsim.bridges.export.episode._BLOCK_NUMBERS", numbers)
     irsim.export_run(hall, "parts-v0", to="minari")
     whole, parts = (minari.load_dataset(f"{name}-v0") for name in ("whole", "parts"))
     assert (whole.total_steps, whole.total_episodes) == (parts.total_steps, parts.total_episodes)

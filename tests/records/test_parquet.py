@@ -79,7 +79,7 @@ def test_row_groups_are_small_and_change_nothing(hall: Run, monkeypatch: pytest.
     from pyarrow import parquet
 
     irsim.export_run(hall, "whole.parquet")
-    monkeypatch.setattr("irsim.runs.export.episode._BLOCK_NUMBERS", 640)
+    monkeypatch.setattr("irsim.bridges.export.episode._BLOCK_NUMBERS", 640)
     irsim.export_run(hall, "parts.parquet")
     assert parquet.ParquetFile("whole.parquet").num_row_groups == 1
     assert parquet.ParquetFile("parts.parquet").num_row_groups > 5

@@ -12,10 +12,10 @@ import pytest
 from typer.testing import CliRunner
 
 import irsim
+from irsim.bridges.export.registry import find_format, format_names
 from irsim.cli.app import app
 from irsim.common.files import TargetError
 from irsim.runs import Run, RunError, open_run
-from irsim.runs.export.registry import find_format, format_names
 from irsim.simulation.trace import join_traces
 from tests.runs.test_trace import assert_same
 
@@ -99,7 +99,7 @@ def test_size_of_blocks_changes_no_file(traffic: Run, monkeypatch: pytest.Monkey
         for name in ("run.npz", "run.csv"):
             irsim.export_run(traffic, name, ranges=True)
             made[name] = Path(name).read_bytes()
-        monkeypatch.setattr("irsim.runs.export.episode._BLOCK_NUMBERS", numbers)
+        monkeypatch.setattr("irsim.bridges.export.episode._BLOCK_NUMBERS", numbers)
     assert whole["run.csv"] == parts["run.csv"]
     with np.load("run.npz") as arrays:
         np.testing.assert_array_equal(arrays["pose"], traffic.trace().pose[:, :3])
@@ -193,7 +193,7 @@ def test_what_cannot_be_written_leaves_nothing(traffic: Run, monkeypatch: pytest
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("irsim.runs.export.formats.csv._texts", full)
+    monkeypatch.setattr("irsim.bridges.export.formats.csv._texts", full)
     with pytest.raises(RunError, match=r"'run\.csv' cannot be written: No space left on device"):
         irsim.export_run(traffic, "run.csv")
     assert sorted(path.name for path in Path().iterdir()) == before

@@ -10,14 +10,14 @@ from importlib import import_module
 from pathlib import Path
 from typing import TypeAlias
 
+from irsim.bridges.export.episode import Episode
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
-from irsim.runs.export.episode import Episode
 from irsim.runs.files import RunError
 
 __all__ = ["Format", "Writer", "find_format", "format_names"]
 
-_PACKAGE = "irsim.runs.export.formats"
+_PACKAGE = "irsim.bridges.export.formats"
 Writer: TypeAlias = Callable[[Sequence[Episode], Path, str], list[str]]
 """Writes episodes to a path where nothing is yet, and returns notes on what it left out. The last argument is the name
 that the file or folder gets when it is complete."""

@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.runs.export.episode import Block, Episode
+from irsim.bridges.export.episode import Block, Episode
 
 __all__ = ["Column", "Ranges", "Words", "columns_of", "table_parts"]
 

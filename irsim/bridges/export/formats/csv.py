@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from irsim.runs.export.columns import Cells, Ranges, Words, columns_of, table_parts
-from irsim.runs.export.episode import Episode
-from irsim.runs.export.registry import Format
+from irsim.bridges.export.columns import Cells, Ranges, Words, columns_of, table_parts
+from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.registry import Format
 
 __all__ = ["FORMAT"]
 

@@ -8,13 +8,13 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from irsim.bridges.export.episode import open_episode
+from irsim.bridges.export.registry import Format, find_format
 from irsim.common.extras import require
 from irsim.common.files import TEMPORARY, check_suffix, replacing
 from irsim.common.text import clean
 from irsim.episodes.episode import Progress
 from irsim.results.records import ExportResult
-from irsim.runs.export.episode import open_episode
-from irsim.runs.export.registry import Format, find_format
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.scenario.limits import Limits

@@ -26,10 +26,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.bridges.export.episode import Block, Episode, Lidar
+from irsim.bridges.export.formats._ros_messages import Bag, Messages, nanoseconds, ros_names
+from irsim.bridges.export.registry import Format
 from irsim.common.arrays import Floats
-from irsim.runs.export.episode import Block, Episode, Lidar
-from irsim.runs.export.formats._ros_messages import Bag, Messages, nanoseconds, ros_names
-from irsim.runs.export.registry import Format
 from irsim.runs.initial_scene import initial_scene
 from irsim.simulation.events import Event
 from irsim.simulation.trace import Trace
@@ -118,7 +118,7 @@ def _layout(bag: Bag, episode: Episode) -> _Layout:
 
 def _add_scene(bag: Bag, messages: Messages, episode: Episode, layout: _Layout) -> bool:
     """Add bodies and map; whether the map, if there is one, could be added."""
-    from irsim.runs.export.formats._ros_scene import body_markers, occupancy_grid
+    from irsim.bridges.export.formats._ros_scene import body_markers, occupancy_grid
 
     follows = {actor.name: frame for actor, frame in zip(episode.actors, layout.frames, strict=True)}
     with initial_scene(episode.run, episode.limits) as env:

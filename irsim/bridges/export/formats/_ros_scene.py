@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.bridges.export.formats._ros_messages import Messages
 from irsim.common.arrays import Floats
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.objects.views import views
-from irsim.runs.export.formats._ros_messages import Messages
 from irsim.runs.replay.drawing import page_objects
 
 if TYPE_CHECKING:

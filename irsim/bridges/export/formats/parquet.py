@@ -19,10 +19,10 @@ from typing import Any
 
 import numpy as np
 
+from irsim.bridges.export.columns import Cells, Column, Ranges, Words, columns_of, table_parts
+from irsim.bridges.export.episode import Episode
+from irsim.bridges.export.registry import Format
 from irsim.common.version import version
-from irsim.runs.export.columns import Cells, Column, Ranges, Words, columns_of, table_parts
-from irsim.runs.export.episode import Episode
-from irsim.runs.export.registry import Format
 
 __all__ = ["FORMAT"]
 

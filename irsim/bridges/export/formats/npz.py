@@ -17,8 +17,8 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from irsim.runs.export.episode import Block, Episode
-from irsim.runs.export.registry import Format
+from irsim.bridges.export.episode import Block, Episode
+from irsim.bridges.export.registry import Format
 
 __all__ = ["FORMAT"]
 

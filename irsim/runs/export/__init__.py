@@ -1,1 +1,0 @@
-"""Recorded runs as files of other tools; each format is one module of :mod:`irsim.runs.export.formats`."""
