@@ -14,6 +14,7 @@
 - ``cluster``: benchmarks on Ray clusters of several processes, one of which is killed.
 - ``learn``: environments of TorchRL and Stable-Baselines3, and training, with torch.
 - ``records``: exports of recorded runs, opened by the tools they are for: pandas, DuckDB, mcap-ros2-support, Minari.
+- ``interop``: bridges, each against software that somebody else wrote: middleware, simulators, parsers, a browser.
 - ``onnx``: policies from ONNX models, with onnxruntime.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
@@ -42,7 +43,16 @@ TOOLS = ("pandas>=2.2", "duckdb>=1.1", "mcap-ros2-support>=0.5")
 """What opens exported runs in tests, and is no dependency."""
 VIDEOS = "moviepy>=2"
 """With which Gymnasium's ``RecordVideo`` writes files."""
-FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster", "learn")
+FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster", "learn", "interop")
+INTEROP = "3.11"
+"""The Python of bridges: the one of Debian 12, whose packages of ROS it imports, and one that CARLA has a client for."""
+DEBIAN_PEERS = (
+    "chromium", "fastddsgen", "g++", "libfastrtps-dev", "libnav-msgs-dev", "libosmesa6", "librecast-dev",
+    "libsdformat-dev", "python3-rospy", "ros-base", "ros-nav-msgs",
+)  # fmt: skip
+"""Packages of Debian 12 that bridges meet in tests."""
+PYTHON_PEERS = ("mcap-ros2-support>=0.5", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
+"""Packages of Python that bridges meet in tests, and that are no dependencies."""
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
 """Tests of the core that are about Python and NumPy rather than arithmetic."""
 ARITHMETIC = (
@@ -139,6 +149,7 @@ def run_slow_tests(session: nox.Session) -> None:
     """Tests marked slow, and properties with all of their examples."""
     chosen = (
         "(slow or hypothesis) and not browser and not evals and not records and not onnx and not cluster and not learn"
+        " and not interop"
     )
     options = ("-m", chosen, "-n", "2", "--dist", "loadgroup", "--durations", "15")
     timed(session, "slow tests", "pytest", *options, env={"IRSIM_TESTS": "thorough"})
@@ -276,6 +287,33 @@ def learn(session: nox.Session) -> None:
     """Environments of TorchRL and Stable-Baselines3, and training; torch takes minutes to install and gigabytes."""
     install(session, "-e", ".[test,learn,onnx]", VIDEOS)
     timed(session, "tests of learning", "pytest", "-m", "learn", "-n", "2", "tests/learning/torch", *session.posargs)
+
+
+@nox.session(reuse_venv=True, python=find_python(INTEROP))
+def interop(session: nox.Session) -> None:
+    """Bridges, each against software that somebody else wrote; a test that is skipped fails."""
+    extras = "ros2,zenoh,rosbridge,bag,mujoco,usd,mesh,carla,scenarios,records"
+    install(session, "-e", f".[test,{extras}]", *PYTHON_PEERS)
+    install_debian(session, DEBIAN_PEERS)
+    options = ("-m", "interop", "-n", "2", "--dist", "loadgroup", "--durations", "15", "tests/interop")
+    timed(session, "tests of bridges", "pytest", *options, *session.posargs, env={"IRSIM_INTEROP": "required"})
+
+
+def install_debian(session: nox.Session, packages: Iterable[str]) -> None:
+    """Install packages of Debian that are missing."""
+    query = ["dpkg-query", "--show", "--showformat", "${db:Status-Abbrev}"]
+    missing = [name for name in packages if not _succeeds([*query, name])]
+    if not missing:
+        return
+    become = [] if os.geteuid() == 0 else ["sudo"]
+    environment = {"DEBIAN_FRONTEND": "noninteractive"}
+    for command in (["update", "-q"], ["install", "-y", "-q", "--no-install-recommends", *missing]):
+        timed(session, "apt-get", *become, "apt-get", *command, env=environment, external=True)
+
+
+def _succeeds(command: list[str]) -> bool:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    return done.returncode == 0 and done.stdout.startswith("ii")
 
 
 def find_chromium(session: nox.Session) -> dict[str, str]:

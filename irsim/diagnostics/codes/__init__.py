@@ -1,5 +1,6 @@
 """The closed list of codes of diagnostics and errors, by subject; ``irsim describe CODE`` explains a code."""
 
+from irsim.diagnostics.codes.bridges import BRIDGES
 from irsim.diagnostics.codes.code import Code
 from irsim.diagnostics.codes.file_and_yaml import FILE_AND_YAML
 from irsim.diagnostics.codes.keys_and_values import KEYS_AND_VALUES
@@ -12,5 +13,5 @@ __all__ = ["CODES", "TOOL_CODES", "Code"]
 CODES: dict[str, Code] = {**FILE_AND_YAML, **KEYS_AND_VALUES, **OBJECTS, **MAPS_AND_LIMITS}
 """Codes of findings about a scenario."""
 
-TOOL_CODES: dict[str, Code] = TOOLS
+TOOL_CODES: dict[str, Code] = {**TOOLS, **BRIDGES}
 """Codes of errors outside scenarios: of the command line and other tools."""

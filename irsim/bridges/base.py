@@ -1,0 +1,67 @@
+"""What a bridge to another program implements."""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias
+
+from irsim.bridges.scene import SceneDescription
+from irsim.bridges.state import Feedback, Motion, WorldState
+from irsim.diagnostics.errors import CodedError
+
+__all__ = ["Bridge", "BridgeError", "BridgeLostError", "Clock"]
+
+Clock: TypeAlias = Literal["irsim", "external", "wall"]
+"""Who decides when a step is: irsim as fast as it can, the other program, or the time on the wall."""
+
+
+class BridgeError(CodedError, ValueError):
+    """A bridge cannot be opened, or failed; the codes are those of :mod:`irsim.diagnostics.codes.bridges`."""
+
+
+class BridgeLostError(BridgeError):
+    """The program at the other end is gone or does not answer; the episode ends with this reason."""
+
+    def __init__(self, message: str, fix: str = "start the other program again, then run the scenario again") -> None:
+        super().__init__("bridge-lost", message, fix)
+
+
+class Bridge:
+    """One connection to another program; :func:`irsim.connect` calls the methods in this order.
+
+    ``open``, then in each step ``pull`` (before the decisions), ``exchange`` (after decisions and motion, before
+    contacts, collisions and sensors) and ``push`` (after the step); at the end, also after an exception, ``close``.
+    A subclass overrides those that it needs.
+
+    Attributes:
+        name: Name of the bridge in messages.
+        clock: Who decides when a step is.
+        agents: Names of the objects that the other program moves, known after ``open``; irsim does not move them.
+    """
+
+    name: str = "bridge"
+    clock: Clock = "irsim"
+    agents: frozenset[str] = frozenset()
+
+    def open(self, scene: SceneDescription, start: WorldState) -> None:
+        """Connect, and tell the other program the scene.
+
+        Raises:
+            BridgeError: The other program cannot be reached, or the scene does not fit it.
+        """
+
+    def pull(self) -> Feedback | None:
+        """What has come from outside since the last step: goals, commands, poses; never NaN.
+
+        A bridge whose clock is ``external`` waits here for the next tick, for a limited time.
+        """
+        return None
+
+    def exchange(self, motion: Motion) -> Feedback | None:
+        """Hand over what the robots want in this step; return where the agents of this bridge are at its end."""
+        return None
+
+    def push(self, state: WorldState) -> None:
+        """Show the world after a step."""
+
+    def close(self) -> None:
+        """Stop the robots and disconnect; a second call does nothing."""

@@ -1,0 +1,187 @@
+"""Frames of other programs: where a pose of the plane of irsim is in theirs.
+
+irsim and ROS (REP-103) are right-handed, x forward, y to the left, z up, yaw counterclockwise in radians. Every other
+convention is a linear map of axes, so that one matrix says all: its columns are the axes of irsim in the other frame.
+What turns by the yaw is the body, whose own axes follow the same convention.
+
+- ``carla``: left-handed, x forward, y to the **right**, z up, yaw clockwise seen from above
+- ``usd``: a stage with ``upAxis`` Z; ``usd_yup`` is one with ``upAxis`` Y
+- ``habitat_yup``, ``gltf``: x to the right, y up, z to the back: the ground is the plane of x and z, and irsim's y is -z
+
+Cameras have axes of their own. In ``opengl`` a camera looks along -z, with x to its right and y up; in ``colmap`` it looks
+along z, with x to its right and y down.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from irsim.common.arrays import Floats
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import ArgumentError
+
+__all__ = [
+    "CAMERA_AXES",
+    "FRAMES",
+    "FrameName",
+    "axes_of",
+    "camera_pose",
+    "inverse",
+    "planar_pose",
+    "pose_matrix",
+    "quaternion_of",
+    "rotation_of",
+    "to_frame",
+    "to_irsim",
+    "yaw_in",
+    "yaw_of",
+]
+
+FrameName: TypeAlias = Literal["irsim", "ros", "carla", "usd", "usd_yup", "habitat_yup", "gltf"]
+FRAMES: tuple[str, ...] = get_args(FrameName)
+"""Names of the frames of worlds."""
+
+_Z_UP: Floats = np.eye(3)
+_Y_UP: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+_Y_RIGHT: Floats = np.diag([1.0, -1.0, 1.0])
+CAMERA_AXES: dict[str, Floats] = {
+    "opengl": np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
+    "colmap": np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]),
+}
+"""Axes of a camera that looks forward, in the body frame of irsim: columns are its x, y and z."""
+
+
+def axes_of(frame: str) -> Floats:
+    """(3, 3) the axes of irsim in another frame, as columns; -1 is the determinant of a left-handed frame.
+
+    Raises:
+        ArgumentError: There is no such frame.
+    """
+    if frame in ("irsim", "ros", "usd"):
+        return _Z_UP.copy()
+    if frame in ("usd_yup", "habitat_yup", "gltf"):
+        return _Y_UP.copy()
+    if frame == "carla":
+        return _Y_RIGHT.copy()
+    raise ArgumentError(f"{frame!r} is not a frame", suggestion(frame, FRAMES, f"frames are {', '.join(FRAMES)}"))
+
+
+def rotation_of(yaw: Floats | float) -> Floats:
+    """(..., 3, 3) rotation about z by a yaw [rad]."""
+    angle = np.asarray(yaw, dtype=np.float64)
+    found = np.zeros((*angle.shape, 3, 3))
+    found[..., 0, 0] = found[..., 1, 1] = np.cos(angle)
+    found[..., 1, 0] = np.sin(angle)
+    found[..., 0, 1] = -found[..., 1, 0]
+    found[..., 2, 2] = 1.0
+    return found
+
+
+def pose_matrix(pose: Floats, height: float = 0.0) -> Floats:
+    """(..., 4, 4) matrices of poses (..., 3) x, y [m], yaw [rad] at a height [m], frame of irsim."""
+    pose = np.asarray(pose, dtype=np.float64)
+    found = np.zeros((*pose.shape[:-1], 4, 4))
+    found[..., :3, :3] = rotation_of(pose[..., 2])
+    found[..., :2, 3] = pose[..., :2]
+    found[..., 2, 3] = height
+    found[..., 3, 3] = 1.0
+    return found
+
+
+def to_frame(matrix: Floats, frame: str, transform: Floats | None = None) -> Floats:
+    """Poses of irsim in another frame.
+
+    Args:
+        matrix: (..., 4, 4) poses in the frame of irsim.
+        frame: Convention of the other frame.
+        transform: (4, 4) further transform in the other frame, such as ``T_scene_from_irsim`` of a map without its
+            axes: it is applied last.
+
+    Returns:
+        (..., 4, 4) poses whose body axes follow the convention of the other frame, too.
+    """
+    axes = np.eye(4)
+    axes[:3, :3] = axes_of(frame)
+    found: Floats = axes @ np.asarray(matrix, dtype=np.float64) @ axes.T
+    return found if transform is None else np.asarray(transform, dtype=np.float64) @ found
+
+
+def to_irsim(matrix: Floats, frame: str, transform: Floats | None = None) -> Floats:
+    """The inverse of :func:`to_frame`: (..., 4, 4) poses of another frame in the frame of irsim."""
+    matrix = np.asarray(matrix, dtype=np.float64)
+    if transform is not None:
+        matrix = inverse(transform) @ matrix
+    axes = np.eye(4)
+    axes[:3, :3] = axes_of(frame)
+    found: Floats = axes.T @ matrix @ axes
+    return found
+
+
+def inverse(matrix: Floats) -> Floats:
+    """(..., 4, 4) inverse of transforms."""
+    found: Floats = np.linalg.inv(np.asarray(matrix, dtype=np.float64))
+    return found
+
+
+def yaw_in(yaw: Floats | float, frame: str) -> Floats:
+    """The yaw of irsim about the axis that points up in another frame [rad]: negative in a left-handed frame."""
+    handed = round(float(np.linalg.det(axes_of(frame))))
+    return handed * np.asarray(yaw, dtype=np.float64)
+
+
+def yaw_of(matrix: Floats) -> Floats:
+    """(...) yaw [rad] of poses (..., 4, 4) in the frame of irsim: the direction of their x axis, seen from above."""
+    matrix = np.asarray(matrix, dtype=np.float64)
+    found: Floats = np.arctan2(matrix[..., 1, 0], matrix[..., 0, 0])
+    return found
+
+
+def planar_pose(matrix: Floats) -> Floats:
+    """(..., 3) x, y [m], yaw [rad] of poses (..., 4, 4) in the frame of irsim."""
+    matrix = np.asarray(matrix, dtype=np.float64)
+    return np.stack([matrix[..., 0, 3], matrix[..., 1, 3], yaw_of(matrix)], axis=-1)
+
+
+def camera_pose(
+    pose: Floats, axes: str, height: float, frame: str = "irsim", transform: Floats | None = None
+) -> Floats:
+    """(..., 4, 4) camera-to-world matrices of cameras that look forward from poses (..., 3) of the plane.
+
+    Args:
+        pose: x, y [m], yaw [rad], frame of irsim.
+        axes: ``opengl`` or ``colmap``, see :data:`CAMERA_AXES`.
+        height: Height of the camera above the ground [m].
+        frame: Convention of the world in which the cameras are.
+        transform: As in :func:`to_frame`.
+    """
+    turned = np.eye(4)
+    turned[:3, :3] = CAMERA_AXES[axes]
+    world = np.eye(4)
+    world[:3, :3] = axes_of(frame)
+    found: Floats = world @ pose_matrix(pose, height) @ turned
+    return found if transform is None else np.asarray(transform, dtype=np.float64) @ found
+
+
+def quaternion_of(rotation: Floats) -> Floats:
+    """(..., 4) unit quaternions x, y, z, w with w >= 0 of rotations (..., 3, 3) (Shepperd, 1978)."""
+    r = np.asarray(rotation, dtype=np.float64)
+    trace = np.trace(r, axis1=-2, axis2=-1)
+    squares = np.stack([r[..., 0, 0], r[..., 1, 1], r[..., 2, 2], trace], axis=-1)
+    largest = squares.argmax(axis=-1)
+    x, y, z = (1 + 2 * squares[..., k] - trace for k in range(3))
+    off = {
+        "yz": r[..., 2, 1] + r[..., 1, 2], "zx": r[..., 0, 2] + r[..., 2, 0], "xy": r[..., 1, 0] + r[..., 0, 1],
+        "x": r[..., 2, 1] - r[..., 1, 2], "y": r[..., 0, 2] - r[..., 2, 0], "z": r[..., 1, 0] - r[..., 0, 1],
+    }  # fmt: skip
+    choices = np.stack([
+        np.stack([x, off["xy"], off["zx"], off["x"]], axis=-1),
+        np.stack([off["xy"], y, off["yz"], off["y"]], axis=-1),
+        np.stack([off["zx"], off["yz"], z, off["z"]], axis=-1),
+        np.stack([off["x"], off["y"], off["z"], 1 + trace], axis=-1),
+    ], axis=-2)  # fmt: skip
+    chosen = np.take_along_axis(choices, largest[..., None, None], axis=-2)[..., 0, :]
+    chosen = chosen / np.linalg.norm(chosen, axis=-1, keepdims=True)
+    found: Floats = np.where(chosen[..., 3:] < 0, -chosen, chosen)
+    return found

@@ -1,0 +1,195 @@
+"""The scene of a bridge: all that does not change during an episode, free of anything of irsim's engine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
+
+__all__ = ["SCENE_VERSION", "Agent", "Circle", "Grid", "Lidar", "Line", "Part", "Polygon", "SceneDescription"]
+
+SCENE_VERSION = 1
+"""Version of the files of scenes and states."""
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A disk of a footprint.
+
+    Attributes:
+        center: (2,) [m], body frame.
+        radius: [m].
+    """
+
+    center: tuple[float, float]
+    radius: float
+
+
+@dataclass(frozen=True)
+class Polygon:
+    """A simple polygon of a footprint, convex or not.
+
+    Attributes:
+        corners: (K, 2) counterclockwise, without a repeated first corner [m], body frame.
+    """
+
+    corners: Floats
+
+
+@dataclass(frozen=True)
+class Line:
+    """A polyline without thickness, such as a wall.
+
+    Attributes:
+        points: (K, 2) [m], body frame.
+        closed: Whether the last point is joined to the first one.
+    """
+
+    points: Floats
+    closed: bool = False
+
+
+Part: TypeAlias = Circle | Polygon | Line
+
+
+@dataclass(frozen=True)
+class Lidar:
+    """A planar lidar.
+
+    Attributes:
+        key: ``<object>/<number>``, the key of its ranges.
+        number: Number among the lidars of its carrier.
+        mount: x, y [m], yaw [rad] on the carrier, body frame.
+        angle_min, angle_max: Directions of the first and the last beam, frame of the sensor [rad].
+        beams: Number of beams.
+        range_min, range_max: Shortest and longest range [m].
+        period: Time between two scans [s].
+        noise: Whether ranges are noisy.
+    """
+
+    key: str
+    number: int
+    mount: tuple[float, float, float]
+    angle_min: float
+    angle_max: float
+    beams: int
+    range_min: float
+    range_max: float
+    period: float
+    noise: bool = False
+
+    @property
+    def angles(self) -> Floats:
+        """(beams,) directions of the beams, frame of the sensor [rad]."""
+        return np.linspace(self.angle_min, self.angle_max, self.beams)
+
+
+@dataclass(frozen=True)
+class Agent:
+    """A robot or an obstacle.
+
+    Attributes:
+        index: Place in the scene, which is its row in states.
+        name: Its name.
+        role: ``robot`` or ``obstacle``.
+        drive: ``diff``, ``omni``, ``omni_angular``, ``acker``, the name of a drive of a plug-in, or None without one.
+        moves: Whether it can move.
+        pose: x, y [m], yaw [rad] at the start, world frame.
+        goals: Its goals x, y [m], yaw [rad], world frame.
+        parts: Its footprint, body frame; a map has none.
+        radius: Radius of the circle around its center that encloses the footprint [m].
+        low, high: Limits of its controls, in the words of the drive.
+        acceleration: Limits of the change of its controls [1/s]; infinite without.
+        wheelbase: [m], of ``acker``; None for others.
+        mass: [kg]; infinite for an object that nothing pushes.
+        color: Red, green, blue, from 0 to 1.
+        lidars: Its lidars.
+        solid: Whether it collides; false for zones that only are drawn, and with ``unobstructed``.
+    """
+
+    index: int
+    name: str
+    role: Literal["robot", "obstacle"]
+    drive: str | None
+    moves: bool
+    pose: tuple[float, float, float]
+    goals: tuple[tuple[float, float, float], ...]
+    parts: tuple[Part, ...]
+    radius: float
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    acceleration: tuple[float, ...]
+    wheelbase: float | None
+    mass: float
+    color: tuple[float, float, float]
+    lidars: tuple[Lidar, ...] = ()
+    solid: bool = True
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The map of a world.
+
+    Attributes:
+        occupied: (nx, ny) cells that are solid; the first index goes along x, the second one along y, upwards.
+        cell: Sides of a cell along x and y [m].
+        origin: Lower left corner [m], world frame.
+    """
+
+    occupied: NDArray[np.bool_]
+    cell: tuple[float, float]
+    origin: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class SceneDescription:
+    """The scene at the start of an episode.
+
+    Attributes:
+        name: Name of the scenario.
+        step_time: Period [s].
+        low, high: Corners of the world [m].
+        agents: All objects but the map, those of states in the same order.
+        grid: The map; None without one.
+        walls: Whether walls surround the world.
+        seed: Seed of the episode.
+        about: What else is worth keeping: text of the scenario, versions.
+        version: Version of this description.
+    """
+
+    name: str
+    step_time: float
+    low: tuple[float, float]
+    high: tuple[float, float]
+    agents: tuple[Agent, ...]
+    grid: Grid | None = None
+    walls: bool = False
+    seed: int = 0
+    about: Mapping[str, str] = field(default_factory=dict)
+    version: int = SCENE_VERSION
+
+    def agent(self, name: str) -> Agent:
+        """The agent of that name.
+
+        Raises:
+            KeyError: No object has it.
+        """
+        for agent in self.agents:
+            if agent.name == name:
+                return agent
+        raise KeyError(name)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the agents, in order."""
+        return tuple(agent.name for agent in self.agents)
+
+    @property
+    def robots(self) -> tuple[Agent, ...]:
+        """The agents that are robots."""
+        return tuple(agent for agent in self.agents if agent.role == "robot")

@@ -1,0 +1,84 @@
+"""What crosses a bridge in a step: the state of the world, the motion that is wanted, and what comes back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
+
+__all__ = ["Feedback", "Motion", "WorldState"]
+
+
+@dataclass(frozen=True)
+class WorldState:
+    """All objects after a step, in the order of :attr:`irsim.bridges.scene.SceneDescription.agents`.
+
+    Attributes:
+        step: Number of executed steps.
+        time: Simulated time [s].
+        pose: (N, 3) x, y [m], yaw [rad], world frame; NaN of an object that is not in the world (yet).
+        twist: (N, 3) velocity vx, vy [m/s], yaw rate [rad/s], world frame.
+        control: (N, 3) executed controls in the words of the drive, zero padded.
+        goal: (N, 3) present goal; NaN without one.
+        arrived, collided, stopped: (N,) flags.
+        ranges: Key of a lidar -> (beams,) ranges [m], infinite for a beam that hit nothing.
+        paths: Name of a robot -> (K, 2 or 3) the path that it follows, world frame; only of robots that have one.
+    """
+
+    step: int
+    time: float
+    pose: Floats
+    twist: Floats
+    control: Floats
+    goal: Floats
+    arrived: NDArray[np.bool_]
+    collided: NDArray[np.bool_]
+    stopped: NDArray[np.bool_]
+    ranges: Mapping[str, NDArray[np.float32]] = field(default_factory=dict)
+    paths: Mapping[str, Floats] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The middle of a step: what is wanted of the objects, and where irsim would have them at its end.
+
+    Attributes:
+        step: Number of steps executed before this one.
+        time: Simulated time at the start of the step [s].
+        control: (N, 3) controls within the limits, in the words of the drive, zero padded.
+        pose: (N, 3) poses at the end of the step as irsim moves them, world frame.
+        twist: (N, 3) velocities vx, vy [m/s], yaw rate [rad/s] that lead there, world frame.
+    """
+
+    step: int
+    time: float
+    control: Floats
+    pose: Floats
+    twist: Floats
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """What comes from outside; all keys are names of objects.
+
+    Attributes:
+        poses: x, y [m], yaw [rad] of objects that the other program moves, world frame.
+        twists: Their velocities vx, vy [m/s], yaw rate [rad/s], world frame; default: from the change of the pose.
+        commands: Commands to robots that irsim moves: forward, leftward speed [m/s], yaw rate [rad/s], body frame.
+        goals: New goals x, y [m], yaw [rad], world frame.
+        starts: Poses to which robots are set back (RViz: 2D Pose Estimate), world frame.
+        ranges: Key of a lidar -> (beams,) ranges [m] measured by the other program.
+        end: Why the episode is to end, or None.
+    """
+
+    poses: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    twists: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    commands: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    goals: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    starts: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    ranges: Mapping[str, NDArray[np.float32]] = field(default_factory=dict)
+    end: str | None = None
