@@ -45,7 +45,7 @@ VIDEOS = "moviepy>=2"
 """With which Gymnasium's ``RecordVideo`` writes files."""
 FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster", "learn", "interop")
 INTEROP = "3.11"
-"""The Python of bridges: the one of Debian 12, whose packages of ROS it imports, and one that CARLA has a client for."""
+"""The Python of bridges: that of Debian 12, whose packages of ROS it imports; CARLA has a client for it, too."""
 DEBIAN_PEERS = (
     "chromium", "fastddsgen", "g++", "libfastrtps-dev", "libnav-msgs-dev", "libosmesa6", "librecast-dev",
     "libsdformat-dev", "python3-rospy", "ros-base", "ros-nav-msgs",
