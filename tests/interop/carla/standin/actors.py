@@ -1,4 +1,4 @@
-"""Actors of the stand-in (not CARLA) and how they move: frame of CARLA, x forward, y to the right, degrees clockwise."""
+"""Actors of the stand-in (not CARLA) and how they move; frame of CARLA: y to the right, degrees clockwise."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ class Actor:
         stream: Id of the stream of a sensor, 0 of others.
         velocity: x, y [m/s], world.
         turn_rate: [deg/s].
-        control: What it was last told: ``("walker", x, y, speed)``, ``("ackermann", steer, speed)``, ``("velocity", x, y)``.
+        control: What it was last told: ``("walker", x, y, speed)``, ``("ackermann", steer, speed)`` or
+            ``("velocity", x, y)``.
         spin: Turn rate that was asked for [deg/s].
     """
 

@@ -1,4 +1,4 @@
-"""Layouts of what the stand-in (not CARLA) sends: records of calls, and frames of streams; frame of CARLA throughout."""
+"""Layouts of what the stand-in (not CARLA) sends: records of calls, and frames of streams; frame of CARLA."""
 
 from __future__ import annotations
 
