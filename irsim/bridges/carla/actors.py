@@ -38,7 +38,14 @@ class Ground:
 
     def __init__(self, carla: Any, world: Any, choice: str | float) -> None:
         self._carla, self._world, self._choice = carla, world, choice
-        self._map = world.get_map() if isinstance(choice, str) else None
+        self._map: Any = None
+        if isinstance(choice, str):
+            try:
+                self._map = world.get_map()
+            except RuntimeError:  # some towns have no roads
+                if choice == "road":
+                    what = "the town of the server has no roads (no OpenDRIVE)"
+                    raise BridgeError("bridge-mismatch", what, "ground: project") from None
 
     def under(self, x: float, y: float) -> float:
         """Height of the ground at a place where nothing stands yet [m].
@@ -47,7 +54,7 @@ class Ground:
             BridgeError: There is none.
         """
         road = self.road(x, y)
-        if self._choice == "road" or not isinstance(self._choice, str):
+        if self._choice != "project":
             if road is None:
                 what = f"there is no road within {_FAR_ROAD:g} m of x={x:.1f}, y={y:.1f} of CARLA"
                 raise BridgeError("bridge-mismatch", what, "move the scenario with transform, or write ground: project")
@@ -59,12 +66,16 @@ class Ground:
         if road is not None:
             return road
         what = f"there is no ground at x={x:.1f}, y={y:.1f} of CARLA"
-        raise BridgeError("bridge-mismatch", what, "move the scenario into the town with transform, or write ground: 0.0")
+        raise BridgeError(
+            "bridge-mismatch", what, "move the scenario into the town with transform, or write ground: 0.0"
+        )
 
     def road(self, x: float, y: float) -> float | None:
         """Height of the nearest road [m], or the height that was given; None without a road near by."""
-        if self._map is None:
+        if not isinstance(self._choice, str):
             return float(self._choice)
+        if self._map is None:
+            return None
         location = self._carla.Location(x=x, y=y, z=0.0)
         waypoint = self._map.get_waypoint(location, project_to_road=True, lane_type=self._carla.LaneType.Any)
         if waypoint is None:

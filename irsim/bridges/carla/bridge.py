@@ -132,9 +132,9 @@ class CarlaBridge(Bridge):
                 with suppress(RuntimeError):
                     lidar.stop()
         errors = []
-        for undo in (lambda: self._destroy_all(client), lambda: self._restore(world)):
+        for undo, of in ((self._destroy_all, client), (self._restore, world)):
             try:
-                undo()
+                undo(of)
             except RuntimeError as error:
                 errors.append(error)
                 if self._lost:
@@ -162,7 +162,9 @@ class CarlaBridge(Bridge):
             found = settings.fixed_delta_seconds
             if not found or abs(self._period / found - round(self._period / found)) > 1e-3:
                 what = f"CARLA has ticks of {found} s, and steps of {self._period:g} s are not a whole number of them"
-                fix = f"let the program that ticks CARLA set fixed_delta_seconds to {self._period:g}, or change step_time"
+                fix = (
+                    f"let the program that ticks CARLA set fixed_delta_seconds to {self._period:g}, or change step_time"
+                )
                 raise BridgeError("bridge-mismatch", what, fix)
             self._tick = float(found)
             return

@@ -33,7 +33,9 @@ def import_client() -> Any:
             raise
         what = f"the client of CARLA is made for Python up to {NEWEST_PYTHON[0]}.{NEWEST_PYTHON[1]}"
         fix = "use another Python: uv venv --python 3.12, then pip install 'irsim-mcp[carla]'"
-        raise ExtraError("missing-extra", f"{what}, and this is {sys.version_info[0]}.{sys.version_info[1]}", fix) from None
+        raise ExtraError(
+            "missing-extra", f"{what}, and this is {sys.version_info[0]}.{sys.version_info[1]}", fix
+        ) from None
     import carla
 
     return carla

@@ -34,7 +34,8 @@ def scan_of_points(points: Floats, lidar: Lidar, count: int, low: float, high: f
         points: (n, 3 or more) x forward, y to the **right**, z up [m], frame of the sensor.
         lidar: The lidar whose scan is wanted.
         count: Number of points of each channel in a full turn.
-        low, high: The band [m], relative to the sensor.
+        low: Lower end of the band [m], relative to the sensor.
+        high: Its upper end [m].
 
     Returns:
         (beams,) [m], infinite for a beam without a point, or whose point is beyond the longest range.

@@ -50,7 +50,9 @@ class CarlaLidar(Options):
     def model_post_init(self, context: Any) -> None:
         """Check what keys mean together."""
         if self.low >= self.high:
-            raise problem("invalid-value", f"low must be below high, got {self.low:g} and {self.high:g}", fix="low: 0.2")
+            raise problem(
+                "invalid-value", f"low must be below high, got {self.low:g} and {self.high:g}", fix="low: 0.2"
+            )
         if self.lower > self.upper:
             what = f"lower must not be above upper, got {self.lower:g} and {self.upper:g}"
             raise problem("invalid-value", what, fix=f"lower: {self.upper:g}")
@@ -72,7 +74,7 @@ class Carla(BridgeOptions):
 
     name: Literal["carla"] = "carla"
     clock: Literal["irsim", "external"] = "irsim"
-    """Who ticks CARLA: `irsim` does, once or more in each step; with `external` another client does, and irsim waits."""
+    """Who ticks CARLA: `irsim` does, at least once in each step; with `external` another client does, and irsim waits."""
     host: Name = "127.0.0.1"
     """Computer on which the server runs."""
     port: Annotated[Integer, Field(ge=1, le=65534)] = 2000

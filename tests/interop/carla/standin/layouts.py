@@ -30,12 +30,16 @@ def definition(number: int, name: str, tags: str, attributes: dict[str, tuple[in
     ]
 
 
+def bounding_box(actor: Actor) -> list[Any]:
+    """Location, half the size, rotation, and the id of the actor."""
+    length, width, height = actor.size
+    return [[0.0, 0.0, 0.0], [length / 2, width / 2, height / 2], [0.0, 0.0, 0.0], actor.id]
+
+
 def actor_record(actor: Actor, port: int) -> list[Any]:
     """An actor as calls return it."""
-    length, width, height = actor.size
-    box = [[0.0, 0.0, 0.0], [length / 2, width / 2, height / 2], [0.0, 0.0, 0.0], actor.id]
     stream = token(actor.stream, port) if actor.stream else b""
-    return [actor.id, actor.parent or 0, actor.description, box, bytes((actor.tag,)), stream]
+    return [actor.id, actor.parent or 0, actor.description, bounding_box(actor), bytes((actor.tag,)), stream]
 
 
 def _pose(actor: Actor) -> tuple[float, ...]:

@@ -188,6 +188,9 @@ class Server:
     def call_get_actors_by_id(self, ids: list[int]) -> Any:
         return [layouts.actor_record(self.town.actors[one], self.port + 1) for one in ids if one in self.town.actors]
 
+    def call_get_actor_bounding_box(self, number: int) -> Any:
+        return layouts.bounding_box(self._actor(number))
+
     def call_destroy_actor(self, number: int) -> bool:
         if self.town.actors.pop(number, None) is None:
             raise ValueError(f"there is no actor {number}")
