@@ -298,7 +298,9 @@ class CarlaBridge(Bridge):
             if puppet.actor is None:
                 continue
             for lidar in puppet.lidars:
-                ranges[lidar.lidar.key] = lidar.scan(frame, self.options.timeout)
+                walks = puppet.role.kind == "walker"
+                yaw = float(puppet.at[2]) - math.degrees(lidar.yaw) if walks else None
+                ranges[lidar.lidar.key] = lidar.scan(frame, self.options.timeout, yaw)
             if puppet.role.external:
                 name = puppet.role.agent.name
                 poses[name], twists[name] = self._pose_of(puppet, self._state_of(puppet, snapshot))

@@ -34,6 +34,9 @@ class AttachedLidar:
         count: Points of a channel in a full turn.
         mount: x, y [m], yaw [rad] on the carrier, frame of irsim, from the middle of the carrier.
         half: Half the length and half the width of the carrier [m].
+
+    Attributes:
+        yaw: Direction on the carrier [rad], counterclockwise.
     """
 
     def __init__(
@@ -41,12 +44,19 @@ class AttachedLidar:
         mount: tuple[float, float, float], half: tuple[float, float],
     ) -> None:  # fmt: skip
         self.sensor, self.lidar, self.options = sensor, lidar, options
+        self.yaw = mount[2]
         self._count, self._mount, self._half = count, mount, half
         self._frames: queue.SimpleQueue[Any] = queue.SimpleQueue()
         sensor.listen(self._frames.put)
 
-    def scan(self, frame: int, timeout: float) -> NDArray[np.float32]:
+    def scan(self, frame: int, timeout: float, yaw: float | None = None) -> NDArray[np.float32]:
         """(beams,) ranges of a tick [m], infinite for a beam that hit nothing.
+
+        Args:
+            frame: The tick.
+            timeout: Time to wait for its points [s].
+            yaw: Where the lidar should look to, frame of CARLA [deg]: a walker looks where it walks, its object
+                where it will. None is where it looks.
 
         Raises:
             BridgeLostError: No such frame came in time.
@@ -61,9 +71,13 @@ class AttachedLidar:
             if measured.frame >= frame:
                 break
         points = np.frombuffer(measured.raw_data, dtype="<f4").reshape(-1, 4).astype(np.float64)
+        points = self._of_others(points)
+        if yaw is not None:
+            turn = math.radians(measured.transform.rotation.yaw - yaw)
+            points[:, :2] = points[:, :2] @ np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
         height = self.options.height
         low, high = self.options.low - height, self.options.high - height
-        return scan_of_points(self._of_others(points), self.lidar, self._count, low, high).astype(np.float32)
+        return scan_of_points(points, self.lidar, self._count, low, high).astype(np.float32)
 
     def _of_others(self, points: Floats) -> Floats:
         """The points that are not of the carrier itself."""

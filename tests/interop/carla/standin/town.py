@@ -22,7 +22,8 @@ class Town:
     """All that there is.
 
     Args:
-        facts: ``walls`` (polylines [[x, y], ...]), ``ground`` [m], ``drift``, ``full`` (how many actors fit).
+        facts: ``walls`` (polylines [[x, y], ...]), ``ground`` [m], ``drift``, ``full`` (how many actors fit),
+            ``fixed`` (period of a tick [s] of a server that is not synchronous).
     """
 
     def __init__(self, facts: Mapping[str, Any]) -> None:
@@ -33,6 +34,8 @@ class Town:
         self.full = int(facts.get("full", 10_000))
         self.actors: dict[int, Actor] = {}
         self.settings: list[Any] = [False, False, [False], True, 0.01, 10, 0.0, True, 3000.0, 2000.0, True]
+        if "fixed" in facts:
+            self.settings[2] = [True, float(facts["fixed"])]
         self.frame, self.time, self._next, self._seed = 10, 1.0, 20, 0
 
     @property
