@@ -74,7 +74,9 @@ class AttachedLidar:
         points = self._of_others(points)
         if yaw is not None:
             turn = math.radians(measured.transform.rotation.yaw - yaw)
-            points[:, :2] = points[:, :2] @ np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+            points[:, :2] = points[:, :2] @ np.array(
+                [[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]]
+            )
         height = self.options.height
         low, high = self.options.low - height, self.options.high - height
         return scan_of_points(points, self.lidar, self._count, low, high).astype(np.float32)

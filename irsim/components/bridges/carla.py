@@ -74,7 +74,7 @@ class Carla(BridgeOptions):
 
     name: Literal["carla"] = "carla"
     clock: Literal["irsim", "external"] = "irsim"
-    """Who ticks CARLA: `irsim` does, at least once in each step; with `external` another client does, and irsim waits."""
+    """Who ticks CARLA: `irsim`, at least once in each step; with `external` another client, which irsim waits for."""
     host: Name = "127.0.0.1"
     """Computer on which the server runs."""
     port: Annotated[Integer, Field(ge=1, le=65534)] = 2000

@@ -14,7 +14,7 @@ import irsim
 from tests.interop.carla.conftest import StandIn
 from tests.interop.carla.scenes import DRIVE, YARD, in_town
 
-pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("carla")]
+pytestmark = pytest.mark.interop
 PLACE = (-20.0, 35.0, -70.0)
 CAR = {
     "drive": "acker",

@@ -13,7 +13,7 @@ import irsim
 from tests.interop.carla.conftest import StandIn
 from tests.interop.carla.scenes import CROWD, in_town
 
-pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("carla")]
+pytestmark = pytest.mark.interop
 PLACE = (100.0, -50.0, 30.0)
 
 

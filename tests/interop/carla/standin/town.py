@@ -12,7 +12,14 @@ from numpy.typing import NDArray
 from tests.interop.carla.standin.actors import Actor
 
 Floats = NDArray[np.float64]
-SIZES = {"walker": (0.4, 0.4, 1.86), "vehicle": (3.0, 1.4, 1.5), "static": (1.0, 1.0, 1.0), "sensor": (0.1, 0.1, 0.1)}
+SIZES = {
+    "walker": (0.4, 0.4, 1.86),
+    "vehicle": (3.0, 1.4, 1.5),
+    "vehicle.micro.microlino": (0.6, 0.6, 1.0),
+    "static": (1.0, 1.0, 1.0),
+    "sensor": (0.1, 0.1, 0.1),
+}
+"""Length, width, height [m] by kind or blueprint; made up."""
 TAGS = {"walker": 12, "vehicle": 14, "static": 20, "sensor": 0}
 NEAR = 0.5
 """Actors do not spawn nearer to the ground than this [m], so that a client has to try again from higher up."""
@@ -59,7 +66,8 @@ class Town:
                 raise ValueError("Spawn failed because of collision at spawn position")
             location[2] = self.ground + (SIZES[kind][2] / 2 if kind == "walker" else 0.0)
         self._next += 1
-        actor = Actor(self._next, description, location, yaw, SIZES[kind], TAGS[kind], parent)
+        size = SIZES.get(str(description[1]), SIZES[kind])
+        actor = Actor(self._next, description, location, yaw, size, TAGS[kind], parent)
         if kind == "sensor":
             actor.stream = self._next
             actor.mount = (*location, yaw)  # type: ignore[assignment]
