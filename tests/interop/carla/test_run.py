@@ -17,7 +17,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import irsim
-from irsim.cli import app
+from irsim.cli.app import app
 from irsim.policies import FunctionPolicy, Needs, Observations
 from tests.interop.carla.conftest import ROOT, StandIn
 from tests.interop.carla.scenes import CROWD, in_town
