@@ -8,7 +8,6 @@ from typing import Any
 
 from irsim.bridges.base import BridgeError
 from irsim.common.text import clean
-from irsim.components.bridges.carla import Carla
 from irsim.diagnostics.diagnostic import suggestion
 
 __all__ = ["Ground", "Spawner", "find_actor", "place"]
@@ -150,14 +149,10 @@ class Spawner:
         self.spawned.append(int(actor.id))
         return actor
 
-    def forget(self, number: int) -> None:
-        """An actor has been destroyed."""
-        self.spawned.remove(number)
-
-
-def options_pattern(options: Carla, kind: str) -> str:
-    """The blueprint or the pattern for walkers or vehicles."""
-    return options.walker_blueprint if kind == "walker" else options.vehicle_blueprint
+    def destroy(self, actor: Any) -> None:
+        """Destroy one actor."""
+        self.spawned.remove(int(actor.id))
+        actor.destroy()
 
 
 def find_actor(world: Any, wanted: str | int, name: str) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -18,6 +18,8 @@ NEWEST_PYTHON = (3, 12)
 """The newest Python that the client is made for."""
 START = "start a server first, such as ./CarlaUE4.sh -RenderOffScreen, and check host, port and timeout"
 _LONGEST = 300
+_LOST = ("time-out", "timeout", "rpc::", "connection", "broken pipe")
+"""Words of errors of a server that is gone."""
 
 
 def import_client() -> Any:
@@ -42,17 +44,27 @@ def import_client() -> Any:
 
 
 @contextmanager
-def server_errors(what: str, address: str) -> Iterator[None]:
-    """Turn errors of the client, which all are a ``RuntimeError``, into one that says what failed."""
+def server_errors(what: str, address: str, lose: Callable[[], None] | None = None) -> Iterator[None]:
+    """Turn errors of the client, which all are a ``RuntimeError``, into one that says what failed.
+
+    Args:
+        what: What is done.
+        address: Where the server is.
+        lose: Called if the server does not answer.
+    """
     try:
         yield
-    except (BridgeError, ExtraError):
+    except BridgeLostError:
+        if lose is not None:
+            lose()
         raise
     except RuntimeError as error:
         text = clean(str(error), _LONGEST)
-        if "time-out" in text or "timeout" in text or "rpc::" in text or "connection" in text.lower():
+        if any(word in text.lower() for word in _LOST):
+            if lose is not None:
+                lose()
             raise BridgeLostError(f"the CARLA server at {address} did not answer ({what}): {text}") from None
-        raise BridgeError("bridge-failed", f"CARLA refused: {what}: {text}", "the text is that of the server") from None
+        raise BridgeError("bridge-failed", f"CARLA refused {what}: {text}", "look at the log of the server") from None
 
 
 def connect(options: Carla) -> tuple[Any, Any, Any]:

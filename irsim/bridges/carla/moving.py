@@ -10,9 +10,18 @@ import numpy as np
 from irsim.bridges.carla.actors import place
 from irsim.bridges.carla.places import Places
 from irsim.bridges.carla.roles import Role
+from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 
-__all__ = ["shifted", "shifted_twist", "steering", "vehicle_commands", "walker_commands"]
+__all__ = [
+    "pose_of_state",
+    "shifted",
+    "shifted_twist",
+    "steering",
+    "still_commands",
+    "vehicle_commands",
+    "walker_commands",
+]
 
 _STANDS = 1e-3
 """Speed [m/s] below which a car keeps its steering angle."""
@@ -108,3 +117,33 @@ def vehicle_commands(
         command.ApplyTargetVelocity(number, carla.Vector3D(vx, vy, rise)),
         command.ApplyTargetAngularVelocity(number, carla.Vector3D(0.0, 0.0, rate)),
     ]
+
+
+def still_commands(carla: Any, number: int) -> list[Any]:
+    """Commands with which a vehicle stands still."""
+    command = carla.command
+    return [
+        command.ApplyVehicleAckermannControl(number, carla.VehicleAckermannControl()),
+        command.ApplyTargetVelocity(number, carla.Vector3D()),
+    ]
+
+
+def pose_of_state(
+    state: Any, places: Places, ahead: float
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Where an object is, and how it moves, from the state of its actor.
+
+    Args:
+        state: The state in a snapshot.
+        places: Where the scenario is.
+        ahead: How far the middle of the body is ahead of its origin [m].
+
+    Returns:
+        x, y [m], yaw [rad], and vx, vy [m/s], yaw rate [rad/s], frame of irsim.
+    """
+    transform, velocity, spin = state.get_transform(), state.get_velocity(), state.get_angular_velocity()
+    at = np.array([transform.location.x, transform.location.y, transform.rotation.yaw])
+    pose = shifted(places.to_irsim(at), -ahead)
+    moving = places.velocity_to_irsim(np.array([velocity.x, velocity.y, spin.z]))
+    vx, vy, rate = (float(value) for value in shifted_twist(moving, float(pose[2]), -ahead))
+    return (float(pose[0]), float(pose[1]), float(wrap(float(pose[2])))), (vx, vy, rate)

@@ -49,7 +49,7 @@ def test_a_server_that_is_missing(stand_in: Callable[..., StandIn], tmp_path: Pa
     began = time.monotonic()
     with pytest.raises(BridgeLostError) as caught:
         _run(_scene(tmp_path, port))
-    assert time.monotonic() - began < 6
+    assert time.monotonic() - began < 12
     assert f"no CARLA server answers at 127.0.0.1:{port} within 2 s" in str(caught.value)
     assert "CarlaUE4.sh" in str(caught.value)
 
@@ -58,7 +58,7 @@ def test_a_server_that_is_silent(stand_in: Callable[..., StandIn], tmp_path: Pat
     began = time.monotonic()
     with pytest.raises(BridgeLostError, match="no CARLA server answers"):
         _run(_scene(tmp_path, stand_in(silent=True).port))
-    assert time.monotonic() - began < 6
+    assert time.monotonic() - began < 12
 
 
 def test_a_server_of_another_version(stand_in: Callable[..., StandIn], tmp_path: Path) -> None:

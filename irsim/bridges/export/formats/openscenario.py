@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import XMLGenerator
+from xml.sax.xmlreader import AttributesImpl
 
 import numpy as np
 
@@ -48,7 +49,7 @@ class _Writer:
     def element(self, tag: str, /, **attributes: object) -> Iterator[None]:
         """An element with others inside."""
         self._xml.ignorableWhitespace("  " * self._depth)
-        self._xml.startElement(tag, {key: _text(value) for key, value in attributes.items()})
+        self._xml.startElement(tag, _attributes(attributes))
         self._xml.ignorableWhitespace("\n")
         self._depth += 1
         yield
@@ -60,9 +61,13 @@ class _Writer:
     def leaf(self, tag: str, /, **attributes: object) -> None:
         """An element without others inside."""
         self._xml.ignorableWhitespace("  " * self._depth)
-        self._xml.startElement(tag, {key: _text(value) for key, value in attributes.items()})
+        self._xml.startElement(tag, _attributes(attributes))
         self._xml.endElement(tag)
         self._xml.ignorableWhitespace("\n")
+
+
+def _attributes(values: dict[str, object]) -> AttributesImpl[str]:
+    return AttributesImpl({key: _text(value) for key, value in values.items()})
 
 
 def _text(value: object) -> str:
