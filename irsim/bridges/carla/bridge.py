@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.bridges.base import Bridge, BridgeLostError
+from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.carla.actors import find_actor, place
 from irsim.bridges.carla.client import server_errors
 from irsim.bridges.carla.lidars import AttachedLidar, attach_lidars
@@ -91,7 +91,8 @@ class CarlaBridge(Bridge):
                     self._appear(self._town, puppet, start.pose[puppet.role.agent.index])
                 self._town.settle()
         except BaseException:
-            self.close()
+            with suppress(BridgeError):  # the first error says more
+                self.close()
             raise
 
     def exchange(self, motion: Motion) -> Feedback | None:

@@ -49,7 +49,7 @@ def scan_of_points(points: Floats, lidar: Lidar, count: int, low: float, high: f
     angles, ranges = _nearest_in_columns(np.arctan2(-kept[:, 1], kept[:, 0]), np.hypot(kept[:, 0], kept[:, 1]), step)
     after = np.searchsorted(angles, wrap(beams)) % len(angles)
     before = after - 1
-    ahead, behind = wrap(angles[after] - beams, 0.0), wrap(beams - angles[before], 0.0)
+    ahead, behind = _turn(angles[after] - beams), _turn(beams - angles[before])
     near, far = ranges[before], ranges[after]
     gap = np.hypot(far * np.cos(ahead + behind) - near, far * np.sin(ahead + behind))
     reach = step * 1.01
@@ -62,9 +62,15 @@ def scan_of_points(points: Floats, lidar: Lidar, count: int, low: float, high: f
     return np.where(found <= lidar.range_max, found, np.inf)
 
 
+def _turn(angle: Floats) -> Floats:
+    """The angle in [0, 2 pi) [rad]; one that rounding made slightly negative is 0."""
+    found: Floats = wrap(angle, 0.0)
+    return np.where(found > FULL_TURN - 1e-9, 0.0, found)
+
+
 def _nearest_in_columns(angles: Floats, ranges: Floats, step: float) -> tuple[Floats, Floats]:
     """Directions, sorted, and ranges of the nearest point of each direction; channels share their directions."""
-    columns = np.round(wrap(angles - angles[0], 0.0) / step).astype(np.int64) % round(FULL_TURN / step)
+    columns = np.round(_turn(angles - angles[0]) / step).astype(np.int64) % round(FULL_TURN / step)
     order = np.lexsort((ranges, columns))
     first = np.unique(columns[order], return_index=True)[1]
     chosen = order[first]
