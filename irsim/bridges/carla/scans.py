@@ -52,7 +52,7 @@ def scan_of_points(points: Floats, lidar: Lidar, count: int, low: float, high: f
     ahead, behind = _turn(angles[after] - beams), _turn(beams - angles[before])
     near, far = ranges[before], ranges[after]
     gap = np.hypot(far * np.cos(ahead + behind) - near, far * np.sin(ahead + behind))
-    reach = step * 1.01
+    reach = step * 1.5
     joined = (ahead <= reach) & (behind <= reach) & (gap <= _STEEP * step * np.maximum(near, far))
     with np.errstate(divide="ignore", invalid="ignore"):
         line = near * far * np.sin(ahead + behind) / (near * np.sin(behind) + far * np.sin(ahead))

@@ -110,7 +110,7 @@ class Server:
             actor.transform.location.x += actor.velocity.x * period
             actor.transform.location.y += actor.velocity.y * period
             if actor.listener is not None:
-                angles = np.linspace(0.01, np.pi - 0.01, 1000)  # 3 m away, to the left: y is to the right
+                angles = np.arange(1, 360) * np.pi / 360  # 3 m away, to the left: y is to the right
                 points = np.stack([3 * np.cos(angles), -3 * np.sin(angles), 0 * angles, 0 * angles], axis=1)
                 points = points.astype(np.float32)
                 actor.listener(SimpleNamespace(frame=self.frame, raw_data=points.tobytes(), transform=actor.transform))
