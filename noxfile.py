@@ -51,7 +51,7 @@ DEBIAN_PEERS = (
     "libsdformat-dev", "python3-rospy", "ros-base", "ros-nav-msgs",
 )  # fmt: skip
 """Packages of Debian 12 that bridges meet in tests."""
-PYTHON_PEERS = ("mcap-ros2-support>=0.5", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
+PYTHON_PEERS = ("mcap-ros2-support>=0.5", "msgpack>=1", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
 """Packages of Python that bridges meet in tests, and that are no dependencies."""
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
 """Tests of the core that are about Python and NumPy rather than arithmetic."""

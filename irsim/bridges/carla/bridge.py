@@ -221,6 +221,10 @@ class CarlaBridge(Bridge):
         if state is None:
             what = f"the actor of '{puppet.role.agent.name}' is no longer in the town"
             raise BridgeLostError(what, "let no other program destroy it, then run the scenario again")
+        here = state.get_transform().location
+        if not math.isfinite(here.x + here.y + here.z):
+            what = f"CARLA says that '{puppet.role.agent.name}' is at {here.x}, {here.y}, {here.z}"
+            raise BridgeError("bridge-failed", what, "reload the town of the server")
         return state
 
     def _put_back(self, town: Town, state: WorldState) -> None:

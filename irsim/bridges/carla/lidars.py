@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import queue
 import time
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from irsim.components.bridges.carla import CarlaLidar
 
 __all__ = ["AttachedLidar", "attach_lidars"]
 
+_MAX_FRAMES = 64
+"""Number of frames that wait at most; a server that is ticked by others goes on while irsim computes."""
 _MARGIN = 0.05
 """Points inside of the box of their own carrier, and this near to it [m], are the carrier."""
 
@@ -47,7 +50,14 @@ class AttachedLidar:
         self.yaw = mount[2]
         self._count, self._mount, self._half = count, mount, half
         self._frames: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        sensor.listen(self._frames.put)
+        sensor.listen(self._keep)
+
+    def _keep(self, measured: Any) -> None:
+        """Called by the client with each frame, in a thread of its own."""
+        if self._frames.qsize() >= _MAX_FRAMES:
+            with suppress(queue.Empty):
+                self._frames.get_nowait()
+        self._frames.put(measured)
 
     def scan(self, frame: int, timeout: float, yaw: float | None = None) -> NDArray[np.float32]:
         """(beams,) ranges of a tick [m], infinite for a beam that hit nothing.

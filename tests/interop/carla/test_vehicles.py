@@ -79,6 +79,15 @@ def test_points_become_the_scan_that_irsim_measures(
     town.check_clean()
 
 
+def test_a_walker_sees_in_the_direction_of_its_object(stand_in: Callable[..., StandIn], tmp_path: Path) -> None:
+    run = Drive(tmp_path / "drive.yaml", stand_in(walls=[WALL]), 40, ", lidar: {}", CART)
+    assert run.connection.bridges[0].agents == set()
+    away = np.abs(run.seen - run.own)
+    assert np.abs(np.diff(run.pose[:, 2])).max() > 0.05  # it turns, and looks where it will walk
+    assert away[_smooth(run.own)].max() < 0.02
+    assert (away > 0.02).mean() < 0.02
+
+
 def test_a_scan_differs_without_the_town(stand_in: Callable[..., StandIn], tmp_path: Path) -> None:
     run = Drive(tmp_path / "drive.yaml", stand_in(), 5, ", vehicles: [car], command: velocity, lidar: {}", CART)
     assert (run.own < 9).mean() > 0.8

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import irsim
+from irsim.bridges.carla.doctor import LEFT_CURVE
 from tests.interop.carla.conftest import StandIn
 from tests.interop.carla.scenes import CROWD, in_town
 
@@ -89,3 +90,14 @@ def test_short_ticks_in_long_steps(stand_in: Callable[..., StandIn], tmp_path: P
     np.testing.assert_allclose(walked[:, :2], in_town(poses[:, 0, 0], poses[:, 0, 1], PLACE), atol=1e-3)
     assert town.events("settings")[0]["settings"][:3] == [True, True, [True, 0.05]]
     town.check_clean()
+
+
+def test_a_town_with_roads(stand_in: Callable[..., StandIn], tmp_path: Path) -> None:
+    town = stand_in(road=LEFT_CURVE, ground=-5.0)
+    path = tmp_path / "crowd.yaml"
+    text = CROWD.format(port=town.port, timeout=5, more=", town: StandInTown, ground: road")
+    path.write_text(text.replace("x: 100, y: -50, yaw: 30", "x: 0, y: 10, yaw: 0"))
+    env = irsim.make(path, display=False)
+    with irsim.connect(env):
+        env.step()
+    assert {event["pose"][0][2] for event in town.events("spawn")} == {0.5}  # above the road, not above the ground
