@@ -143,7 +143,7 @@ def find_levels(surfaces: Surfaces, grid: Grid, climb: float, headroom: float) -
         if sizes[k] * cell < _SMALLEST_AREA:
             break
         stop = starts[k + 1] if k + 1 < len(sizes) else len(order)
-        height = float(np.median(surfaces.floor[order[starts[k] : stop]]))
+        height = round(float(np.median(surfaces.floor[order[starts[k] : stop]])), 6) + 0.0
         near = [regions for other, regions in levels if abs(height - other) <= 0.55 * headroom]
         if near:
             near[0].append(k)
