@@ -62,7 +62,9 @@ def import_(
     level: Annotated[
         int | None,
         typer.Option(
-            min=0, help="Number of the level, 0 is the lowest. Default: the largest that is no roof.", show_default=False
+            min=0,
+            help="Number of the level, 0 is the lowest. Default: the largest that is no roof.",
+            show_default=False,
         ),
     ] = None,
     height: Annotated[

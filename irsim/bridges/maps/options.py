@@ -25,8 +25,8 @@ class ImportOptions(Options):
     climb: Annotated[Meters, Field(ge=0, le=10)] = 0.2
     """Highest step that the robot climbs; what is lower is part of the floor."""
     radius: Annotated[Meters, Field(ge=0, le=10)] = 0.0
-    """Distance from obstacles within which cells become occupied. irsim keeps a robot's own shape clear of obstacles, so
-    that only planning for points needs it."""
+    """Distance from obstacles within which cells become occupied. irsim keeps a robot's own shape clear of obstacles;
+    only planning for points needs it."""
     up: Literal["auto", "y", "z"] = "auto"
     """Axis of a mesh that points up. ``auto`` is y for glTF and OBJ, and z for PLY and STL."""
     level: Annotated[int, Field(ge=0)] | None = None
