@@ -30,7 +30,7 @@ class ImportOptions(Options):
     up: Literal["auto", "y", "z"] = "auto"
     """Axis of a mesh that points up. ``auto`` is y for glTF and OBJ, and z for PLY and STL."""
     level: Annotated[int, Field(ge=0)] | None = None
-    """Number of the level, the lowest is 0. Default: the largest one that is no roof."""
+    """Number of the level, the lowest is 0. Default: the largest one that is no roof of another."""
     height: Meters | None = None
     """Height of a floor along the upward axis: the nearest level is taken."""
     seed_point: tuple[Meters, Meters] | None = None

@@ -32,7 +32,8 @@ class Level:
         regions: (M,) number of the connected surface of each surface that belongs to the level; -1 for others. Number
             0 is the largest one.
         areas: Area of each connected surface [m²], the largest first.
-        roof: Whether it lies above another level, under the sky.
+        roof: Whether it lies above another level and has nothing above it: a roof, or the top floor of a file without
+            ceilings.
     """
 
     height: float
