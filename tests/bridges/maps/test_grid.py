@@ -29,7 +29,9 @@ def test_every_touched_cell_is_found(corners) -> None:
     i, j = (x.ravel() for x in np.meshgrid(np.arange(-5, 12), np.arange(-5, 12)))
     boxes = shapely.box(i, j, i + 1, j + 1)
     found = cells(flat, at_centers=False)
-    inside = set(zip(*(x[shapely.area(shapely.intersection(boxes, shape)) > 1e-9].tolist() for x in (i, j)), strict=True))
+    inside = set(
+        zip(*(x[shapely.area(shapely.intersection(boxes, shape)) > 1e-9].tolist() for x in (i, j)), strict=True)
+    )
     touching = set(zip(*(x[shapely.dwithin(boxes, shape, 1e-9)].tolist() for x in (i, j)), strict=True))
     assert inside <= found <= touching
 
@@ -78,7 +80,9 @@ def test_floors_have_the_heights_of_their_planes() -> None:
 
 def test_a_wall_over_a_door_leaves_the_door_open() -> None:
     """A long triangle of a wall reaches from the floor beside the door to the lintel above it."""
-    wall = np.array([[[0.52, 0, 0], [0.52, 0, 2.5], [0.52, 5, 2.5]], [[0.52, 5, 2.1], [0.52, 0, 0], [0.52, 5, 2.5]]], float)
+    wall = np.array(
+        [[[0.52, 0, 0], [0.52, 0, 2.5], [0.52, 5, 2.5]], [[0.52, 5, 2.1], [0.52, 0, 0], [0.52, 5, 2.5]]], float
+    )
     ground = np.array([[[0, 0, 0], [1, 0, 0], [1, 5, 0]], [[0, 0, 0], [1, 5, 0], [0, 5, 0]]], float)
     grid = Grid(-0.1, -0.1, 0.1, 13, 53)
     spans = spans_of(np.concatenate([wall, ground]), grid, 0.7, 0.2)
