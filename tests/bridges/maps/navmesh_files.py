@@ -8,7 +8,7 @@ import numpy as np
 
 
 def tile(rectangles, *, height=1.5, radius=0.1, climb=0.2, change=None) -> bytes:
-    """One tile; each rectangle is x0, y0, x1, y1, z in the frame of irsim, and becomes a polygon with a detail vertex."""
+    """One tile; each rectangle, x0, y0, x1, y1, z in the frame of irsim, becomes a polygon with a detail vertex."""
     verts, polygons, details, extra, triangles = [], [], [], [], []
     for x0, y0, x1, y1, z in rectangles:
         first = len(verts)

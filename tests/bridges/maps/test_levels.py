@@ -69,7 +69,7 @@ def test_levels_of_a_house() -> None:
     assert occupancy(house(), height=2.5).level == 1
     assert at(upper, 1.5, 5.5) != FREE  # the hole for the stairs
     assert at(upper, 2.0, 3.4) == FREE
-    with pytest.raises(BridgeError, match="0 at 0.00 m, 1 at 2.80 m"):
+    with pytest.raises(BridgeError, match=r"0 at 0\.00 m, 1 at 2\.80 m"):
         occupancy(house(), level=3)
     with pytest.raises(BridgeError, match="one of --level and --height"):
         occupancy(house(), level=0, height=1.0)
@@ -109,7 +109,7 @@ def test_slopes_and_hills() -> None:
 @settings(max_examples=6, deadline=None)
 def test_a_turned_scene_has_a_turned_map(turn, shift, rise) -> None:
     """Turns by right angles and shifts by whole cells; the scene lies off the lines of the grid."""
-    scene = flat() + [0.013, 0.021, 0.0]
+    scene = flat() + np.array([0.013, 0.021, 0.0])
     c, s = round(math.cos(turn * math.pi / 2)), round(math.sin(turn * math.pi / 2))
     matrix = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     moved = scene @ matrix.T + [shift[0] * 0.05, shift[1] * 0.05, rise * 0.1]

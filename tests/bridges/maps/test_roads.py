@@ -14,17 +14,18 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, read_sidecar
 from irsim.bridges.maps.kinds._road import read_roads, reference_line
 
-LANES = """<lanes><laneSection s="0"><left><lane id="1" type="sidewalk"><width sOffset="0" a="2" b="0" c="0" d="0"/></lane>
-</left><center><lane id="0" type="none"/></center><right><lane id="-1" type="driving">
-<width sOffset="0" a="3" b="0" c="0" d="0"/></lane><lane id="-2" type="shoulder">
-<width sOffset="0" a="1" b="0" c="0" d="0"/></lane></right></laneSection></lanes>"""
+LANES = """<lanes><laneSection s="0">
+<left><lane id="1" type="sidewalk"><width sOffset="0" a="2" b="0" c="0" d="0"/></lane></left>
+<center><lane id="0" type="none"/></center>
+<right><lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane>
+<lane id="-2" type="shoulder"><width sOffset="0" a="1" b="0" c="0" d="0"/></lane></right>
+</laneSection></lanes>"""
 
 
-def road(
-    shape: str, length: float = 20, *, lanes: str = LANES, s: float = 0, heading: float = 0, more: str = ""
-) -> str:
-    return f"""<road name="" length="{length}" id="7" junction="-1"><planView>
-<geometry s="{s}" x="10" y="5" hdg="{heading}" length="{length}">{shape}</geometry></planView>{more}{lanes}</road>"""
+def road(shape: str, length: float = 20, *, lanes: str = LANES, heading: float = 0, more: str = "") -> str:
+    where = f'<geometry s="0" x="10" y="5" hdg="{heading}" length="{length}">{shape}</geometry>'
+    return f'''<road name="" length="{length}" id="7" junction="-1"><planView>
+{where}</planView>{more}{lanes}</road>'''
 
 
 def write(folder: Path, *roads: str, head: str = '<?xml version="1.0"?>') -> Path:

@@ -1,4 +1,4 @@
-"""The process that reads a stage of OpenUSD: a request as JSON on standard input, triangles to a file, JSON as answer."""
+"""The process that reads a stage of OpenUSD: JSON as a request and as an answer, triangles to a file."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def _corners(prim: Any, most: int) -> np.ndarray | None:
     name = str(prim.GetPath())
     if (counts < 0).any() or counts.sum() != len(index):
         raise _Refused(f"the faces of {name} need {counts.sum():,} vertices, and {len(index):,} are named")
-    if len(index) and not (0 <= index.min() and index.max() < len(points)):
+    if len(index) and (index.min() < 0 or index.max() >= len(points)):
         raise _Refused(f"a face of {name} names a vertex that it does not have")
     triangles = np.maximum(counts - 2, 0)
     if triangles.sum() > most:
@@ -126,7 +126,7 @@ def _corners(prim: Any, most: int) -> np.ndarray | None:
     face = np.repeat(np.arange(len(counts)), triangles)
     step = np.arange(len(face)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
     first = (np.cumsum(counts) - counts)[face]
-    corners = points[np.stack([index[first], index[first + step + 1], index[first + step + 2]], axis=1)]
+    corners: np.ndarray = points[np.stack([index[first], index[first + step + 1], index[first + step + 2]], axis=1)]
     left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
     return corners[:, ::-1] if left_handed else corners
 
