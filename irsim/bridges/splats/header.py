@@ -149,4 +149,6 @@ def read_header(path: Path) -> Header:
 
 
 def _refuse(path: Path, line: int, what: str) -> NoReturn:
-    raise BridgeError("bridge-file", f"'{clean(path, 200)}', line {line}: {what}", "give a .ply file of Gaussian splats")
+    raise BridgeError(
+        "bridge-file", f"'{clean(path, 200)}', line {line}: {what}", "give a .ply file of Gaussian splats"
+    )

@@ -211,4 +211,3 @@ def _error(path: Path, what: str) -> BridgeError:
 
 def _refuse(path: Path, what: str) -> NoReturn:
     raise _error(path, what)
-

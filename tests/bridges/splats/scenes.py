@@ -68,11 +68,11 @@ class Room:
     size: tuple[float, float]
 
     def truth(self, origin: tuple[float, float], cell: float, shape: tuple[int, int]) -> NDArray[np.bool_]:
-        """(nx, ny) cells whose center is in a box."""
-        x, y = (origin[axis] + (np.arange(shape[axis]) + 0.5) * cell for axis in (0, 1))
+        """(nx, ny) cells into which a box reaches."""
+        x, y = (origin[axis] + np.arange(shape[axis]) * cell for axis in (0, 1))
         found = np.zeros(shape, dtype=bool)
         for left, low, right, high in self.boxes:
-            found |= ((x > left) & (x < right))[:, None] & ((y > low) & (y < high))[None, :]
+            found |= ((x + cell > left) & (x < right))[:, None] & ((y + cell > low) & (y < high))[None, :]
         return found
 
 
@@ -81,7 +81,9 @@ _FACES = {0: (_TURN, 0.0, _TURN, 0.0), 1: (_TURN, _TURN, 0.0, 0.0), 2: (1.0, 0.0
 """Quaternions that turn the thin z axis of a splat along x, y and z."""
 
 
-def room(seed: int = 1, *, spacing: float = 0.05, floaters: float = 0.05, axes: Any = None, shift: Any = (0, 0, 0)) -> Room:
+def room(
+    seed: int = 1, *, spacing: float = 0.05, floaters: float = 0.05, axes: Any = None, shift: Any = (0, 0, 0)
+) -> Room:
     """Walls, a table, a pillar, a floor and a ceiling of flat splats, and fog of faint ones anywhere.
 
     Args:
@@ -99,10 +101,19 @@ def room(seed: int = 1, *, spacing: float = 0.05, floaters: float = 0.05, axes: 
         ((3.0, 2.6, 0), (4.6, 3.6, 0.8), (0.55, 0.35, 0.2)), ((6.0, 1.2, 0), (6.5, 1.7, 2.4), (0.3, 0.5, 0.7)),
         ((1.6, 4.4, 0), (2.6, 5.0, 1.2), (0.35, 0.6, 0.35)),
     ]  # fmt: skip
-    parts = [_face(rng, (0, 0), (width, height), 2, z, color, spacing) for z, color in ((0.0, (0.6, 0.6, 0.58)), (2.4, (0.9, 0.9, 0.9)))]
+    parts = [
+        _face(rng, (0, 0), (width, height), 2, z, color, spacing)
+        for z, color in ((0.0, (0.6, 0.6, 0.58)), (2.4, (0.9, 0.9, 0.9)))
+    ]
     for low, high, color in solids:
         parts += _box(rng, np.array(low, float), np.array(high, float), color, spacing)
     solid = np.concatenate(parts)
+    for low, high, _ in solids:  # nobody sees the floor in them
+        hidden = (solid[:, 2] < 0.05) & (solid[:, :2] > np.add(low[:2], 0.01)).all(axis=1)
+        solid = solid[~(hidden & (solid[:, :2] < np.subtract(high[:2], 0.01)).all(axis=1))]
+    offset = np.array([0.013, 0.021])  # no wall is at the border of cells
+    solid[:, :2] += offset
+    solids = [((*np.add(low[:2], offset), 0), (*np.add(high[:2], offset), 0), color) for low, high, color in solids]
     fog = np.zeros((round(floaters / (1 - floaters) * len(solid)), 14))
     fog[:, :3] = rng.uniform([0, 0, 0], [width, height, 2.4], (len(fog), 3))
     fog[:, 3:6] = 0.7
