@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
 
 from irsim.bridges.export.episode import open_episode
 from irsim.bridges.export.registry import Format, find_format
+from irsim.common.arguments import as_given
 from irsim.common.extras import require
 from irsim.common.files import TEMPORARY, check_suffix, replacing
 from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import ArgumentError
 from irsim.episodes.episode import Progress
+from irsim.options.base import Options
 from irsim.results.records import ExportResult
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
@@ -27,8 +34,9 @@ def export_run(
     out: str | Path | None = None,
     *,
     to: str | None = None,
-    objects: str | Sequence[str] = "movers",
+    objects: str | Sequence[str] | None = None,
     ranges: bool | None = None,
+    options: Mapping[str, Any] | None = None,
     workspace: str | Path | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
@@ -36,8 +44,8 @@ def export_run(
     """Write recorded runs as a file that other tools open.
 
     Formats are ``parquet`` and ``csv`` (a table with one row per step and object), ``npz`` (arrays of shape (steps,
-    objects, …)), ``mcap`` (ROS 2 messages) and ``minari`` (a folder: a dataset for learning, one episode per run and
-    robot). Runs are read piece by piece, so that they need not fit in memory. Parquet, MCAP and Minari need libraries:
+    objects, …)), ``mcap`` (ROS 2 messages), ``minari`` (a folder: a dataset for learning, one episode per run and
+    robot), and for cameras that look where robots go ``colmap``, ``nerfstudio`` (folders) and ``poses`` (JSON lines). Runs are read piece by piece, so that they need not fit in memory. Parquet, MCAP and Minari need libraries:
     ``pip install 'irsim-mcp[records]'``.
 
     Args:
@@ -45,8 +53,10 @@ def export_run(
         out: File or folder to write. An existing file is replaced; a folder must not exist. Default: the id of the run
             with the suffix of the format, in the current directory.
         to: Name of the format. Default: as the suffix of ``out`` says.
-        objects: ``movers`` (robots, and obstacles that can move), ``robots``, ``all``, or a list of names.
+        objects: ``movers`` (robots, and obstacles that can move), ``robots``, ``all``, or a list of names. Default:
+            ``robots`` for cameras, else ``movers``.
         ranges: Whether to write the ranges of lidars. Default: in all formats but ``csv``.
+        options: Options of the format, such as the height of cameras.
         workspace: Folder whose ``.irsim/runs`` holds the runs; default: the current directory.
         limits: Limits of the reader of the scenario.
         progress: Callback ``(rows_done, rows_total)``.
@@ -54,6 +64,7 @@ def export_run(
     Raises:
         RunError: There is no such run, object or format, or the format does not hold these runs or their objects.
         ExtraError: A library is missing.
+        ArgumentError: The format has no such option, or the value is not allowed.
         TargetError: The file has another suffix than files of the format.
         ScenarioError: The scenario of the run has errors now (only ``mcap`` reads it).
     """
@@ -66,6 +77,7 @@ def export_run(
         what = f"a file of the format {form.name} holds one run, got {len(runs)}"
         raise RunError("bad-argument", what, "export each run to a file of its own", where="run")
     require("records", *form.libraries)
+    chosen = _options(form, options or {})
     target = _target(form, runs, out)
     total, done = sum(one.last_step + 1 for one in runs), 0
 
@@ -76,7 +88,10 @@ def export_run(
             progress(min(done, total), total)
 
     with_ranges = form.ranges if ranges is None else ranges
-    episodes = [open_episode(one, objects, with_ranges=with_ranges, limits=limits, progress=count) for one in runs]
+    who = form.objects if objects is None else objects
+    episodes = [
+        open_episode(one, who, with_ranges=with_ranges, limits=limits, progress=count, options=chosen) for one in runs
+    ]
     try:
         with _new_folder(target) if form.folder else replacing(target) as path:
             notes = form.write(episodes, path, target.name)
@@ -92,6 +107,25 @@ def export_run(
         steps=sum(episode.last_step for episode in episodes),
         notes=[*dict.fromkeys(note for one in runs for note in one.notes), *notes],
     )
+
+
+def _options(form: Format, given: Mapping[str, Any]) -> Options | None:
+    """The options of a format."""
+    known = list(form.options.model_fields) if form.options is not None else []
+    for key in given:
+        if key not in known:
+            listed = f"its options are {', '.join(known)}" if known else "it has none: leave it out"
+            what = f"the format {form.name} has no option {clean(key)!r}"
+            raise ArgumentError(what, suggestion(key, known, listed) if known else listed)
+    if form.options is None:
+        return None
+    try:
+        return form.options.model_validate(dict(given))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        what = f"{where}: {first['msg']}, got {as_given(first.get('input'))}"
+        raise ArgumentError(what, "give an allowed value") from None
 
 
 def _target(form: Format, runs: Sequence[Run], out: str | Path | None) -> Path:

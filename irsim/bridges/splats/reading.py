@@ -118,7 +118,7 @@ def _terms(path: Path, vertex: Element) -> int:
             kind = names[f"f_rest_{count}"].kind
             _refuse(path, f"the property 'f_rest_{count}' is of the type {kind}; it has to be float or double")
         count += 1
-    if count and count // 3 not in _TERMS or count % 3:
+    if (count and count // 3 not in _TERMS) or count % 3:
         _refuse(path, f"it has {count} properties f_rest_*; there are 9, 24 or 45 in a file of splats")
     return count // 3
 
