@@ -32,6 +32,8 @@ async function start() {
   const robots = objects.filter((item) => item.path);
   for (const [number, robot] of robots.entries()) byId("robot").add(new Option(robot.name, number));
   byId("who").hidden = robots.length < 2;
+  byId("cut").max = head.top.toFixed(1);
+  byId("cut").value = Math.min(1.9, head.top);
   byId("time").max = Math.max(0, head.rows - 1);
   const [sorts, free] = [sorter(columns.center.slice(), (order) => { splats.order(order); ordered = true; ask(); }),
     orbit(canvas, head.eye, () => { byId("eye").value = "free"; fixed = null; ask(); })];
@@ -53,6 +55,10 @@ async function start() {
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
     const focal = fixed ? fixed.focal : height / 2 / Math.tan(head.fov / 2);
     const eye = { view: view(), focal, width, height, near: NEAR, far: FAR };
+    // What is above the cut, or close to an eye behind a robot, would hide the robot.
+    const kind = fixed ? "fixed" : byId("eye").value;
+    eye.hidden = kind === "behind" ? 2.2 : 0;
+    eye.cut = kind === "fixed" || kind === "robot" ? 1e9 : Number(byId("cut").value);
     eye.projection = perspective(focal, width, height, NEAR, FAR);
     gl.viewport(0, 0, width, height);
     gl.clearColor(...(fixed ? fixed.background : [0.08, 0.09, 0.1]), 1);
@@ -61,13 +67,14 @@ async function start() {
     if (!fixed || fixed.objects) {
       for (const item of objects) {
         const pose = item.pose(row());
-        const inside = !fixed && byId("eye").value === "robot" && item === robot();
+        const inside = kind === "robot" && item === robot();
         if (Number.isFinite(pose[0]) && !inside) solids.draw(item.body, item.color, pose, eye);
         if (item.path) solids.draw(item.path, item.color, [0, 0, 0], eye);
       }
     }
     if (byId("shown").checked && ordered) splats.draw(eye);
     sorts.ask([-eye.view[2], -eye.view[6], -eye.view[10]]);
+    byId("cut_at").textContent = `${Number(byId("cut").value).toFixed(1)} m`;
     byId("clock").textContent = `${(head.times[row()] ?? 0).toFixed(1)} s`;
     canvas.dataset.state = ordered && sorts.idle() ? "ready" : "sorting";
   }
@@ -105,7 +112,7 @@ async function start() {
     event.preventDefault();
     toggle();
   });
-  for (const id of ["time", "eye", "robot", "shown"]) byId(id).addEventListener("input", () => {
+  for (const id of ["time", "eye", "robot", "cut", "shown"]) byId(id).addEventListener("input", () => {
     fixed = null;
     if (playing && id === "time") toggle();
     ask();

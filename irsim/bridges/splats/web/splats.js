@@ -30,7 +30,7 @@ function texels({ center, scale, rotation, color }, range, height) {
 export function splatLayer(gl, columns, range) {
   const count = columns.center.length / 3, height = Math.max(1, Math.ceil((3 * count) / WIDTH));
   if (height > gl.getParameter(gl.MAX_TEXTURE_SIZE)) throw new Error("there are too many splats for this device");
-  const names = ["data", "view", "size", "focal", "near", "far"];
+  const names = ["data", "view", "size", "focal", "near", "far", "hidden", "cut"];
   const { program, at } = compile(gl, SPLAT_VERTEX, SPLAT_FRAGMENT, names);
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -50,7 +50,7 @@ export function splatLayer(gl, columns, range) {
       gl.bufferData(gl.ARRAY_BUFFER, indices, gl.DYNAMIC_DRAW);
       drawn = indices.length;
     },
-    draw({ view, focal, width, height: rows, near, far }) {
+    draw({ view, focal, width, height: rows, near, far, hidden, cut }) {
       gl.useProgram(program);
       gl.bindVertexArray(list);
       gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -60,6 +60,8 @@ export function splatLayer(gl, columns, range) {
       gl.uniform1f(at.focal, focal);
       gl.uniform1f(at.near, near);
       gl.uniform1f(at.far, far);
+      gl.uniform1f(at.hidden, hidden);
+      gl.uniform1f(at.cut, cut);
       gl.enable(gl.BLEND);
       gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
       gl.depthMask(false);
