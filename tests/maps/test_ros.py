@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from irsim import api
-from irsim.api.ros_maps import MapFileError, export_map, import_map
+from irsim.bridges.maps import import_map
+from irsim.bridges.maps.ros_server import MapFileError, export_map
 from irsim.common.files import TargetError
 from irsim.components.maps._rosmap import MODES, RosMeta, occupancy_of, pixels_of
 from irsim.scenario.limits import Limits
