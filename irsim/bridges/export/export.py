@@ -9,18 +9,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from irsim.bridges.export.episode import open_episode
+from irsim.bridges.export.options import chosen_options
 from irsim.bridges.export.registry import Format, find_format
-from irsim.common.arguments import as_given
 from irsim.common.extras import require
 from irsim.common.files import TEMPORARY, check_suffix, replacing
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import suggestion
-from irsim.diagnostics.errors import ArgumentError
 from irsim.episodes.episode import Progress
-from irsim.options.base import Options
 from irsim.results.records import ExportResult
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
@@ -45,7 +40,8 @@ def export_run(
 
     Formats are ``parquet`` and ``csv`` (a table with one row per step and object), ``npz`` (arrays of shape (steps,
     objects, …)), ``mcap`` (ROS 2 messages), ``minari`` (a folder: a dataset for learning, one episode per run and
-    robot), and for cameras that look where robots go ``colmap``, ``nerfstudio`` (folders) and ``poses`` (JSON lines). Runs are read piece by piece, so that they need not fit in memory. Parquet, MCAP and Minari need libraries:
+    robot), and for cameras that look where robots go ``colmap``, ``nerfstudio`` (folders) and ``poses`` (lines of
+    JSON). Runs are read piece by piece, so that they need not fit in memory. Parquet, MCAP and Minari need libraries:
     ``pip install 'irsim-mcp[records]'``.
 
     Args:
@@ -77,7 +73,7 @@ def export_run(
         what = f"a file of the format {form.name} holds one run, got {len(runs)}"
         raise RunError("bad-argument", what, "export each run to a file of its own", where="run")
     require("records", *form.libraries)
-    chosen = _options(form, options or {})
+    chosen = chosen_options(form.options, options or {}, f"the format {form.name}")
     target = _target(form, runs, out)
     total, done = sum(one.last_step + 1 for one in runs), 0
 
@@ -107,25 +103,6 @@ def export_run(
         steps=sum(episode.last_step for episode in episodes),
         notes=[*dict.fromkeys(note for one in runs for note in one.notes), *notes],
     )
-
-
-def _options(form: Format, given: Mapping[str, Any]) -> Options | None:
-    """The options of a format."""
-    known = list(form.options.model_fields) if form.options is not None else []
-    for key in given:
-        if key not in known:
-            listed = f"its options are {', '.join(known)}" if known else "it has none: leave it out"
-            what = f"the format {form.name} has no option {clean(key)!r}"
-            raise ArgumentError(what, suggestion(key, known, listed) if known else listed)
-    if form.options is None:
-        return None
-    try:
-        return form.options.model_validate(dict(given))
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        what = f"{where}: {first['msg']}, got {as_given(first.get('input'))}"
-        raise ArgumentError(what, "give an allowed value") from None
 
 
 def _target(form: Format, runs: Sequence[Run], out: str | Path | None) -> Path:

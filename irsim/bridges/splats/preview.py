@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 from pydantic import Field
 
 from irsim.bridges.base import BridgeError
@@ -26,7 +25,6 @@ from irsim.common.arrays import Floats
 from irsim.common.files import check_suffix, replacing
 from irsim.common.text import clean
 from irsim.graphics.encoding.animation import AnimationOptions, write_frames
-from irsim.graphics.encoding.contact_sheet import contact_sheet
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.options.units import Count, Hertz, Meters
 from irsim.runs.files import RunError
@@ -37,7 +35,8 @@ __all__ = ["PreviewFile", "PreviewOptions", "write_preview"]
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", *MOVING_SUFFIXES)
 _KEY_FRAMES = 6
-_CLOSE_M = 2.2
+_COLUMNS, _GAP_PX, _LINE_PX = 3, 8, 20
+_CLOSE_M = 2.6
 """What is closer to the eye behind a robot is not drawn: it would hide the robot."""
 
 
@@ -136,8 +135,8 @@ def write_preview(
             with replacing(target) as temporary:
                 Image.fromarray(pixels).save(temporary)
         else:
-            cells = [(f"t = {recording.time[row]:.1f} s", _png(pixels)) for row, pixels in frames()]
-            contact_sheet(cells, target, columns=3, size=max(chosen.width, chosen.rows))
+            cells = [(f"t = {recording.time[row]:.1f} s", pixels) for row, pixels in frames()]
+            _write_sheet(cells, target)
     except OSError as error:
         what = f"'{clean(target, 200)}' cannot be written: {error.strerror or error}"
         raise RunError("file-access", what, "name another file with -o") from None
@@ -235,7 +234,19 @@ def _in_scene(matrix: Floats, world: Scene) -> Floats:
     return found
 
 
-def _png(pixels: NDArray[np.uint8]) -> bytes:
-    stream = io.BytesIO()
-    Image.fromarray(pixels).save(stream, format="PNG")
-    return stream.getvalue()
+def _write_sheet(cells: list[tuple[str, NDArray[np.uint8]]], target: Path) -> None:
+    """Write pictures beside each other, each with a line of text below it."""
+    rows, width = cells[0][1].shape[:2]
+    columns = min(_COLUMNS, len(cells))
+    lines = -(-len(cells) // columns)
+    step = (width + _GAP_PX, rows + _LINE_PX + _GAP_PX)
+    sheet = Image.new("RGB", (columns * step[0] + _GAP_PX, lines * step[1] + _GAP_PX), "white")
+    draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(14)
+    for number, (text, pixels) in enumerate(cells):
+        left, top = (
+            _GAP_PX + part * size for part, size in zip((number % columns, number // columns), step, strict=True)
+        )
+        sheet.paste(Image.fromarray(pixels), (left, top))
+        draw.text((left + 2, top + rows + 1), text, fill="black", font=font)
+    with replacing(target) as temporary:
+        sheet.save(temporary)

@@ -57,7 +57,7 @@ async function start() {
     const eye = { view: view(), focal, width, height, near: NEAR, far: FAR };
     // What is above the cut, or close to an eye behind a robot, would hide the robot.
     const kind = fixed ? "fixed" : byId("eye").value;
-    eye.hidden = kind === "behind" ? 2.2 : 0;
+    eye.hidden = kind === "behind" ? 2.6 : 0;
     eye.cut = kind === "fixed" || kind === "robot" ? 1e9 : Number(byId("cut").value);
     eye.projection = perspective(focal, width, height, NEAR, FAR);
     gl.viewport(0, 0, width, height);
