@@ -50,7 +50,7 @@ def preview(
     options: Settings = None,
     json_output: Json = False,
 ) -> None:
-    """Show a recorded run among Gaussian splats, as pictures or a film that this computer makes without a graphics card.
+    """Show a recorded run among Gaussian splats, as pictures or a film; no graphics card is needed.
 
     Options for --set: width, rows, fov, height, every, frame, sidecar, cut, fps. The scene is where the sidecar of the
     map says that was imported from it; frame=habitat_yup does without.

@@ -46,7 +46,7 @@ class PoseOptions(Options):
     frame: FrameName | None = None
     """Convention of the axes of the scene, whose floor is at height 0; null is what the sidecar of the map says."""
     sidecar: str | None = None
-    """File `.bridge.json` of the map that was made from the scene; null looks for it beside the scenario and its map."""
+    """File `.bridge.json` of the map that was made from the scene; null looks beside the scenario and its map."""
 
 
 class CameraOptions(PoseOptions):

@@ -1,8 +1,8 @@
 """Maps from other worlds: meshes, navigation meshes, USD stages, roads and maps of ROS become scenarios.
 
-    from irsim.bridges.maps import import_map
+from irsim.bridges.maps import import_map
 
-    result = import_map("flat.glb", "flat.yaml", robot=True)
+result = import_map("flat.glb", "flat.yaml", robot=True)
 """
 
 from __future__ import annotations

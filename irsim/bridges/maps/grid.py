@@ -77,7 +77,9 @@ def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int) -> G
             fits *= 1.1
         digits = 10 ** (math.floor(math.log10(fits)) - 1)
         fits = math.ceil(fits / digits) * digits
-        what = f"the scene is {size[0]:,.0f} m x {size[1]:,.0f} m, which is more than {limit:,} cells of {resolution:g} m"
+        what = (
+            f"the scene is {size[0]:,.0f} m x {size[1]:,.0f} m, which is more than {limit:,} cells of {resolution:g} m"
+        )
         raise BridgeError("bridge-file", what, f"give a coarser resolution: --resolution {fits:.3g}")
     first = np.floor(low / resolution) - 1
     last = np.floor(high / resolution) + 2

@@ -130,7 +130,7 @@ def read_header(path: Path) -> Header:
             case [] | ["comment" | "obj_info", *_]:
                 continue
             case ["format", ("ascii" | "binary_little_endian" | "binary_big_endian") as name, "1.0"]:
-                encoding = name  # type: ignore[assignment]
+                encoding = name
             case ["element", name, count] if count.isdecimal() and len(count) <= _MAX_DIGITS:
                 if any(name == other for other, _, _ in elements):
                     _refuse(path, number, f"it has the element '{clean(name, 40)}' twice")

@@ -14,7 +14,7 @@ from irsim.bridges.splats.footprints import Footprints, spread
 from irsim.bridges.splats.splats import Singles, Splats, covariance_of, scale_of
 from irsim.common.arrays import Floats
 
-__all__ = ["MAX_CELLS", "Plan", "PlanOptions", "find_floor", "ground_plan"]
+__all__ = ["MAX_CELLS", "Plan", "PlanOptions", "find_floor", "ground_plan", "level_shares"]
 
 MAX_CELLS = 4_000_000
 """Most cells of a plan."""
@@ -48,6 +48,7 @@ class PlanOptions:
         occupied: Sum of opacities in a cell from which on the cell is occupied.
         max_size: Splats whose standard deviation is larger are left out, such as those of a sky [m].
         bounds: Left, lower, right and upper bound of the plan [m]; None finds them.
+        max_cells: Most cells of the plan.
     """
 
     cell: float = 0.05
@@ -57,6 +58,7 @@ class PlanOptions:
     occupied: float = 0.5
     max_size: float = 1.0
     bounds: tuple[float, float, float, float] | None = None
+    max_cells: int = MAX_CELLS
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,16 @@ class Plan:
     too_large: int
 
 
-def find_floor(splats: Splats, up: Floats, *, opacity: float = 0.05) -> float:
+def level_shares(splats: Splats) -> dict[str, float]:
+    """How much of the surfaces is level along each axis of the scene: sums of opacity × area of flat splats."""
+    covariance = covariance_of(splats.scale, splats.rotation)
+    along = np.diagonal(covariance, axis1=1, axis2=2)
+    total = along.sum(axis=1)
+    weight = splats.opacity * np.minimum(total, 1.0)
+    return {name: float(weight[along[:, axis] < 0.1 * total].sum()) for axis, name in enumerate("xyz")}
+
+
+def find_floor(splats: Splats, up: Floats, *, unit: float = 1.0, opacity: float = 0.05) -> float:
     """Height of the floor along a direction, in the unit of the scene.
 
     The floor is the lowest height at which there is much level area: splats that are thin along the direction.
@@ -90,6 +101,7 @@ def find_floor(splats: Splats, up: Floats, *, opacity: float = 0.05) -> float:
     Args:
         splats: The scene.
         up: (3,) unit vector that points up in the frame of the scene.
+        unit: Length of a unit of the scene [m].
         opacity: Splats with less opacity are left out.
 
     Raises:
@@ -102,13 +114,14 @@ def find_floor(splats: Splats, up: Floats, *, opacity: float = 0.05) -> float:
     height = splats.center[level].astype(np.float64) @ up
     if not len(height):
         what = "the height of the floor was not found: no splat is level"
-        raise BridgeError("bridge-file", what, "give the height with floor, and check which axis is up")
+        raise BridgeError("bridge-file", what, "give the height of the floor, and check which axis is up")
     area = splats.opacity[level] * np.minimum(total[level], 1.0)
     low, high = np.percentile(height, [0.5, 99.5])
-    bins = max(1, math.ceil((high - low) / _FLOOR_BIN_M)) + 1
-    at = np.clip(((height - low) / _FLOOR_BIN_M).astype(np.int64), 0, bins - 1)
+    step = _FLOOR_BIN_M / unit
+    bins = max(1, math.ceil(min((high - low) / step, MAX_CELLS + 1.0))) + 1
     if bins > MAX_CELLS:
-        raise BridgeError("bridge-file", "the scene is too high to find its floor", "give the height with floor")
+        raise BridgeError("bridge-file", "the scene is too high to find its floor", "give the height of the floor")
+    at = np.clip((height - low) / step, 0, bins - 1).astype(np.int64)
     sums = np.bincount(at, weights=area, minlength=bins)
     both = sums + np.concatenate([sums[1:], [0.0]])  # a floor at the border of two bins
     first = int((both >= _FLOOR_SHARE * both.max()).argmax())
@@ -199,7 +212,8 @@ def _extent(above: Footprints, options: PlanOptions) -> tuple[tuple[float, float
             low[axis], high[axis] = above.center[order[np.minimum(ends, len(order) - 1)], axis] + [-margin, margin]
         low = np.floor(low / cell) * cell
     cells = np.ceil((high - low) / cell - 1e-6)
-    if cells.min() < 1 or cells.prod() > MAX_CELLS:
-        what = f"the map would have {cells[0]:,.0f} x {cells[1]:,.0f} cells; at most {MAX_CELLS:,} are made"
-        raise BridgeError("bridge-file", what, "give bounds in metres, or larger cells")
+    most = min(MAX_CELLS, options.max_cells)
+    if not (cells.min() >= 1 and cells.prod() <= most):
+        what = f"the map would have {cells[0]:,.0f} x {cells[1]:,.0f} cells; 1 to {most:,} are possible"
+        raise BridgeError("bridge-file", what, "give other bounds, or larger cells with --resolution")
     return (round(float(low[0]), 9), round(float(low[1]), 9)), (int(cells[0]), int(cells[1]))

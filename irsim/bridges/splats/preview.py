@@ -26,6 +26,7 @@ from irsim.common.files import check_suffix, replacing
 from irsim.common.text import clean
 from irsim.graphics.encoding.animation import AnimationOptions, write_frames
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
+from irsim.graphics.encoding.pixels import from_image
 from irsim.options.units import Count, Hertz, Meters
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run
@@ -129,7 +130,7 @@ def write_preview(
         if moving:
             with write_frames(target, AnimationOptions(fps=chosen.fps)) as film:
                 for _, pixels in frames():
-                    film.add(pixels)
+                    film.add(from_image(Image.fromarray(pixels)))
         elif step is not None:
             [(_, pixels)] = frames()
             with replacing(target) as temporary:

@@ -81,7 +81,9 @@ def _content(path: Path) -> tuple[Any, int | None]:
             if version != 2:
                 raise unusable(path, f"it has version {version} of glTF", "export it as glTF 2.0")
             if kind != b"JSON" or 20 + length > size or total > size:
-                raise unusable(path, f"it ends after {size:,} bytes, and its header promises {max(total, 20 + length):,}")
+                raise unusable(
+                    path, f"it ends after {size:,} bytes, and its header promises {max(total, 20 + length):,}"
+                )
             start = 20 + length
             if start + 8 <= size:
                 file.seek(start)
@@ -132,7 +134,9 @@ def _checked(path: Path, content: dict[str, Any], binary: int | None, limits: Im
             raise unusable(path, f"its node {root} is below another one, or itself")
     total = sum(triangles[_index(node["mesh"])] for node in nodes if "mesh" in node)
     if total > limits.triangles:
-        raise unusable(path, f"it has {total:,} triangles, and at most {limits.triangles:,} are read", "simplify the mesh")
+        raise unusable(
+            path, f"it has {total:,} triangles, and at most {limits.triangles:,} are read", "simplify the mesh"
+        )
     return Beside(path.parent, names)
 
 

@@ -82,7 +82,9 @@ def read_tiles(path: Path, content: bytes) -> list[Tile]:
             break
         place += _TILE.size
         if place + size > len(content):
-            raise unusable(path, f"tile {number} of {size:,} bytes begins at {place:,}, and it ends at {len(content):,}")
+            raise unusable(
+                path, f"tile {number} of {size:,} bytes begins at {place:,}, and it ends at {len(content):,}"
+            )
         tiles.append(_tile(path, memoryview(content)[place : place + size], place))
         place += size
     return tiles
@@ -167,7 +169,9 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     radius = max(tile.radius for tile in tiles)
     notes = []
     if radius > 0:
-        notes.append(f"its floors keep {radius:.2f} m from obstacles already, and robots keep clear of them in addition")
+        notes.append(
+            f"its floors keep {radius:.2f} m from obstacles already, and robots keep clear of them in addition"
+        )
     height, climb = max(tile.height for tile in tiles), max(tile.climb for tile in tiles)
     return Scene("habitat_yup", floors=floors, headroom=height or None, climb=climb, radius=radius, notes=notes)
 
