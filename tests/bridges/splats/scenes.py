@@ -84,7 +84,7 @@ _FACES = {0: (_TURN, 0.0, _TURN, 0.0), 1: (_TURN, _TURN, 0.0, 0.0), 2: (1.0, 0.0
 def room(
     seed: int = 1, *, spacing: float = 0.05, floaters: float = 0.05, axes: Any = None, shift: Any = (0, 0, 0)
 ) -> Room:
-    """Walls, a table, a pillar, a floor and a ceiling of flat splats, and fog of faint ones anywhere.
+    """Walls, a table, a pillar, a box, a floor and a ceiling of flat splats, and fog of faint ones anywhere.
 
     Args:
         seed: Seed of the noise.
@@ -94,28 +94,28 @@ def room(
         shift: Where the origin of irsim is in the scene.
     """
     rng = np.random.default_rng(seed)
-    width, height, wall = 8.0, 6.0, 0.2
+    width, height, wall, top = 8.0, 6.0, 0.2, 2.4
+    offset = np.array([0.013, 0.021])  # no wall is at the border of cells
     solids = [
-        ((0, 0, 0), (width, wall, 2.4), (0.8, 0.75, 0.65)), ((0, height - wall, 0), (width, height, 2.4), (0.75, 0.8, 0.7)),
-        ((0, wall, 0), (wall, height - wall, 2.4), (0.7, 0.7, 0.85)), ((width - wall, wall, 0), (width, height - wall, 2.4), (0.8, 0.7, 0.7)),
-        ((3.0, 2.6, 0), (4.6, 3.6, 0.8), (0.55, 0.35, 0.2)), ((6.0, 1.2, 0), (6.5, 1.7, 2.4), (0.3, 0.5, 0.7)),
+        ((0, 0, 0), (width, wall, top), (0.8, 0.75, 0.65)),
+        ((0, height - wall, 0), (width, height, top), (0.75, 0.8, 0.7)),
+        ((0, wall, 0), (wall, height - wall, top), (0.7, 0.7, 0.85)),
+        ((width - wall, wall, 0), (width, height - wall, top), (0.8, 0.7, 0.7)),
+        ((3.0, 2.6, 0), (4.6, 3.6, 0.8), (0.55, 0.35, 0.2)),
+        ((6.0, 1.2, 0), (6.5, 1.7, top), (0.3, 0.5, 0.7)),
         ((1.6, 4.4, 0), (2.6, 5.0, 1.2), (0.35, 0.6, 0.35)),
-    ]  # fmt: skip
-    parts = [
-        _face(rng, (0, 0), (width, height), 2, z, color, spacing)
-        for z, color in ((0.0, (0.6, 0.6, 0.58)), (2.4, (0.9, 0.9, 0.9)))
     ]
+    levels = ((0.0, (0.6, 0.6, 0.58)), (top, (0.9, 0.9, 0.9)))
+    parts = [_face(rng, (0, 0), (width, height), 2, z, color, spacing) for z, color in levels]
     for low, high, color in solids:
         parts += _box(rng, np.array(low, float), np.array(high, float), color, spacing)
     solid = np.concatenate(parts)
     for low, high, _ in solids:  # nobody sees the floor in them
         hidden = (solid[:, 2] < 0.05) & (solid[:, :2] > np.add(low[:2], 0.01)).all(axis=1)
         solid = solid[~(hidden & (solid[:, :2] < np.subtract(high[:2], 0.01)).all(axis=1))]
-    offset = np.array([0.013, 0.021])  # no wall is at the border of cells
     solid[:, :2] += offset
-    solids = [((*np.add(low[:2], offset), 0), (*np.add(high[:2], offset), 0), color) for low, high, color in solids]
     fog = np.zeros((round(floaters / (1 - floaters) * len(solid)), 14))
-    fog[:, :3] = rng.uniform([0, 0, 0], [width, height, 2.4], (len(fog), 3))
+    fog[:, :3] = rng.uniform([0, 0, 0], [width, height, top], (len(fog), 3))
     fog[:, 3:6] = 0.7
     fog[:, 6] = rng.uniform(0.01, 0.12, len(fog))
     fog[:, 7:10] = rng.uniform(0.01, 0.08, (len(fog), 3))
@@ -123,7 +123,8 @@ def room(
     columns = table(np.concatenate([solid, fog]))
     if axes is not None:
         columns = turned(columns, np.asarray(axes, float), np.asarray(shift, float))
-    return Room(columns, tuple((*low[:2], *high[:2]) for low, high, _ in solids), (width, height))
+    boxes = tuple((*np.add(low[:2], offset), *np.add(high[:2], offset)) for low, high, _ in solids)
+    return Room(columns, boxes, (width, height))
 
 
 def turned(columns: NDArray[np.float64], axes: NDArray[np.float64], shift: NDArray[np.float64]) -> NDArray[np.float64]:
