@@ -177,7 +177,7 @@ def _show(result: MapImportResult, out: Path | None, robot: bool) -> None:
     else:
         line(cells)
     for one in result.levels:
-        kind = ", a roof" if one.roof else ""
+        kind = ", a roof or a top floor without a ceiling" if one.roof else ""
         taken = "  <- this one" if one.level == result.level else ""
         line(f"level {one.level}: floor at {one.height:.2f} m, {one.area:.1f} m² connected{kind}", (taken, "bold"))
     free = f"free: {result.free_area:.1f} m²"

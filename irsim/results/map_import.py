@@ -17,7 +17,7 @@ class MapLevel(Result):
     area: float
     """Area of its largest connected part [m²]."""
     roof: bool
-    """Whether it lies above another level, under the sky."""
+    """Whether it lies above another level and under the sky: a roof, or the top floor of a file without ceilings."""
 
 
 class MapTrip(Result):

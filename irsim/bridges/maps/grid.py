@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +13,14 @@ from numpy.typing import NDArray
 from irsim.bridges.base import BridgeError
 from irsim.common.arrays import Floats
 
-__all__ = ["Bools", "Grid", "Ints", "grid_over", "least", "most", "rows_of", "slices", "spread"]
+__all__ = ["Bools", "Grid", "Ints", "Triangles", "grid_over", "least", "most", "rows_of", "slices", "spread"]
 
-Ints = NDArray[np.int64]
+Ints: TypeAlias = NDArray[np.int64]
 """Array of integers."""
-Bools = NDArray[np.bool_]
+Bools: TypeAlias = NDArray[np.bool_]
 """Array of truth values."""
+Triangles: TypeAlias = NDArray[Any]
+"""(T, 3, 3) corners x, y, z [m] of triangles, floats of single or double precision; z up."""
 _MAX_COLUMNS = 1 << 26
 """Columns that a key of a piece has room for."""
 _CHUNK = 1 << 17
@@ -60,7 +63,8 @@ def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int) -> G
     """The grid over a rectangle with one cell more on each side; its lines are at multiples of the resolution.
 
     Args:
-        low, high: (2,) corners [m].
+        low: (2,) lower left corner [m].
+        high: (2,) upper right corner [m].
         resolution: Side of a cell [m].
         max_cells: Largest number of cells.
 
@@ -146,7 +150,7 @@ def rows_of(corners: Floats, *, at_centers: bool) -> Iterator[tuple[Ints, Ints, 
             yield triangle[item], first[item] + offset, row[item], item
 
 
-def _range_in_row(corners: Floats, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+def _range_in_row(corners: Floats, low: NDArray[Any], high: NDArray[Any]) -> tuple[Floats, Floats]:
     """Smallest and largest x of triangles (N, 3, 2) between two values of y (N,)."""
     left, right = np.full(len(corners), np.inf), np.full(len(corners), -np.inf)
     for a, b in ((0, 1), (1, 2), (2, 0)):

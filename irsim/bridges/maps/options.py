@@ -25,13 +25,13 @@ class ImportOptions(Options):
     climb: Annotated[Meters, Field(ge=0, le=10)] = 0.2
     """Highest step that the robot climbs; what is lower is part of the floor."""
     radius: Annotated[Meters, Field(ge=0, le=10)] = 0.0
-    """Distance from obstacles within which cells become occupied. irsim keeps a robot's own shape clear of obstacles, so
-    that only planning for points needs it."""
+    """Distance from obstacles within which cells become occupied. irsim keeps a robot's own shape clear of obstacles;
+    only planning for points needs it."""
     up: Literal["auto", "y", "z", "-y"] = "auto"
     """Axis of a mesh or of splats that points up; ``-y``: y points down. ``auto`` is y for glTF and OBJ, and z for PLY
     and STL."""
     level: Annotated[int, Field(ge=0)] | None = None
-    """Number of the level, the lowest is 0. Default: the largest one that is no roof."""
+    """Number of the level, the lowest is 0. Default: the largest one that is no roof of another."""
     height: Meters | None = None
     """Height of a floor along the upward axis: the nearest level is taken."""
     seed_point: tuple[Meters, Meters] | None = None

@@ -32,7 +32,8 @@ class Level:
         regions: (M,) number of the connected surface of each surface that belongs to the level; -1 for others. Number
             0 is the largest one.
         areas: Area of each connected surface [m²], the largest first.
-        roof: Whether it lies above another level, under the sky.
+        roof: Whether it lies above another level and has nothing above it: a roof, or the top floor of a file without
+            ceilings.
     """
 
     height: float
@@ -42,11 +43,15 @@ class Level:
 
 
 def connected(count: int, a: Ints, b: Ints) -> Ints:
-    """Number of the connected part of each node: that of its first node (hooking and pointer jumping, Shiloach 1982).
+    """Number of the connected part of each node: that of its first node (by hooking and pointer jumping).
 
     Args:
         count: Number of nodes.
-        a, b: (E,) nodes that each edge joins.
+        a: (E,) one node of each edge.
+        b: (E,) the other.
+
+    References:
+        Shiloach, Vishkin: An O(log n) parallel connectivity algorithm (1982).
     """
     root = np.arange(count)
     while len(a):
@@ -129,7 +134,7 @@ def find_levels(surfaces: Surfaces, grid: Grid, climb: float, headroom: float) -
     region, sizes = numbered(connected(len(surfaces.column), a, b), surfaces.column)
     cell = grid.resolution**2
     layer = np.zeros(len(region), np.int64)
-    for k in np.flatnonzero(sizes * cell >= _SMALLEST_AREA):
+    for k in np.flatnonzero(sizes * cell >= _SMALLEST_AREA).tolist():
         members = np.flatnonzero(region == k)
         if len(members) > sizes[k]:
             layer[members] = _layers(surfaces.floor[members], headroom)

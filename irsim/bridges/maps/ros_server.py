@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from irsim.bridges.base import BridgeError
 from irsim.common.arrays import Floats
 from irsim.common.files import check_suffix, write_new
 from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of
-from irsim.diagnostics.errors import CodedError
 from irsim.objects.obstacle_map import grid_values
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.random_streams import fresh_seed
@@ -25,7 +25,7 @@ _MAX_ASPECT_ERROR = 1e-6
 """Share by which the sides of a cell may differ for it to count as square."""
 
 
-class MapFileError(CodedError, ValueError):
+class MapFileError(BridgeError):
     """A map cannot be read or written."""
 
 

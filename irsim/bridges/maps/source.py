@@ -8,13 +8,11 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.grid import Grid
+from irsim.bridges.maps.grid import Grid, Triangles
 from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.common.arrays import Floats
 from irsim.common.text import clean
@@ -25,8 +23,6 @@ FREE, OCCUPIED, UNKNOWN = 0.0, 100.0, -1.0
 """Values of cells, as in occupancy grids of ROS; those between free and occupied are probabilities."""
 _HEAD = 4096
 """Bytes of a file by which its kind is known."""
-Triangles: TypeAlias = NDArray[np.float32] | NDArray[np.float64]
-"""(T, 3, 3) corners x, y, z [m], in the axes of irsim: z up."""
 
 
 @dataclass

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.grid import Bools, Grid, Ints, least, most, rows_of, slices
+from irsim.bridges.maps.grid import Bools, Grid, Ints, Triangles, least, most, rows_of, slices
 from irsim.common.arrays import Floats
 
 __all__ = ["Spans", "Surfaces", "floors_of", "spans_of", "walkable_of"]
@@ -62,7 +64,7 @@ class Surfaces:
         return Surfaces(self.column[which], self.floor[which], self.ceiling[which])
 
 
-def spans_of(triangles: Floats, grid: Grid, slope: float, climb: float) -> Spans:
+def spans_of(triangles: Triangles, grid: Grid, slope: float, climb: float) -> Spans:
     """Solid spans of the columns that triangles touch.
 
     Args:
@@ -163,7 +165,7 @@ def _merged(keys: Ints, bottom: float, step: float, climb: int) -> Spans:
     number = np.cumsum(first) - 1
     flat = ((keys & 1) == 1) & (high >= top[number] - climb)
     walkable = np.logical_or.reduceat(flat, starts)
-    return Spans(column[starts], bottom + low[starts] * step, bottom + top * step, walkable)
+    return Spans(column[starts], np.float64(bottom) + low[starts] * step, np.float64(bottom) + top * step, walkable)
 
 
 def walkable_of(spans: Spans, headroom: float, climb: float) -> Surfaces:
@@ -183,7 +185,7 @@ def walkable_of(spans: Spans, headroom: float, climb: float) -> Surfaces:
     return Surfaces(spans.column[which], spans.high[which], ceiling[which])
 
 
-def floors_of(triangles: Floats, grid: Grid, headroom: float) -> Surfaces:
+def floors_of(triangles: Triangles, grid: Grid, headroom: float) -> Surfaces:
     """Surfaces of triangles that are floors already: those of the cells whose centers they have.
 
     Args:
@@ -210,7 +212,7 @@ def floors_of(triangles: Floats, grid: Grid, headroom: float) -> Surfaces:
     return Surfaces(column, height, ceiling)
 
 
-def _plane(corners: Floats, x: Floats, y: Floats) -> Floats:
+def _plane(corners: Floats, x: NDArray[Any], y: NDArray[Any]) -> Floats:
     """Heights of triangles (N, 3, 3) at points inside of them."""
     a, u, v = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     double = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]

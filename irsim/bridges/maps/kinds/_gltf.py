@@ -65,6 +65,8 @@ def check(path: Path, limits: ImportLimits) -> Beside:
     content, binary = _content(path)
     try:
         return _checked(path, content, binary, limits)
+    except BridgeError:
+        raise
     except (AttributeError, IndexError, KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
         raise unusable(path, f"its description is damaged ({type(error).__name__}: {str(error)[:80]})") from None
 

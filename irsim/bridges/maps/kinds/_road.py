@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from irsim.bridges.maps.grid import Ints
-from irsim.bridges.maps.source import Triangles, unusable
+from irsim.bridges.maps.grid import Ints, Triangles
+from irsim.bridges.maps.source import unusable
 from irsim.common.arrays import Floats
 
 __all__ = ["Road", "lane_triangles", "read_roads"]
@@ -84,7 +84,7 @@ class _Builder(ET.TreeBuilder):
         """Refuse the declaration of a document type."""
         raise unusable(self.path, "it declares a document type, and with it entities, which are not read")
 
-    def start(self, tag: str, attrs: dict[str, str]) -> ET.Element:  # type: ignore[override]
+    def start(self, tag: str, attrs: dict[str, str]) -> ET.Element:
         """Begin an element."""
         self.depth += 1
         if self.depth > _MAX_DEPTH:
@@ -221,10 +221,7 @@ def _poly3(geometry: Geometry, s: Floats) -> tuple[Floats, Floats, Floats]:
 
 def _param_poly3(geometry: Geometry, s: Floats) -> tuple[Floats, Floats, Floats]:
     n = geometry.numbers
-    if geometry.normalized:
-        p = s / max(geometry.length, 1e-12)
-    else:
-        p = s
+    p = s / max(geometry.length, 1e-12) if geometry.normalized else s
     u, v = (n[f"a{k}"] + p * (n[f"b{k}"] + p * (n[f"c{k}"] + p * n[f"d{k}"])) for k in "UV")
     du, dv = (n[f"b{k}"] + p * (2 * n[f"c{k}"] + p * 3 * n[f"d{k}"]) for k in "UV")
     return u, v, np.arctan2(dv, du)

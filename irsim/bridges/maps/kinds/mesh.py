@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.grid import Triangles
 from irsim.bridges.maps.kinds import _gltf, _mesh_headers
 from irsim.bridges.maps.options import ImportLimits, ImportOptions
-from irsim.bridges.maps.source import Kind, Scene, Triangles, unusable
+from irsim.bridges.maps.source import Kind, Scene, unusable
 
 __all__ = ["KIND"]
 
@@ -97,7 +98,8 @@ def _placed(path: Path, vertices: Any, faces: Any, matrix: Any) -> Triangles:
     matrix = np.asarray(matrix, dtype=np.float64)
     points = points @ matrix[:3, :3].T + matrix[:3, 3]
     corners = points.astype(np.float32)[faces] if np.abs(points).max(initial=0) < 1e4 else points[faces]
-    return corners[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else corners
+    placed: Triangles = corners[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else corners
+    return placed
 
 
 def _checked(path: Path, parts: list[Triangles]) -> Triangles:

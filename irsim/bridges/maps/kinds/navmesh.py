@@ -1,8 +1,8 @@
 """``navmesh``: navigation meshes of Habitat, which Detour wrote.
 
-The layout is that of Detour's structures, little endian, without padding. A set begins with ``MSET``, version, number of
-tiles and the parameters of the mesh; version 2 goes on with the settings of Habitat, whose size has changed over time,
-so that the first tile is found by its magic. Each tile is a reference, a size and Detour's own blob ``DNAV`` of version 7.
+The layout is that of Detour's structures, little endian, without padding. A set begins with ``MSET``, version, number
+of tiles and the parameters of the mesh; version 2 goes on with the settings of Habitat, whose size has changed over
+time, so that the first tile is found by its magic. Each tile is a reference, a size and Detour's own blob ``DNAV``.
 """
 
 from __future__ import annotations

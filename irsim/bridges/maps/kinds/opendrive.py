@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from irsim.bridges.maps.grid import Triangles
 from irsim.bridges.maps.kinds._road import lane_triangles, read_roads
 from irsim.bridges.maps.options import ImportLimits, ImportOptions
-from irsim.bridges.maps.source import Kind, Scene, Triangles, unusable
+from irsim.bridges.maps.source import Kind, Scene, unusable
 
 __all__ = ["KIND"]
 
