@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from irsim.cli import bridge_splats
 from irsim.cli.guard import FAILED, handle_errors
 from irsim.cli.options import Json
 
@@ -55,3 +56,5 @@ def doctor(
 
 
 bridge_app.command("doctor")(handle_errors(doctor))
+bridge_app.command("preview")(handle_errors(bridge_splats.preview))
+bridge_app.command("page")(handle_errors(bridge_splats.page))
