@@ -12,7 +12,7 @@ from irsim.common.extras import ExtraError, require
 from irsim.common.text import clean
 from irsim.components.bridges.carla import Carla
 
-__all__ = ["START", "connect", "import_client", "server_errors"]
+__all__ = ["NEWEST_PYTHON", "connect", "import_client", "server_errors"]
 
 NEWEST_PYTHON = (3, 12)
 """The newest Python that the client is made for."""

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import sys
 
 import numpy as np
 
+from irsim.bridges.carla.client import NEWEST_PYTHON
 from irsim.bridges.carla.places import Places
 from irsim.bridges.doctor import Part
 
@@ -50,5 +52,8 @@ def _curve() -> str:
     return "the client reads a road, whose left curve is where irsim has it; a server was not asked"
 
 
-PARTS = (Part("carla", "carla", "carla", _curve),)
+_NONE = "CARLA has no client for this Python: use Python 3.10 to 3.12, then pip install 'irsim-mcp[carla]'"
+PARTS = (
+    Part("carla", "carla", "carla", _curve) if sys.version_info[:2] <= NEWEST_PYTHON else Part("carla", None, _NONE),
+)
 """The libraries of the bridge."""
