@@ -78,8 +78,6 @@ def test_silence_and_nobody(serve: Serve) -> None:
             server_version("127.0.0.1", port, 0.5)
         assert time.monotonic() - began < 3
         assert "CarlaUE4.sh" in str(caught.value)
-    with pytest.raises(BridgeLostError):
-        server_version("no.such.host.invalid", 2000, 0.5)
 
 
 def test_a_server_that_is_about_to_start() -> None:
