@@ -90,6 +90,7 @@ class ObjectRecord:
     joined: bool = True  # whether it follows the behavior of its group
     start_time: float = 0.0  # until then it stands still [s]
     appear_time: float = 0.0  # until then it is not in the world [s]
+    vanish_time: float | None = None  # last time at which it is in the world [s]; None: it stays
     spreads: Spreads | None = None  # None: it starts as written
 
     @property
