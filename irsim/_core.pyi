@@ -740,7 +740,9 @@ class State:
     variant: NDArray[np.int32]  # (W,) index among the variants of the world in this scene; -1 without any
     pace: Floats  # (R,) factor on the speeds of the object in this scene
     start_step: NDArray[np.int64]  # (R,) steps for which the object stands still at its start in this scene
-    appeared: NDArray[np.int64]  # (R,) step in which the object came into the world; -1 before, -2 minus that step afterwards
+    appeared: NDArray[
+        np.int64
+    ]  # (R,) step in which the object came into the world; -1 before, -2 minus that step afterwards
     infeasible: NDArray[np.int32]  # (R,) steps of the episode in which no velocity avoided every collision
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)

@@ -99,6 +99,11 @@ class ObjectRecord:
         return self.behavior if self.group_behavior is None else self.group_behavior
 
     @property
+    def recorded(self) -> bool:
+        """Whether it replays a recording, which says where it starts and ends."""
+        return getattr(self.behavior, "name", None) == "replay" and bool(getattr(self.behavior, "times", None))
+
+    @property
     def moves_from(self) -> float:
         """Time from which it may move [s]."""
         return max(self.start_time, self.appear_time)
