@@ -25,7 +25,7 @@ def export(
         str | None,
         typer.Option(
             metavar="FORMAT",
-            help="parquet, csv, npz, mcap or minari. Default: as the suffix of the file says.",
+            help="parquet, csv, npz, mcap, minari or usd. Default: as the suffix of the file says.",
             show_default=False,
         ),
     ] = None,
@@ -54,9 +54,9 @@ def export(
     ] = None,
     json_output: Json = False,
 ) -> None:
-    """Write recorded runs for other tools: Parquet, CSV or NumPy files, ROS 2 bags (MCAP), Minari datasets.
+    """Write recorded runs for other tools: Parquet, CSV or NumPy files, ROS 2 bags (MCAP), Minari datasets, USD stages.
 
-    Parquet, MCAP and Minari need libraries, which the extra `records` installs; without them the message says how.
+    All but CSV and NumPy files need libraries, which extras install; without them the message says how.
     """
     from rich.text import Text
 

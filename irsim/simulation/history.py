@@ -49,7 +49,7 @@ def past_poses(simulation: Simulation, row: int) -> Floats | None:
     last = np.concatenate([[0], np.cumsum(~held)])
     if last[-1] != len(track) - 1:
         return None
-    poses = track[last]
+    poses: Floats = track[last]
     poses[end + 1 :, :2] = np.nan
     return poses
 
