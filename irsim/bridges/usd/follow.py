@@ -39,11 +39,13 @@ class Follower:
         self.stage, self.unknown = stage, set[str]()
         self.paths: dict[str, str] = {}
         self._by_id: dict[int, str] = {}
+        self._alike: dict[str, str] = {}
         self._shown: dict[str, bool] = {}
         self._yaw: dict[str, float] = {}
         self._transform = None if transform is None else [[float(v) for v in row] for row in transform]
         if prims is not None:
-            self.paths = {_plain(name): path for name, path in prims.items()}
+            self.paths = dict(prims)
+            self._alike = {_plain(name): path for name, path in prims.items()}
             missing = [path for path in self.paths.values() if not stage.GetPrimAtPath(path)]
             if missing:
                 raise ValueError(f"the stage has no prim {missing[0]}")
@@ -51,8 +53,9 @@ class Follower:
         for prim in stage.Traverse():
             name = prim.GetCustomDataByKey("irsim:name")
             if name is not None:
-                self.paths[_plain(str(name))] = str(prim.GetPath())
-                self._by_id[int(prim.GetCustomDataByKey("irsim:id"))] = _plain(str(name))
+                path = str(prim.GetPath())
+                self.paths[str(name)] = self._by_id[int(prim.GetCustomDataByKey("irsim:id"))] = path
+                self._alike.setdefault(_plain(str(name)), path)
 
     def place(self, name: str, x: float, y: float, yaw: float, z: float | None = None) -> bool:
         """Put an object somewhere and show it; with NaN, hide it. Whether it has a prim.
@@ -64,35 +67,37 @@ class Follower:
             yaw: [rad], frame of irsim.
             z: Height [m]; default: that of the prim.
         """
-        key = _plain(name)
-        path = self.paths.get(key)
+        path = self.paths.get(name) or self._alike.get(_plain(name))
         if path is None:
             self.unknown.add(name)
             return False
+        self._place(path, x, y, yaw, z)
+        return True
+
+    def _place(self, path: str, x: float, y: float, yaw: float, z: float | None = None) -> None:
         from pxr import Gf, Usd
 
         if not all(map(math.isfinite, (x, y, yaw))):
             self._show(path, False)
-            return True
+            return
         if self._transform is not None:
             x, y, height, yaw = _moved(self._transform, x, y, yaw)
             z = height if z is None else z
-        before = self._yaw.get(key, yaw)
+        before = self._yaw.get(path, yaw)
         yaw = before + math.remainder(yaw - before, math.tau)
-        self._yaw[key] = yaw
+        self._yaw[path] = yaw
         with Usd.EditContext(self.stage, self.stage.GetSessionLayer()):
             translate, rotate = _operations(self.stage.GetPrimAtPath(path))
             kept = translate.Get()
             translate.Set(Gf.Vec3d(x, y, (kept[2] if kept is not None else 0.0) if z is None else z))
             rotate.Set(math.degrees(yaw))
         self._show(path, True)
-        return True
 
     def state(self, poses: Sequence[Sequence[float]]) -> None:
         """Follow a state of irsim: rows x, y [m], yaw [rad] of all objects, in the order of their ids."""
         for number, (x, y, yaw) in enumerate(poses):
             if number in self._by_id:
-                self.place(self._by_id[number], float(x), float(y), float(yaw))
+                self._place(self._by_id[number], float(x), float(y), float(yaw))
 
     def pose_array(self, message: Any, names: Sequence[str]) -> None:
         """Follow a ``geometry_msgs/PoseArray`` whose poses belong to these names."""

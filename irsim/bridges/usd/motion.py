@@ -16,7 +16,7 @@ __all__ = ["animate"]
 
 
 class _Track:
-    """Samples of one prim; of values that stay the same, only the first and the last are written."""
+    """Samples of one prim: one for each step, as interpolation would round; a value that never changes has one."""
 
     def __init__(self, layer: Any, mover: Mover, height: float = 0.0) -> None:
         self._layer, self._height = layer, height
@@ -25,14 +25,14 @@ class _Track:
         self._visibility = f"{mover.path}.visibility"
         self._yaw: float | None = None
         self._present: bool | None = None
-        self._kept: dict[str, tuple[float, Any, bool]] = {}
+        self._same: dict[str, tuple[Any, list[float]]] = {}
+        self._changed: set[str] = set()
 
     def add(self, step: float, pose: Sequence[float]) -> None:
         """Add where the object is after a step; NaN while it is not in the world."""
         x, y, yaw = pose
         present = math.isfinite(x)
         if present != self._present:
-            self.end()
             self._present = present
             self._layer.SetTimeSample(self._visibility, step, "inherited" if present else "invisible")
         if not present:
@@ -43,14 +43,17 @@ class _Track:
         self._sample(self._rotate, step, self._yaw)
 
     def _sample(self, path: str, step: float, value: Any) -> None:
-        known = self._kept.get(path)
-        if known is not None and known[1] == value:
-            self._kept[path] = (step, value, False)
-            return
-        if known is not None and not known[2]:
-            self._write(path, known[0], known[1])
+        if path not in self._changed:
+            first, steps = self._same.setdefault(path, (value, []))
+            if value == first:
+                steps.append(step)
+                if len(steps) > 1:
+                    return
+            else:
+                self._changed.add(path)
+                for earlier in self._same.pop(path)[1][1:]:
+                    self._write(path, earlier, first)
         self._write(path, step, value)
-        self._kept[path] = (step, value, True)
 
     def _write(self, path: str, step: float, value: Any) -> None:
         from pxr import Gf
@@ -58,13 +61,6 @@ class _Track:
         is_place = path is self._translate
         written = Gf.Vec3d(*value, self._height) if is_place else math.degrees(value)
         self._layer.SetTimeSample(path, step, written)
-
-    def end(self) -> None:
-        """Write the last samples of values that stayed the same."""
-        for path, (step, value, written) in self._kept.items():
-            if not written:
-                self._write(path, step, value)
-        self._kept.clear()
 
 
 def animate(stage: Any, movers: Iterable[Mover], states: Iterable[WorldState]) -> int:
@@ -93,8 +89,6 @@ def animate(stage: Any, movers: Iterable[Mover], states: Iterable[WorldState]) -
             poses = np.asarray(state.pose).tolist()
             for mover, track in zip(movers, tracks, strict=True):
                 track.add(float(state.step), poses[mover.index])
-        for track in tracks:
-            track.end()
     if first is not None and last is not None:
         stage.SetStartTimeCode(first)
         stage.SetEndTimeCode(last)
