@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 
 import numpy as np
@@ -34,7 +35,7 @@ def volume(solid: Solid) -> float:
     total = 0.0
     for face in faces(solid):
         a, *rest = solid.points[face]
-        total += sum(np.dot(a, np.cross(b, c)) for b, c in zip(rest, rest[1:], strict=False)) / 6
+        total += sum(np.dot(a, np.cross(b, c)) for b, c in itertools.pairwise(rest)) / 6
     return float(total)
 
 

@@ -1,7 +1,7 @@
 """Blender reads stages that we write: where bodies are over time, which meshes and cameras there are.
 
-``IRSIM_NIGHTLY=1 IRSIM_BPY=/path/of/python pytest -m slow tests/interop/test_blender.py``, where that Python has bpy 4.5
-(947 MB from PyPI, Python 3.11).
+``IRSIM_NIGHTLY=1 IRSIM_BPY=/path/of/python pytest -m slow tests/interop/test_blender.py``, where that Python has bpy
+4.5 (947 MB from PyPI, Python 3.11).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import pytest
 
 from irsim.bridges.export.export import export_run
 from irsim.bridges.recorded import recorded_states
-from tests.interop.usd_run import run  # noqa: F401
+from tests.interop.usd_run import record
 
 pytestmark = [
     pytest.mark.slow(30),
@@ -40,6 +40,11 @@ wall = bpy.data.objects["Map"]
 found["flat"] = max(abs(abs(f.normal.z) - round(abs(f.normal.z))) for f in wall.data.polygons)
 print("FOUND" + json.dumps(found))
 """
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return record(tmp_path_factory.mktemp("usd"))
 
 
 def test_blender_reads_a_run(run, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from irsim.bridges.recorded import recorded_scene, recorded_states
-from tests.interop.usd_run import TEXT, run  # noqa: F401
+from tests.interop.usd_run import TEXT, record
 
 pytestmark = pytest.mark.interop
 pxr = pytest.importorskip("pxr")
@@ -20,6 +20,11 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics, UsdValidation  # noqa: E402
 from irsim.bridges.export.export import export_run  # noqa: E402
 from irsim.bridges.usd.files import SUFFIXES, export_scene, make_stage  # noqa: E402
 from irsim.bridges.usd.follow import Follower  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return record(tmp_path_factory.mktemp("usd"))
 
 
 def validate(stage) -> list[str]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import pytest
+from pathlib import Path
 
 import irsim
-from irsim.runs.reading import open_run
+from irsim.runs.reading import Run, open_run
 
 TEXT = """
 world: {width: 12, height: 8, step_time: 0.1, time_limit: 6, boundary: walls, collision_mode: unobstructed_obstacles,
@@ -26,9 +26,8 @@ obstacle:
 """
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("usd")
+def record(folder: Path) -> Run:
+    """Run the scenario and record it in a folder."""
     (folder / "scene.yaml").write_text(TEXT)
     irsim.run(str(folder / "scene.yaml"), record=folder / "run")
     return open_run(folder / "run")
