@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from irsim.cli.bridge_pedestrians import import_pedestrians
 from irsim.cli.guard import FAILED, handle_errors
 from irsim.cli.options import Json
 
@@ -55,3 +56,4 @@ def doctor(
 
 
 bridge_app.command("doctor")(handle_errors(doctor))
+bridge_app.command("import-pedestrians")(handle_errors(import_pedestrians))

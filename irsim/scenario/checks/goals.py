@@ -81,6 +81,8 @@ def _goals_reached_at_start(context: Context, records: list[ObjectRecord]) -> It
     for record in records:
         if record.static or record.wander or record.loop or not record.goals or record.kinematics is None:
             continue
+        if record.recorded:
+            continue  # it stands because somebody stood
         points = [record.state, *record.goals]
         for index, (a, b) in enumerate(itertools.pairwise(points)):
             if not _arrives(record, a, b):
