@@ -81,7 +81,7 @@ def import_pedestrians(
     found = convert(
         file,
         out,
-        form=form,  # type: ignore[arg-type]
+        form=form,
         fps=fps,
         window=Window(start, float("inf") if end is None else end, box),
         homography=homography,

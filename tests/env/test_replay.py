@@ -4,8 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import irsim
+import irsim._core as core
+from irsim.components.behaviors.replay import Replay
+from tests.core.worlds import DRIVES, robot
+from tests.core.worlds import scene as core_scene
+from tests.effort import examples
 
 TEXT = """
 world: {width: 10, height: 10, step_time: 0.1, time_limit: 8}
@@ -99,3 +106,27 @@ def test_recordings_that_are_none_are_refused(old: str, new: str, expected: str)
     found = irsim.validate(text=TEXT.replace(old, new))
     assert not found.valid
     assert any(expected in finding.message or expected in str(finding.allowed) for finding in found.findings)
+
+
+@settings(max_examples=examples(40), deadline=None)
+@given(
+    gaps=st.lists(st.floats(0.05, 3), min_size=1, max_size=6),
+    data=st.data(),
+)
+def test_limits_that_follow_never_cut_a_recording(gaps, data) -> None:
+    times = np.concatenate([[0.0], np.cumsum(gaps)]).tolist()
+    number = st.floats(-20, 20)
+    places = data.draw(st.lists(st.lists(number, min_size=2, max_size=2), min_size=len(times), max_size=len(times)))
+    options = Replay(times=times, poses=places, interpolation="cubic")
+    dense = np.linspace(0, times[-1], 2000)
+    kernel = core.ReplayOptions(times=times, poses=places, interpolation="cubic", vanish=False)
+    world, state = core_scene(
+        robot(drive=DRIVES["omni"], pose=[*places[0], 0.0], vel_max=[1e9] * 3, vel_min=[-1e9] * 3, behavior=kernel),
+        step_time=float(dense[1]),
+    )
+    track = [np.array(state.pose[0, :2])]
+    for _ in dense[1:]:
+        core.advance(world, state, 1)
+        track.append(np.array(state.pose[0, :2]))
+    speeds = np.hypot(*np.diff(track, axis=0).T) / dense[1]
+    assert speeds.max() <= options.top_speed * (1 + 1e-6) + 1e-6

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
+from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field, model_validator
 
 import irsim._core as core
@@ -19,8 +21,8 @@ __all__ = ["Replay"]
 
 _MARGIN = 1 + 1e-6
 """Factor on the highest recorded speed, so that rounding does not make a limit cut it."""
-_CUBIC_OVERSHOOT = 2.5
-"""How many times as fast as its fastest leg a cubic curve may be: the slopes at its ends are means of legs."""
+_SLOWEST = 0.01
+"""Least limit, of somebody who stands [m/s]."""
 
 
 class Replay(BehaviorOptions):
@@ -78,12 +80,20 @@ class Replay(BehaviorOptions):
         moved = next((pose for pose in self.poses if pose[:2] != first[:2]), first)
         return [*first, math.atan2(moved[1] - first[1], moved[0] - first[0])]
 
-    @property
+    @cached_property
     def top_speed(self) -> float:
         """Speed that it never exceeds [m/s], positive."""
-        legs = zip(self.times, self.times[1:], self.poses, self.poses[1:], strict=False)
-        fastest = max((math.dist(a[:2], b[:2]) / (until - since) for since, until, a, b in legs), default=0.0)
-        return max(0.01, fastest * (_MARGIN if self.interpolation == "linear" else _CUBIC_OVERSHOOT))
+        if len(self.times) < 2:
+            return _SLOWEST
+        times, places = np.array(self.times), np.array([pose[:2] for pose in self.poses])
+        legs = np.diff(places, axis=0) / np.diff(times)[:, None]
+        fastest = np.hypot(*legs.T).max()
+        if self.interpolation == "cubic":  # on a leg, the velocity is a quadratic curve between these three
+            ahead = (places[2:] - places[:-2]) / (times[2:] - times[:-2])[:, None]
+            slopes = np.concatenate([legs[:1], ahead, legs[-1:]])
+            middle = 3 * legs - slopes[:-1] - slopes[1:]
+            fastest = max(fastest, *(np.hypot(*part.T).max() for part in (slopes, middle)))
+        return max(_SLOWEST, float(fastest) * _MARGIN)
 
     def limits(self, step_time: float) -> list[float]:
         """Upper limits of the controls that it needs: two speeds [m/s] and a turn rate [rad/s]."""
