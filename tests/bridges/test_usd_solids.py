@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.bridges.scene import Grid, Line, Polygon
+from irsim.bridges.scene import Circle, Grid, Line, Polygon
 from irsim.bridges.usd.names import prim_names
-from irsim.bridges.usd.solids import Solid, arrow, grid_solid, line_solid, plane, polygon_solid
+from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
 from tests.effort import examples
 
 U_SHAPE = [[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]]
@@ -105,6 +105,13 @@ def test_boxes_of_a_map_cover_its_cells_once(data, columns: int, rows: int) -> N
         x1, y1 = np.round((box.max(axis=0)[:2] - [1.0, -2.0]) / [0.5, 0.25]).astype(int)
         covered[x0:x1, y0:y1] += 1
     np.testing.assert_array_equal(covered, occupied)
+
+
+def test_discs() -> None:
+    solid = disc_solid(Circle((1.0, -2.0), 0.5), 2.0)
+    check_closed(solid)
+    assert volume(solid) == pytest.approx(np.pi * 0.25 * 2, rel=5e-3)
+    np.testing.assert_allclose([solid.points.min(axis=0), solid.points.max(axis=0)], [[0.5, -2.5, 0], [1.5, -1.5, 2]])
 
 
 def test_ground_looks_up_and_the_arrow_forwards() -> None:

@@ -97,6 +97,10 @@ def test_bodies_are_where_they_are_simulated_and_collide(run) -> None:
     }
     assert kinds["/World/Obstacles/robot_1_2/body/part_0"] == "convexDecomposition"
     assert kinds["/World/Robots/robot_1/body/part_0"] == "convexHull"
+    hulls = [UsdGeom.Cylinder(prim) for prim in stage.Traverse() if prim.IsA(UsdGeom.Cylinder)]
+    assert sorted(hull.GetRadiusAttr().Get() for hull in hulls) == [0.2, 0.25, 0.3]
+    assert all(hull.GetPrim().HasAPI(UsdPhysics.CollisionAPI) for hull in hulls)
+    assert {hull.GetPurposeAttr().Get() for hull in hulls} == {"guide"}, "it is not seen"
     assert kinds["/World/Map"] == "none"
     assert not any("front" in path for path in kinds), "the arrow does not collide"
     walker = stage.GetPrimAtPath("/World/Pedestrians/walker")

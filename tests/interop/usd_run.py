@@ -14,8 +14,8 @@ robot:
   - {name: "robot 1", state: [1, 4, 3], goal: [11, 4], kinematics: {name: diff}, behavior: {name: dash},
      shape: {name: rectangle, length: 0.5, width: 0.3}}
   - {name: spinner, state: [2, 1.5, 0], goal: [2.2, 1.5], kinematics: {name: omni_angular},
-     behavior: {name: replay, times: [0, 1, 2, 3, 4, 5], poses: [[2, 1.5, 0], [2, 1.5, 2], [2, 1.5, 4], [2, 1.5, 6],
-     [2, 1.5, 8], [2, 1.5, 10]]}}
+     shape: {name: circle, radius: 0.2}, behavior: {name: replay, times: [0, 1, 2, 3, 4, 5], poses: [[2, 1.5, 0],
+     [2, 1.5, 2], [2, 1.5, 4], [2, 1.5, 6], [2, 1.5, 8], [2, 1.5, 10]]}}
 obstacle:
   - {name: "robot_1", state: [6, 6, 0.3], shape: {name: polygon, vertices: [[0, 0], [1.5, 0], [1.5, 1.5], [1, 1.5],
      [1, 0.5], [0.5, 0.5], [0.5, 1.5], [0, 1.5]]}}

@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.bridges.scene import Grid, Line, Polygon
+from irsim.bridges.scene import Circle, Grid, Line, Polygon
 from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
-__all__ = ["WALL_THICKNESS", "Solid", "arrow", "grid_solid", "line_solid", "plane", "polygon_solid"]
+__all__ = ["WALL_THICKNESS", "Solid", "arrow", "disc_solid", "grid_solid", "line_solid", "plane", "polygon_solid"]
 
 WALL_THICKNESS = 0.05
 """Thickness of solids of lines, which have none in the plane [m]."""
+_DISC_CORNERS = 48
 _CONVEX = 1e-9
 """Share of its area by which the convex hull of a convex region may be larger, because of rounding."""
 Ints = NDArray[np.int64]
@@ -59,6 +60,13 @@ def polygon_solid(polygon: Polygon, height: float) -> Solid | None:
     if not region.is_valid:
         region = shapely.make_valid(region)
     return _prism(region, height)
+
+
+def disc_solid(circle: Circle, height: float) -> Solid:
+    """A prism whose corners are on a circle, from the ground up."""
+    angle = np.linspace(0.0, 2 * np.pi, _DISC_CORNERS, endpoint=False)
+    corners = np.array(circle.center) + circle.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return _convex_prism(corners, height)
 
 
 def line_solid(line: Line, height: float, thickness: float = WALL_THICKNESS) -> Solid | None:

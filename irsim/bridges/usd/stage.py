@@ -3,10 +3,10 @@
 - ``/World/Ground``, ``/World/Map``, ``/World/Obstacles/<name>``: static, with collisions
 - ``/World/Robots/<name>``, ``/World/Pedestrians/<name>``: kinematic rigid bodies, moved by ``xformOp:translate`` and
   ``xformOp:rotateZ``; their child ``body`` holds what is seen and can be exchanged for a character
-- ``/World/Cameras``, ``/World/Lights``, ``/World/Physics``
+- ``/World/Cameras``, ``/World/Lights``, ``/World/Looks``, ``/World/Physics``
 
-A prim of an object has its index and name as custom data ``irsim:id`` and ``irsim:name``. Collisions of convex solids
-are their hulls, of others a convex decomposition, of the map its triangles.
+A prim of an object has its index and name as custom data ``irsim:id`` and ``irsim:name``. Discs collide
+as cylinders, convex solids as their hulls, others as a convex decomposition, and the map with its triangles.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.scene import Agent, Circle, Line, SceneDescription
+from irsim.bridges.usd.looks import paint
 from irsim.bridges.usd.names import prim_names
-from irsim.bridges.usd.solids import Solid, arrow, grid_solid, line_solid, plane, polygon_solid
+from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
 from irsim.common.arrays import Floats
 
 __all__ = ["Heights", "Mover", "author_scene", "new_stage"]
@@ -138,7 +139,7 @@ def _author_agent(stage: Any, path: str, agent: Agent, height: float, *, rigid: 
     for number, part in enumerate(agent.parts):
         below = f"{body}/part_{number}"
         if isinstance(part, Circle):
-            _cylinder(stage, below, part, height, agent)
+            _disc(stage, below, part, height, agent)
             continue
         solid = line_solid(part, height) if isinstance(part, Line) else polygon_solid(part, height)
         if solid is not None:
@@ -149,26 +150,29 @@ def _author_agent(stage: Any, path: str, agent: Agent, height: float, *, rigid: 
         _mesh(stage, f"{body}/front", wedge, _ARROW_COLOR, solid=False)
 
 
-def _cylinder(stage: Any, path: str, circle: Circle, height: float, agent: Agent) -> None:
+def _disc(stage: Any, path: str, circle: Circle, height: float, agent: Agent) -> None:
+    """Write a disc: a mesh that is seen, and a hidden cylinder that collides, which is rounder than the mesh."""
     from pxr import Gf, UsdGeom, UsdPhysics, Vt
 
+    _mesh(stage, path, disc_solid(circle, height), agent.color, solid=False)
+    if not agent.solid:
+        return
     radius, half = circle.radius, height / 2
-    drawn = UsdGeom.Cylinder.Define(stage, path)
-    drawn.CreateAxisAttr(UsdGeom.Tokens.z)
-    drawn.CreateRadiusAttr(radius)
-    drawn.CreateHeightAttr(height)
-    drawn.CreateExtentAttr(Vt.Vec3fArray([Gf.Vec3f(-radius, -radius, -half), Gf.Vec3f(radius, radius, half)]))
-    drawn.CreateDisplayColorAttr(Vt.Vec3fArray([Gf.Vec3f(*agent.color)]))
-    drawn.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*circle.center, half))
-    if agent.solid:
-        UsdPhysics.CollisionAPI.Apply(drawn.GetPrim())
+    hull = UsdGeom.Cylinder.Define(stage, f"{path}_collision")
+    hull.CreateAxisAttr(UsdGeom.Tokens.z)
+    hull.CreateRadiusAttr(radius)
+    hull.CreateHeightAttr(height)
+    hull.CreateExtentAttr(Vt.Vec3fArray([Gf.Vec3f(-radius, -radius, -half), Gf.Vec3f(radius, radius, half)]))
+    hull.CreatePurposeAttr(UsdGeom.Tokens.guide)
+    hull.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*circle.center, half))
+    UsdPhysics.CollisionAPI.Apply(hull.GetPrim())
 
 
 def _mesh(
     stage: Any, path: str, shape: Solid, color: tuple[float, float, float], *, solid: bool, approximation: str = "none"
 ) -> None:
     """Write a mesh with flat faces; ``solid`` says whether it collides."""
-    from pxr import Gf, UsdGeom, UsdPhysics, Vt
+    from pxr import UsdGeom, UsdPhysics, Vt
 
     points = shape.points.astype(np.float32)
     drawn = UsdGeom.Mesh.Define(stage, path)
@@ -179,7 +183,7 @@ def _mesh(
     drawn.SetNormalsInterpolation(UsdGeom.Tokens.faceVarying)
     drawn.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
     drawn.CreateExtentAttr(Vt.Vec3fArray.FromNumpy(np.stack([points.min(axis=0), points.max(axis=0)])))
-    drawn.CreateDisplayColorAttr(Vt.Vec3fArray([Gf.Vec3f(*color)]))
+    paint(stage, drawn.GetPrim(), color)
     if solid:
         UsdPhysics.CollisionAPI.Apply(drawn.GetPrim())
         UsdPhysics.MeshCollisionAPI.Apply(drawn.GetPrim()).CreateApproximationAttr(approximation)
@@ -205,7 +209,7 @@ def _author_cameras(stage: Any, scene: SceneDescription) -> None:
     middle, size = (low + high) / 2, float(max(1.0, *(high - low)))
     above = np.array([*middle, 1.6 * size])
     _camera(stage, "Top", _looking(above, np.array([*middle, 0.0]), np.array([0.0, 1.0, 0.0])), size)
-    front = np.array([middle[0], low[1] - 0.75 * size, 0.95 * size])
+    front = np.array([middle[0], low[1] - 0.35 * size, 0.75 * size])
     _camera(stage, "Overview", _looking(front, np.array([*middle, 0.0]), np.array([0.0, 0.0, 1.0])), size)
 
 
