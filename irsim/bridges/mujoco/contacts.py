@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from irsim.bridges.mujoco.mjcf import MAP_BODY, body_name
 from irsim.bridges.mujoco.physics import Physics
-from irsim.bridges.scene import Circle, Line, Part, SceneDescription
+from irsim.bridges.scene import Circle, Line, Part
 from irsim.bridges.solids.cells import merged_cells
 from irsim.common.arrays import Floats
 
@@ -21,6 +22,8 @@ __all__ = ["Contact", "Contacts"]
 
 _GHOST = 0.02
 """Distance of footprints from which a contact is one that irsim does not have [m]: walls are 1 cm thick in MuJoCo."""
+_BOUNCE_S = 0.5
+"""Time without contact after which the next one counts as another one [s]."""
 _MAX_LISTED = 1000
 """Contacts beyond this number are counted but not listed."""
 
@@ -60,7 +63,7 @@ class Contacts:
         self._scene = physics.scene
         self._physics = physics
         self._owner = self._owners(physics)
-        self._touching: set[int] = set()
+        self._last: dict[int, float] = {}
 
     def _owners(self, physics: Physics) -> np.ndarray:
         """(geoms,) row of the object that a geom belongs to; N: map, N + 1: walls, -1: ground and wheels."""
@@ -74,21 +77,19 @@ class Contacts:
         return owner
 
     def watch(self, model: Any, data: Any, time: float) -> None:
-        """Look at the contacts after a period of the physics."""
+        """Look at the contacts after a period of the physics; a pair that bounces goes on touching."""
         if not data.ncon:
-            self._touching.clear()
             return
         pairs = self._owner[data.contact.geom]
         pairs = pairs[(pairs >= 0).all(axis=1) & (data.contact.dist <= 0)]
         if not len(pairs):
-            self._touching.clear()
             return
         pairs.sort(axis=1)
         width = len(self._scene.agents) + 2
-        now = set((pairs[:, 0] * width + pairs[:, 1]).tolist())
-        for pair in sorted(now - self._touching):
-            self._begin(divmod(pair, width), data, time)
-        self._touching = now
+        for pair in sorted(set((pairs[:, 0] * width + pairs[:, 1]).tolist())):
+            if time - self._last.get(pair, -math.inf) > _BOUNCE_S:
+                self._begin(divmod(pair, width), data, time)
+            self._last[pair] = time
 
     def _begin(self, pair: tuple[int, int], data: Any, time: float) -> None:
         gap = self._gap(pair, data)
@@ -96,7 +97,7 @@ class Contacts:
         self.count += 1
         self.ghosts += ghost
         if len(self.found) < _MAX_LISTED:
-            one, other = (self._name(row) for row in pair)
+            one, other = map(self._name, pair)
             self.found.append(Contact(round(time, 6), (one, other), gap, ghost))
 
     def _name(self, row: int) -> str:
@@ -151,7 +152,3 @@ def _footprint(parts: tuple[Part, ...]) -> BaseGeometry:
             shapes.append(shapely.Polygon(part.corners))
     return shapely.union_all(shapes)
 
-
-def scene_names(scene: SceneDescription) -> tuple[str, ...]:
-    """Names that contacts can have."""
-    return (*scene.names, "map", "walls")

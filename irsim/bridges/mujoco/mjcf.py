@@ -141,8 +141,8 @@ class _Writer:
         visual = ET.SubElement(self.root, "visual")
         ET.SubElement(visual, "global", offwidth=str(options.size[0]), offheight=str(options.size[1]))
         ET.SubElement(visual, "headlight", ambient="0.35 0.35 0.35", diffuse="0.3 0.3 0.3", specular="0 0 0")
-        ET.SubElement(visual, "map", znear="0.002", zfar="20")
-        ET.SubElement(visual, "quality", shadowsize="4096")
+        ET.SubElement(visual, "map", znear="0.002", zfar="20", shadowclip="0.8")
+        ET.SubElement(visual, "quality", shadowsize="2048")
         default = ET.SubElement(self.root, "default")
         classes = {
             "robot": {"contype": "2", "conaffinity": "6", "group": "0", "friction": "0.3"},
@@ -159,8 +159,8 @@ class _Writer:
         asset = ET.SubElement(self.root, "asset")
         ET.SubElement(asset, "texture", type="skybox", builtin="gradient", rgb1="0.86 0.9 0.95", rgb2="0.6 0.7 0.82",
                       width="64", height="64")  # fmt: skip
-        ET.SubElement(asset, "texture", name="ground", type="2d", builtin="checker", rgb1="0.9 0.9 0.88",
-                      rgb2="0.84 0.84 0.82", width="128", height="128")  # fmt: skip
+        ET.SubElement(asset, "texture", name="ground", type="2d", builtin="checker", rgb1="0.66 0.68 0.68",
+                      rgb2="0.6 0.62 0.62", width="128", height="128")  # fmt: skip
         ET.SubElement(asset, "material", name="ground", texture="ground", texuniform="true", texrepeat="0.5 0.5")
         return asset
 
