@@ -14,6 +14,7 @@ from irsim.bridges.mujoco.mjcf import choose_agents
 from irsim.bridges.mujoco.physics import Physics
 from irsim.bridges.mujoco.rays import LidarComparison, Rays
 from irsim.bridges.mujoco.report import MujocoReport, log_report, write_report
+from irsim.bridges.mujoco.rigs import PUSHED
 from irsim.bridges.mujoco.video import Film, prepare_display
 from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import Feedback, Motion, WorldState
@@ -78,7 +79,8 @@ class MujocoBridge(Bridge):
         self._steps += 1
         poses, twists = physics.poses(), physics.twists()
         names = [(k, name) for k, name in enumerate(physics.rigs) if physics.rows[k] not in physics.absent]
-        apart = [float(np.hypot(*(poses[k] - motion.pose[physics.rows[k]])[:2])) for k, _ in names]
+        apart = [float(np.hypot(*(poses[k] - motion.pose[physics.rows[k]])[:2])) for k, name in names
+                 if physics.rigs[name].drive != PUSHED]  # fmt: skip
         self._slip += apart
         ranges = self._measured(motion, poses) if self.options.lidar == "replace" else {}
         return Feedback(
@@ -125,7 +127,7 @@ class MujocoBridge(Bridge):
             steps=self._steps,
             simulated_s=self._steps * self.physics.scene.step_time,
             wall_s=time.perf_counter() - self._begun,
-            robots=sorted(self.agents),
+            objects=sorted(self.agents),
             contacts=self._contacts.count,
             ghost_contacts=self._contacts.ghosts,
             first_contacts=[vars(contact) for contact in self._contacts.found],

@@ -151,4 +151,3 @@ def _footprint(parts: tuple[Part, ...]) -> BaseGeometry:
         else:
             shapes.append(shapely.Polygon(part.corners))
     return shapely.union_all(shapes)
-

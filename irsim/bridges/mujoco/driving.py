@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from irsim.bridges.mujoco.rigs import Rig
+from irsim.bridges.mujoco.rigs import PUSHED, Rig
 from irsim.bridges.state import Motion
 from irsim.common.arrays import Floats
 from irsim.components.bridges.mujoco import Mujoco
@@ -81,6 +81,7 @@ class Driver:
             "diff": ("left", "right"),
             "omni": ("x", "y"),
             "omni_angular": ("x", "y", "yaw"),
+            PUSHED: (),
             "acker": ("left", "right", "steer_left", "steer_right"),
         }[self.rigs[robot].drive]
 
@@ -89,6 +90,8 @@ class Driver:
         targets: list[float] = []
         for robot, (row, rig) in enumerate(zip(self.rows, self.rigs, strict=True)):
             control, rate = motion.control[row].tolist(), float(motion.twist[row, 2])
+            if rig.drive == PUSHED:
+                continue
             speeds = np.array(speeds_of(rig, control, rate))
             drawn = self.random.random(len(speeds)), self.random.standard_normal(len(speeds))
             speeds *= (1 - self.options.slip * drawn[0]) * (1 + self.options.command_noise * drawn[1])

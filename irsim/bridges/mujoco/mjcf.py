@@ -1,8 +1,8 @@
 """A scene as MJCF, the XML of MuJoCo's models; writing it needs no MuJoCo.
 
 Groups of geoms: 0 is solid and seen by lidars, 1 is seen by cameras only, 2 belongs to robots and is seen by cameras
-only, 3 touches only, 4 is seen by lidars only. Bits of contacts: ground 1, robots 2, everything else 4; wheels touch only
-the ground.
+only, 3 touches only, 4 is seen by lidars only. Bits of contacts: ground 1, robots 2, everything else 4; wheels touch
+only the ground.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.mujoco.rigs import DRIVES, LIDAR_HEIGHT, Rig, can_move, default_agents, rig_of
 from irsim.bridges.mujoco.robots import add_actuators, add_robot
-from irsim.bridges.mujoco.rigs import DRIVES, LIDAR_HEIGHT, Rig, default_agents, rig_of
 from irsim.bridges.mujoco.xml import colored, numbers
 from irsim.bridges.scene import Agent, Line, SceneDescription
 from irsim.bridges.solids.cells import merged_cells
@@ -57,9 +57,10 @@ def choose_agents(scene: SceneDescription, names: Iterable[str] | None) -> froze
             fix = suggestion(name, scene.names, f"objects are {', '.join(scene.names[:20])}")
             raise BridgeError("bridge-mismatch", f"agents: there is no object {name!r}", fix)
         agent = scene.agent(name)
-        if agent.drive not in DRIVES or not agent.parts:
+        if not can_move(agent):
             what = f"agents: MuJoCo cannot move {name}, whose drive is {agent.drive or 'none'}"
-            raise BridgeError("bridge-mismatch", what, f"name objects whose drive is one of {', '.join(DRIVES)}")
+            fix = f"name objects whose drive is one of {', '.join(DRIVES)}, or that can be pushed"
+            raise BridgeError("bridge-mismatch", what, fix)
     return frozenset(names)
 
 

@@ -11,6 +11,7 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import quaternion_of, rotation_of
 from irsim.bridges.mujoco.driving import Driver
 from irsim.bridges.mujoco.mjcf import PARKED, body_name, is_mocap, rigs_of, write_mjcf
+from irsim.bridges.mujoco.rigs import PLANAR, TURNING
 from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import Motion
 from irsim.common.angles import wrap
@@ -70,7 +71,7 @@ class Physics:
         ids: list[int] = []
         planar: list[tuple[int, int]] = []  # first target, row of the robot
         for robot, name in enumerate(self.rigs):
-            if self.rigs[name].drive.startswith("omni"):
+            if self.rigs[name].drive in ("omni", "omni_angular"):
                 planar.append((len(ids), robot))
             body = body_name(self.scene.agent(name))
             ids += [self.model.actuator(f"{body}/{suffix}").id for suffix in self.driver.targets_at(robot)]
@@ -122,7 +123,7 @@ class Physics:
         self._kinematics(self.model, self.data)
 
     def _show_mocaps(self, pose: Floats) -> None:
-        gone = np.isnan(pose).any(axis=1)
+        gone = ~np.isfinite(pose.sum(axis=1))
         shown = np.where(gone[:, None], 0.0, pose)
         self.data.mocap_pos[self._mocap_ids, :2] = shown[:, :2]
         self.data.mocap_pos[self._mocap_ids, 2] = np.where(gone, PARKED, 0.0)
@@ -134,7 +135,7 @@ class Physics:
         first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
         speed = int(model.jnt_dofadr[first])
         address = int(model.jnt_qposadr[first])
-        if self.rigs[name].drive in ("omni", "omni_angular"):
+        if self.rigs[name].drive in PLANAR:
             data.qpos[address : address + count] = pose[:count]
             data.qvel[speed : speed + count] *= not stop
             return
@@ -155,7 +156,7 @@ class Physics:
         for k, (name, body) in enumerate(self.bodies.items()):
             address = int(self.model.jnt_qposadr[self.model.body_jntadr[body]])
             found[k, :2] = self.data.qpos[address : address + 2]
-            if self.rigs[name].drive == "omni_angular":
+            if self.rigs[name].drive in TURNING:
                 found[k, 2] = wrap(self.data.qpos[address + 2])
             elif self.rigs[name].drive == "omni":
                 found[k, 2] = self.scene.agents[self.rows[k]].pose[2]
@@ -170,7 +171,7 @@ class Physics:
         for k, (name, body) in enumerate(self.bodies.items()):
             first = int(self.model.jnt_dofadr[self.model.body_jntadr[body]])
             found[k, :2] = self.data.qvel[first : first + 2]
-            if self.rigs[name].drive == "omni_angular":
+            if self.rigs[name].drive in TURNING:
                 found[k, 2] = self.data.qvel[first + 2]
             elif self.rigs[name].drive != "omni":
                 address = int(self.model.jnt_qposadr[self.model.body_jntadr[body]])

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.bridges.mujoco.mjcf import body_name
 from irsim.bridges.mujoco.physics import Physics
 from irsim.bridges.mujoco.rigs import LIDAR_HEIGHT
-from irsim.bridges.mujoco.mjcf import body_name
 from irsim.bridges.scene import Agent, Lidar
 from irsim.common.arrays import Floats
 
@@ -63,7 +63,17 @@ class Rays:
         beams = np.stack([np.cos(angles), np.sin(angles), np.zeros(lidar.beams)], axis=1)
         hit = np.full(lidar.beams, -1, dtype=np.int32)
         distance = np.full(lidar.beams, -1.0)
-        arguments = [self.physics.model, self.physics.data, origin, beams.ravel(), _SEEN_GROUPS, True, body, hit, distance]
+        arguments = [
+            self.physics.model,
+            self.physics.data,
+            origin,
+            beams.ravel(),
+            _SEEN_GROUPS,
+            True,
+            body,
+            hit,
+            distance,
+        ]
         if self._normals:
             arguments.append(None)
         self._cast(*arguments, lidar.beams, lidar.range_max)

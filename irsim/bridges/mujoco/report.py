@@ -20,7 +20,7 @@ class MujocoReport:
     Attributes:
         steps: Number of steps of irsim.
         simulated_s, wall_s: Simulated time and time on the wall [s].
-        robots: Names of the robots that MuJoCo has moved.
+        objects: Names of the objects that MuJoCo has moved.
         contacts: Number of times that two objects began to touch.
         ghost_contacts: Number of those whose footprints do not touch in irsim.
         first_contacts: The first thousand: time [s], objects, gap between their footprints [m], and whether it is a
@@ -36,7 +36,7 @@ class MujocoReport:
     steps: int = 0
     simulated_s: float = 0.0
     wall_s: float = 0.0
-    robots: list[str] = field(default_factory=list)
+    objects: list[str] = field(default_factory=list)
     contacts: int = 0
     ghost_contacts: int = 0
     first_contacts: list[dict[str, Any]] = field(default_factory=list)
@@ -51,11 +51,13 @@ class MujocoReport:
 
     def lines(self) -> list[str]:
         """The main numbers as text."""
-        robots = f"{len(self.robots)} robot{'s' * (len(self.robots) != 1)}"
+        objects = f"{len(self.objects)} object{'s' * (len(self.objects) != 1)}"
         found = [
-            f"mujoco: moved {robots} for {self.simulated_s:.1f} s in {self.wall_s:.1f} s; in a step they end up to "
-            f"{self.step_difference_largest_m:.3f} m (median {self.step_difference_median_m:.4f} m) from where irsim "
-            "would have them",
+            (
+                f"mujoco: moved {objects} for {self.simulated_s:.1f} s in {self.wall_s:.1f} s; in a step robots end up to "
+                f"{self.step_difference_largest_m:.3f} m (median {self.step_difference_median_m:.4f} m) from where "
+                "irsim would have them"
+            ),
             f"mujoco: {self.contacts} contacts, {self.ghost_contacts} of them between footprints that do not touch",
         ]
         if self.lidar_beams:

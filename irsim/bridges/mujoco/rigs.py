@@ -8,10 +8,16 @@ from dataclasses import dataclass
 from irsim.bridges.scene import Agent, SceneDescription
 from irsim.bridges.solids.solids import part_points
 
-__all__ = ["DRIVES", "LIDAR_HEIGHT", "Rig", "default_agents", "rig_of"]
+__all__ = ["DRIVES", "LIDAR_HEIGHT", "PLANAR", "PUSHED", "TURNING", "Rig", "can_move", "default_agents", "rig_of"]
 
 DRIVES = ("diff", "omni", "omni_angular", "acker")
 """Drives that have a body in MuJoCo."""
+PUSHED = "pushed"
+"""In place of a drive: an object that only moves where others push it."""
+PLANAR = ("omni", "omni_angular", PUSHED)
+"""Drives of bodies that move along the axes of the world, without wheels."""
+TURNING = ("omni_angular", PUSHED)
+"""Those of them that turn."""
 LIDAR_HEIGHT = 0.2
 """Height of the plane of all lidars [m]: every footprint is between its clearance, which is below, and its top."""
 _DEFAULT_MASS = 10.0
@@ -27,7 +33,7 @@ class Rig:
     """Dimensions of a robot that the scenario does not give, in proportion to its footprint.
 
     Attributes:
-        drive: One of :data:`DRIVES`.
+        drive: One of :data:`DRIVES`, or :data:`PUSHED`.
         mass: Mass with its wheels [kg].
         wheel_mass: Mass of each wheel [kg].
         wheel_radius: [m].
@@ -54,16 +60,30 @@ class Rig:
 
 
 def default_agents(scene: SceneDescription) -> frozenset[str]:
-    """Names of the robots that MuJoCo can move."""
-    return frozenset(agent.name for agent in scene.robots if agent.drive in DRIVES and agent.moves and agent.parts)
+    """Names of the robots that MuJoCo can move, and of the obstacles that can be pushed."""
+    return frozenset(agent.name for agent in scene.agents if can_move(agent) and _by_default(agent))
+
+
+def _by_default(agent: Agent) -> bool:
+    return (agent.role == "robot" and agent.moves) or not _has_drive(agent)
+
+
+def can_move(agent: Agent) -> bool:
+    """Whether MuJoCo can move an object."""
+    pushed = agent.solid and not agent.moves and math.isfinite(agent.mass)
+    return bool(agent.parts) and (agent.drive in DRIVES if _has_drive(agent) else pushed)
+
+
+def _has_drive(agent: Agent) -> bool:
+    return agent.drive not in (None, "static")
 
 
 def rig_of(agent: Agent, mass: float | None = None) -> Rig:
     """The rig of a robot.
 
     Args:
-        agent: The robot, whose drive is one of :data:`DRIVES`.
-        mass: Its mass [kg]; None: that of the scenario.
+        agent: The robot, or an obstacle that can be pushed.
+        mass: Mass of robots [kg]; None: that of the scenario.
     """
     points = part_points(agent.parts)
     (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
@@ -80,10 +100,10 @@ def rig_of(agent: Agent, mass: float | None = None) -> Rig:
         center = min(max(x, -0.3 * back), 0.3 * front), _within(y, 0.5 * half_track)
     else:
         center = x, y
-    if mass is None:
+    if mass is None or not _has_drive(agent):
         mass = agent.mass if math.isfinite(agent.mass) and agent.mass > 0 else _DEFAULT_MASS
     return Rig(
-        drive=str(agent.drive),
+        drive=str(agent.drive) if _has_drive(agent) else PUSHED,
         mass=mass,
         wheel_mass=_WHEEL_SHARE * mass,
         wheel_radius=wheel_radius,

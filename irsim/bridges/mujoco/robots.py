@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from xml.etree import ElementTree as ET
 
-from irsim.bridges.mujoco.rigs import Rig
+from irsim.bridges.mujoco.rigs import PLANAR, PUSHED, TURNING, Rig
 from irsim.bridges.mujoco.xml import numbers
 from irsim.components.bridges.mujoco import Mujoco
 
@@ -16,6 +16,8 @@ _CASTER_GAP = 5e-4
 _GRIP = 0.9
 """Share of the friction with the ground that motors use at most, so that wheels do not spin."""
 _GRAVITY = 9.81
+_SLIDING = 0.4
+"""Coefficient of friction between the ground and what is pushed."""
 _STEERING_RATE = 60.0
 """Natural frequency of the steering servos [rad/s]."""
 _STEERING_SHARE = 1e-3
@@ -35,7 +37,7 @@ def add_robot(body: ET.Element, rig: Rig, pose: tuple[float, float, float], opti
     name, away = body.get("name", ""), max(1.0, 6 * rig.gyration)
     ET.SubElement(body, "camera", name=f"{name}/camera", pos=numbers(-away, 0, rig.top + 0.7 * away), fovy="60",
                   xyaxes="0 -1 0 0.5 0 0.866")  # fmt: skip
-    if rig.drive in ("omni", "omni_angular"):
+    if rig.drive in PLANAR:
         _planar(body, rig, pose)
         return
     ET.SubElement(body, "freejoint", name=f"{name}/free")
@@ -60,6 +62,8 @@ def add_robot(body: ET.Element, rig: Rig, pose: tuple[float, float, float], opti
 def add_actuators(actuators: ET.Element, name: str, rig: Rig, options: Mujoco) -> None:
     """Add what drives a robot: velocities of wheels or of planar joints, angles of steered wheels."""
     grip = _GRIP * options.friction * rig.mass * _GRAVITY
+    if rig.drive == PUSHED:
+        return
     if rig.drive in ("omni", "omni_angular"):
         force = numbers(-grip, grip)
         for axis in ("x", "y"):
@@ -94,10 +98,13 @@ def _planar(body: ET.Element, rig: Rig, pose: tuple[float, float, float]) -> Non
     """
     name, (x, y, yaw) = body.get("name", ""), pose
     cosine, sine = math.cos(yaw), math.sin(yaw)
+    drag = _SLIDING * rig.mass * _GRAVITY if rig.drive == PUSHED else 0.0
     for axis, start, direction in (("x", x, (cosine, -sine, 0.0)), ("y", y, (sine, cosine, 0.0))):
-        ET.SubElement(body, "joint", name=f"{name}/{axis}", type="slide", axis=numbers(*direction), ref=numbers(start))
-    if rig.drive == "omni_angular":
-        ET.SubElement(body, "joint", name=f"{name}/yaw", type="hinge", axis="0 0 1", ref=numbers(yaw))
+        ET.SubElement(body, "joint", name=f"{name}/{axis}", type="slide", axis=numbers(*direction), ref=numbers(start),
+                      frictionloss=numbers(drag))  # fmt: skip
+    if rig.drive in TURNING:
+        ET.SubElement(body, "joint", name=f"{name}/yaw", type="hinge", axis="0 0 1", ref=numbers(yaw),
+                      frictionloss=numbers(drag * rig.gyration))  # fmt: skip
     _inertia(body, rig, rig.mass)
 
 

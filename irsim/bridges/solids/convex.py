@@ -50,10 +50,10 @@ def convex_pieces(corners: Floats) -> list[Floats]:
     """
     parts = triangles(corners)
     points, index = np.unique(parts.reshape(-1, 2), axis=0, return_inverse=True)
-    pieces: dict[int, list[int]] = {k: row for k, row in enumerate(index.reshape(-1, 3).tolist())}
+    pieces: dict[int, list[int]] = dict(enumerate(index.reshape(-1, 3).tolist()))
     owner: dict[tuple[int, int], int] = {}
     for key, piece in pieces.items():
-        owner.update({edge: key for edge in _edges(piece)})
+        owner.update(dict.fromkeys(_edges(piece), key))
     for a, b in list(owner):
         one, other = owner.get((a, b)), owner.get((b, a))
         if one is None or other is None or one == other:
@@ -62,7 +62,7 @@ def convex_pieces(corners: Floats) -> list[Floats]:
         if not is_convex(points[merged]):
             continue
         del owner[a, b], owner[b, a]
-        owner.update({edge: one for edge in _edges(merged)})
+        owner.update(dict.fromkeys(_edges(merged), one))
         pieces[one] = merged
         del pieces[other]
     return [points[piece] for piece in pieces.values()]

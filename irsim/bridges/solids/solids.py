@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -99,7 +100,7 @@ def _walls(line: Line, thickness: float) -> list[Solid]:
         x, y = points[:-1].T
         inward = float(np.sign(x @ np.roll(y, -1) - y @ np.roll(x, -1)))  # 1: the inside is on the left
     found: list[Solid] = []
-    for a, b in zip(points[:-1], points[1:], strict=True):
+    for a, b in itertools.pairwise(points):
         length = float(np.hypot(*(b - a)))
         if not length > 0:
             continue

@@ -12,7 +12,7 @@ from irsim.options.units import Fraction, Integer, Kilograms, Meters, Number, Se
 
 
 class Mujoco(BridgeOptions):
-    """Let MuJoCo, a simulator of rigid bodies, move robots: behaviors decide here, wheels, masses and contacts act there.
+    """Let MuJoCo, a simulator of rigid bodies, move robots: irsim decides; wheels, masses and contacts act there.
 
     At the end of the run it reports contacts, slip, and the difference between the lidars of both simulators. Needs
     `pip install 'irsim-mcp[mujoco]'`.
@@ -24,8 +24,8 @@ class Mujoco(BridgeOptions):
 
     name: Literal["mujoco"] = "mujoco"
     agents: list[str] | None = None
-    """Names of the robots that MuJoCo moves; null is all whose drive is diff, omni, omni_angular or acker. An empty list
-    moves none and compares the lidars only."""
+    """Names of the objects that MuJoCo moves; null is all robots whose drive is diff, omni, omni_angular or acker, and
+    all obstacles that can be pushed. An empty list moves none and compares the lidars only."""
     timestep: Annotated[Seconds, Field(gt=0, le=0.05)] = 0.005
     """Longest period of the physics; `step_time` is divided into equal periods."""
     friction: Annotated[Number, Field(gt=0, le=10)] = 1.0
