@@ -54,8 +54,8 @@ class MujocoReport:
         objects = f"{len(self.objects)} object{'s' * (len(self.objects) != 1)}"
         found = [
             (
-                f"mujoco: moved {objects} for {self.simulated_s:.1f} s in {self.wall_s:.1f} s; in a step robots end up to "
-                f"{self.step_difference_largest_m:.3f} m (median {self.step_difference_median_m:.4f} m) from where "
+                f"mujoco: moved {objects} for {self.simulated_s:.1f} s in {self.wall_s:.1f} s; in a step robots are "
+                f"up to {self.step_difference_largest_m:.3f} m (median {self.step_difference_median_m:.4f} m) from where "
                 "irsim would have them"
             ),
             f"mujoco: {self.contacts} contacts, {self.ghost_contacts} of them between footprints that do not touch",
