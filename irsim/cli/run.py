@@ -45,6 +45,16 @@ def run(
     ] = None,
     behavior: Annotated[str | None, typer.Option(metavar="NAME", help="Another name of --policy.", hidden=True)] = None,
     perturb: Perturb = None,
+    bridge: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--bridge",
+            metavar="NAME",
+            help="Connect to another program, besides those of the key bridges: a name such as json_lines, or '{name: "
+            'json_lines, address: "127.0.0.1:9100"}\'. Repeatable; irsim bridge doctor lists them.',
+            show_default=False,
+        ),
+    ] = None,
     imports: Imports = None,
     require_success: Annotated[
         bool, typer.Option("--require-success", help="Exit with code 1 unless every robot reaches its goal.")
@@ -87,6 +97,7 @@ def run(
             policy=policy,
             behavior=behavior,
             perturb=perturb,
+            bridges=bridge or (),
             imports=imports or (),
             save=save_gif,
             show=show,
