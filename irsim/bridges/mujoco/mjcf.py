@@ -11,15 +11,13 @@ import math
 from collections.abc import Iterable
 from xml.etree import ElementTree as ET
 
-import numpy as np
-
 from irsim.bridges.base import BridgeError
 from irsim.bridges.mujoco.rigs import DRIVES, LIDAR_HEIGHT, Rig, can_move, default_agents, rig_of
 from irsim.bridges.mujoco.robots import add_actuators, add_robot
 from irsim.bridges.mujoco.xml import colored, numbers
 from irsim.bridges.scene import Agent, Line, SceneDescription
 from irsim.bridges.solids.cells import merged_cells
-from irsim.bridges.solids.solids import Box, Disk, Outline, Solid, solids_of
+from irsim.bridges.solids.solids import Box, Disk, Outline, Solid, room_of, solids_of
 from irsim.common.arrays import Floats
 from irsim.components.bridges.mujoco import Mujoco
 from irsim.diagnostics.diagnostic import suggestion
@@ -178,9 +176,9 @@ class _Writer:
         ET.SubElement(self.world, "camera", name="top", pos=numbers(x, y, high), fovy="45")
         ET.SubElement(self.world, "camera", name="corner", pos=numbers(x, y - 0.95 * wide, 0.9 * wide), fovy="45",
                       xyaxes=numbers(1, 0, 0, 0, 0.9, 0.95))  # fmt: skip
-        if self.scene.walls and not any(isinstance(p, Line) and p.closed for a in self.scene.agents for p in a.parts):
+        room = room_of(self.scene)
+        if room is not None:
             body = ET.SubElement(self.world, "body", name="irsim/walls")
-            room = Line(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), closed=True)
             for solid in solids_of(room, _ROOM_WALL):
                 self._solid(body, solid, 0.0, self.options.height, "thing", _MAP_COLOR)
 

@@ -55,8 +55,8 @@ class MujocoReport:
         found = [
             (
                 f"mujoco: moved {objects} for {self.simulated_s:.1f} s in {self.wall_s:.1f} s; in a step robots are "
-                f"up to {self.step_difference_largest_m:.3f} m (median {self.step_difference_median_m:.4f} m) from where "
-                "irsim would have them"
+                f"up to {self.step_difference_largest_m:.3f} m (median {self.step_difference_median_m:.4f} m) from "
+                "where irsim would have them"
             ),
             f"mujoco: {self.contacts} contacts, {self.ghost_contacts} of them between footprints that do not touch",
         ]

@@ -8,11 +8,11 @@ from typing import TypeAlias
 
 import numpy as np
 
-from irsim.bridges.scene import Circle, Line, Part, Polygon
+from irsim.bridges.scene import Circle, Line, Part, Polygon, SceneDescription
 from irsim.bridges.solids.convex import convex_pieces, is_convex
 from irsim.common.arrays import Floats
 
-__all__ = ["Box", "Disk", "Outline", "Solid", "solids_of"]
+__all__ = ["Box", "Disk", "Outline", "Solid", "part_points", "room_of", "solids_of"]
 
 _RIGHT_ANGLE = 1e-9
 """Cosine below which two sides of a rectangle are at right angles."""
@@ -123,3 +123,11 @@ def part_points(parts: tuple[Part, ...]) -> Floats:
         else:
             found.append(part.corners if isinstance(part, Polygon) else part.points)
     return np.concatenate(found)
+
+
+def room_of(scene: SceneDescription) -> Line | None:
+    """The walls round a world, unless an object of the scene is these walls."""
+    if not scene.walls or any(isinstance(part, Line) and part.closed for a in scene.agents for part in a.parts):
+        return None
+    (x0, y0), (x1, y1) = scene.low, scene.high
+    return Line(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), closed=True)
