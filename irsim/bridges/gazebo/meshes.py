@@ -12,7 +12,8 @@ def prism(corners: Floats, bottom: float, top: float) -> str:
 
     Args:
         corners: (K, 2) counterclockwise [m].
-        bottom, top: Heights [m].
+        bottom: Height of its lower end [m].
+        top: Height of its upper end [m].
     """
     count = len(corners)
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for z in (bottom, top) for x, y in corners.tolist()]

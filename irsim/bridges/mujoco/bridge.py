@@ -112,7 +112,8 @@ class MujocoBridge(Bridge):
         physics.place(state.pose)
         if self._rays is not None and self.options.lidar == "compare":
             ours = {key: beams for key, beams in state.ranges.items() if key not in self._noisy}
-            self._comparison.add(ours, self._rays.scan(state.pose))
+            with physics.upright():
+                self._comparison.add(ours, self._rays.scan(state.pose))
         if self._film is not None:
             self._film.take()
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -149,6 +150,21 @@ class Physics:
                 break
             for joint in range(model.body_jntadr[wheel], model.body_jntadr[wheel] + model.body_jntnum[wheel]):
                 data.qvel[model.jnt_dofadr[joint]] = 0.0
+
+    @contextmanager
+    def upright(self) -> Iterator[None]:
+        """Context in which robots on wheels stand upright, as in irsim; otherwise they pitch by a quarter of a degree."""
+        qpos = self.data.qpos.copy()
+        for (name, body), pose in zip(self.bodies.items(), self.poses(), strict=True):
+            if self.rigs[name].drive not in PLANAR:
+                address = int(self.model.jnt_qposadr[self.model.body_jntadr[body]])
+                self.data.qpos[address + 3 : address + 7] = np.roll(quaternion_of(rotation_of(pose[2])), 1)
+        self._kinematics(self.model, self.data)
+        try:
+            yield
+        finally:
+            self.data.qpos[:] = qpos
+            self._kinematics(self.model, self.data)
 
     def poses(self) -> Floats:
         """(K, 3) x, y [m], yaw [rad] of the robots that MuJoCo moves, world frame."""

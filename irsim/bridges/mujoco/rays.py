@@ -103,7 +103,7 @@ class LidarComparison:
             one, other = ours[key].astype(np.float64), theirs[key].astype(np.float64)
             both = np.isfinite(one) & np.isfinite(other)
             self.one_sided += int((np.isfinite(one) != np.isfinite(other)).sum())
-            differences = np.abs(one - other)[both]
+            differences = np.abs(one[both] - other[both])
             self.beams += len(differences)
             if len(differences):
                 self.largest = max(self.largest, float(differences.max()))

@@ -43,8 +43,8 @@ class Mujoco(BridgeOptions):
     command_noise: Annotated[Number, Field(ge=0, le=10)] = 0.0
     """Standard deviation of the noise of the motors' speeds, relative to the speed."""
     lidar: Literal["compare", "replace", "off"] = "compare"
-    """What MuJoCo's rays are used for: `compare` reports their difference to irsim's ranges, `replace` gives robots
-    MuJoCo's ranges, and `off` casts none."""
+    """What MuJoCo's rays are used for: `compare` reports their difference to irsim's ranges, with all robots upright;
+    `replace` gives robots MuJoCo's ranges, in which robots on wheels pitch a little; `off` casts none."""
     range_noise: Annotated[Meters, Field(ge=0)] = 0.0
     """Standard deviation of the noise of ranges, with `lidar: replace`."""
     height: Annotated[Meters, Field(ge=0.3)] = 1.0
