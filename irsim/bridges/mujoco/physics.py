@@ -153,7 +153,7 @@ class Physics:
 
     @contextmanager
     def upright(self) -> Iterator[None]:
-        """Context in which robots on wheels stand upright, as in irsim; otherwise they pitch by a quarter of a degree."""
+        """Context in which robots on wheels stand upright, as in irsim; else they pitch by up to half a degree."""
         qpos = self.data.qpos.copy()
         for (name, body), pose in zip(self.bodies.items(), self.poses(), strict=True):
             if self.rigs[name].drive not in PLANAR:
