@@ -7,6 +7,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.api.export_after import check_exports, export_all, kept_or_temporary
 from irsim.api.picture_notes import ended_before, extent_of, moved_view
 from irsim.api.read_input import policy_of_suite, read_input
 from irsim.api.take_snapshot import snapshot, snapshot_of
@@ -75,6 +76,7 @@ def run(
     save: str | Path | None = None,
     show: bool = False,
     record: bool | str | Path = False,
+    export: str | Path | Sequence[str | Path] = (),
     recorded: Callable[[str], None] | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
@@ -101,6 +103,7 @@ def run(
         record: Also record the run: True records to a folder below ``.irsim/runs`` of the current directory, which is
             deleted 24 hours after its last use; a path records to a new folder that is kept.
             :func:`irsim.runs.open_run` reads the recording.
+        export: Files to write when the run is over, each in the format of its suffix: see :func:`irsim.export_run`.
         recorded: Callback ``(run_id)``, called when the recording starts.
         limits: Limits of the loader and of the run.
         progress: Callback ``(steps_done, steps_total)``.
@@ -144,12 +147,15 @@ def run(
         **({} if behavior_text is None else {"behavior": behavior_text}),
         **({} if driver is None else {"policy": driver.text or driver.name, "policy_digest": driver.digest}),
         **({"perturb": perturb_texts} if perturb_texts else {}),
+        **({"bridges": [bridge.name for bridge in connected]} if connected else {}),
     }
+    targets = check_exports([export] if isinstance(export, (str, Path)) else export)
     with (
-        recording(env, path, record, horizon=horizon, options=options) as recorder,
+        kept_or_temporary(record, targets) as kept,
         connect(env, connected) if connected else nullcontext() as connection,
+        recording(env, path, kept, horizon=horizon, options=options) as recorder,
     ):
-        if recorder is not None and recorded is not None:
+        if recorder is not None and recorded is not None and record is not False:
             recorded(recorder.run_id)
         files, lost, who = list[str](), None, ""
         try:
@@ -183,6 +189,11 @@ def run(
             result.summary += f"; {skipped}"
         if recorder is not None:
             recorder.finish(result)
+            exported, notes = export_all(Path(recorder.folder), targets)
+            result.files += exported
+            result.notes += notes
+            if record is False:
+                result.run_id, result.artifacts = None, {}  # of a record that is deleted now
     env.end(ending_time=0.0)
     return result
 

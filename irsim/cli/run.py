@@ -70,6 +70,15 @@ def run(
         Path | None,
         typer.Option(metavar="DIR", help="Record the run in this new folder instead, permanently.", show_default=False),
     ] = None,
+    export: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="Also write the run for another program; the suffix selects the format, as in `irsim export`. "
+            "Repeatable.",
+            show_default=False,
+        ),
+    ] = None,
     max_objects: MaxObjects = None,
 ) -> None:
     """Simulate a scenario until every robot has arrived or collided, or the time limit is reached.
@@ -102,6 +111,7 @@ def run(
             save=save_gif,
             show=show,
             record=record if record_to is None else record_to,
+            export=export or (),
             limits=limits_for(max_objects),
             progress=report,
         )

@@ -44,7 +44,9 @@ def test_a_program_of_any_kind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         finally:
             driver.kill()
     [robot] = json.loads(done.stdout)["robots"]
-    assert robot["path_length"] == pytest.approx(1.53, abs=0.03), "half a meter per second, after a first step of its own"
+    assert robot["path_length"] == pytest.approx(1.53, abs=0.03), (
+        "half a meter per second, after a first step of its own"
+    )
 
 
 def wait_for(port: str) -> None:
