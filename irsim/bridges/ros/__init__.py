@@ -1,1 +1,1 @@
-"""ROS: one table of topics and one set of messages for all ways to a robot: DDS, rclpy, Zenoh, rospy, rosbridge, bags."""
+"""ROS: one table of topics and messages for all ways to a robot: DDS, rclpy, Zenoh, rospy, rosbridge and bags."""

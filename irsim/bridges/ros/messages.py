@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +19,23 @@ MAX_SEQUENCE = 1_000_000
 
 
 class Messages:
-    """Makes messages from numbers. Positions are in m, angles in rad, times in ns; the plane is z = 0."""
+    """Makes messages from numbers. Positions are in m, angles in rad, times in ns; the plane is z = 0.
 
-    def __init__(self, extra: str = "bag") -> None:
+    Args:
+        distro: The release of ROS 2 whose definitions are used; they differ in what DDS nodes tell each other.
+        extra: The extra that is named if rosbags is missing.
+
+    Attributes:
+        store: Type store of rosbags.
+        gid_size: Length of an identifier in ``rmw_dds_common/msg/Gid`` [bytes].
+    """
+
+    def __init__(self, distro: Literal["humble", "jazzy"] = "humble", extra: str = "bag") -> None:
         require(extra, "rosbags")
         from rosbags.typesys import Stores, get_typestore
 
-        self.store = get_typestore(Stores.ROS2_HUMBLE)
+        self.store = get_typestore(Stores.ROS2_HUMBLE if distro == "humble" else Stores.ROS2_JAZZY)
+        self.gid_size = 24 if distro == "humble" else 16
         self.store.max_sequence_length = MAX_SEQUENCE
         self._types = self.store.types
         self._covariance = np.zeros(36)
