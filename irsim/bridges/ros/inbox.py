@@ -20,11 +20,11 @@ class Arrival:
     """What came last on a topic.
 
     Attributes:
-        content: CDR, or a message as nested dictionaries.
+        content: CDR, or a message whose fields are attributes.
         when: Time of arrival [s], of the clock ``time.monotonic``.
     """
 
-    content: bytes | dict[str, Any]
+    content: Any
     when: float
 
 
@@ -38,7 +38,7 @@ class Inbox:
         self.overwritten = 0
         self.refused = 0
 
-    def put(self, topic: Topic, content: bytes | dict[str, Any]) -> None:
+    def put(self, topic: Topic, content: Any) -> None:
         """Keep a message instead of an older one of the same topic."""
         arrival = Arrival(content, time.monotonic())
         with self._lock:
