@@ -18,6 +18,7 @@ install()
 if TYPE_CHECKING:
     from irsim.api import diff, fix, render, run, validate
     from irsim.benchmarks import benchmark
+    from irsim.bridges.connect import connect
     from irsim.bridges.export.export import export_run
     from irsim.diagnostics.errors import (
         IrsimError,
@@ -52,6 +53,7 @@ __all__ = [
     "__version__",
     "batch",
     "benchmark",
+    "connect",
     "diff",
     "diff_runs",
     "export_run",

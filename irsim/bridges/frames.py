@@ -6,7 +6,7 @@ What turns by the yaw is the body, whose own axes follow the same convention.
 
 - ``carla``: left-handed, x forward, y to the **right**, z up, yaw clockwise seen from above
 - ``usd``: a stage with ``upAxis`` Z; ``usd_yup`` is one with ``upAxis`` Y
-- ``habitat_yup``, ``gltf``: x to the right, y up, z to the back: the ground is the plane of x and z, and y of irsim is -z
+- ``habitat_yup``, ``gltf``: x to the right, y up, z to the back: y of irsim is -z
 
 Cameras have axes of their own. In ``opengl`` a camera looks along -z, with x to its right and y up; in ``colmap`` it
 looks along z, with x to its right and y down.

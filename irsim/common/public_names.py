@@ -17,6 +17,7 @@ PUBLIC_HOMES = {
     "ScenarioNotFoundError": "irsim.diagnostics.errors",
     "batch": "irsim.env.batch",
     "benchmark": "irsim.benchmarks",
+    "connect": "irsim.bridges.connect",
     "diff": "irsim.api",
     "diff_runs": "irsim.runs.comparison",
     "export_run": "irsim.bridges.export.export",

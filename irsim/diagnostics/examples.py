@@ -43,6 +43,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "unknown-distribution": ("robot: {distribution: {name: uniform}}", "robot: {distribution: {name: random}}"),
     "unknown-map": ("world: {obstacle_map: {name: noise}}", "world: {obstacle_map: {name: perlin, resolution: 0.1}}"),
     "unknown-planner": ("robot: {behavior: {name: follow, planner: dijkstra}}", "robot: {behavior: {name: follow, planner: astar}}"),
+    "unknown-bridge": ("bridges: [{name: json_line}]", "bridges: [{name: json_lines}]"),
     "unknown-object": ("world: {plot: {viewpoint: walle}}", "world: {plot: {viewpoint: [5, 5]}}"),
     "unknown-zone": ("world: {zones: [{name: desk, rectangle: [8, 4, 10, 6]}]}\nrobot: {state: [1, 5, 0], goal: [7, 5], behavior: {name: follow, avoid: [dask]}}", "world: {zones: [{name: desk, rectangle: [8, 4, 10, 6]}]}\nrobot: {state: [1, 5, 0], goal: [7, 5], behavior: {name: follow, avoid: [desk]}}"),
     "duplicate-name": ("robot: {number: 2, name: [a, a], distribution: {name: random}}", "robot: {number: 2, name: [a, b], distribution: {name: random}}"),

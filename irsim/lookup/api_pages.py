@@ -24,6 +24,7 @@ Pages = dict[str, str]
 NOTE = "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->"
 _FOLDERS = {
     "behavior": "behaviors",
+    "bridge": "bridges",
     "distribution": "distributions",
     "kinematics": "kinematics",
     "map": "maps",

@@ -64,7 +64,7 @@ def _values(data: Any, words: tuple[str, ...]) -> Iterator[Any]:
             yield from _values(data, words[1:])
 
 
-_LISTS = ("sensors", "zones")
+_LISTS = ("bridges", "sensors", "zones")
 """Keys whose mappings stand in a list."""
 
 

@@ -116,7 +116,7 @@ _TOGETHER: dict[str, dict[str, Any]] = {
     "perlin.attenuation": {"resolution": 0.2, "fractal": 2},
 }
 """Keys without which another has no effect, by the last words of its path."""
-_LISTS = ("keep_clear", "parts", "sensors", "zones")
+_LISTS = ("bridges", "keep_clear", "parts", "sensors", "zones")
 """Keys whose components stand in a list."""
 
 

@@ -46,6 +46,7 @@ __all__ = ["lookup", "schema_part"]
 
 _PLACES = {
     "behavior": ("robot", "behavior"),
+    "bridge": ("bridges",),
     "distribution": ("robot", "distribution"),
     "kinematics": ("robot", "kinematics"),
     "map": ("world", "obstacle_map"),
@@ -278,7 +279,7 @@ def _bare_example(path: tuple[str, ...], node: Node, name: str | None) -> str | 
     """Write a component with its name alone, if it needs no other key."""
     if name is None or set(node.get("required", [])) - {"name"}:
         return None
-    return f"{path[-2]}: [{{name: {name}}}]" if path[-2] == "sensors" else f"{path[-2]}: {{name: {name}}}"
+    return f"{path[-2]}: [{{name: {name}}}]" if path[-2] in ("sensors", "bridges") else f"{path[-2]}: {{name: {name}}}"
 
 
 def _related(path: tuple[str, ...], registry: Registry | None, name: str | None) -> list[str]:

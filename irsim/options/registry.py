@@ -16,6 +16,7 @@ from pydantic import BaseModel
 
 __all__ = [
     "BEHAVIORS",
+    "BRIDGES",
     "CUSTOM_BEHAVIORS",
     "CUSTOM_GROUP_BEHAVIORS",
     "DISTRIBUTIONS",
@@ -228,6 +229,7 @@ class CustomBehaviors:
 
 
 BEHAVIORS = Registry("behavior", "irsim.components.behaviors", "irsim.behaviors")
+BRIDGES = Registry("bridge", "irsim.components.bridges", "irsim.bridges")
 DISTRIBUTIONS = Registry("distribution", "irsim.components.distributions", "irsim.distributions")
 KINEMATICS = Registry("kinematics", "irsim.components.kinematics", "irsim.kinematics")
 MAPS = Registry("map", "irsim.components.maps", "irsim.maps")
@@ -248,5 +250,6 @@ CUSTOM_GROUP_BEHAVIORS = CustomBehaviors(
 )
 
 REGISTRIES = {
-    registry.kind: registry for registry in (BEHAVIORS, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES)
+    registry.kind: registry
+    for registry in (BEHAVIORS, BRIDGES, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES)
 }

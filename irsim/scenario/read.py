@@ -216,7 +216,7 @@ def _not_a_mapping(data: Any) -> Finding:
         "not-a-scenario",
         (),
         f"a scenario must be a mapping, got {kind}",
-        allowed="a mapping with the keys world, robot, obstacle, gui, custom",
+        allowed="a mapping with the keys world, robot, obstacle, gui, bridges, custom",
         fix="start with 'world: {width: 10, height: 10}'",
     )
 

@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from irsim.common.arrays import Floats
 
-__all__ = ["ExternalDrives", "StepHooks", "WideControls"]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["ExternalDrives", "PythonDecision", "PythonMeasurement", "StepHooks", "WideControls"]
+
+PythonDecision = Callable[["Simulation"], None]
+"""Fills ``command`` of the rows that it decides for; called between the native decisions and the motion. Its method
+``claim(simulation)``, if it has one, marks rows as ``given`` before the native decisions, which then skip them."""
+
+PythonMeasurement = Callable[["Simulation", "NDArray[np.bool_] | None"], None]
+"""Updates the sensors that it computes, in the worlds of the mask (None: all); called after the native sensors."""
 
 
 class WideControls(Protocol):

@@ -14,7 +14,7 @@ from irsim.common.log import Logger
 from irsim.diagnostics.errors import PlacementError
 from irsim.simulation.build import COLLISION_MODES, Built, build_world, speed_controls
 from irsim.simulation.no_room import no_room
-from irsim.simulation.protocols import ExternalDrives, StepHooks
+from irsim.simulation.protocols import ExternalDrives, PythonDecision, PythonMeasurement, StepHooks
 from irsim.simulation.random_streams import generator
 
 if TYPE_CHECKING:
@@ -23,13 +23,6 @@ if TYPE_CHECKING:
 __all__ = ["PythonDecision", "PythonMeasurement", "Simulation"]
 
 CONTACT = COLLISION_MODES["contact"]
-
-PythonDecision = Callable[["Simulation"], None]
-"""Fills ``command`` of the rows that it decides for; called between the native decisions and the motion. Its method
-``claim(simulation)``, if it has one, marks rows as ``given`` before the native decisions, which then skip them."""
-
-PythonMeasurement = Callable[["Simulation", "NDArray[np.bool_] | None"], None]
-"""Updates the sensors that it computes, in the worlds of the mask (None: all); called after the native sensors."""
 
 
 def _no_owner() -> None:
@@ -68,6 +61,7 @@ class Simulation:
         passable: Ids of the objects that are ``unobstructed``.
         decisions: Python behaviors, called in every step.
         measurements: Python sensors, called after every step, reset and refresh.
+        movers: Called after all drives have moved, before contacts: bridges place what other programs move.
         drives: Drives written in Python, or None.
         hooks: Objects that override a step or parts of it in Python, or None.
         scene_drawn: Callbacks that receive the indices of worlds that have begun their next scene.
@@ -96,6 +90,7 @@ class Simulation:
         self.copies = len(seeds)
         self.decisions: list[PythonDecision] = []
         self.measurements: list[PythonMeasurement] = []
+        self.movers: list[Callable[[Simulation], None]] = []
         self.drives: ExternalDrives | None = None
         self.hooks: StepHooks | None = None
         self.scene_drawn: list[Callable[[Sequence[int]], None]] = []
@@ -178,7 +173,7 @@ class Simulation:
     def step(self) -> None:
         """Advance every world by one period."""
         drives, hooks = self.drives, self.hooks
-        if not self.decisions and drives is None and hooks is None:
+        if not self.decisions and not self.movers and drives is None and hooks is None:
             core.advance(self.world, self.state, 1, threads=self.threads)
             self.measure()
             return
@@ -199,6 +194,8 @@ class Simulation:
         core.integrate(world, state)
         if drives is not None:
             drives.move()
+        for move in self.movers:
+            move(self)
         if hooks is not None:
             hooks.after_motion()
         if world.collision_mode == CONTACT:
@@ -231,7 +228,8 @@ class Simulation:
     @property
     def in_python(self) -> bool:
         """Whether Python code takes part in every step."""
-        return bool(self.decisions or self.measurements or self.drives is not None or self.hooks is not None)
+        parts = self.decisions or self.measurements or self.movers
+        return bool(parts or self.drives is not None or self.hooks is not None)
 
     # objects ---------------------------------------------------------------------------------------------------------
     def views(self, world: int = 0) -> list[Any]:

@@ -53,7 +53,7 @@ FILE_AND_YAML: dict[str, Code] = {
     "not-a-scenario": Code(
         "not a scenario",
         "The file is valid YAML, but its content is a list or a single value, or it is a file of another kind, such as"
-        " a task or a suite. A scenario is a mapping with the keys world, robot, obstacle, gui, custom.",
+        " a task or a suite. A scenario is a mapping with the keys world, robot, obstacle, gui, bridges, custom.",
     ),
     "duplicate-key": Code(
         "key given twice",

@@ -108,6 +108,7 @@ KEYS_AND_VALUES: dict[str, Code] = {
     "unknown-distribution": Code("unknown distribution", "No distribution of that name is built in or registered."),
     "unknown-map": Code("unknown map generator", "No map generator of that name is built in or registered."),
     "unknown-planner": Code("unknown planner", "No path planner of that name is built in or registered."),
+    "unknown-bridge": Code("unknown bridge", "No bridge of that name is built in or offered by an installed package."),
     "unknown-object": Code("unknown object", "No object of the scenario has that name."),
     "unknown-zone": Code("unknown zone", "No zone of 'world.zones' has that name."),
 }

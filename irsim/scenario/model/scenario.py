@@ -9,6 +9,8 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from irsim.options.base import Options
+from irsim.options.registry import BRIDGES
+from irsim.options.selection import Select
 from irsim.options.vectors import LIST, MAPPING, any_of
 from irsim.scenario.model.entry import Entry
 from irsim.scenario.model.gui import Gui, Keyboard, Mouse
@@ -46,6 +48,8 @@ class Scenario(Options):
     """Obstacles: one entry, or a list of entries. They may move like robots."""
     gui: Gui = Gui()
     """Keyboard and mouse."""
+    bridges: list[Annotated[Any, Select(BRIDGES)]] = []
+    """Connections to other programs, such as robots or simulators; `irsim run` and `irsim.connect` open them."""
     custom: Any = {}
     """Any data for user code, which reads it as `env.config["custom"]`."""
 

@@ -81,6 +81,7 @@ def resolve(
         placements=placements,
         gui=scenario.gui,
         custom=scenario.custom,
+        bridges=list(scenario.bridges),
         document=document if document is not None else {},
         source=source,
         text=text,

@@ -212,6 +212,7 @@ class ResolvedScenario:
     text: str | None = None
     grid: MapGrid | None = None  # the map, whether or not any cell is occupied
     map_files: dict[str, str] = field(default_factory=dict)  # name in the scenario -> path of the map file
+    bridges: list[BaseModel] = field(default_factory=list)
     variation: Variation | None = None  # what a task draws for each scene
 
     def robots(self) -> Sequence[ObjectRecord]:

@@ -1,0 +1,307 @@
+"""``irsim.connect``: the bridges of a scenario take part in the steps of its environment."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from typing_extensions import Self
+
+from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
+from irsim.bridges.controls import native_control
+from irsim.bridges.describe import agent_rows, describe_scene, world_state
+from irsim.bridges.scene import SceneDescription
+from irsim.bridges.state import Feedback, Motion
+from irsim.common.angles import wrap
+from irsim.common.arrays import Floats
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import CodedError
+from irsim.options.registry import BRIDGES
+
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["Connection", "connect", "open_bridges"]
+
+
+def open_bridges(options: Iterable[Any]) -> list[Bridge]:
+    """The bridges of options models; nothing is connected yet.
+
+    Raises:
+        ExtraError: A library is missing; the message has the command that installs it.
+        BridgeError: The options cannot be used here.
+    """
+    made = []
+    for item in options:
+        feature = BRIDGES.get(str(item.name))
+        assert feature is not None
+        assert feature.function is not None
+        bridge: Bridge = feature.function(item)
+        bridge.clock = item.clock
+        made.append(bridge)
+    return made
+
+
+def connect(env: Any, bridges: Sequence[Bridge] | None = None) -> Connection:
+    """Connect an environment with other programs; use the result in a ``with`` statement.
+
+    ```python
+    env = irsim.make("scene.yaml")
+    with irsim.connect(env):
+        while not env.done():
+            env.step()
+    ```
+
+    Args:
+        env: The environment, at the start of an episode.
+        bridges: The bridges; default: those of the key ``bridges`` of its scenario.
+
+    Raises:
+        BridgeError: A program cannot be reached, or the scenario does not fit; all bridges are closed then.
+        ExtraError: A library is missing.
+    """
+    simulation: Simulation = env.simulation
+    return Connection(simulation, open_bridges(simulation.scenario.bridges) if bridges is None else bridges)
+
+
+class Connection:
+    """Bridges that take part in the steps of a simulation with one world, until :meth:`close`.
+
+    Objects that a bridge moves are placed after the others have moved and before contacts, collisions and sensors, so
+    that these see them where the other program has them.
+
+    Args:
+        simulation: The simulation.
+        bridges: The bridges.
+
+    Attributes:
+        scene: The scene that the bridges got.
+        late: Longest time by which a step in real time came too late [s].
+    """
+
+    def __init__(self, simulation: Simulation, bridges: Sequence[Bridge]) -> None:
+        if simulation.copies != 1:
+            raise BridgeError("bridge-mismatch", "bridges connect one world", f"got {simulation.copies}; use one")
+        self.simulation, self.bridges = simulation, list(bridges)
+        self.late = 0.0
+        self._rows = agent_rows(simulation)
+        self.scene: SceneDescription = describe_scene(simulation)
+        self._row_of = dict(zip(self.scene.names, self._rows.tolist(), strict=True))
+        self._owned: dict[str, Bridge] = {}
+        self._ranges: dict[str, NDArray[np.float32]] = {}
+        self._before: Floats = simulation.pose.copy()
+        self._count = int(simulation.count[0])
+        self._wall: float | None = None
+        self._open = False
+        try:
+            start = world_state(simulation, self._rows)
+            for bridge in self.bridges:
+                self._guarded(bridge, bridge.open, self.scene, start)
+                self._claim(bridge)
+        except BaseException:
+            self._close_all()
+            raise
+        self._open = bool(self.bridges)
+        if self._open:
+            simulation.decisions.insert(0, self)
+            simulation.movers.append(self.move)
+            simulation.measurements.append(self.measure)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Stop the robots of others and disconnect; a second call does nothing."""
+        if self._open:
+            self._open = False
+            simulation = self.simulation
+            simulation.decisions.remove(self)
+            simulation.movers.remove(self.move)
+            simulation.measurements.remove(self.measure)
+        self._close_all()
+
+    # a step -----------------------------------------------------------------------------------------------------------
+    def claim(self, simulation: Simulation) -> None:
+        """Before decisions: wait for the time of the step, and take over what has come from outside."""
+        self._before = simulation.pose.copy()
+        self._ranges = {}
+        self._wait()
+        for bridge in self.bridges:
+            feedback = self._guarded(bridge, bridge.pull)
+            if feedback is not None:
+                self._take(bridge, feedback, before=True)
+
+    def __call__(self, simulation: Simulation) -> None:
+        """Bridges decide nothing: commands were imposed before."""
+
+    def move(self, simulation: Simulation) -> None:
+        """In the middle of the step: place the objects that other programs move."""
+        rows = self._rows
+        period = float(simulation.scenario.world.step_time)
+        twist = (simulation.pose[rows] - self._before[rows]) / period
+        twist[:, 2] = wrap(simulation.pose[rows, 2] - self._before[rows, 2]) / period
+        motion = Motion(
+            step=int(simulation.count[0]),
+            time=simulation.time,
+            control=simulation.control[rows].copy(),
+            pose=simulation.pose[rows].copy(),
+            twist=twist,
+        )
+        for bridge in self.bridges:
+            feedback = self._guarded(bridge, bridge.exchange, motion)
+            if feedback is not None:
+                self._take(bridge, feedback, before=False)
+
+    def measure(self, simulation: Simulation, mask: Any = None) -> None:
+        """After the step: put in the scans of others, and show the world."""
+        self._put_ranges(simulation)
+        count = int(simulation.count[0])
+        if count == self._count:
+            return
+        if count < self._count:
+            self._wall = None
+        self._count = count
+        state = world_state(simulation, self._rows)
+        for bridge in self.bridges:
+            self._guarded(bridge, bridge.push, state)
+
+    # what comes from outside ------------------------------------------------------------------------------------------
+    def _take(self, bridge: Bridge, feedback: Feedback, *, before: bool) -> None:
+        for what in ("poses", "twists", "commands", "goals", "starts"):
+            self._check(bridge, what, getattr(feedback, what))
+        for name, pose in feedback.poses.items():
+            self._place(name, pose, feedback.twists.get(name), moved=not before)
+        for name, pose in feedback.starts.items():
+            self._place(name, pose, (0.0, 0.0, 0.0), moved=False)
+        for name, goal in feedback.goals.items():
+            self.simulation.state.set_goals(self._row_of[name], [list(goal)], False)
+        for name, command in feedback.commands.items():
+            self._command(name, command)
+        self._ranges |= self._checked_ranges(bridge, feedback.ranges)
+        if feedback.end is not None:
+            raise BridgeLostError(f"{bridge.name} ended the episode: {clean(feedback.end, 200)}", "run it again")
+
+    def _check(self, bridge: Bridge, what: str, named: Mapping[str, Sequence[float]]) -> None:
+        for name, values in named.items():
+            if name not in self._row_of:
+                listed = ", ".join(self.scene.names[:5])
+                fix = suggestion(name, self.scene.names, f"the objects are {listed}")
+                raise BridgeError(
+                    "bridge-failed", f"{bridge.name} sent {what} of an unknown object {clean(name)!r}", fix
+                )
+            if what in ("poses", "twists") and self._owned.get(name) is not bridge:
+                fix = "name it in the agents of the bridge; for another start send starts"
+                raise BridgeError("bridge-failed", f"{bridge.name} sent {what} of '{name}', which irsim moves", fix)
+            if len(values) != 3 or not np.isfinite(np.asarray(values, dtype=np.float64)).all():
+                message = f"{bridge.name} sent {what} of '{name}' that are not three finite numbers: {list(values)}"
+                raise BridgeError("bridge-failed", message, "send x, y and yaw")
+
+    def _place(self, name: str, pose: Sequence[float], twist: Sequence[float] | None, *, moved: bool) -> None:
+        """Set the pose of an object; one that moved in this step gets the velocity that led there."""
+        simulation, row = self.simulation, self._row_of[name]
+        if moved and twist is None:
+            period = float(simulation.scenario.world.step_time)
+            step = np.asarray(pose, dtype=np.float64) - self._before[row]
+            step[2] = wrap(step[2])
+            twist = (step / period).tolist()
+        simulation.pose[row] = pose
+        if twist is not None:
+            simulation.twist[row] = twist
+        simulation.state.moved(row)
+
+    def _command(self, name: str, command: Sequence[float]) -> None:
+        simulation, row = self.simulation, self._row_of[name]
+        kinematics: Any = simulation.scenario.objects[row].kinematics
+        control = native_control(
+            self.scene.agent(name),
+            command,
+            steering_rate=getattr(kinematics, "mode", "") == "angular",
+            steer=float(simulation.extra[row, 0]),
+            period=float(simulation.scenario.world.step_time),
+        )
+        simulation.impose(row, control)
+
+    def _checked_ranges(self, bridge: Bridge, ranges: Mapping[str, Any]) -> dict[str, NDArray[np.float32]]:
+        lidars = {lidar.key: lidar for agent in self.scene.agents for lidar in agent.lidars}
+        found = {}
+        for key, values in ranges.items():
+            beams = np.asarray(values, dtype=np.float32).reshape(-1)
+            if key not in lidars or len(beams) != lidars[key].beams or np.isnan(beams).any():
+                listed = ", ".join(f"{lidar.key} ({lidar.beams} beams)" for lidar in list(lidars.values())[:5])
+                what = f"{bridge.name} sent {len(beams)} ranges of {clean(key)!r} that cannot be used"
+                raise BridgeError(
+                    "bridge-failed", what, f"the lidars are {listed}; infinite is a beam that hit nothing"
+                )
+            found[key] = beams
+        return found
+
+    def _put_ranges(self, simulation: Simulation) -> None:
+        """Replace the scans that irsim has measured by those of others."""
+        if not self._ranges:
+            return
+        first = {lidar.key: lidar for agent in self.scene.agents for lidar in agent.lidars}
+        numbers: dict[str, int] = {}
+        for owner, start, count in simulation.scans:
+            name = simulation.scenario.objects[owner].name
+            number = numbers[name] = numbers.get(name, -1) + 1
+            beams = self._ranges.get(f"{name}/{number}")
+            if beams is not None:
+                lidar = first[f"{name}/{number}"]
+                hit = np.isfinite(beams) & (beams >= lidar.range_min) & (beams <= lidar.range_max)
+                simulation.ranges[start : start + count] = np.where(hit, beams, lidar.range_max)
+                simulation.valid[start : start + count] = hit
+
+    # bridges ----------------------------------------------------------------------------------------------------------
+    def _claim(self, bridge: Bridge) -> None:
+        """Let a bridge have its agents."""
+        for name in bridge.agents:
+            if name not in self._row_of:
+                fix = suggestion(name, self.scene.names, f"the objects are {', '.join(self.scene.names[:5])}")
+                raise BridgeError("bridge-mismatch", f"{bridge.name} moves an unknown object {clean(name)!r}", fix)
+            if name in self._owned:
+                what = f"{bridge.name} and {self._owned[name].name} both move '{name}'"
+                raise BridgeError("bridge-mismatch", what, "give each object to one bridge")
+            self._owned[name] = bridge
+
+    def _wait(self) -> None:
+        """Wait until it is time for the step, if a bridge runs in real time."""
+        if not any(bridge.clock == "wall" for bridge in self.bridges):
+            return
+        now, due = time.monotonic(), float(self.simulation.count[0]) * float(self.simulation.scenario.world.step_time)
+        if self._wall is None:
+            self._wall = now - due
+        ahead = self._wall + due - now
+        if ahead > 0:
+            time.sleep(ahead)
+        else:
+            self.late = max(self.late, -ahead)
+
+    def _guarded(self, bridge: Bridge, call: Any, *arguments: Any) -> Any:
+        """Call a bridge; an exception that is not one of irsim's becomes one, and all bridges are closed."""
+        try:
+            return call(*arguments)
+        except CodedError:
+            raise
+        except OSError as error:
+            raise BridgeLostError(f"{bridge.name}: {error.strerror or error}") from error
+        except Exception as error:
+            what = f"{bridge.name} raised {type(error).__name__}: {error}"
+            raise BridgeError("bridge-failed", what, "the error above this one says where") from error
+
+    def _close_all(self) -> None:
+        """Close all bridges, each whatever happens to the others."""
+        errors = []
+        for bridge in reversed(self.bridges):
+            try:
+                bridge.close()
+            except Exception as error:
+                errors.append(error)
+        if errors:
+            raise BridgeError("bridge-failed", f"a bridge could not be closed: {errors[0]}", None) from errors[0]

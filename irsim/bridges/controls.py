@@ -1,0 +1,44 @@
+"""Commands of the world outside (speeds and a yaw rate) in the words of a drive."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.scene import Agent
+
+__all__ = ["native_control"]
+
+
+def native_control(
+    agent: Agent, command: Sequence[float], *, steering_rate: bool, steer: float, period: float
+) -> list[float]:
+    """The control that follows a command as well as the drive can.
+
+    A car gets the steering angle whose curvature is that of the command: ``atan(wheelbase * yaw rate / speed)``, and
+    keeps its steering angle while it stands.
+
+    Args:
+        agent: The robot.
+        command: Forward and leftward speed [m/s], yaw rate [rad/s], body frame.
+        steering_rate: Whether the second control of a car is the rate of its steering angle.
+        steer: Present steering angle of a car [rad].
+        period: Time until the next command [s].
+
+    Raises:
+        BridgeError: The drive is that of a plug-in.
+    """
+    forward, left, rate = (float(value) for value in command)
+    if agent.drive == "diff":
+        return [forward, rate]
+    if agent.drive == "omni":
+        return [forward, left]
+    if agent.drive == "omni_angular":
+        return [forward, left, rate]
+    if agent.drive == "acker":
+        base = 1.0 if agent.wheelbase is None else agent.wheelbase
+        angle = steer if abs(forward) < 1e-6 else math.atan(base * rate / forward)
+        return [forward, (angle - steer) / period if steering_rate else angle]
+    what = f"'{agent.name}' with the drive {agent.drive!r} cannot follow speeds and a yaw rate"
+    raise BridgeError("bridge-mismatch", what, "use a robot with diff, omni, omni_angular or acker")

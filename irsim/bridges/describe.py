@@ -1,0 +1,173 @@
+"""A simulation as scene and states of bridges."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.bridges.scene import Agent, Circle, Grid, Lidar, Line, Part, Polygon, SceneDescription
+from irsim.bridges.state import WorldState
+from irsim.common.arrays import Floats
+from irsim.common.version import version
+from irsim.objects.obstacle_map import grid_values
+from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.simulation.simulation import Simulation
+from irsim.simulation.trace import sensors
+
+__all__ = ["agent_rows", "describe_scene", "world_state"]
+
+_OCCUPIED = 50.0
+"""Occupancy above which a cell is solid, of 100."""
+_GREY = (0.5, 0.5, 0.5)
+
+
+def describe_scene(simulation: Simulation) -> SceneDescription:
+    """The scene of the first world of a simulation, with the bodies of the present scene.
+
+    Args:
+        simulation: The simulation, at the start of an episode.
+    """
+    scenario = simulation.scenario
+    bounds = scenario.world.bounds
+    agents = tuple(_agent(simulation, index, row) for index, row in enumerate(agent_rows(simulation).tolist()))
+    return SceneDescription(
+        name=scenario.name,
+        step_time=float(scenario.world.step_time),
+        low=(float(bounds[0]), float(bounds[1])),
+        high=(float(bounds[2]), float(bounds[3])),
+        agents=agents,
+        grid=_grid(simulation),
+        walls=scenario.world.boundary == "walls",
+        seed=int(simulation.state.seed[0]),
+        about={"irsim": version(), "scenario": scenario.text or ""},
+    )
+
+
+def agent_rows(simulation: Simulation) -> NDArray[np.int64]:
+    """(N,) rows of the first world that are agents: all objects but the map."""
+    records = simulation.scenario.objects
+    return np.array([i for i, record in enumerate(records) if record.shape.name != "map"], dtype=np.int64)
+
+
+def world_state(simulation: Simulation, rows: NDArray[np.int64]) -> WorldState:
+    """The present state of the first world.
+
+    Args:
+        simulation: The simulation.
+        rows: (N,) what :func:`agent_rows` returns.
+    """
+    state = simulation.state
+    measured = np.where(simulation.valid.astype(bool), simulation.ranges, np.inf).astype(np.float32)
+    records = simulation.scenario.objects
+    routes = {records[row].name: state.route(int(row)) for row in rows.tolist() if records[row].role == "robot"}
+    return WorldState(
+        step=int(simulation.count[0]),
+        time=simulation.time,
+        pose=simulation.pose[rows].copy(),
+        twist=simulation.twist[rows].copy(),
+        control=simulation.control[rows].copy(),
+        goal=simulation.goal[rows].copy(),
+        arrived=simulation.arrived[rows].astype(bool),
+        collided=simulation.collided[rows].astype(bool),
+        stopped=simulation.stopped[rows].astype(bool),
+        ranges={key: measured[beams] for key, beams in sensors(simulation)},
+        paths={name: route for name, route in routes.items() if route is not None},
+    )
+
+
+def _agent(simulation: Simulation, index: int, row: int) -> Agent:
+    record, state = simulation.scenario.objects[row], simulation.state
+    pose = np.asarray(state.initial_state(row), dtype=np.float64)[:3]
+    low, high = simulation.limits(row)
+    goals = tuple(_pose(goal) for goal in state.goals(row)) if record.role == "robot" or not record.static else ()
+    return Agent(
+        index=index,
+        name=record.name,
+        role=record.role,
+        drive=None if record.kinematics is None else str(record.kinematics.name),  # type: ignore[attr-defined]
+        moves=not record.static and record.kinematics is not None,
+        pose=_pose(pose),
+        goals=goals,
+        parts=_parts(state, row),
+        radius=float(simulation.radius[row]),
+        low=tuple(map(float, low)),
+        high=tuple(map(float, high)),
+        acceleration=tuple(float(value) for value in record.acce),
+        wheelbase=record.wheelbase,
+        mass=float(record.mass),
+        color=_color(record),
+        lidars=_lidars(simulation, row),
+        solid=not record.unobstructed,
+    )
+
+
+def _pose(values: Any) -> tuple[float, float, float]:
+    x, y, *rest = (float(value) for value in values)
+    yaw = rest[0] if rest else 0.0
+    return x, y, 0.0 if np.isnan(yaw) else yaw
+
+
+def _parts(state: Any, row: int) -> tuple[Part, ...]:
+    found: list[Part] = []
+    for part, kind in enumerate(state.parts(row)):
+        if kind == "circle":
+            x, y, radius = state.circle(row, part, False)
+            found.append(Circle((float(x), float(y)), float(radius)))
+            continue
+        corners: Floats = np.array(state.vertices(row, part, False), dtype=np.float64)[:, :2]
+        if kind == "polygon":
+            found.append(Polygon(_counterclockwise(corners)))
+        else:
+            found.append(Line(corners, closed=kind == "room"))
+    return tuple(found)
+
+
+def _counterclockwise(corners: Floats) -> Floats:
+    x, y = corners.T
+    area = float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    return corners if area >= 0 else corners[::-1].copy()
+
+
+def _lidars(simulation: Simulation, row: int) -> tuple[Lidar, ...]:
+    record, found = simulation.scenario.objects[row], []
+    own = [(first, count) for owner, first, count in simulation.scans if owner == row]
+    options = [item for item in record.sensors if hasattr(item, "angle_range") and hasattr(item, "range_max")]
+    for number, ((first, count), item) in enumerate(zip(own, options, strict=False)):
+        angles = simulation.state.beam_angles[first : first + count]
+        chosen: Any = item
+        found.append(
+            Lidar(
+                key=f"{record.name}/{number}",
+                number=number,
+                mount=_pose(chosen.offset),
+                angle_min=float(angles[0]),
+                angle_max=float(angles[-1]),
+                beams=count,
+                range_min=float(chosen.range_min),
+                range_max=float(chosen.range_max),
+                period=float(chosen.scan_time),
+                noise=bool(chosen.noise),
+            )
+        )
+    return tuple(found)
+
+
+def _grid(simulation: Simulation) -> Grid | None:
+    values, grid = grid_values(simulation), simulation.scenario.grid
+    if values is None or grid is None:
+        return None
+    cell = float(grid.cell[0]), float(grid.cell[1])
+    return Grid(values > _OCCUPIED, cell, (float(grid.origin[0]), float(grid.origin[1])))
+
+
+def _color(record: ObjectRecord) -> tuple[float, float, float]:
+    from matplotlib.colors import to_rgb
+
+    color: Any = record.color
+    try:
+        red, green, blue = to_rgb(color)
+    except ValueError:
+        return _GREY
+    return float(red), float(green), float(blue)

@@ -1,0 +1,165 @@
+"""``json_lines``: a bridge to any program that reads and writes lines of JSON over a TCP socket.
+
+irsim connects to the program and sends one object per line, with the key ``kind``:
+
+- ``scene``: the scene, and the state at the start
+- ``pull``: with ``clock: external`` only, before each step: irsim waits for the answer
+- ``motion``: only if the program moves objects: what the objects want in this step, and where irsim would have them
+- ``state``: all objects after a step
+- ``end``: the connection is about to be closed
+
+A line of the program is an object with any of the keys of :class:`irsim.bridges.state.Feedback`; ``{}`` says nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import selectors
+import socket
+import time
+from typing import Any
+
+from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
+from irsim.bridges.scene import SceneDescription
+from irsim.bridges.scene_files import feedback_of, motion_as_json, scene_as_json, state_as_json
+from irsim.bridges.state import Feedback, Motion, WorldState
+from irsim.components.bridges.json_lines import JsonLines
+
+__all__ = ["JsonLinesBridge", "make"]
+
+_MAX_LINE = 4 * 1024 * 1024
+"""Longest line of the program [bytes]."""
+_MAX_LINES = 1000
+"""Number of lines that may wait before a step; the last of each kind counts."""
+
+
+def make(options: JsonLines) -> JsonLinesBridge:
+    """The bridge of some options."""
+    return JsonLinesBridge(options)
+
+
+class JsonLinesBridge(Bridge):
+    """Sends scene and states as lines, and reads lines of feedback."""
+
+    def __init__(self, options: JsonLines) -> None:
+        self.name = f"json_lines {options.address}"
+        self.options = options
+        self.agents = frozenset(options.agents)
+        self._socket: socket.socket | None = None
+        self._text = b""
+        self._last: Feedback | None = None
+
+    def open(self, scene: SceneDescription, start: WorldState) -> None:
+        """Connect to the program and send the scene."""
+        host, _, port = self.options.address.rpartition(":")
+        try:
+            self._socket = socket.create_connection((host.strip("[]"), int(port)), self.options.timeout)
+        except OSError as error:
+            what = f"no program listens at {self.options.address}: {error.strerror or error}"
+            raise BridgeLostError(what, "start the program first, or change the address") from None
+        self._send("scene", {"scene": scene_as_json(scene), "state": state_as_json(start)})
+        if self.options.answers:
+            self._answer()
+
+    def pull(self) -> Feedback | None:
+        """What the program has sent since the last step."""
+        if self.options.clock == "external":
+            self._send("pull", {})
+            return self._answer()
+        if self.options.answers:
+            found, self._last = self._last, None
+            return found
+        return self._waiting()
+
+    def exchange(self, motion: Motion) -> Feedback | None:
+        """Where the program has its objects."""
+        if not self.agents:
+            return None
+        self._send("motion", motion_as_json(motion))
+        feedback = self._answer()
+        if missing := self.agents - feedback.poses.keys():
+            what = f"{self.name} did not say where '{min(missing)}' is"
+            raise BridgeError("bridge-failed", what, "answer each motion with the poses of all agents")
+        return feedback
+
+    def push(self, state: WorldState) -> None:
+        """Send the state."""
+        self._send("state", state_as_json(state))
+        if self.options.answers:
+            self._last = self._answer()
+
+    def close(self) -> None:
+        """Say that this is the end, and disconnect."""
+        if self._socket is None:
+            return
+        try:
+            self._send("end", {})
+        except BridgeLostError:
+            pass  # the program has left already
+        finally:
+            if self._socket is not None:
+                self._socket.close()
+            self._socket = None
+
+    def _send(self, kind: str, content: dict[str, Any]) -> None:
+        assert self._socket is not None
+        self._socket.settimeout(self.options.timeout)
+        try:
+            self._socket.sendall(json.dumps({"kind": kind, **content}, allow_nan=False).encode() + b"\n")
+        except OSError as error:
+            self._lose(f"{self.name} takes nothing more: {error.strerror or error}")
+
+    def _answer(self) -> Feedback:
+        """Wait for one line."""
+        deadline = time.monotonic() + self.options.timeout
+        while b"\n" not in self._text:
+            left = deadline - time.monotonic()
+            if left <= 0 or not self._receive(left):
+                self._lose(f"{self.name} did not answer within {self.options.timeout:g} s")
+        line, _, self._text = self._text.partition(b"\n")
+        return self._read(line)
+
+    def _waiting(self) -> Feedback | None:
+        """All lines that wait, as one feedback: of each object the last counts."""
+        while len(self._text) < _MAX_LINE and self._receive(0.0):
+            pass
+        *lines, self._text = self._text.split(b"\n")
+        if not lines:
+            return None
+        found: dict[str, Any] = {}
+        for line in lines[-_MAX_LINES:]:
+            for key, value in vars(self._read(line)).items():
+                found[key] = {**found.get(key, {}), **value} if isinstance(value, dict) else value or found.get(key)
+        return Feedback(**found)
+
+    def _receive(self, wait: float) -> bool:
+        """Receive what has come within a time [s]; False if nothing has."""
+        assert self._socket is not None
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._socket, selectors.EVENT_READ)
+            if not selector.select(wait):
+                return False
+        try:
+            received = self._socket.recv(1 << 16)
+        except OSError as error:
+            self._lose(f"{self.name} is gone: {error.strerror or error}")
+        if not received:
+            self._lose(f"{self.name} has closed the connection")
+        self._text += received
+        if len(self._text) > _MAX_LINE + (1 << 16) and b"\n" not in self._text:
+            self._lose(f"{self.name} sent a line of more than {_MAX_LINE // 2**20} MB")
+        return True
+
+    def _read(self, line: bytes) -> Feedback:
+        try:
+            data = json.loads(line)
+        except (ValueError, RecursionError):
+            what = f"{self.name} sent a line that is not JSON: {line[:60]!r}"
+            raise BridgeError("bridge-failed", what, "send one JSON object per line") from None
+        return feedback_of(data)
+
+    def _lose(self, message: str) -> Any:
+        if self._socket is not None:
+            self._socket.close()
+        self._socket = None
+        raise BridgeLostError(message)
