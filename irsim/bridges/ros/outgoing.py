@@ -117,7 +117,7 @@ class Outgoing:
         angles = (lidar.angle_min, lidar.angle_max, spread / (lidar.beams - 1) if lidar.beams > 1 else 0.0)
         frame = laser_frame(self._names[topic.robot], lidar.number)
         limits = (lidar.range_min, lidar.range_max)
-        return self.messages.scan(stamp, frame, angles, limits, lidar.period, np.float32(ranges))
+        return self.messages.scan(stamp, frame, angles, limits, lidar.period, np.asarray(ranges, dtype=np.float32))
 
     def _path(self, robot: str, state: WorldState, stamp: int) -> Any | None:
         """The path of a robot whenever it is another one than before."""

@@ -63,7 +63,8 @@ class DdsBackend(Backend):
     def _open(self, domain: int, loopback: bool) -> None:
         from cyclonedds.domain import Domain, DomainParticipant
         from cyclonedds.pub import DataWriter
-        from cyclonedds.qos import Policy, Qos as DdsQos
+        from cyclonedds.qos import Policy
+        from cyclonedds.qos import Qos as DdsQos
         from cyclonedds.sub import DataReader
 
         if loopback and not _domain_is_open(domain):
@@ -140,7 +141,8 @@ class DdsBackend(Backend):
 
 
 def _policies(qos: Qos, type_hash: str) -> Any:
-    from cyclonedds.qos import Policy, Qos as DdsQos
+    from cyclonedds.qos import Policy
+    from cyclonedds.qos import Qos as DdsQos
 
     reliable = Policy.Reliability.Reliable(max_blocking_time=_BLOCKED_NS)
     return DdsQos(

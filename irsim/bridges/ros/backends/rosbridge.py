@@ -52,7 +52,9 @@ class RosbridgeBackend(Backend):
         except roslibpy.core.RosTimeoutError:
             self._end()
             what = f"no rosbridge server answers at {self._address} within {timeout:g} s"
-            raise BridgeLostError(what, "start it: ros2 launch rosbridge_server rosbridge_websocket_launch.xml") from None
+            raise BridgeLostError(
+                what, "start it: ros2 launch rosbridge_server rosbridge_websocket_launch.xml"
+            ) from None
         for topic in self.topics:
             kind = topic.kind if ros == 2 else topic.kind.replace("/msg/", "/")
             channel = roslibpy.Topic(
@@ -109,7 +111,7 @@ def plain(message: Any, kind: str, store: Any, ros: int) -> dict[str, Any]:
         seconds, nanoseconds = ("sec", "nanosec") if ros == 2 else ("secs", "nsecs")
         return {seconds: int(message.sec), nanoseconds: int(message.nanosec)}
     _, fields = store.fielddefs[kind]
-    found = {}
+    found: dict[str, Any] = {}
     for name, (form, detail) in fields:
         if not hasattr(message, name):  # such as ``seq`` of headers in ROS 1
             continue

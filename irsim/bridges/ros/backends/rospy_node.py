@@ -53,7 +53,9 @@ class RospyBackend(Backend):
         rosgraph: Any = import_module("rosgraph")
         address = master or rosgraph.get_master_uri()
         if not rosgraph.Master(f"/{node}", master_uri=address).is_online():
-            raise BridgeLostError(f"no ROS master answers at {address}", "start roscore, or set master: http://HOST:11311")
+            raise BridgeLostError(
+                f"no ROS master answers at {address}", "start roscore, or set master: http://HOST:11311"
+            )
         self._publishers: dict[Topic, Any] = {}
         self._subscribers: list[Any] = []
         if not self._rospy.core.is_initialized():
