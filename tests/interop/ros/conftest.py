@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +54,7 @@ class Peer:
     """
 
     def __init__(self, *command: str, **options: Any) -> None:
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, **options)
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True, **options)
         self.lines: list[str] = []
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -67,8 +69,9 @@ class Peer:
         return [line.split(" ", 1)[1] for line in list(self.lines) if line.startswith(f"{topic} ")]
 
     def stop(self) -> None:
-        """End it."""
-        self.process.kill()
+        """End it and all processes that it has started."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
         self._reader.join(5)
         assert self.process.stdout is not None

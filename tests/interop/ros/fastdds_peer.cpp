@@ -3,8 +3,8 @@
 //   peer DOMAIN SECONDS SPEED TURN
 //
 // Lines of output: `TOPIC HEX`. It publishes SPEED and TURN as Twist on /robot_0/cmd_vel and a goal on /goal_pose. With
-// the word `silent` as fifth argument it publishes nothing; with `odom` it publishes odometry for SPEED seconds, which
-// follows the commands that it hears.
+// the word `silent` as fifth argument it publishes nothing; with `odom` it publishes odometry that follows the commands
+// that it hears, until SPEED seconds after the first one that is not zero.
 
 #include <fastcdr/Cdr.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -148,12 +148,13 @@ int main(int count, char** words) {
   };
   if (mode == "odom") {
     std::mutex guard;
-    double forward = 0, rate = 0, x = 0, y = 0, yaw = 0;
+    double forward = 0, rate = 0, x = 0, y = 0, yaw = 0, last = seconds;
     DataWriter* out = node.writer<nav::Odometry_PubSubType>("/robot_0/odom", odometry);
     node.hear<geo::Twist_PubSubType, geo::Twist_>("/robot_0/cmd_vel", twist, true, false, [&](const geo::Twist_& said) {
       const std::lock_guard<std::mutex> lock(guard);
       forward = said.linear().x();
       rate = said.angular().z();
+      if (forward != 0 && last == seconds) last = age() + speed;
     });
     const double period = 0.02;
     while (age() < seconds) {
@@ -172,7 +173,7 @@ int main(int count, char** words) {
       message.pose().pose().position().y(y);
       message.pose().pose().orientation().z(std::sin(yaw / 2));
       message.pose().pose().orientation().w(std::cos(yaw / 2));
-      if (age() < speed) out->write(&message);
+      if (age() < last) out->write(&message);
       std::this_thread::sleep_for(std::chrono::duration<double>(period));
     }
     std::_Exit(0);
