@@ -15,11 +15,13 @@ if TYPE_CHECKING:
 __all__ = ["ExternalDrives", "PythonDecision", "PythonMeasurement", "StepHooks", "WideControls"]
 
 PythonDecision = Callable[[Any], None]
-"""Is called with the simulation and fills ``command`` of the rows that it decides for; called between the native decisions and the motion. Its method
-``claim(simulation)``, if it has one, marks rows as ``given`` before the native decisions, which then skip them."""
+"""Is called with the simulation between the native decisions and the motion, and fills ``command`` of the rows that it
+decides for. Its method ``claim(simulation)``, if it has one, marks rows as ``given`` before the native decisions, which
+then skip them."""
 
 PythonMeasurement = Callable[[Any, "NDArray[np.bool_] | None"], None]
-"""Is called with the simulation and a mask, and updates the sensors that it computes, in the worlds of the mask (None: all); called after the native sensors."""
+"""Is called with the simulation and a mask of worlds (None: all) after the native sensors, and updates the sensors that it
+computes in these worlds."""
 
 
 class WideControls(Protocol):
