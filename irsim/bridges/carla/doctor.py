@@ -16,7 +16,9 @@ __all__ = ["LEFT_CURVE", "PARTS"]
 _LENGTH, _CURVATURE = 20.0, 0.05
 LEFT_CURVE = f"""<?xml version="1.0"?>
 <OpenDRIVE>
-  <header revMajor="1" revMinor="4" name="curve" version="1" north="0" south="0" east="0" west="0"/>
+  <header revMajor="1" revMinor="4" name="curve" version="1" north="0" south="0" east="0" west="0">
+    <geoReference><![CDATA[+proj=tmerc +lat_0=0 +lon_0=0]]></geoReference>
+  </header>
   <road name="curve" length="{_LENGTH}" id="1" junction="-1">
     <link/>
     <planView>
