@@ -96,7 +96,8 @@ def _levels(cover: Floats, finest: float) -> NDArray[np.int64]:
     thin = np.sqrt(np.maximum((cover[:, 0] + cover[:, 2]) / 2 - apart, 0.0)) / finest
     for_few = _power(reach / _MAX_REACH)
     for_shape = np.maximum(_power(thin / _FINE), np.where(reach <= _MAX_LONG_REACH, 0, 1))
-    return np.minimum(np.minimum(for_few, for_shape), _LEVELS)
+    found: NDArray[np.int64] = np.minimum(np.minimum(for_few, for_shape), _LEVELS)
+    return found
 
 
 def _power(ratio: Floats) -> NDArray[np.int64]:

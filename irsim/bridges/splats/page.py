@@ -166,7 +166,7 @@ def _content(
         "top": max(0.5, float(np.percentile(splats.center[:, 2], 99.5)) + 0.1),
         "camera_height": options.height,
         "fov": math.radians(_FOV_DEG),
-        "eye": {"target": [*middle.tolist(), 0.0], "distance": 1.1 * size, "azimuth": math.pi / 2, "elevation": 0.95},
+        "eye": {"target": [*middle.tolist(), 0.0], "distance": 1.1 * size, "azimuth": math.pi / 2, "elevation": 1.1},
     }
     return head, columns
 
