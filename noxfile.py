@@ -51,7 +51,7 @@ DEBIAN_PEERS = (
     "libsdformat-dev", "python3-rospy", "ros-base", "ros-nav-msgs",
 )  # fmt: skip
 """Packages of Debian 12 that bridges meet in tests."""
-PYTHON_PEERS = ("mcap-ros2-support>=0.5", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
+PYTHON_PEERS = ("mcap-ros2-support>=0.5", "msgpack>=1", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
 """Packages of Python that bridges meet in tests, and that are no dependencies."""
 NPM_PEERS = ("@sparkjsdev/spark@2.2.0", "three@0.180.0")
 """A renderer of Gaussian splats that ours are compared with, in a browser."""

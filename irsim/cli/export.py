@@ -25,8 +25,7 @@ def export(
         str | None,
         typer.Option(
             metavar="FORMAT",
-            help="parquet, csv, npz, mcap, minari, colmap, nerfstudio or poses. Default: as the suffix of the file "
-            "says.",
+            help="Name of a format; irsim describe exports lists them. Default: as the suffix of the file says.",
             show_default=False,
         ),
     ] = None,
@@ -66,9 +65,9 @@ def export(
     ] = None,
     json_output: Json = False,
 ) -> None:
-    """Write recorded runs for other tools: Parquet, CSV or NumPy files, ROS 2 bags (MCAP), Minari datasets, cameras.
+    """Write recorded runs for other programs: tables, ROS 2 bags, datasets, cameras, scenes of other simulators.
 
-    Parquet, MCAP and Minari need libraries, which the extra `records` installs; without them the message says how.
+    All but CSV and NumPy files need libraries, which extras install; without them the message says how.
     """
     from rich.text import Text
 

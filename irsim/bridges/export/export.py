@@ -40,9 +40,9 @@ def export_run(
 
     Formats are ``parquet`` and ``csv`` (a table with one row per step and object), ``npz`` (arrays of shape (steps,
     objects, …)), ``mcap`` (ROS 2 messages), ``minari`` (a folder: a dataset for learning, one episode per run and
-    robot), and for cameras that look where robots go ``colmap``, ``nerfstudio`` (folders) and ``poses`` (lines of
-    JSON). Runs are read piece by piece, so that they need not fit in memory. Parquet, MCAP and Minari need libraries:
-    ``pip install 'irsim-mcp[records]'``.
+    robot), ``usd`` (an animated stage of OpenUSD), and for cameras that look where robots go ``colmap``, ``nerfstudio``
+    (folders) and ``poses`` (lines of JSON). Runs are read piece by piece, so that they need not fit in memory. A format
+    that needs a library says which extra installs it: ``pip install 'irsim-mcp[records]'``.
 
     Args:
         run: Id of a run, its folder, or ``last``; or several of them for a table or a dataset.
@@ -72,7 +72,7 @@ def export_run(
     if len(runs) > 1 and not form.several:
         what = f"a file of the format {form.name} holds one run, got {len(runs)}"
         raise RunError("bad-argument", what, "export each run to a file of its own", where="run")
-    require("records", *form.libraries)
+    require(form.extra, *form.libraries)
     chosen = chosen_options(form.options, options or {}, f"the format {form.name}")
     target = _target(form, runs, out)
     total, done = sum(one.last_step + 1 for one in runs), 0
@@ -113,7 +113,7 @@ def _target(form: Format, runs: Sequence[Run], out: str | Path | None) -> Path:
         out = f"{runs[0].id}{form.suffix}"
     target = Path(out)
     if not form.folder:
-        check_suffix(target, (form.suffix,))
+        check_suffix(target, (form.suffix, *form.more_suffixes))
         if target.is_dir():
             raise RunError("file-exists", f"'{clean(target, 200)}' is a folder", "name another file with -o")
     elif target.exists():

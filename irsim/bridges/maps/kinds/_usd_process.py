@@ -149,7 +149,7 @@ def _check_layers(path: Path) -> None:
             if name == str(path):
                 raise _Refused("it is damaged: it cannot be opened")
             continue  # the stage is composed without it, and says so
-        for asset in layer.GetCompositionAssetDependencies():
+        for asset in filter(None, layer.GetCompositionAssetDependencies()):  # no name stands for the layer itself
             target = layer.ComputeAbsolutePath(asset)
             _check_reference(asset, target, root, path)
             waiting.append(target)

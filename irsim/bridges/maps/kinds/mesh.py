@@ -19,7 +19,7 @@ __all__ = ["KIND"]
 
 _FRAMES = {"y": "habitat_yup", "z": "irsim", "-y": "colmap"}
 _Y_UP = (".glb", ".gltf", ".obj")
-_STEEP = 2.0
+_STEEP = 1.5
 """How much more area must face along another axis before a note says so."""
 
 
