@@ -30,6 +30,7 @@ class Up(str, Enum):
     auto = "auto"
     y = "y"
     z = "z"
+    minus_y = "-y"
 
 
 class Lanes(str, Enum):
@@ -44,7 +45,7 @@ def import_(
     file: Annotated[
         str,
         typer.Argument(
-            help="A mesh (.glb, .gltf, .obj, .ply, .stl), a navigation mesh of Habitat (.navmesh), a USD stage (.usd, "
+            help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat (.navmesh), a USD stage (.usd, "
             ".usda, .usdc, .usdz), roads (.xodr), or the YAML file of a map of the ROS map server.",
             show_default=False,
         ),
@@ -93,8 +94,16 @@ def import_(
         float, typer.Option(help="Distance from obstacles that becomes occupied [m]; robots have their own shape.")
     ] = 0.0,
     up: Annotated[
-        Up, typer.Option(help="Axis of a mesh that points up; auto: y for glTF and OBJ, z for PLY and STL.")
+        Up, typer.Option(help="Axis that points up (-y: y points down); auto: y for glTF and OBJ, z for PLY and STL.")
     ] = Up.auto,
+    meters_per_unit: Annotated[float, typer.Option(help="Length of a unit of a scene of splats [m].")] = 1.0,
+    opacity: Annotated[float, typer.Option(help="Splats with less opacity are left out.")] = 0.05,
+    bounds: Annotated[
+        str | None,
+        typer.Option(
+            metavar="X,Y,X,Y", help="Lower left and upper right corner of a map of splats [m].", show_default=False
+        ),
+    ] = None,
     lanes: Annotated[Lanes, typer.Option(help="Lanes of roads that are free.")] = Lanes.drive,
     robot: Annotated[
         bool, typer.Option("--robot", help="Add a robot that drives from one end of the map to the other.")
@@ -121,8 +130,11 @@ def import_(
         "up": up.value,
         "level": level,
         "height": height,
-        "seed_point": None if seed_point is None else _point(seed_point),
+        "seed_point": None if seed_point is None else _numbers(seed_point, "seed point", 2, "--seed-point 1.5,2"),
         "unknown": None if unknown is None else unknown.value,
+        "meters_per_unit": meters_per_unit,
+        "opacity": opacity,
+        "bounds": None if bounds is None else _numbers(bounds, "bounds", 4, "--bounds 0,0,8,6"),
         "lanes": lanes.value,
     }
     if list_levels:
@@ -137,14 +149,16 @@ def import_(
         _show(result, out, robot)
 
 
-def _point(text: str) -> tuple[float, float]:
+def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...]:
     from irsim.diagnostics.errors import ArgumentError
 
     try:
-        x, y = (float(part) for part in text.split(","))
+        found = tuple(float(part) for part in text.split(","))
     except ValueError:
-        raise ArgumentError(f"the seed point '{text}' is not two numbers", "write --seed-point 1.5,2") from None
-    return x, y
+        found = ()
+    if len(found) != count:
+        raise ArgumentError(f"the {what} '{text}' is not {count} numbers", f"write {example}")
+    return found
 
 
 def _show(result: MapImportResult, out: Path | None, robot: bool) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from irsim.options.base import Options
-from irsim.options.units import Degrees, Meters
+from irsim.options.units import Degrees, Fraction, Meters
 
 __all__ = ["ImportLimits", "ImportOptions"]
 
@@ -27,8 +27,9 @@ class ImportOptions(Options):
     radius: Annotated[Meters, Field(ge=0, le=10)] = 0.0
     """Distance from obstacles within which cells become occupied. irsim keeps a robot's own shape clear of obstacles;
     only planning for points needs it."""
-    up: Literal["auto", "y", "z"] = "auto"
-    """Axis of a mesh that points up. ``auto`` is y for glTF and OBJ, and z for PLY and STL."""
+    up: Literal["auto", "y", "z", "-y"] = "auto"
+    """Axis of a mesh or of splats that points up; ``-y``: y points down. ``auto`` is y for glTF and OBJ, and z for PLY
+    and STL."""
     level: Annotated[int, Field(ge=0)] | None = None
     """Number of the level, the lowest is 0. Default: the largest one that is no roof of another."""
     height: Meters | None = None
@@ -37,6 +38,12 @@ class ImportOptions(Options):
     """x, y of a place that is free: what is connected to it is free in the map. Default: the largest connected part."""
     unknown: Literal["free", "occupied"] | None = None
     """Whether unknown cells count as free or occupied in the scenario. Default: free for maps of ROS, else occupied."""
+    meters_per_unit: Annotated[Meters, Field(gt=0, le=1e6)] = 1.0
+    """Length of a unit of a scene of splats, whose scale is often arbitrary."""
+    opacity: Annotated[Fraction, Field(gt=0)] = 0.05
+    """Splats with less opacity are left out."""
+    bounds: tuple[Meters, Meters, Meters, Meters] | None = None
+    """Left, lower, right and upper bound of a map of splats. Default: what stands in the way, but for a few far splats."""
     lanes: Literal["drive", "walk", "all"] = "drive"
     """Lanes of roads that are free: those for vehicles, those for pedestrians, or both."""
 

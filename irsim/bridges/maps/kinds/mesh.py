@@ -17,7 +17,7 @@ from irsim.bridges.maps.source import Kind, Scene, unusable
 
 __all__ = ["KIND"]
 
-_FRAMES = {"y": "habitat_yup", "z": "irsim"}
+_FRAMES = {"y": "habitat_yup", "z": "irsim", "-y": "colmap"}
 _Y_UP = (".glb", ".gltf", ".obj")
 _STEEP = 1.5
 """How much more area must face along another axis before a note says so."""
@@ -41,13 +41,15 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     triangles = _checked(path, _load(path, suffix, resolver, limits))
     areas = np.abs(_normals(triangles)).sum(axis=0)
     notes = []
-    axis = {"y": 1, "z": 2}[up]
+    axis = {"y": 1, "z": 2, "-y": 1}[up]
     other = 3 - axis
     if options.up == "auto" and areas[other] > _STEEP * areas[axis]:
         name = "xyz"[other]
         notes.append(f"most surfaces face along {name}: if {name} points up, give --up {name}")
     if up == "y":
         triangles = np.stack([triangles[..., 0], -triangles[..., 2], triangles[..., 1]], axis=-1)
+    elif up == "-y":
+        triangles = np.stack([triangles[..., 2], -triangles[..., 0], -triangles[..., 1]], axis=-1)
     rises = _normals(triangles)[:, 2]
     upward, downward = float(rises[rises > 0].sum()), float(-rises[rises < 0].sum())
     if upward < 0.1 * downward:
