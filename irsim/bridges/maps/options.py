@@ -62,6 +62,6 @@ class ImportLimits:
 
     root: str | None = None
     bytes: int = 2 * 1024**3
-    cells: int = 25_000_000
+    cells: int = 8_000_000
     triangles: int = 20_000_000
     seconds: float = 300.0
