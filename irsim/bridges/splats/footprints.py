@@ -102,7 +102,8 @@ def _levels(cover: Floats, finest: float) -> NDArray[np.int64]:
 
 def _power(ratio: Floats) -> NDArray[np.int64]:
     """Smallest power of the ratio of grids that is not below a ratio; 0 for ratios below 1."""
-    return np.ceil(np.log(np.maximum(ratio, 1.0)) / np.log(_FINE) - 1e-9).astype(np.int64)
+    found: NDArray[np.int64] = np.ceil(np.log(np.maximum(ratio, 1.0)) / np.log(_FINE) - 1e-9).astype(np.int64)
+    return found
 
 
 def _sums(
