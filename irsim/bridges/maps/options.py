@@ -43,7 +43,7 @@ class ImportOptions(Options):
     opacity: Annotated[Fraction, Field(gt=0)] = 0.05
     """Splats with less opacity are left out."""
     bounds: tuple[Meters, Meters, Meters, Meters] | None = None
-    """Left, lower, right and upper bound of a map of splats. Default: what stands in the way, but for a few far splats."""
+    """Left, lower, right and upper bound of a map of splats. Default: around obstacles, without far splats."""
     lanes: Literal["drive", "walk", "all"] = "drive"
     """Lanes of roads that are free: those for vehicles, those for pedestrians, or both."""
 
