@@ -32,7 +32,7 @@ from irsim.scenario.limits import Limits
 __all__ = ["MAX_PAGE_SPLATS", "PageFile", "write_page"]
 
 MAX_PAGE_SPLATS = 1_000_000
-"""Splats of a page unless the caller decides; they take about 15 MB of the page."""
+"""Splats of a page unless the caller decides; they take 15 to 25 MB of the page."""
 _MAX_ROWS = 4000
 """Steps of a page."""
 _SOURCES = Path(__file__).with_name("web")
