@@ -29,6 +29,7 @@ from irsim.bridges.splats.page import write_page
 from irsim.bridges.splats.reading import read_splats
 from irsim.bridges.splats.render import View, picture
 from irsim.runs import Run, open_run
+from tests.bridges.maps.flat import flat
 from tests.bridges.splats.conftest import ROBOT
 from tests.bridges.splats.scenes import FIELDS, Room, room, write_ply
 from tests.browser import NAMES, until
@@ -271,3 +272,19 @@ def test_the_picture_of_the_cpu_is_that_of_spark(
     assert found > 36
     wrong = camera_pose(pose + np.array([0, 0, 0.03]), "colmap", EYE_HEIGHT, transform=transform)
     assert ratio(our_picture(scene, wrong), theirs) < found - 5  # the measure sees two degrees
+
+
+def test_a_mesh_with_y_down_gives_the_map_of_the_same_mesh_with_z_up(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    values = []
+    for up, frame in (("z", "irsim"), ("y", "habitat_yup"), ("-y", "colmap")):
+        corners = flat().reshape(-1, 3) @ axes_of(frame).T
+        mesh = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), process=False)
+        mesh.export(tmp_path / "flat.ply")
+        _, found, source = read_occupancy(tmp_path / "flat.ply", ImportOptions(up=up, resolution=0.1), ImportLimits())
+        assert (source["kind"], found.frame) == ("mesh", frame)
+        values.append(found.values)
+    assert (values[0] == 0).sum() > 1000
+    for other in values[1:]:
+        assert other.shape == values[0].shape
+        assert (other != values[0]).mean() < 0.01  # cells whose border a wall lies on
