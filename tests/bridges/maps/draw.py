@@ -16,6 +16,8 @@ from irsim.scenario.read import read
 from tests.bridges.maps.flat import flat, storey, write_glb
 
 PAGE = Path(__file__).resolve().parents[3] / "skills" / "irsim-runner" / "bridges" / "maps.png"
+CUT = 1.0
+"""Height above which nothing is drawn [m]."""
 
 
 def main() -> None:
@@ -30,15 +32,16 @@ def main() -> None:
             way.append(env.robot.state[:2, 0])
         env.end()
     figure = plt.figure(figsize=(8, 2.9), dpi=90)
-    left = figure.add_axes((0.0, 0.0, 0.5, 1.0), projection="3d")
+    left = figure.add_axes((-0.01, -0.16, 0.52, 1.32), projection="3d")
     triangles = storey()
-    triangles = triangles[triangles[..., 2].max(axis=1) < 2.3]
+    triangles = triangles[triangles[..., 2].min(axis=1) < CUT]
+    triangles = np.minimum(triangles, [np.inf, np.inf, CUT])  # walls are drawn low, to look over them
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     light = normals @ [0.3, -0.5, 0.8] / (np.linalg.norm(normals, axis=1) + 1e-9)
     grey = np.clip(0.55 + 0.4 * light, 0.15, 1)
     left.add_collection3d(Poly3DCollection(triangles, facecolors=np.column_stack([grey, grey, 0.95 * grey])))
-    left.set(xlim=(0, 8), ylim=(-1, 7), zlim=(0, 5), box_aspect=(8, 8, 5))
-    left.view_init(48, -62)
+    left.set(xlim=(0, 8), ylim=(-1, 7), zlim=(0, 4), box_aspect=(8, 8, 4))
+    left.view_init(50, -62)
     left.set_axis_off()
     right = figure.add_axes((0.52, 0.06, 0.46, 0.9))
     (x, y), (nx, ny) = grid.origin, grid.size
