@@ -45,8 +45,9 @@ def import_(
     file: Annotated[
         str,
         typer.Argument(
-            help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat (.navmesh), a USD stage (.usd, "
-            ".usda, .usdc, .usdz), roads (.xodr), or the YAML file of a map of the ROS map server.",
+            help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat "
+            "(.navmesh), a USD stage (.usd, .usda, .usdc, .usdz), roads (.xodr), or the YAML "
+            "file of a map of the ROS map server.",
             show_default=False,
         ),
     ],
@@ -115,7 +116,7 @@ def import_(
     force: Annotated[bool, typer.Option("--force", help="Overwrite files.")] = False,
     json_output: Json = False,
 ) -> None:
-    """Write a scenario with a map made from a mesh, a navigation mesh, a USD stage, roads, or a map of ROS."""
+    """Write a scenario with a map made from a mesh, splats, a navigation mesh, a USD stage, roads, or a map of ROS."""
     from irsim.bridges.maps.importing import import_map
     from irsim.bridges.maps.importing import list_levels as only_list
     from irsim.cli.output import print_json
