@@ -45,8 +45,9 @@ def import_(
     file: Annotated[
         str,
         typer.Argument(
-            help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat (.navmesh), a USD stage (.usd, "
-            ".usda, .usdc, .usdz), roads (.xodr), or the YAML file of a map of the ROS map server.",
+            help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat "
+            "(.navmesh), a USD stage (.usd, .usda, .usdc, .usdz), roads (.xodr), or the YAML file of a map of the ROS map "
+            "server.",
             show_default=False,
         ),
     ],
