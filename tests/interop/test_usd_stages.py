@@ -119,6 +119,7 @@ def test_layers_beside_the_stage_are_read_and_others_are_not(tmp_path) -> None:
         part.Save()
     for reference, said in [
         ("./parts/part.usda", None),
+        ("./parts/none.usda", "no visible meshes"),
         ("../part.usda", "outside of its folder"),
         (str(tmp_path / "part.usda"), "outside of its folder"),
         ("https://127.0.0.1:9/part.usda", "outside of its folder"),

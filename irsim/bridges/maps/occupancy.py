@@ -54,6 +54,7 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
     listed = [(one.height, one.areas[0], one.roof) for one in levels]
     found = Occupancy(values, grid, scene.frame, level.height, scene.meters_per_unit, number, listed, level.areas)
     found.kept, found.radius, found.notes = region, scene.radius, list(scene.notes)
+    found.headroom, found.climb = scene.headroom, scene.climb
     if spans is not None and len(levels) > 1 and options.level is None and options.height is None:
         found.notes.append(f"level {number} of {len(levels)} was taken; --list-levels lists them, --level picks one")
     return cropped(found)
