@@ -281,4 +281,4 @@ def test_commands_of_the_page(tmp_path: Path, monkeypatch) -> None:
     person = stage.GetPrimAtPath("/World/Pedestrians/walker/body/person")
     place = UsdGeom.XformCache(12).GetLocalToWorldTransform(person).ExtractTranslation()
     assert (person.GetTypeName(), tuple(place)) == ("Sphere", pytest.approx((5, 3, 0)))
-    assert not stage.GetPrimAtPath("/World/Pedestrians/walker/body/part_0")
+    assert not stage.GetPrimAtPath("/World/Pedestrians/walker/body/part_0").IsActive()

@@ -13,6 +13,7 @@ from typing import TypeAlias
 from irsim.bridges.export.episode import Episode
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
+from irsim.options.base import Options
 from irsim.runs.files import RunError
 
 __all__ = ["Format", "Writer", "find_format", "format_names"]
@@ -36,6 +37,8 @@ class Format:
         several: Whether one file can hold several runs.
         folder: Whether it writes a folder instead of a file.
         ranges: Whether it has the ranges of lidars unless the caller decides.
+        objects: Word that chooses the objects unless the caller does.
+        options: Model of its options, which writers find in :attr:`Episode.options`; None without any.
         more_suffixes: Other suffixes of its files, which select how it writes them.
     """
 
@@ -46,6 +49,8 @@ class Format:
     several: bool = False
     folder: bool = False
     ranges: bool = True
+    objects: str = "movers"
+    options: type[Options] | None = None
     extra: str = "records"
     more_suffixes: tuple[str, ...] = ()
 
