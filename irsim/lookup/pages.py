@@ -136,8 +136,8 @@ def _plot(source: _Source) -> str:
 def _templates(source: _Source) -> str:
     intro = (
         "Scenarios to start from; each runs without changes. `irsim new NAME --set KEY=VALUE` writes one to a file. "
-        "With default parameters the outcome is success, unless an entry gives another. Each parameter is followed by its "
-        "values and its default."
+        "With default parameters the outcome is success, unless an entry gives another. Each parameter is followed by "
+        "its values and its default."
     )
     parts = [intro]
     for template in templates.load_all():

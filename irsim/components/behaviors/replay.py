@@ -48,7 +48,7 @@ class Replay(BehaviorOptions):
     times: Annotated[
         list[Annotated[Component, Field(ge=0)]], Field(max_length=1_000_000, json_schema_extra={"x-unit": "s"})
     ] = []
-    """Recorded times, increasing, on the clock of the scenario."""
+    """Recorded times, increasing."""
     poses: Annotated[list[Pose], Field(max_length=1_000_000)] = []
     """Its places: [x, y] or [x, y, heading]. Without headings it looks where it goes."""
     interpolation: Literal["linear", "cubic"] = "linear"

@@ -36,10 +36,9 @@ class Rvo(BehaviorOptions):
     mode: Literal["rvo", "hrvo", "vo"] = "rvo"
     """Share of the avoidance taken: half (`rvo`), all (`vo`), or half on one side and all on the other (`hrvo`)."""
     neighbor_threshold: Annotated[Meters, Field(gt=0)] = 3.0
-    """Objects and walls farther away than this are ignored; linestrings are never ignored."""
+    """Objects and walls farther away are ignored; linestrings are never ignored."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
-    """As in `orca`: the wanted velocity turns by this angle to the right, to the left if negative, while something that
-    moves is ahead. 10 breaks exact symmetry; 0 is off."""
+    """As in `orca`: 10 breaks exact symmetry, 0 is off."""
 
 
 BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

@@ -28,7 +28,7 @@ class Sfm(BehaviorOptions):
     vmax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5
     """Largest speed."""
     neighbor_threshold: Annotated[Meters, Field(gt=0)] = 10.0
-    """Other objects farther away than this are ignored."""
+    """Objects farther away are ignored."""
     relaxation_time: Annotated[Seconds, Field(gt=0)] = 0.5
     """Time in which the desired velocity is reached."""
     force_factor_desired: Number = 1.0
@@ -51,8 +51,7 @@ class Sfm(BehaviorOptions):
     safety_radius: Annotated[Meters, Field(ge=0)] = 0.0
     """Margin added to the radius of each object in the interaction."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
-    """As in `orca`: the wanted velocity turns by this angle to the right, to the left if negative, while something that
-    moves is ahead. 10 breaks exact symmetry; 0 is off."""
+    """As in `orca`: 10 breaks exact symmetry, 0 is off."""
     social_groups: list[list[Annotated[Integer, Field(ge=0)]]] | None = None
     """As group behavior: lists of the indices of members that walk together; each index at most once."""
     force_factor_coherence: Number = 2.0
