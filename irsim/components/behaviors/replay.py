@@ -29,7 +29,7 @@ class Replay(BehaviorOptions):
     """Be at recorded places at recorded times: people of a data set, a robot from a bag.
 
     The drives `omni` and `omni_angular` are exactly there, others follow as well as they can. An obstacle is in the
-    world from its first to its last time. It waits for no room and goes on where a collision would stop it. `state`,
+    world from its first to its last time. It waits for no room, and collisions do not stop it. `state`,
     `goal` and limits of speed follow from the recording. `irsim bridge import-pedestrians` writes such scenarios.
     """
 
@@ -50,11 +50,11 @@ class Replay(BehaviorOptions):
     ] = []
     """Recorded times, increasing."""
     poses: Annotated[list[Pose], Field(max_length=1_000_000)] = []
-    """Its places: [x, y] or [x, y, heading]. Without headings it looks where it goes."""
+    """Places [x, y] or [x, y, heading]; without headings it looks where it goes."""
     interpolation: Literal["linear", "cubic"] = "linear"
     """Between two times: straight at constant speed, or along a smooth curve without jumps of speed."""
     vanish: Bool = True
-    """With false, and if it is a robot, it is in the world all the time: at its first and last pose."""
+    """With false, and if it is a robot, it is always in the world: at its first and last pose."""
 
     @model_validator(mode="after")
     def _check_times(self) -> Replay:
