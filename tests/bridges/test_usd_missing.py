@@ -16,7 +16,8 @@ from irsim.common.files import TargetError
 TEXT = """
 world: {width: 5, height: 5, time_limit: 0.5}
 robot:
-  - {state: [1, 1, 0], goal: [4, 4], kinematics: {name: diff}, behavior: {name: dash}, shape: {name: circle, radius: 0.2}}
+  - {state: [1, 1, 0], goal: [4, 4], kinematics: {name: diff}, behavior: {name: dash},
+     shape: {name: circle, radius: 0.2}}
 """
 
 
