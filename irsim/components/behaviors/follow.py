@@ -59,7 +59,7 @@ class Follow(BehaviorOptions):
     planner: Annotated[Any, Select(PLANNERS, short=(None, "name")), Field(validate_default=True)] = "astar"
     """Path planner: its name, or a mapping with its name and options."""
     local: Annotated[
-        Any, Select(BEHAVIORS, exclude=("follow",), short=(None, "name")), Field(validate_default=True)
+        Any, Select(BEHAVIORS, exclude=("follow", "replay"), short=(None, "name")), Field(validate_default=True)
     ] = "dash"
     """Behavior that drives from one corner to the next: its name, or a mapping with its name and options, as in
     `local: {name: orca}`."""
