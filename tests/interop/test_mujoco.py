@@ -220,6 +220,24 @@ def test_objects_that_are_not_in_the_world_touch_nothing_and_come_back() -> None
     assert bridge.report.contacts == 0
 
 
+def test_another_episode_starts_at_rest_and_without_old_commands() -> None:
+    from irsim.api import read_scenario
+
+    scenario, _ = read_scenario(text=POCKET.format(drive="diff", shape=SHAPES["circle"], goal=5.5), strict=True)
+    env = irsim.Env(scenario, headless=True, log_level="ERROR", seed=1)
+    runs = []
+    with irsim.connect(env, [make(Mujoco(latency=0.3))]):
+        for _ in range(2):
+            env.reset()
+            runs.append([])
+            for _ in range(12):
+                env.step()
+                runs[-1].append(env.simulation.pose[0].copy())
+    env.end(ending_time=0.0)
+    np.testing.assert_allclose(runs[0], runs[1], atol=1e-3)
+    assert runs[1][2] == pytest.approx((1, 4, 0), abs=1e-3)
+
+
 def test_a_hundred_robots() -> None:
     text = """
 world: {width: 40, height: 40, step_time: 0.1}

@@ -73,8 +73,14 @@ def is_mocap(agent: Agent, moved: frozenset[str]) -> bool:
 
 
 def body_name(agent: Agent) -> str:
-    """Name of the body of an object; ``world`` is MuJoCo's own."""
-    return agent.name if agent.name != "world" else "irsim/world"
+    """Name of the body of an object, which is its own unless XML, MuJoCo or a part of another object has it."""
+    name = agent.name
+    return name if name != "world" and _plain(name) else f"irsim/object_{agent.index}"
+
+
+def _plain(name: str) -> bool:
+    """Whether a name can be written as it is; parts of objects have a slash in their names."""
+    return bool(name) and name.isprintable() and "/" not in name
 
 
 def write_mjcf(scene: SceneDescription, moved: frozenset[str], options: Mujoco) -> str:
@@ -95,7 +101,7 @@ class _Writer:
     def __init__(self, scene: SceneDescription, moved: frozenset[str], options: Mujoco) -> None:
         self.scene, self.moved, self.options = scene, moved, options
         self.rigs = rigs_of(scene, moved, options)
-        self.root = ET.Element("mujoco", model=scene.name or "irsim")
+        self.root = ET.Element("mujoco", model=scene.name if _plain(scene.name) else "irsim")
         self._head()
         self.asset = self._assets()
         self.world = ET.SubElement(self.root, "worldbody")
@@ -167,7 +173,8 @@ class _Writer:
         (x0, y0), (x1, y1) = self.scene.low, self.scene.high
         x, y, wide = (x0 + x1) / 2, (y0 + y1) / 2, max(x1 - x0, y1 - y0)
         ET.SubElement(self.world, "geom", name="irsim/ground", type="plane", group="1", pos=numbers(x, y, 0),
-                      size=numbers(0.75 * wide, 0.75 * wide, 0.1), material="ground", contype="1", conaffinity="0")  # fmt: skip
+                      size=numbers(0.75 * wide, 0.75 * wide, 0.1), material="ground",
+                      contype="1", conaffinity="0")  # fmt: skip
         ET.SubElement(self.world, "light", directional="true", pos=numbers(x, y, 0.7 * wide), dir="0.15 0.1 -1",
                       diffuse="0.6 0.6 0.6", castshadow="false")  # fmt: skip
         width, height = self.options.size
