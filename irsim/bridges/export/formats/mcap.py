@@ -27,8 +27,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.bridges.export.episode import Block, Episode, Lidar
-from irsim.bridges.export.formats._ros_messages import Bag, Messages, nanoseconds, ros_names
+from irsim.bridges.export.formats._mcap_file import Bag
 from irsim.bridges.export.registry import Format
+from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.names import nanoseconds, ros_names
 from irsim.common.arrays import Floats
 from irsim.runs.initial_scene import initial_scene
 from irsim.simulation.events import Event

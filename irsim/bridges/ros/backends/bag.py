@@ -1,0 +1,146 @@
+"""``bag``: a recording instead of a robot, a folder of rosbag2 with SQLite or MCAP storage."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.ros.backends.base import Backend
+from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.qos import LATCHED, STATE, Qos
+from irsim.bridges.ros.topics import Topic
+from irsim.common.extras import require
+from irsim.common.files import TEMPORARY
+
+__all__ = ["BagBackend", "BagFolder", "Storage"]
+
+Storage = Literal["sqlite3", "mcap"]
+_NEWEST = 9
+"""Version of rosbag2's metadata, that of Jazzy, which earlier releases read, too."""
+
+
+class BagFolder:
+    """A folder of rosbag2 that is written message by message.
+
+    Args:
+        target: The folder, which must not exist.
+        messages: Makes messages, and their CDR.
+        storage: How messages are stored.
+    """
+
+    def __init__(self, target: Path, messages: Messages, storage: Storage = "sqlite3") -> None:
+        require("bag", "rosbags")
+        from rosbags.rosbag2 import StoragePlugin, Writer
+
+        plugin = StoragePlugin.SQLITE3 if storage == "sqlite3" else StoragePlugin.MCAP
+        self._writer = Writer(target, version=_NEWEST, storage_plugin=plugin)
+        self._writer.open()
+        self._messages = messages
+
+    def __enter__(self) -> BagFolder:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
+        if kind is None:
+            self._writer.close()
+        else:
+            self._writer.abort()
+
+    def topic(
+        self, name: str, kind: str, *, latched: bool = False, qos: Qos | None = None, **about: str
+    ) -> tuple[Any, str]:
+        """Add a topic.
+
+        Args:
+            name: Its name.
+            kind: Type of its messages.
+            latched: Whether new subscribers get its last message.
+            qos: Its quality of service; default: by ``latched``.
+            **about: Further facts, which go into the custom data of the bag.
+
+        Returns:
+            What :meth:`add` takes.
+        """
+        for key, value in about.items():
+            self._writer.set_custom_data(f"{name} {key}", value)
+        quality = qos or (LATCHED if latched else STATE)
+        added = self._writer.add_connection(
+            name, kind, typestore=self._messages.store, offered_qos_profiles=[_stored(quality)]
+        )
+        return added, kind
+
+    def add(self, topic: tuple[Any, str], stamp: int, message: Any) -> None:
+        """Add a message at a time [ns]."""
+        connection, kind = topic
+        self._writer.write(connection, stamp, self._messages.cdr(message, kind))
+
+    def describe(self, facts: dict[str, str], files: dict[str, bytes]) -> None:
+        """Add facts, and files as text, to the custom data."""
+        for key, value in facts.items():
+            self._writer.set_custom_data(f"irsim {key}", value)
+        for name, content in files.items():
+            self._writer.set_custom_data(name, content.decode())
+
+
+class BagBackend(Backend):
+    """Records what would be published; the folder gets its name when it is complete.
+
+    Args:
+        node: Unused name of a node.
+        topics: Topics of the scene; those that come in are left out.
+        inbox: Stays empty.
+        messages: Makes messages, and their CDR.
+        folder: The folder, which must not exist.
+        storage: How messages are stored.
+    """
+
+    def __init__(
+        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, folder: Path, storage: Storage
+    ) -> None:
+        super().__init__(node, [topic for topic in topics if topic.outgoing], inbox, messages)
+        if folder.exists():
+            raise BridgeError("file-exists", f"'{folder}' exists", "name another folder, or remove it")
+        self._target = folder
+        self._temporary = folder.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
+        self._bag: BagFolder | None = BagFolder(self._temporary, messages, storage)
+        self._added = {topic: self._bag.topic(topic.name, topic.kind, qos=topic.qos) for topic in self.topics}
+        self.stamp = 0
+        """Time of the messages that are published next [ns]."""
+
+    def publish(self, topic: Topic, message: Any) -> None:
+        """Record a message."""
+        if self._bag is not None:
+            self._bag.add(self._added[topic], self.stamp, message)
+
+    def close(self) -> None:
+        """Complete the folder."""
+        bag, self._bag = self._bag, None
+        if bag is None:
+            return
+        try:
+            bag.__exit__(None, None, None)
+            os.rename(self._temporary, self._target)
+        finally:
+            shutil.rmtree(self._temporary, ignore_errors=True)
+
+
+def _stored(qos: Qos) -> Any:
+    from rosbags import interfaces
+
+    never = interfaces.QosTime(9223372036, 854775807)
+    return interfaces.Qos(
+        interfaces.QosHistory.KEEP_LAST,
+        qos.depth,
+        interfaces.QosReliability.RELIABLE if qos.reliable else interfaces.QosReliability.BEST_EFFORT,
+        interfaces.QosDurability.TRANSIENT_LOCAL if qos.latched else interfaces.QosDurability.VOLATILE,
+        never,
+        never,
+        interfaces.QosLiveliness.AUTOMATIC,
+        never,
+        False,
+    )

@@ -1,0 +1,48 @@
+"""What a backend does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.topics import Topic
+
+__all__ = ["Backend"]
+
+
+class Backend:
+    """A node that publishes and subscribes to topics.
+
+    Args:
+        node: Name of the node.
+        topics: Topics to publish and to subscribe to.
+        inbox: Where messages from outside are put.
+        messages: Makes messages, and their CDR.
+    """
+
+    def __init__(self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages) -> None:
+        self.node, self.topics, self.inbox, self.messages = node, tuple(topics), inbox, messages
+
+    def publish(self, topic: Topic, message: Any) -> None:
+        """Send a message.
+
+        Raises:
+            BridgeLostError: The connection is gone.
+        """
+        raise NotImplementedError
+
+    def poll(self) -> None:
+        """Put into the inbox what has come, if nobody else does so.
+
+        Raises:
+            BridgeLostError: The connection is gone.
+        """
+
+    def peers(self, topic: Topic) -> int | None:
+        """Number of others on a topic; None if the backend cannot tell."""
+        return None
+
+    def close(self) -> None:
+        """Disconnect; a second call does nothing."""

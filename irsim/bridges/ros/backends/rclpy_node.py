@@ -1,0 +1,105 @@
+"""``rclpy``: a node of the ROS 2 installation whose environment is sourced, with its middleware and parameters.
+
+Messages cross in serialized form, so that the classes of ROS are needed for their types only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from importlib import import_module
+from typing import Any
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.ros.backends.base import Backend
+from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.qos import Qos
+from irsim.bridges.ros.topics import Topic
+
+__all__ = ["RclpyBackend"]
+
+_MAX_CALLBACKS = 200
+"""Callbacks that are handled in one step at most, so that a flood cannot hold it up."""
+
+
+class RclpyBackend(Backend):
+    """A node of rclpy.
+
+    Args:
+        node: Name of the node.
+        topics: Topics to publish and to subscribe to.
+        inbox: Where messages from outside are put.
+        messages: Makes messages, and their CDR.
+        domain: Number of the domain; None for that of ``ROS_DOMAIN_ID``.
+    """
+
+    def __init__(
+        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, domain: int | None
+    ) -> None:
+        super().__init__(node, topics, inbox, messages)
+        self._rclpy = import_module("rclpy")
+        self._context = import_module("rclpy.context").Context()
+        self._rclpy.init(args=None, context=self._context, domain_id=domain)
+        self._node: Any = None
+        try:
+            self._node = self._rclpy.create_node(node, context=self._context)
+            self._executor = import_module("rclpy.executors").SingleThreadedExecutor(context=self._context)
+            self._executor.add_node(self._node)
+            self._publishers: dict[Topic, Any] = {}
+            self._subscriptions = [self._add(topic) for topic in self.topics]
+        except BaseException:
+            self.close()
+            raise
+
+    def publish(self, topic: Topic, message: Any) -> None:
+        """Publish a message that is serialized already."""
+        self._publishers[topic].publish(self.messages.cdr(message, topic.kind))
+
+    def poll(self) -> None:
+        """Handle what has come."""
+        for _ in range(_MAX_CALLBACKS):
+            received = self.inbox.received
+            self._executor.spin_once(timeout_sec=0.0)
+            if self.inbox.received == received:
+                break
+
+    def peers(self, topic: Topic) -> int | None:
+        """Number of subscriptions or publishers of a topic."""
+        count = self._node.count_subscribers if topic.outgoing else self._node.count_publishers
+        return int(count(topic.name))
+
+    def close(self) -> None:
+        """Destroy the node."""
+        node, self._node = self._node, None
+        if node is not None:
+            node.destroy_node()
+        if self._context.ok():
+            self._rclpy.shutdown(context=self._context)
+
+    def _add(self, topic: Topic) -> Any:
+        kind, qos = _message_class(topic.kind), _profile(topic.qos)
+        if topic.outgoing:
+            self._publishers[topic] = self._node.create_publisher(kind, topic.name, qos)
+            return None
+        put = partial(self.inbox.put, topic)
+        return self._node.create_subscription(kind, topic.name, put, qos, raw=True)
+
+
+def _message_class(kind: str) -> Any:
+    package, space, name = kind.split("/")
+    try:
+        return getattr(import_module(f"{package}.{space}"), name)
+    except (ImportError, AttributeError):
+        what = f"the ROS installation has no messages {kind}"
+        raise BridgeError("bridge-failed", what, f"apt install ros-$ROS_DISTRO-{package.replace('_', '-')}") from None
+
+
+def _profile(qos: Qos) -> Any:
+    names = import_module("rclpy.qos")
+    return names.QoSProfile(
+        depth=qos.depth,
+        history=names.HistoryPolicy.KEEP_LAST,
+        reliability=names.ReliabilityPolicy.RELIABLE if qos.reliable else names.ReliabilityPolicy.BEST_EFFORT,
+        durability=names.DurabilityPolicy.TRANSIENT_LOCAL if qos.latched else names.DurabilityPolicy.VOLATILE,
+    )

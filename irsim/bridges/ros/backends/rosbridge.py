@@ -1,0 +1,134 @@
+"""``rosbridge``: a client of rosbridge_server, which reaches ROS 1 and ROS 2 over one TCP port with JSON."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from functools import partial
+from types import SimpleNamespace
+from typing import Any
+
+from irsim.bridges.base import BridgeLostError
+from irsim.bridges.ros.backends.base import Backend
+from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.topics import Topic
+from irsim.common.extras import require
+
+__all__ = ["RosbridgeBackend", "namespaces", "plain"]
+
+
+class RosbridgeBackend(Backend):
+    """A connection to rosbridge_server.
+
+    Args:
+        node: Name of the node, which the server does not show.
+        topics: Topics to publish and to subscribe to.
+        inbox: Where messages from outside are put.
+        messages: Makes messages.
+        host: Name or address of the server.
+        port: Its port.
+        ros: Version of ROS behind the server.
+        timeout: Time for which to wait for the server, also if the connection breaks [s].
+    """
+
+    def __init__(
+        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, host: str, port: int,
+        ros: int, timeout: float,
+    ) -> None:  # fmt: skip
+        require("rosbridge", "roslibpy", "rosbags")
+        super().__init__(node, topics, inbox, messages)
+        import roslibpy
+        from rosbags.typesys import Stores, get_typestore
+
+        self._address, self._timeout, self._ros_version = f"{host}:{port}", timeout, ros
+        self._store = messages.store if ros == 2 else get_typestore(Stores.ROS1_NOETIC)
+        self._gone: float | None = None
+        self._publishers: dict[Topic, Any] = {}
+        self._subscribers: list[Any] = []
+        self._client = roslibpy.Ros(host=host, port=port, transport="asyncio")
+        try:
+            self._client.run(timeout=timeout)
+        except roslibpy.core.RosTimeoutError:
+            self._end()
+            what = f"no rosbridge server answers at {self._address} within {timeout:g} s"
+            raise BridgeLostError(
+                what, "start it: ros2 launch rosbridge_server rosbridge_websocket_launch.xml"
+            ) from None
+        for topic in self.topics:
+            kind = topic.kind if ros == 2 else topic.kind.replace("/msg/", "/")
+            channel = roslibpy.Topic(
+                self._client, topic.name, kind, latch=topic.qos.latched, queue_size=topic.qos.depth, queue_length=1
+            )
+            if topic.outgoing:
+                channel.advertise()
+                self._publishers[topic] = channel
+            else:
+                channel.subscribe(partial(self._received, topic))
+                self._subscribers.append(channel)
+
+    def publish(self, topic: Topic, message: Any) -> None:
+        """Send a message as JSON."""
+        self._check()
+        self._publishers[topic].publish(plain(message, topic.kind, self._store, self._ros_version))
+
+    def poll(self) -> None:
+        """Notice that the server is gone; messages come in a thread of roslibpy."""
+        self._check()
+
+    def close(self) -> None:
+        """Leave all topics and disconnect."""
+        if self._client is None:
+            return
+        if self._client.is_connected:
+            for channel in self._publishers.values():
+                channel.unadvertise()
+            for channel in self._subscribers:
+                channel.unsubscribe()
+        self._publishers, self._subscribers = {}, []
+        self._end()
+
+    def _received(self, topic: Topic, message: Mapping[str, Any]) -> None:
+        self.inbox.put(topic, namespaces(dict(message)))
+
+    def _check(self) -> None:
+        if self._client.is_connected:
+            self._gone = None
+            return
+        now = time.monotonic()
+        self._gone = now if self._gone is None else self._gone
+        if now - self._gone > self._timeout:
+            raise BridgeLostError(f"the connection to the rosbridge server at {self._address} is lost")
+
+    def _end(self) -> None:
+        client, self._client = self._client, None
+        client.terminate()
+
+
+def plain(message: Any, kind: str, store: Any, ros: int) -> dict[str, Any]:
+    """A message as rosbridge writes it in JSON, with the fields that its definition in a store has."""
+    if kind in ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"):
+        seconds, nanoseconds = ("sec", "nanosec") if ros == 2 else ("secs", "nsecs")
+        return {seconds: int(message.sec), nanoseconds: int(message.nanosec)}
+    _, fields = store.fielddefs[kind]
+    found: dict[str, Any] = {}
+    for name, (form, detail) in fields:
+        if not hasattr(message, name):  # such as ``seq`` of headers in ROS 1
+            continue
+        value = getattr(message, name)
+        if form.name == "NAME":
+            found[name] = plain(value, detail, store, ros)
+        elif form.name in ("ARRAY", "SEQUENCE") and detail[0][0].name == "NAME":
+            found[name] = [plain(one, detail[0][1], store, ros) for one in value]
+        else:
+            found[name] = value.tolist() if hasattr(value, "tolist") else value
+    return found
+
+
+def namespaces(value: Any) -> Any:
+    """JSON as objects with attributes, as messages are."""
+    if isinstance(value, dict):
+        return SimpleNamespace(**{str(key): namespaces(one) for key, one in value.items()})
+    if isinstance(value, list) and value and isinstance(value[0], (dict, list)):
+        return [namespaces(one) for one in value]
+    return value

@@ -1,0 +1,117 @@
+"""``rospy``: a node of ROS 1."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from functools import partial
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from irsim.bridges.base import BridgeError, BridgeLostError
+from irsim.bridges.ros.backends.base import Backend
+from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.topics import Topic
+
+__all__ = ["RospyBackend", "find_rospy"]
+
+_DEBIAN = Path("/usr/lib/python3/dist-packages")
+"""Where packages of Debian and Ubuntu install rospy for the Python of the system."""
+_QUEUE = 10
+
+
+def find_rospy() -> bool:
+    """Whether rospy can be imported; that of Debian is found from a virtual environment, too, behind all others."""
+    if find_spec("rospy") is None and (_DEBIAN / "rospy").is_dir() and str(_DEBIAN) not in sys.path:
+        sys.path.append(str(_DEBIAN))
+    return find_spec("rospy") is not None
+
+
+class RospyBackend(Backend):
+    """A node of rospy; a process can have one name of a node only, which later bridges share.
+
+    Args:
+        node: Name of the node.
+        topics: Topics to publish and to subscribe to.
+        inbox: Where messages from outside are put.
+        messages: Makes messages.
+        master: Address of the master; None for that of ``ROS_MASTER_URI``.
+    """
+
+    def __init__(
+        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, master: str | None
+    ) -> None:
+        if not find_rospy():
+            what = "rospy cannot be imported"
+            fix = "source the setup.bash of ROS 1, or on Debian 12: apt install ros-base python3-rospy python3-nav-msgs"
+            raise BridgeError("bridge-failed", what, fix)
+        super().__init__(node, topics, inbox, messages)
+        self._rospy: Any = import_module("rospy")
+        rosgraph: Any = import_module("rosgraph")
+        address = master or rosgraph.get_master_uri()
+        if not rosgraph.Master(f"/{node}", master_uri=address).is_online():
+            raise BridgeLostError(
+                f"no ROS master answers at {address}", "start roscore, or set master: http://HOST:11311"
+            )
+        self._publishers: dict[Topic, Any] = {}
+        self._subscribers: list[Any] = []
+        if not self._rospy.core.is_initialized():
+            if master is not None:
+                import os
+
+                os.environ["ROS_MASTER_URI"] = master
+            self._rospy.init_node(node, anonymous=True, disable_signals=True, disable_rosout=True)
+        for topic in self.topics:
+            kind = _message_class(topic.kind)
+            if topic.outgoing:
+                latch = topic.qos.latched
+                self._publishers[topic] = self._rospy.Publisher(topic.name, kind, queue_size=_QUEUE, latch=latch)
+            else:
+                put: Callable[[Any], None] = partial(self.inbox.put, topic)
+                self._subscribers.append(self._rospy.Subscriber(topic.name, kind, put, queue_size=1))
+
+    def publish(self, topic: Topic, message: Any) -> None:
+        """Publish a message."""
+        publisher = self._publishers[topic]
+        publisher.publish(_filled(publisher.data_class(), message))
+
+    def peers(self, topic: Topic) -> int | None:
+        """Number of subscribers of a topic."""
+        return int(self._publishers[topic].get_num_connections()) if topic.outgoing else None
+
+    def close(self) -> None:
+        """Leave all topics; the node itself ends with the process."""
+        for one in (*self._publishers.values(), *self._subscribers):
+            one.unregister()
+        self._publishers, self._subscribers = {}, []
+
+
+def _message_class(kind: str) -> Any:
+    package, _, name = kind.split("/")
+    try:
+        return getattr(import_module(f"{package}.msg"), name)
+    except (ImportError, AttributeError):
+        what = f"the ROS installation has no messages {package}/{name}"
+        raise BridgeError("bridge-failed", what, f"apt install python3-{package.replace('_', '-')}") from None
+
+
+def _filled(target: Any, source: Any) -> Any:
+    """A message of ROS 1 with the values of one of ROS 2; what only one of them has, stays as it is."""
+    if hasattr(target, "secs"):
+        target.secs, target.nsecs = source.sec, source.nanosec
+        return target
+    for name, kind in zip(target.__slots__, target._slot_types, strict=True):
+        if not hasattr(source, name):
+            continue
+        value = getattr(source, name)
+        if isinstance(value, list):
+            inner = _message_class(kind.partition("[")[0].replace("/", "/msg/"))
+            setattr(target, name, [_filled(inner(), one) for one in value])
+        elif hasattr(value, "__dataclass_fields__"):
+            setattr(target, name, _filled(getattr(target, name), value))
+        else:
+            setattr(target, name, value.tolist() if hasattr(value, "tolist") else value)
+    return target

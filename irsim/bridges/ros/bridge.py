@@ -1,0 +1,213 @@
+"""The bridges ``ros2``, ``ros1``, ``rosbridge`` and ``rosbag``: what they do in each step."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any
+
+from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
+from irsim.bridges.ros.backends.bag import BagBackend
+from irsim.bridges.ros.backends.base import Backend
+from irsim.bridges.ros.backends.opening import AnyOptions, make_messages, open_backend
+from irsim.bridges.ros.guarded import Guard
+from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.limiting import ZERO, Velocity
+from irsim.bridges.ros.names import nanoseconds
+from irsim.bridges.ros.outgoing import Outgoing
+from irsim.bridges.ros.qos import Qos
+from irsim.bridges.ros.real import RealRobots
+from irsim.bridges.ros.receiver import Receiver
+from irsim.bridges.ros.reports import Reports
+from irsim.bridges.ros.topics import Mode, Topic, check_keys, scene_topics
+from irsim.bridges.scene import Agent, SceneDescription
+from irsim.bridges.state import Feedback, Motion, WorldState
+from irsim.components.bridges._ros import RosOptions
+from irsim.diagnostics.diagnostic import suggestion
+
+__all__ = ["RosBridge", "make"]
+
+_POLL_S = 0.02
+_ZEROS = 5
+"""Zero commands that this process sends itself if the process that sends commands is lost."""
+
+
+def make(options: AnyOptions) -> RosBridge:
+    """The bridge of some options."""
+    return RosBridge(options)
+
+
+class RosBridge(Bridge):
+    """A node that shows a scene, listens, and drives real robots.
+
+    Attributes:
+        options: Its options.
+        backend: Its connection, after ``open``.
+        topics: Its topics, after ``open``.
+    """
+
+    def __init__(self, options: AnyOptions) -> None:
+        self.options: Any = options
+        self.name = options.name
+        self.clock = options.clock
+        self.backend: Backend | None = None
+        self.topics: tuple[Topic, ...] = ()
+        self.mode: Mode = options.mode if isinstance(options, RosOptions) else "sim"
+        self._inbox = Inbox()
+        self._reports = Reports(self.name)
+        self._guard: Guard | None = None
+        self._real: RealRobots | None = None
+        self._receiver: Receiver | None = None
+
+    def open(self, scene: SceneDescription, start: WorldState) -> None:
+        """Connect, show what does not change, and wait for real robots."""
+        options = self.options
+        for keys in (options.topics, options.qos):
+            if wrong := check_keys(list(keys)):
+                raise BridgeError("bridge-mismatch", wrong, "topics: {cmd_vel: /cmd_vel}")
+        robots = _chosen(scene, options.robots)
+        messages = make_messages(options)
+        self.topics = self._topics(scene, robots)
+        node = options.node if isinstance(options, RosOptions) else "irsim"
+        self.backend = open_backend(options, node, self.topics, self._inbox, messages)
+        self._messages = messages
+        self._outgoing = Outgoing(messages, scene, self.topics, options.frame, self.mode)
+        if isinstance(options, RosOptions):
+            if self.mode == "real":
+                self._real = RealRobots(options, scene.step_time)
+                self._real.add(robots)
+                self.agents = frozenset(robot.name for robot in robots)
+            self._receiver = Receiver(options, messages, robots, self._reports, self._real)
+        stamp = nanoseconds(start.time) if self.mode == "sim" else time.time_ns()
+        for topic, message in self._outgoing.once(stamp):
+            self._publish(topic, message, stamp)
+        if self._real is not None:
+            self._wait_for_robots(self._real)
+            if not options.dry_run:
+                self._guard = Guard(options, self._command_topics())
+        self.push(start)
+
+    def pull(self) -> Feedback | None:
+        """Goals, commands to simulated robots, and scans of real ones."""
+        if self._receiver is None or self.backend is None:
+            return None
+        self._receiver.receive(self.backend, self._inbox)
+        return self._receiver.feedback()
+
+    def exchange(self, motion: Motion) -> Feedback | None:
+        """Command the real robots, and say where they are."""
+        real = self._real
+        if real is None or self._receiver is None or self.backend is None:
+            return None
+        self._receiver.receive(self.backend, self._inbox)
+        now = time.monotonic()
+        self._command(real.commands(motion, now))
+        return Feedback(poses=real.poses(), twists=real.twists(now))
+
+    def push(self, state: WorldState) -> None:
+        """Publish the state."""
+        stamp = nanoseconds(state.time) if self.mode == "sim" else time.time_ns()
+        for topic, message in self._outgoing.step(state, stamp):
+            self._publish(topic, message, stamp)
+
+    def notes(self) -> list[str]:
+        """What was wrong with messages from outside, and how often robots had to stop."""
+        found = [
+            f"{self.name}: {topic}: {count} message(s) ignored: {problem}"
+            for (topic, problem), count in self._reports.counts.items()
+        ]
+        if self._inbox.refused:
+            found.append(f"{self.name}: {self._inbox.refused} messages were too long")
+        if self._real is not None:
+            found += self._real.notes()
+            if self.options.dry_run:
+                found.append(f"{self.name}: dry run: no robot was commanded; dry_run: false sends commands")
+        return found
+
+    def close(self) -> None:
+        """Send zero commands to real robots and disconnect."""
+        guard, self._guard = self._guard, None
+        backend, self.backend = self.backend, None
+        try:
+            if guard is not None:
+                guard.stop()
+        finally:
+            if backend is not None:
+                backend.close()
+            self._reports.finish()
+
+    def _topics(self, scene: SceneDescription, robots: Sequence[Agent]) -> tuple[Topic, ...]:
+        options = self.options
+        qos = {
+            key: Qos(one.reliability == "reliable", one.durability == "transient_local", one.depth)
+            for key, one in options.qos.items()
+        }
+        stamped = isinstance(options, RosOptions) and options.stamped
+        found = scene_topics(scene, robots, self.mode, names=options.topics, qos=qos, stamped=stamped)
+        if self.mode == "sim":
+            return found
+        unused = "cmd_vel" if options.dry_run else "cmd_vel_preview"
+        return tuple(topic for topic in found if topic.key != unused)
+
+    def _command_topics(self) -> list[Topic]:
+        found = [topic for topic in self.topics if topic.key == "cmd_vel"]
+        if {topic.robot for topic in found} != self.agents:
+            raise BridgeError("bridge-mismatch", "robots without the topic cmd_vel cannot be driven",
+                              "topics: {cmd_vel: /cmd_vel}, or dry_run: true")  # fmt: skip
+        return found
+
+    def _publish(self, topic: Topic, message: Any, stamp: int) -> None:
+        backend = self.backend
+        if backend is None:
+            return
+        if isinstance(backend, BagBackend):
+            backend.stamp = stamp
+        backend.publish(topic, message)
+
+    def _command(self, commands: dict[str, Velocity]) -> None:
+        """Hand commands to the process that sends them; in a dry run, publish what it would get."""
+        if self._guard is not None:
+            try:
+                self._guard.send(commands)
+            except BridgeLostError:
+                with suppress(BridgeError):
+                    self._send_zeros()
+                raise
+            return
+        for topic in self.topics:
+            if topic.key == "cmd_vel_preview":
+                now = time.time_ns()
+                wanted = commands.get(str(topic.robot), ZERO)
+                self._publish(topic, self._messages.command(topic.kind, now, "base_link", wanted), now)
+
+    def _send_zeros(self) -> None:
+        for _ in range(_ZEROS):
+            for topic in self._command_topics():
+                now = time.time_ns()
+                self._publish(topic, self._messages.command(topic.kind, now, "base_link", ZERO), now)
+            time.sleep(_POLL_S)
+
+    def _wait_for_robots(self, real: RealRobots) -> None:
+        assert self._receiver is not None
+        assert self.backend is not None
+        until = time.monotonic() + self.options.timeout
+        while real.missing:
+            self._receiver.receive(self.backend, self._inbox)
+            if not real.missing:
+                break
+            if time.monotonic() > until:
+                names = [topic.name for topic in self.topics if topic.key == "odom" and topic.robot in real.missing]
+                what = f"no odometry came on {', '.join(names)} within {self.options.timeout:g} s"
+                raise BridgeLostError(what, "start the robot, or name its topic: topics: {odom: /odom}")
+            time.sleep(_POLL_S)
+
+
+def _chosen(scene: SceneDescription, names: Sequence[str]) -> list[Agent]:
+    """The robots with these names, or all robots."""
+    found = {robot.name: robot for robot in scene.robots}
+    for name in names:
+        if name not in found:
+            fix = suggestion(name, found, f"the robots are {', '.join(found)}")
+            raise BridgeError("bridge-mismatch", f"robots: there is no robot {name!r}", fix)
+    return [found[name] for name in names] if names else list(found.values())

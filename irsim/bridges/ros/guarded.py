@@ -1,0 +1,112 @@
+"""Commands to real robots, handed to a process that outlives this one."""
+
+from __future__ import annotations
+
+import json
+import os
+import selectors
+import subprocess
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict
+from typing import IO
+
+from irsim.bridges.base import BridgeError, BridgeLostError
+from irsim.bridges.ros.guard import READY
+from irsim.bridges.ros.limiting import Velocity
+from irsim.bridges.ros.topics import Topic
+from irsim.components.bridges._ros import RosOptions
+
+__all__ = ["Guard"]
+
+_START_S = 30.0
+"""Time for which the start of the process may take; ROS takes some seconds to import on small computers."""
+_STOP_S = 5.0
+
+
+class Guard:
+    """The process that publishes commands, see :mod:`irsim.bridges.ros.guard`.
+
+    Args:
+        options: Options of the bridge.
+        topics: Topics of commands, one for each robot.
+
+    Raises:
+        BridgeError: The process cannot connect.
+    """
+
+    def __init__(self, options: RosOptions, topics: Sequence[Topic]) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "irsim.bridges.ros.guard"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            start_new_session=True,  # so that Ctrl-C reaches irsim only
+        )
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._input: IO[bytes] = self._process.stdin
+        self._output: IO[bytes] = self._process.stdout
+        try:
+            first = {"options": options.model_dump(mode="json"), "topics": [asdict(topic) for topic in topics]}
+            self._write(first)
+            self._wait_until_ready()
+            os.set_blocking(self._input.fileno(), False)
+        except BaseException:
+            self.stop()
+            raise
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
+    def send(self, commands: Mapping[str, Velocity]) -> None:
+        """Hand over commands; those of robots that are left out are zero.
+
+        Raises:
+            BridgeLostError: The process has ended or hangs.
+        """
+        if self._process.poll() is not None:
+            raise BridgeLostError("the process that sends commands to the robots has ended")
+        try:
+            self._write(commands)
+        except OSError:
+            raise BridgeLostError("the process that sends commands to the robots does not read them") from None
+
+    def stop(self) -> None:
+        """Let the process send zero commands and end."""
+        with suppress(OSError):
+            self._input.close()
+        try:
+            self._process.wait(_STOP_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._output.close()
+
+    def _write(self, content: object) -> None:
+        self._input.write(json.dumps(content).encode() + b"\n")
+        self._input.flush()
+
+    def _wait_until_ready(self) -> None:
+        line, until = b"", time.monotonic() + _START_S
+        with selectors.DefaultSelector() as waiting:
+            waiting.register(self._output, selectors.EVENT_READ)
+            while not line.endswith(b"\n"):
+                left = until - time.monotonic()
+                if left <= 0 or not waiting.select(left):
+                    raise BridgeLostError(f"the process that sends commands did not start within {_START_S:g} s")
+                part = os.read(self._output.fileno(), 4096)
+                if not part:
+                    raise BridgeLostError("the process that sends commands ended at its start")
+                line += part
+        # libraries may print something before
+        last = line.decode(errors="replace").strip().splitlines()[-1]
+        if last != READY:
+            try:
+                error = json.loads(last)
+                raise BridgeError(error["code"], error["message"], error["fix"])
+            except (ValueError, KeyError, TypeError):
+                raise BridgeLostError(f"the process that sends commands said {last[:200]!r}") from None

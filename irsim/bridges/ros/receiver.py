@@ -1,0 +1,111 @@
+"""What comes from outside between two steps, as feedback: commands, goals, starts, scans, odometry."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.bridges.ros.backends.base import Backend
+from irsim.bridges.ros.inbox import Arrival, Inbox
+from irsim.bridges.ros.incoming import (
+    MessageError,
+    decode,
+    fitted_ranges,
+    read_goal,
+    read_odometry,
+    read_scan,
+    read_twist,
+)
+from irsim.bridges.ros.limiting import ZERO, Velocity
+from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.real import Pose, RealRobots
+from irsim.bridges.ros.reports import Reports
+from irsim.bridges.ros.topics import Topic
+from irsim.bridges.scene import Agent
+from irsim.bridges.state import Feedback
+from irsim.components.bridges._ros import RosOptions
+
+__all__ = ["Receiver"]
+
+
+class Receiver:
+    """Reads messages and keeps what they say until the next step.
+
+    Args:
+        options: Options of the bridge.
+        messages: Reads CDR.
+        robots: The robots of the bridge; topics of the scene mean the first one.
+        reports: Where problems are counted.
+        real: The robots if they are real ones.
+    """
+
+    def __init__(
+        self, options: RosOptions, messages: Messages, robots: Sequence[Agent], reports: Reports,
+        real: RealRobots | None,
+    ) -> None:  # fmt: skip
+        self._options, self._messages, self._reports, self._real = options, messages, reports, real
+        self._first = robots[0].name if robots else None
+        self._lidars = {lidar.key: lidar for robot in robots for lidar in robot.lidars}
+        self._commands: dict[str, tuple[Velocity, float]] = {}
+        self._goals: dict[str, Pose] = {}
+        self._starts: dict[str, Pose] = {}
+        self._ranges: dict[str, tuple[NDArray[np.float32], float]] = {}
+
+    def receive(self, backend: Backend, inbox: Inbox) -> None:
+        """Read what has come since the last call."""
+        backend.poll()
+        for topic, arrival in inbox.take().items():
+            try:
+                self._read(topic, arrival)
+            except MessageError as error:
+                self._reports.add(topic.name, str(error))
+
+    def feedback(self) -> Feedback:
+        """What is to be done before a step."""
+        goals, self._goals = self._goals, {}
+        starts, self._starts = self._starts, {}
+        return Feedback(
+            commands=self._fresh_commands(), goals=goals, starts=starts if self._real is None else {},
+            ranges=self._fresh_ranges(),
+        )  # fmt: skip
+
+    def _read(self, topic: Topic, arrival: Arrival) -> None:
+        message = decode(self._messages, topic, arrival.content)
+        robot = topic.robot or self._first
+        if robot is None:
+            raise MessageError("there is no robot")
+        if topic.key == "cmd_vel":
+            self._commands[robot] = (read_twist(message), arrival.when)
+        elif topic.key in ("goal_pose", "robot_goal_pose"):
+            self._goals[robot] = read_goal(message, self._options.frame)
+        elif topic.key in ("initialpose", "robot_initialpose"):
+            pose = read_goal(message, self._options.frame)
+            if self._real is None:
+                self._starts[robot] = pose
+            else:
+                self._real.relocate(robot, pose)
+        elif topic.key == "odom" and self._real is not None:
+            self._real.take(robot, read_odometry(message), arrival.when)
+        elif topic.key == "scan" and topic.lidar is not None:
+            self._ranges[topic.lidar] = (fitted_ranges(read_scan(message), self._lidars[topic.lidar]), arrival.when)
+
+    def _fresh_commands(self) -> dict[str, Velocity]:
+        """Commands of robots that have got some; zero if the last one is too old."""
+        oldest = time.monotonic() - self._options.command_timeout
+        found = {}
+        for name, (command, when) in list(self._commands.items()):
+            if when >= oldest:
+                found[name] = command
+            elif self._options.after_command == "stop":
+                found[name] = ZERO
+            else:
+                del self._commands[name]
+        return found
+
+    def _fresh_ranges(self) -> dict[str, NDArray[np.float32]]:
+        """Scans that are not older than odometry may be."""
+        oldest = time.monotonic() - self._options.odom_timeout
+        return {key: ranges for key, (ranges, when) in self._ranges.items() if when >= oldest}

@@ -1,0 +1,180 @@
+"""The topics of a scene: the one table of names, types, directions and qualities of service that all backends share."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.ros.names import ros_names
+from irsim.bridges.ros.qos import LATCHED, SENSOR, STATE, TRANSFORMS, Qos
+from irsim.bridges.scene import Agent, SceneDescription
+from irsim.diagnostics.diagnostic import suggestion
+
+__all__ = ["TABLE", "Mode", "Row", "Topic", "frame_of", "laser_frame", "scene_topics"]
+
+Mode: TypeAlias = Literal["sim", "real"]
+Direction: TypeAlias = Literal["out", "in", ""]
+_NAME = re.compile(r"(/[A-Za-z_~{][A-Za-z0-9_{}]*)+")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of the table.
+
+    Attributes:
+        name: Name of the topic; ``{robot}`` is the name of a robot, ``{n}`` is ``_1`` for its second lidar, and so on.
+        kind: Type of its messages; with ``Twist`` a user may have ``TwistStamped`` instead.
+        sim: Whether it goes out or comes in when irsim moves the robots.
+        real: Whether it goes out or comes in when the robots are real.
+        per: Whether there is one topic, one for each robot, or one for each lidar.
+        qos: How it is delivered.
+    """
+
+    name: str
+    kind: str
+    sim: Direction
+    real: Direction
+    per: Literal["scene", "robot", "lidar"] = "scene"
+    qos: Qos = STATE
+
+
+_STAMPED_POSE = "geometry_msgs/msg/PoseStamped"
+_STAMPED_START = "geometry_msgs/msg/PoseWithCovarianceStamped"
+_TWIST = "geometry_msgs/msg/Twist"
+TABLE: Mapping[str, Row] = {
+    "clock": Row("/clock", "rosgraph_msgs/msg/Clock", "out", ""),
+    "tf": Row("/tf", "tf2_msgs/msg/TFMessage", "out", "out", qos=TRANSFORMS),
+    "tf_static": Row("/tf_static", "tf2_msgs/msg/TFMessage", "out", "", qos=LATCHED),
+    "map": Row("/map", "nav_msgs/msg/OccupancyGrid", "out", "out", qos=LATCHED),
+    "markers": Row("/irsim/markers", "visualization_msgs/msg/MarkerArray", "out", "out", qos=LATCHED),
+    "pedestrians": Row("/pedestrians", "geometry_msgs/msg/PoseArray", "out", "out"),
+    "pedestrian_ids": Row("/pedestrians/ids", "std_msgs/msg/String", "out", "out", qos=LATCHED),
+    "goal_pose": Row("/goal_pose", _STAMPED_POSE, "in", "in"),
+    "initialpose": Row("/initialpose", _STAMPED_START, "in", "in"),
+    "odom": Row("/{robot}/odom", "nav_msgs/msg/Odometry", "out", "in", "robot"),
+    "pose": Row("/{robot}/pose", _STAMPED_POSE, "out", "out", "robot"),
+    "reference_path": Row("/{robot}/reference_path", "nav_msgs/msg/Path", "out", "out", "robot", LATCHED),
+    "robot_goal_pose": Row("/{robot}/goal_pose", _STAMPED_POSE, "in", "in", "robot"),
+    "robot_initialpose": Row("/{robot}/initialpose", _STAMPED_START, "in", "in", "robot"),
+    "cmd_vel": Row("/{robot}/cmd_vel", _TWIST, "in", "out", "robot"),
+    "cmd_vel_preview": Row("/{robot}/cmd_vel_preview", _TWIST, "", "out", "robot"),
+    "scan": Row("/{robot}/scan{n}", "sensor_msgs/msg/LaserScan", "out", "in", "lidar", SENSOR),
+}
+"""Key of a topic in options -> its row."""
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic of a scene.
+
+    Attributes:
+        key: Its key in :data:`TABLE`.
+        name: Its name.
+        kind: Type of its messages, such as ``nav_msgs/msg/Odometry``.
+        outgoing: Whether irsim publishes it; else irsim subscribes.
+        qos: How it is delivered.
+        robot: Name of the robot whose topic it is, None for one of the scene.
+        lidar: Key of the lidar, None for others.
+    """
+
+    key: str
+    name: str
+    kind: str
+    outgoing: bool
+    qos: Qos
+    robot: str | None = None
+    lidar: str | None = None
+
+
+def frame_of(name: str, mode: Mode) -> str:
+    """Frame of an object; in real mode it is not ``<robot>/base_link``, which the robot itself publishes."""
+    return f"{name}/base_link" if mode == "sim" else f"irsim/{name}/base_link"
+
+
+def laser_frame(name: str, number: int) -> str:
+    """Frame of a lidar."""
+    return f"{name}/laser{_suffix(number)}"
+
+
+def scene_topics(
+    scene: SceneDescription,
+    robots: Sequence[Agent],
+    mode: Mode,
+    *,
+    names: Mapping[str, str | None],
+    qos: Mapping[str, Qos],
+    stamped: bool = False,
+) -> tuple[Topic, ...]:
+    """The topics of a scene.
+
+    Args:
+        scene: The scene.
+        robots: Robots with topics of their own.
+        mode: Whether irsim moves the robots.
+        names: Key -> another name for its topics, or None for no topic.
+        qos: Key -> another quality of service.
+        stamped: Whether commands are ``TwistStamped``.
+
+    Raises:
+        BridgeError: A name cannot be one of a topic, or two topics have the same one.
+    """
+    spelled = dict(zip(scene.names, ros_names(scene.names), strict=True))
+    found: list[Topic] = []
+    for key, row in TABLE.items():
+        direction = row.sim if mode == "sim" else row.real
+        pattern = names.get(key, row.name)
+        if not direction or pattern is None:
+            continue
+        if pattern != row.name and not _NAME.fullmatch(pattern):
+            what = f"{pattern!r} cannot be the name of a topic"
+            raise BridgeError("bridge-mismatch", what, f"topics: {{{key}: {row.name}}}")
+        kind = f"{row.kind}Stamped" if stamped and row.kind == _TWIST else row.kind
+        base = Topic(key, pattern, kind, direction == "out", qos.get(key, row.qos))
+        if row.per == "scene":
+            found.append(base)
+        for robot in robots if row.per != "scene" else ():
+            named = pattern.replace("{robot}", spelled[robot.name])
+            if row.per == "robot":
+                found.append(replace(base, name=named, robot=robot.name))
+                continue
+            for lidar in robot.lidars:
+                lidar_name = named.replace("{n}", _suffix(lidar.number))
+                found.append(replace(base, name=lidar_name, robot=robot.name, lidar=lidar.key))
+    _check_unique(found)
+    return tuple(found)
+
+
+def check_keys(keys: Sequence[str]) -> str | None:
+    """What is wrong with keys of topics in options; None if nothing is."""
+    for key in keys:
+        if key not in TABLE:
+            return f"{key!r} is no topic of the table; {suggestion(key, TABLE, ', '.join(TABLE))}"
+    return None
+
+
+def pedestrians(scene: SceneDescription) -> list[Agent]:
+    """The obstacles that can move, in the order in which ``/pedestrians`` has them."""
+    return [agent for agent in scene.agents if agent.role == "obstacle" and agent.moves]
+
+
+def pedestrian_names(scene: SceneDescription) -> str:
+    """The content of ``/pedestrians/ids``: their names as a JSON list."""
+    return json.dumps([agent.name for agent in pedestrians(scene)])
+
+
+def _suffix(number: int) -> str:
+    return f"_{number}" if number else ""
+
+
+def _check_unique(topics: Sequence[Topic]) -> None:
+    seen: dict[str, Topic] = {}
+    for topic in topics:
+        other = seen.setdefault(topic.name, topic)
+        if other is not topic:
+            owners = f"{other.key} of {other.robot or 'the scene'} and {topic.key} of {topic.robot or 'the scene'}"
+            what = f"two topics are called {topic.name!r}: {owners}"
+            raise BridgeError("bridge-mismatch", what, f"topics: {{{topic.key}: /{{robot}}{topic.name}}}")

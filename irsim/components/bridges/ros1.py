@@ -1,0 +1,24 @@
+"""``ros1``: a node of ROS 1 with rospy."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from irsim.components.bridges._options import opened_by
+from irsim.components.bridges._ros import RosOptions
+from irsim.options.registry import BRIDGES
+
+
+class Ros1(RosOptions):
+    """Take part in ROS 1 (Noetic, or that of Debian) with the topics of `ros2`; roscore must run."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros1"}]}
+
+    name: Literal["ros1"] = "ros1"
+    master: Annotated[str, Field(pattern=r"^http://[^\s/]+:[0-9]{1,5}/?$")] | None = None
+    """Address of the master; default: that of the variable `ROS_MASTER_URI`."""
+
+
+BRIDGES.register(Ros1)(opened_by("ros"))

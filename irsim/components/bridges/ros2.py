@@ -1,0 +1,41 @@
+"""``ros2``: nodes of ROS 2, over DDS without a ROS installation, with rclpy where it is sourced, or over Zenoh."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from irsim.components.bridges._options import opened_by
+from irsim.components.bridges._ros import RosOptions
+from irsim.options.registry import BRIDGES
+from irsim.options.units import Bool, Integer
+
+
+class Ros2(RosOptions):
+    """Take part in ROS 2: RViz, Nav2 and robots see the scene, and send commands and goals; or drive real robots.
+
+    Odometry, scans, transforms, map, markers, pedestrians and reference paths go out as topics; `irsim describe ros2`
+    and the guide of the skill irsim-runner list them.
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros2"}, {"name": "ros2", "backend": "zenoh"}]}
+
+    name: Literal["ros2"] = "ros2"
+    backend: Literal["auto", "rclpy", "dds", "zenoh"] = "auto"
+    """How to reach other nodes: `rclpy` is the ROS installation whose environment is sourced, with its middleware;
+    `dds` speaks to nodes with Fast DDS or Cyclone DDS and needs no ROS; `zenoh` speaks to nodes with rmw_zenoh; `auto`
+    is `rclpy` if it can be imported, else `dds`. Nodes with DDS and nodes with Zenoh do not see each other."""
+    distro: Literal["humble", "jazzy"] = "humble"
+    """Release of ROS 2 of the other nodes, `jazzy` also for later ones. Only `ros2 node list` depends on it."""
+    domain: Annotated[Integer, Field(ge=0, le=101)] | None = None
+    """Number of the domain; default: that of the variable `ROS_DOMAIN_ID`, else 0."""
+    loopback: Bool = False
+    """With `dds`: whether to speak to nodes on this computer only."""
+    address: Annotated[str, Field(pattern=r"^[^\s/]+:[0-9]{1,5}$")] = "127.0.0.1:7447"
+    """With `zenoh`: where the router listens, `host:port`."""
+    router: Bool = False
+    """With `zenoh`: whether to be that router, so that `rmw_zenohd` need not run."""
+
+
+BRIDGES.register(Ros2)(opened_by("ros"))

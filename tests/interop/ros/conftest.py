@@ -1,0 +1,140 @@
+"""Peers of ROS bridges, each in a process of its own, all on the loopback."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import irsim
+from irsim.bridges.ros.messages import Messages
+from tests.interop.ros.idl_text import idl_of
+
+HERE = Path(__file__).parent
+KINDS = [
+    "geometry_msgs/msg/Twist", "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseArray",
+    "nav_msgs/msg/Odometry", "nav_msgs/msg/OccupancyGrid", "sensor_msgs/msg/LaserScan", "tf2_msgs/msg/TFMessage",
+    "visualization_msgs/msg/MarkerArray",
+]  # fmt: skip
+SCENE = """\
+world: {width: 10, height: 5, step_time: 0.05, obstacle_map: {name: perlin, resolution: 0.5, seed: 4}}
+robot:
+  - name: robot_0
+    kinematics: {name: diff}
+    shape: {name: circle, radius: 0.2}
+    state: [1, 1, 0.3]
+    goal: [9, 4, 0]
+    vel_max: [1, 2]
+    sensors: [{name: lidar2d, number: 90, range_max: 3}]
+obstacle:
+  - name: walker
+    kinematics: {name: omni}
+    shape: {name: circle, radius: 0.2}
+    state: [6, 1, 0]
+    goal: [6, 4, 0]
+    behavior: {name: dash}
+"""
+
+
+class Peer:
+    """A process of others, whose lines are read while it runs.
+
+    Attributes:
+        lines: What it has printed.
+    """
+
+    def __init__(self, *command: str, **options: Any) -> None:
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True, **options)
+        self.lines: list[str] = []
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.lines.append(line.rstrip("\n"))
+
+    def on(self, topic: str) -> list[str]:
+        """What came on a topic."""
+        return [line.split(" ", 1)[1] for line in list(self.lines) if line.startswith(f"{topic} ")]
+
+    def stop(self) -> None:
+        """End it and all processes that it has started."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+        self._reader.join(5)
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+
+def until(holds: Callable[[], object], seconds: float, why: str) -> None:
+    """Wait until something holds."""
+    end = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < end, why
+        time.sleep(0.02)
+
+
+@pytest.fixture(scope="session")
+def fastdds_program(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The peer on Fast DDS, made by its code generator and the compiler."""
+    for tool in ("fastddsgen", "g++"):
+        if shutil.which(tool) is None:
+            pytest.skip(f"{tool} is missing")
+    folder = tmp_path_factory.mktemp("fastdds")
+    (folder / "messages.idl").write_text(idl_of(Messages().store, KINDS))
+    subprocess.run(["fastddsgen", "-replace", "messages.idl"], cwd=folder, check=True, capture_output=True)
+    sources = [str(HERE / "fastdds_peer.cpp"), "messages.cxx", "messagesPubSubTypes.cxx"]
+    libraries = ["-lfastrtps", "-lfastcdr", "-lpthread"]
+    command = ["g++", "-std=c++17", "-O0", "-I.", "-o", "peer", *sources, *libraries]
+    subprocess.run(command, cwd=folder, check=True, capture_output=True)
+    return str(folder / "peer")
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Callable[..., Peer]]:
+    """Starts peers, and ends them after the test."""
+    peers: list[Peer] = []
+
+    def starting(*command: str, **options: Any) -> Peer:
+        peers.append(Peer(*command, **options))
+        return peers[-1]
+
+    yield starting
+    for peer in peers:
+        peer.stop()
+
+
+@pytest.fixture
+def domain(request: pytest.FixtureRequest) -> int:
+    """A domain of its own for each test of this process and its neighbours."""
+    worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
+    number = _DOMAINS.setdefault(request.node.nodeid, len(_DOMAINS))
+    return 2 + (os.getpid() * 7 + int(worker) * 31 + number) % 95
+
+
+_DOMAINS: dict[str, int] = {}
+PYTHON = sys.executable
+
+
+@pytest.fixture
+def make_env(tmp_path: Path) -> Callable[[str], Any]:
+    """Makes the environment of a scenario's text."""
+
+    def make(text: str) -> Any:
+        path = tmp_path / "scene.yaml"
+        path.write_text(text)
+        return irsim.make(path, display=False, log_level="ERROR")
+
+    return make
