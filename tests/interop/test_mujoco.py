@@ -300,7 +300,8 @@ def test_errors_say_what_to_write(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_physics_that_become_unstable_are_an_error() -> None:
+def test_physics_that_become_unstable_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     scene, start = gallery(), state_of(gallery())
     bridge = make(Mujoco())
     bridge.open(scene, start)
@@ -310,6 +311,7 @@ def test_physics_that_become_unstable_are_an_error() -> None:
         bridge.exchange(motion_of(scene, start))
     bridge.close()
     bridge.close()
+    assert not list(tmp_path.iterdir())  # MuJoCo would write a log
 
 
 def test_the_doctor_lets_a_ball_fall() -> None:
