@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from types import SimpleNamespace
 from typing import Any
@@ -16,6 +17,9 @@ from irsim.bridges.ros.topics import Topic
 from irsim.common.extras import require
 
 __all__ = ["RosbridgeBackend", "namespaces", "plain"]
+
+_CLOSE_S = 2.0
+"""Time for which to wait for the server when the connection is closed."""
 
 
 class RosbridgeBackend(Backend):
@@ -102,6 +106,12 @@ class RosbridgeBackend(Backend):
 
     def _end(self) -> None:
         client, self._client = self._client, None
+        with suppress(Exception):  # the connection may be gone already, in whatever way
+            client.close(timeout=_CLOSE_S)
+        until = time.monotonic() + _CLOSE_S
+        while client.is_connected and time.monotonic() < until:  # so that the last messages go out
+            time.sleep(0.01)
+        time.sleep(0.05)
         client.terminate()
 
 
