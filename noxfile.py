@@ -51,8 +51,10 @@ DEBIAN_PEERS = (
     "libsdformat-dev", "python3-rospy", "ros-base", "ros-nav-msgs",
 )  # fmt: skip
 """Packages of Debian 12 that bridges meet in tests."""
-PYTHON_PEERS = ("mcap-ros2-support>=0.5", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
+PYTHON_PEERS = ("mcap-ros2-support>=0.5", "msgpack>=1", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
 """Packages of Python that bridges meet in tests, and that are no dependencies."""
+NPM_PEERS = ("@sparkjsdev/spark@2.2.0", "three@0.180.0")
+"""A renderer of Gaussian splats that ours are compared with, in a browser."""
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
 """Tests of the core that are about Python and NumPy rather than arithmetic."""
 ARITHMETIC = (
@@ -293,10 +295,11 @@ def learn(session: nox.Session) -> None:
 def interop(session: nox.Session) -> None:
     """Bridges, each against software that somebody else wrote; a test that is skipped fails."""
     extras = "ros2,zenoh,rosbridge,bag,mujoco,usd,mesh,carla,scenarios,records"
-    install(session, "-e", f".[test,{extras}]", *PYTHON_PEERS)
+    install(session, "-e", f".[test,{extras}]", PLAYWRIGHT, *PYTHON_PEERS)
     install_debian(session, DEBIAN_PEERS)
+    peers = {"IRSIM_INTEROP": "required", "IRSIM_SPARK": install_npm(session, NPM_PEERS)}
     options = ("-m", "interop", "-n", "2", "--dist", "loadgroup", "--durations", "15", "tests/interop")
-    timed(session, "tests of bridges", "pytest", *options, *session.posargs, env={"IRSIM_INTEROP": "required"})
+    timed(session, "tests of bridges", "pytest", *options, *session.posargs, env=peers)
 
 
 def install_debian(session: nox.Session, packages: Iterable[str]) -> None:
@@ -309,6 +312,17 @@ def install_debian(session: nox.Session, packages: Iterable[str]) -> None:
     environment = {"DEBIAN_FRONTEND": "noninteractive"}
     for command in (["update", "-q"], ["install", "-y", "-q", "--no-install-recommends", *missing]):
         timed(session, "apt-get", *become, "apt-get", *command, env=environment, external=True)
+
+
+def install_npm(session: nox.Session, packages: Iterable[str]) -> str:
+    """Install packages of npm beside the session's environment; returns their folder."""
+    folder = Path(session.virtualenv.location, "npm").resolve()
+    folder.mkdir(exist_ok=True)
+    if not shutil.which("npm"):
+        install(session, NODE)
+    options = ("--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts", "--prefer-offline")
+    timed(session, "npm", "npm", "install", *options, *packages, external=True)
+    return str(folder / "node_modules")
 
 
 def _succeeds(command: list[str]) -> bool:

@@ -86,6 +86,11 @@ class OrcaOptions(_Options):
         responsibility: float | None,
     ) -> None: ...
 
+class ReplayOptions(_Options):
+    def __init__(
+        self, *, times: Sequence[float], poses: Sequence[Sequence[float]], interpolation: str, vanish: bool
+    ) -> None: ...
+
 class RvoOptions(_Options):
     def __init__(
         self,
@@ -481,6 +486,7 @@ class ObjectSpec:
             not static; its control is a world-frame velocity and a yaw rate.
         start_step: Number of steps for which the object stands still at its start.
         appear_step: Number of steps for which the object is not in the world.
+        vanish_step: Step in which it leaves the world; 0: never.
     """
 
     def __init__(
@@ -521,6 +527,7 @@ class ObjectSpec:
         driven: bool,
         start_step: int,
         appear_step: int,
+        vanish_step: int,
     ) -> None: ...
 
 class RandomPlacement:
@@ -733,7 +740,9 @@ class State:
     variant: NDArray[np.int32]  # (W,) index among the variants of the world in this scene; -1 without any
     pace: Floats  # (R,) factor on the speeds of the object in this scene
     start_step: NDArray[np.int64]  # (R,) steps for which the object stands still at its start in this scene
-    appeared: NDArray[np.int64]  # (R,) step in which the object came into the world; -1 while it is absent
+    appeared: NDArray[
+        np.int64
+    ]  # (R,) step in which the object came into the world; -1 before, -2 minus that step afterwards
     infeasible: NDArray[np.int32]  # (R,) steps of the episode in which no velocity avoided every collision
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)

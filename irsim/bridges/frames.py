@@ -7,6 +7,7 @@ What turns by the yaw is the body, whose own axes follow the same convention.
 - ``carla``: left-handed, x forward, y to the **right**, z up, yaw clockwise seen from above
 - ``usd``: a stage with ``upAxis`` Z; ``usd_yup`` is one with ``upAxis`` Y
 - ``habitat_yup``, ``gltf``: x to the right, y up, z to the back: y of irsim is -z
+- ``colmap``: x to the right, y **down**, z forward: a world whose axes are those of its first camera
 
 Cameras have axes of their own. In ``opengl`` a camera looks along -z, with x to its right and y up; in ``colmap`` it
 looks along z, with x to its right and y down.
@@ -39,7 +40,7 @@ __all__ = [
     "yaw_of",
 ]
 
-FrameName: TypeAlias = Literal["irsim", "ros", "carla", "usd", "usd_yup", "habitat_yup", "gltf"]
+FrameName: TypeAlias = Literal["irsim", "ros", "carla", "usd", "usd_yup", "habitat_yup", "gltf", "colmap"]
 FRAMES: tuple[str, ...] = get_args(FrameName)
 """Names of the frames of worlds."""
 
@@ -63,6 +64,8 @@ def axes_of(frame: str) -> Floats:
         return _Z_UP.copy()
     if frame in ("usd_yup", "habitat_yup", "gltf"):
         return _Y_UP.copy()
+    if frame == "colmap":
+        return CAMERA_AXES["colmap"].T.copy()
     if frame == "carla":
         return _Y_RIGHT.copy()
     raise ArgumentError(f"{frame!r} is not a frame", suggestion(frame, FRAMES, f"frames are {', '.join(FRAMES)}"))

@@ -25,7 +25,7 @@ def export(
         str | None,
         typer.Option(
             metavar="FORMAT",
-            help="parquet, csv, npz, mcap or minari. Default: as the suffix of the file says.",
+            help="Name of a format; irsim describe exports lists them. Default: as the suffix of the file says.",
             show_default=False,
         ),
     ] = None,
@@ -40,33 +40,55 @@ def export(
         ),
     ] = None,
     objects: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="WHICH",
-            help="movers (robots, and obstacles that can move), robots, all, or names separated by commas.",
+            help="movers (robots, and obstacles that can move), robots, all, or names separated by commas. "
+            "Default: movers, but robots for cameras.",
+            show_default=False,
         ),
-    ] = "movers",
+    ] = None,
     ranges: Annotated[
         bool | None,
         typer.Option(
             "--ranges/--no-ranges", help="Write the ranges of lidars. Default: yes, but not to csv.", show_default=False
         ),
     ] = None,
+    options: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="An option of the format, such as height=1.2 of cameras; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
     json_output: Json = False,
 ) -> None:
-    """Write recorded runs for other tools: Parquet, CSV or NumPy files, ROS 2 bags (MCAP), Minari datasets.
+    """Write recorded runs for other programs: tables, ROS 2 bags, datasets, cameras, scenes of other simulators.
 
-    Parquet, MCAP and Minari need libraries, which the extra `records` installs; without them the message says how.
+    All but CSV and NumPy files need libraries, which extras install; without them the message says how.
     """
     from rich.text import Text
 
     from irsim.bridges.export.episode import CHOICES
     from irsim.bridges.export.export import export_run
     from irsim.cli.output import console, print_json, progress
+    from irsim.policies.converters.convert import parse_options
 
-    chosen = objects if objects in CHOICES else [name.strip() for name in objects.split(",") if name.strip()]
+    chosen: str | list[str] | None = objects
+    if objects is not None and objects not in CHOICES:
+        chosen = [name.strip() for name in objects.split(",") if name.strip()]
     with progress("exporting") as report:
-        result = export_run(runs or ["last"], out, to=to, objects=chosen, ranges=ranges, progress=report)
+        result = export_run(
+            runs or ["last"],
+            out,
+            to=to,
+            objects=chosen,
+            ranges=ranges,
+            options=parse_options(options or []),
+            progress=report,
+        )
     if json_output:
         print_json(result)
         return

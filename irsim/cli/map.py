@@ -1,9 +1,8 @@
-"""``irsim map``: import and export maps of the ROS map server."""
+"""``irsim map``: import maps from other worlds, and export maps for the ROS map server."""
 
 from __future__ import annotations
 
 import json
-import shlex
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,27 +10,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from irsim.cli.guard import handle_errors
+from irsim.cli.map_import import import_
 from irsim.cli.options import File, Imports, Json, Seed
 
 if TYPE_CHECKING:
-    from irsim.api.ros_maps import MapFiles
+    from irsim.bridges.maps.ros_server import MapFiles
 
 __all__ = ["map_app"]
 
 map_app = typer.Typer(
-    name="map", help="Import maps of the ROS map server into scenarios, and export maps.", no_args_is_help=True
+    name="map",
+    help="Import maps from other worlds into scenarios: meshes, navigation meshes, USD, roads, ROS; and export maps.",
+    no_args_is_help=True,
 )
-Out = Annotated[
-    Path, typer.Option("-o", "--out", metavar="FILE", help="YAML file to write; its picture is written next to it.")
-]
-Force = Annotated[bool, typer.Option("--force", help="Overwrite files.")]
-
-
-class Unknown(str, Enum):
-    """Treatment of unknown cells."""
-
-    free = "free"
-    occupied = "occupied"
 
 
 class Mode(str, Enum):
@@ -49,40 +40,29 @@ class Picture(str, Enum):
     png = "png"
 
 
-def import_(
-    file: Annotated[str, typer.Argument(help="YAML file of the map.", show_default=False)],
-    out: Out,
-    unknown: Annotated[Unknown, typer.Option(help="How to treat cells of unknown occupancy.")] = Unknown.free,
-    force: Force = False,
-    json_output: Json = False,
-) -> None:
-    """Write a scenario with a map of the ROS map server: its extent, and its cells as a picture."""
-    from irsim.api.ros_maps import import_map
-
-    _show(import_map(file, out, unknown=unknown.value, overwrite=force), json_output, ["irsim", "render", str(out)])
-
-
 def export(
     scenario: File,
-    out: Out,
+    out: Annotated[
+        Path, typer.Option("-o", "--out", metavar="FILE", help="YAML file to write; its picture is written next to it.")
+    ],
     mode: Annotated[Mode, typer.Option(help="How the map server interprets the picture.")] = Mode.trinary,
     image: Annotated[Picture, typer.Option(help="Format of the picture.")] = Picture.pgm,
     seed: Seed = None,
     imports: Imports = None,
-    force: Force = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files.")] = False,
     json_output: Json = False,
 ) -> None:
     """Write the map of a scenario for the ROS map server: a YAML file and a picture."""
     from irsim import api
-    from irsim.api.ros_maps import export_map
+    from irsim.bridges.maps.ros_server import export_map
 
     api.import_modules(imports or ())
     resolved, _ = api.read_scenario(scenario, strict=False)
     files = export_map(resolved, out, mode=mode.value, image=image.value, seed=seed, overwrite=force)
-    _show(files, json_output, None)
+    _show(files, json_output)
 
 
-def _show(written: MapFiles, json_output: bool, next_command: list[str] | None) -> None:
+def _show(written: MapFiles, json_output: bool) -> None:
     from rich.text import Text
 
     from irsim.cli.output import console
@@ -90,11 +70,8 @@ def _show(written: MapFiles, json_output: bool, next_command: list[str] | None) 
     if json_output:
         typer.echo(json.dumps(written.as_dict(), indent=2))
         return
-    shown = console()
     size = f"{written.columns} x {written.rows} cells of {written.resolution:g} m, {written.occupied:,} occupied"
-    shown.print(Text.assemble("wrote ", (" and ".join(written.files), "bold"), f": {size}"), soft_wrap=True)
-    if next_command is not None:
-        shown.print(Text.assemble("next: ", (shlex.join(next_command), "cyan")), soft_wrap=True)
+    console().print(Text.assemble("wrote ", (" and ".join(written.files), "bold"), f": {size}"), soft_wrap=True)
 
 
 map_app.command("import")(handle_errors(import_))

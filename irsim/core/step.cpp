@@ -10,7 +10,7 @@ void step(const World& world, State& state, int w, Workspace& work, bool externa
     integrate(world, state, w);     // kinematics, noise -> poses
     if (world.collision_mode == kContact) push_apart(world, state, w, work);
   }
-  finish(world, state, w);       // count the step; those appear whose time has come; extend the history
+  finish(world, state, w);       // count the step; some appear or vanish; extend the history
   collide(world, state, w);      // broad phase, exact narrow phase, effects of the collision mode
   arrive(world, state, w);       // goals, waypoints
   sense(world, state, w, work);  // lidars, fog

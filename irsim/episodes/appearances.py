@@ -1,4 +1,4 @@
-"""Objects that come into the world after its start, in words: who waited for room, who never came."""
+"""Objects that come into the world after its start, in words: who waited for room, who never came, who has left."""
 
 from __future__ import annotations
 
@@ -20,12 +20,14 @@ _ROUNDING = 1e-9
 
 
 def is_absent(env: Env, view: ObjectView) -> bool:
-    """Return whether an object is not in the world yet."""
+    """Return whether an object is not in the world yet, or not any more."""
     return bool(env.simulation.appeared[view.row] < 0)
 
 
 def absence(env: Env, view: ObjectView) -> str:
-    """Say why an absent object is not in the world: its time has not come, or its place is taken."""
+    """Say why an absent object is not in the world: its time has not come or is over, or its place is taken."""
+    if int(env.simulation.appeared[view.row]) < -1:
+        return f"its recording ended at {seconds(view.record.vanish_time or 0.0)}"
     due = view.record.appear_time
     if int(env.simulation.count[0]) < math.ceil(due / env.step_time - _ROUNDING):
         return f"it appears at {seconds(due)}"
@@ -37,7 +39,7 @@ def appearances_message(env: Env) -> str | None:
     late, missing = [], []
     for view in env.objects:
         due, appeared = view.record.appear_time, int(env.simulation.appeared[view.row])
-        if not due:
+        if not due or appeared < -1:
             continue
         if appeared < 0:
             missing.append(f"{quoted(view.name)} did not appear ({absence(env, view)})")

@@ -194,6 +194,7 @@ def build_object(
         driven=record.kinematics is not None,
         start_step=math.ceil(max(record.start_time, record.appear_time) / step_time - _ROUNDING),
         appear_step=math.ceil(record.appear_time / step_time - _ROUNDING),
+        vanish_step=0 if record.vanish_time is None else 1 + math.floor(record.vanish_time / step_time + _ROUNDING),
     )
 
 

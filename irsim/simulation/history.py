@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,9 @@ if TYPE_CHECKING:
 
 __all__ = ["all_poses", "past_goals", "past_poses"]
 
+_ROUNDING = 1e-9
+"""Rounding error of a time, in steps."""
+
 
 def past_poses(simulation: Simulation, row: int) -> Floats | None:
     """Return the (T + 1, 3) poses of an object at the start and after each of T steps.
@@ -22,12 +26,14 @@ def past_poses(simulation: Simulation, row: int) -> Floats | None:
         row: Row of the object.
 
     Returns:
-        x, y [m] and heading [rad], world frame, NaN before its ``appear_time``; None if a script added the object, or
+        x, y [m] and heading [rad], world frame, NaN before its ``appear_time`` and after
+        it has left the world; None if a script added the object, or
         has interfered with its history.
     """
     state, steps = simulation.state, int(simulation.count[0])
     start = state.initial_state(row)[None, :3]
     appeared = int(simulation.appeared[row])
+    gone, appeared = appeared < -1, appeared if appeared >= -1 else -2 - appeared
     begin = appeared if appeared >= 0 else steps + 1  # it records no state before
     absent = np.array([[np.nan, np.nan, start[0, 2]]])
     if simulation.scenario.objects[row].static:
@@ -37,9 +43,21 @@ def past_poses(simulation: Simulation, row: int) -> Floats | None:
         return None
     held = np.repeat(stopped.astype(bool), np.diff([*since, steps + 1]))[:-1]  # a stopped object records no state
     held[: max(0, begin - 1)] = True
+    end = _last_step(simulation, row) if gone else steps
+    held[end:] = True
     track = np.concatenate([absent if begin else start, state.trajectory(row)[:, :3]])
     last = np.concatenate([[0], np.cumsum(~held)])
-    return track[last] if last[-1] == len(track) - 1 else None
+    if last[-1] != len(track) - 1:
+        return None
+    poses: Floats = track[last]
+    poses[end + 1 :, :2] = np.nan
+    return poses
+
+
+def _last_step(simulation: Simulation, row: int) -> int:
+    """Return the last step in which an object that has left the world was in it."""
+    until = simulation.scenario.objects[row].vanish_time or 0.0
+    return math.floor(until / simulation.scenario.world.step_time + _ROUNDING)
 
 
 def past_goals(simulation: Simulation, row: int) -> Floats | None:

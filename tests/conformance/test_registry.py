@@ -41,8 +41,12 @@ def test_declaration(kind: str, feature: Feature) -> None:
         conformance.check_kernel(feature)
 
 
+RECORDED = ("replay",)
+"""Behaviors that follow places of their own, which tests/core/test_replay.py and tests/env/test_replay.py test."""
+
+
 @pytest.mark.parametrize("drive", DRIVES)
-@pytest.mark.parametrize("behavior", [f.name for f in BEHAVIORS.features() if f.simulated])
+@pytest.mark.parametrize("behavior", [f.name for f in BEHAVIORS.features() if f.simulated and f.name not in RECORDED])
 def test_behavior_on_every_drive(behavior: str, drive: str) -> None:
     features = {"drive": drive, "behavior": f"{{name: {behavior}}}"}
     conformance.check_same_seed(**features)

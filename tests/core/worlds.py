@@ -110,6 +110,7 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "driven": overrides.get("drive", True) is not None,
         "start_step": 0,
         "appear_step": 0,
+        "vanish_step": 0,
         "target_roles": 0,
         "behavior": DASH,
         "grouped": False,

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from irsim import api
-from irsim.api.ros_maps import MapFileError, export_map, import_map
+from irsim.bridges.maps import import_map
+from irsim.bridges.maps.ros_server import MapFileError, export_map
 from irsim.common.files import TargetError
 from irsim.components.maps._rosmap import MODES, RosMeta, occupancy_of, pixels_of
 from irsim.scenario.limits import Limits
@@ -131,7 +132,8 @@ def test_turned_maps_are_sampled_anew(tmp_path, yaw) -> None:
 def test_import_and_export(tmp_path) -> None:
     source = write(tmp_path, corner())
     written = import_map(source, tmp_path / "world.yaml", unknown="occupied")
-    assert written.files == [str(tmp_path / "world.yaml"), str(tmp_path / "world.png")]
+    names = ("world.yaml", "world.png", "world.bridge.json")
+    assert written.files == [str(tmp_path / name) for name in names]
     report = api.validate(tmp_path / "world.yaml")
     assert report.valid
     scenario, _ = api.read_scenario(tmp_path / "world.yaml", strict=True)
@@ -148,7 +150,7 @@ def test_import_and_export(tmp_path) -> None:
             assert again.world.bounds == scenario.world.bounds
     with pytest.raises(TargetError):
         export_map(scenario, tmp_path / "raw-png.yaml", image="pgm", overwrite=False)
-    with pytest.raises(MapFileError, match="exists"):
+    with pytest.raises(TargetError, match="exists"):
         import_map(source, tmp_path / "world.yaml")
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
+from irsim.options.base import Options
 from irsim.options.registry import KINEMATICS, SENSORS
 from irsim.runs.files import RunError, unreadable
 from irsim.runs.reading import Run
@@ -152,6 +153,7 @@ class Episode:
         with_ranges: Whether the ranges of lidars are exported.
         limits: Limits of the reader of the scenario.
         progress: Callback with the number of rows read since the last call.
+        options: Options of the format; None if it has none.
     """
 
     run: Run
@@ -159,6 +161,7 @@ class Episode:
     with_ranges: bool
     limits: Limits | None
     progress: Callable[[int], None]
+    options: Options | None = None
 
     @cached_property
     def lidars(self) -> tuple[Lidar, ...]:
@@ -250,6 +253,7 @@ def open_episode(
     with_ranges: bool,
     limits: Limits | None = None,
     progress: Callable[[int], None] = lambda rows: None,
+    options: Options | None = None,
 ) -> Episode:
     """A run with the objects to export.
 
@@ -259,6 +263,7 @@ def open_episode(
         with_ranges: Whether to export the ranges of lidars.
         limits: Limits of the reader of the scenario.
         progress: Callback with the number of rows read since the last call.
+        options: Options of the format.
 
     Raises:
         RunError: No object has one of the names, no object is chosen, or the run cannot be read.
@@ -277,7 +282,7 @@ def open_episode(
         what, fix = f"run {run.id} has no {objects}", "choose all objects, or name some"
         raise RunError("bad-argument", what, fix, where="objects")
     actors = tuple(Actor(index, run.names[index], facts[index]) for index in chosen)
-    return Episode(run, actors, with_ranges, limits, progress)
+    return Episode(run, actors, with_ranges, limits, progress, options)
 
 
 def _is_chosen(facts: dict[str, Any], word: str) -> bool:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from irsim.bridges.export.episode import open_episode
+from irsim.bridges.export.options import chosen_options
 from irsim.bridges.export.registry import Format, find_format
 from irsim.common.extras import require
 from irsim.common.files import TEMPORARY, check_suffix, replacing
@@ -27,8 +29,9 @@ def export_run(
     out: str | Path | None = None,
     *,
     to: str | None = None,
-    objects: str | Sequence[str] = "movers",
+    objects: str | Sequence[str] | None = None,
     ranges: bool | None = None,
+    options: Mapping[str, Any] | None = None,
     workspace: str | Path | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
@@ -36,17 +39,20 @@ def export_run(
     """Write recorded runs as a file that other tools open.
 
     Formats are ``parquet`` and ``csv`` (a table with one row per step and object), ``npz`` (arrays of shape (steps,
-    objects, …)), ``mcap`` (ROS 2 messages) and ``minari`` (a folder: a dataset for learning, one episode per run and
-    robot). Runs are read piece by piece, so that they need not fit in memory. Parquet, MCAP and Minari need libraries:
-    ``pip install 'irsim-mcp[records]'``.
+    objects, …)), ``mcap`` (ROS 2 messages), ``minari`` (a folder: a dataset for learning, one episode per run and
+    robot), ``usd`` (an animated stage of OpenUSD), and for cameras that look where robots go ``colmap``, ``nerfstudio``
+    (folders) and ``poses`` (lines of JSON). Runs are read piece by piece, so that they need not fit in memory. A format
+    that needs a library says which extra installs it: ``pip install 'irsim-mcp[records]'``.
 
     Args:
         run: Id of a run, its folder, or ``last``; or several of them for a table or a dataset.
         out: File or folder to write. An existing file is replaced; a folder must not exist. Default: the id of the run
             with the suffix of the format, in the current directory.
         to: Name of the format. Default: as the suffix of ``out`` says.
-        objects: ``movers`` (robots, and obstacles that can move), ``robots``, ``all``, or a list of names.
+        objects: ``movers`` (robots, and obstacles that can move), ``robots``, ``all``, or a list of names. Default:
+            ``robots`` for cameras, else ``movers``.
         ranges: Whether to write the ranges of lidars. Default: in all formats but ``csv``.
+        options: Options of the format, such as the height of cameras.
         workspace: Folder whose ``.irsim/runs`` holds the runs; default: the current directory.
         limits: Limits of the reader of the scenario.
         progress: Callback ``(rows_done, rows_total)``.
@@ -54,6 +60,7 @@ def export_run(
     Raises:
         RunError: There is no such run, object or format, or the format does not hold these runs or their objects.
         ExtraError: A library is missing.
+        ArgumentError: The format has no such option, or the value is not allowed.
         TargetError: The file has another suffix than files of the format.
         ScenarioError: The scenario of the run has errors now (only ``mcap`` reads it).
     """
@@ -65,7 +72,8 @@ def export_run(
     if len(runs) > 1 and not form.several:
         what = f"a file of the format {form.name} holds one run, got {len(runs)}"
         raise RunError("bad-argument", what, "export each run to a file of its own", where="run")
-    require("records", *form.libraries)
+    require(form.extra, *form.libraries)
+    chosen = chosen_options(form.options, options or {}, f"the format {form.name}")
     target = _target(form, runs, out)
     total, done = sum(one.last_step + 1 for one in runs), 0
 
@@ -76,7 +84,10 @@ def export_run(
             progress(min(done, total), total)
 
     with_ranges = form.ranges if ranges is None else ranges
-    episodes = [open_episode(one, objects, with_ranges=with_ranges, limits=limits, progress=count) for one in runs]
+    who = form.objects if objects is None else objects
+    episodes = [
+        open_episode(one, who, with_ranges=with_ranges, limits=limits, progress=count, options=chosen) for one in runs
+    ]
     try:
         with _new_folder(target) if form.folder else replacing(target) as path:
             notes = form.write(episodes, path, target.name)
@@ -102,7 +113,7 @@ def _target(form: Format, runs: Sequence[Run], out: str | Path | None) -> Path:
         out = f"{runs[0].id}{form.suffix}"
     target = Path(out)
     if not form.folder:
-        check_suffix(target, (form.suffix,))
+        check_suffix(target, (form.suffix, *form.more_suffixes))
         if target.is_dir():
             raise RunError("file-exists", f"'{clean(target, 200)}' is a folder", "name another file with -o")
     elif target.exists():

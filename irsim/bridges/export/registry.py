@@ -13,6 +13,7 @@ from typing import TypeAlias
 from irsim.bridges.export.episode import Episode
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
+from irsim.options.base import Options
 from irsim.runs.files import RunError
 
 __all__ = ["Format", "Writer", "find_format", "format_names"]
@@ -31,10 +32,14 @@ class Format:
         name: Its name, which is that of its module.
         suffix: How names of its files end; for a folder, how the name of the folder ends.
         write: Writes episodes to a path.
-        libraries: Modules that it needs, which the extra ``records`` installs.
+        libraries: Modules that it needs, which an extra installs.
+        extra: The extra of pyproject.toml that installs them.
         several: Whether one file can hold several runs.
         folder: Whether it writes a folder instead of a file.
         ranges: Whether it has the ranges of lidars unless the caller decides.
+        objects: Word that chooses the objects unless the caller does.
+        options: Model of its options, which writers find in :attr:`Episode.options`; None without any.
+        more_suffixes: Other suffixes of its files, which select how it writes them.
     """
 
     name: str
@@ -44,6 +49,10 @@ class Format:
     several: bool = False
     folder: bool = False
     ranges: bool = True
+    objects: str = "movers"
+    options: type[Options] | None = None
+    extra: str = "records"
+    more_suffixes: tuple[str, ...] = ()
 
 
 @cache
@@ -64,7 +73,7 @@ def find_format(name: str | None, out: Path | None) -> Format:
         if out is None:
             raise RunError("bad-argument", "no format was given", f"name one with --to; {listed}", where="to")
         for known in map(_load, format_names()):
-            if out.suffix.lower() == known.suffix:
+            if out.suffix.lower() in (known.suffix, *known.more_suffixes):
                 return known
         what = f"the suffix of '{clean(out, 200)}' does not select a format"
         raise RunError("unknown-format", what, f"name one with --to; {listed}", where="to")

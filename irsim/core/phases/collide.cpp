@@ -82,7 +82,7 @@ void collide(const World& world, State& state, int w) {
   for (int i = 0; i < world.objects; ++i) {
     const bool stops =
         world.collision_mode == kStop || (world.collision_mode == kUnobstructedObstacles && world.is_robot[i]);
-    state.stopped[first + i] = stops ? collided[i] : 0;
+    state.stopped[first + i] = stops && !world.unstoppable[i] ? collided[i] : 0;
   }
 }
 

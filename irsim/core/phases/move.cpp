@@ -80,6 +80,7 @@ void remember(State& state, int row) {
 void finish(const World& world, State& state, int w) {
   const int first = w * world.objects;
   ++state.count[w];
+  if (!world.leavers.empty()) vanish(world, state, w);
   if (!world.latecomers.empty()) appear(world, state, w);
   for (int i = 0; i < world.objects; ++i) {
     const int row = first + i;

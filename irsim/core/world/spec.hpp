@@ -45,6 +45,7 @@ struct ObjectSpec {
   bool driven;                                       // whether the object has a drive, native or in Python
   std::int64_t start_step;                           // steps for which the object stands still at its start
   std::int64_t appear_step;                          // steps for which it is not in the world at all
+  std::int64_t vanish_step;                          // step in which it leaves the world; 0: never
 
   static constexpr auto fields() {
     using S = ObjectSpec;
@@ -60,7 +61,7 @@ struct ObjectSpec {
         field("sensors", &S::sensors), field("centroid", &S::centroid), field("mass", &S::mass),
         field("friction", &S::friction), field("inertia", &S::inertia), field("restitution", &S::restitution),
         field("tau", &S::tau), field("driven", &S::driven), field("start_step", &S::start_step),
-        field("appear_step", &S::appear_step));
+        field("appear_step", &S::appear_step), field("vanish_step", &S::vanish_step));
   }
 };
 

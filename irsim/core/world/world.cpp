@@ -201,6 +201,8 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     if (!s.unobstructed) visible.push_back(i);
     if (s.route && !s.is_static) routed.push_back(i);
     if (s.appear_step > 0) latecomers.push_back(i);
+    if (s.vanish_step > 0) leavers.push_back(i);
+    unstoppable.push_back(s.role == 1 && std::holds_alternative<ReplayOptions>(s.behavior));
     random_statics = random_statics || (s.is_static && s.appear_step > 0);
     add_to_group(*this, i, s);
     add_scans(*this, i, s);

@@ -77,6 +77,7 @@ struct World {
 
   // (N,) for each object
   std::vector<std::uint8_t> is_robot, is_static, unobstructed, wander, loop, state_arrival, target_roles, behaves;
+  std::vector<std::uint8_t> unstoppable;  // whether collisions do not stop it: an obstacle that replays a recording
   std::vector<int> group;
   std::vector<int> number;  // id in draws and events; equal to the index until objects are removed
   std::vector<Drive> drive;
@@ -91,6 +92,7 @@ struct World {
   std::vector<int> moving, fixed_objects, robots, visible;  // `visible`: those that are not unobstructed
   std::vector<int> routed;                                  // objects with a route to follow
   std::vector<int> latecomers;                              // objects that appear after the start
+  std::vector<int> leavers;                                 // objects that leave the world before the end
   std::vector<BehaviorGroup> behaviors;
   std::vector<Scan> scans;
   int beams_per_world = 0, velocities_per_world = 0;

@@ -13,7 +13,7 @@ import html
 import re
 from pathlib import Path
 
-__all__ = ["bundle", "page"]
+__all__ = ["bundle", "fingerprint", "page"]
 
 _SOURCES = Path(__file__).with_name("web")
 _IMPORT = re.compile(r"^import\s[^;]*?\sfrom\s+\"\./([a-z]+)\.js\";\n", re.MULTILINE)
@@ -32,7 +32,7 @@ def page(data: bytes | None = None, *, title: str = "irsim replay") -> str:
     script = f'"use strict";\n(() => {{\n{bundle()}}})();\n'
     parts = {
         "policy": "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; "
-        f"style-src {_fingerprint(style)}; script-src {_fingerprint(script)}",
+        f"style-src {fingerprint(style)}; script-src {fingerprint(script)}",
         "title": html.escape(title),
         "style": style,
         "script": script,
@@ -42,15 +42,19 @@ def page(data: bytes | None = None, *, title: str = "irsim replay") -> str:
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], frame)
 
 
-def bundle() -> str:
-    """All modules as one script, each after those it imports."""
+def bundle(sources: Path = _SOURCES) -> str:
+    """All modules of a folder as one script, each after those it imports.
+
+    Args:
+        sources: The folder, whose module ``main.js`` is the last one.
+    """
     done: dict[str, str] = {}
 
     def add(name: str) -> None:
         if name in done:
             return
         done[name] = ""  # allows circular imports, as functions refer to each other only when they are called
-        text = (_SOURCES / f"{name}.js").read_text(encoding="utf-8")
+        text = (sources / f"{name}.js").read_text(encoding="utf-8")
         for other in _IMPORT.findall(text):
             add(other)
         del done[name]
@@ -60,6 +64,6 @@ def bundle() -> str:
     return "\n".join(done.values())
 
 
-def _fingerprint(text: str) -> str:
+def fingerprint(text: str) -> str:
     """Hash of a script or style sheet, as a content security policy lists it."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"

@@ -81,6 +81,8 @@ def _goals_reached_at_start(context: Context, records: list[ObjectRecord]) -> It
     for record in records:
         if record.static or record.wander or record.loop or not record.goals or record.kinematics is None:
             continue
+        if record.recorded:
+            continue  # it stands because somebody stood
         points = [record.state, *record.goals]
         for index, (a, b) in enumerate(itertools.pairwise(points)):
             if not _arrives(record, a, b):
@@ -189,7 +191,7 @@ def _ignored_keys(path: Path, entry: Entry) -> Iterator[Finding]:
 
 
 def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
-    if entry.state is None:
+    if entry.state is None and not records[0].recorded:
         shape: Any = records[0].shape
         if shape.name in ("polygon", "linestring") and shape.vertices is not None and not shape.random_shape:
             yield warning(
@@ -207,7 +209,7 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
                 fix="add 'state: [x, y, theta]'",
                 edit=Edit("add", (*path, "state"), DEFAULT_STATE),
             )
-    elif records[0].role == "robot":
+    elif entry.state is not None and records[0].role == "robot":
         states: Any = [entry.state] if is_vector(entry.state) else entry.state
         longest = max((len(state) for state in states[: entry.number] if state is not None), default=0)
         if longest > (rows := records[0].state_dim):
@@ -223,7 +225,11 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
 
 
 def _default_goal(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
-    driven = [r for r in records if not r.static and not r.wander and (r.behavior or r.group_behavior) is not None]
+    driven = [
+        r
+        for r in records
+        if not r.static and not r.wander and not r.recorded and (r.behavior or r.group_behavior) is not None
+    ]
     if driven and entry.goal is None and entry.waypoints is None:
         yield hint(
             "default-goal",

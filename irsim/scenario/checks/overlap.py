@@ -47,6 +47,8 @@ def check(context: Context) -> Iterator[Finding]:
         mover, other = (a.record, b.record) if _matters(a.record) else (b.record, a.record)
         if other.unobstructed or (mover.appear_time and not other.static) or other.appear_time:
             continue  # who appears later waits until there is room
+        if mover.recorded and mover.role == "obstacle":
+            continue  # nothing stops it
         key = (mover.path, other.path)
         if (len(found) >= _MAX_REPORTED and key not in found) or (key in found and found[key][2] >= _MAX_COUNTED):
             continue

@@ -46,6 +46,7 @@ def check(context: Context) -> Iterator[Finding]:
         body
         for body in there
         if body.record.kinematics is not None
+        and not body.record.recorded
         and 0 < body.speed < math.inf
         and math.isfinite(body.shape.width)
         and body.speed * dt > body.shape.width

@@ -122,6 +122,8 @@ def _own_limit(options: Any) -> float:
         return math.hypot(options.vxmax, options.vymax)
     if name == "sfm":
         return float(options.vmax)
+    if name == "replay":
+        return float(options.top_speed) if options.times else 0.0
     most = getattr(options, "maxSpeed", None)
     return math.inf if most is None else float(most)
 

@@ -9,6 +9,7 @@ from typing import Any, Literal
 from pydantic import BaseModel
 
 from irsim.components.behaviors._options import behavior_fields
+from irsim.components.behaviors.replay import Replay
 from irsim.components.kinematics._options import KinematicsOptions
 from irsim.components.maps._grid import MapCells, MapGrid, Walls
 from irsim.diagnostics.diagnostic import Path
@@ -195,6 +196,7 @@ class _Maker:
     def _record(self, i: int, placed: tuple[list[float], list[float]] | None) -> ObjectRecord:
         entry, role, object_id = self.entry, self.role, self.first_id + i
         value = {key: column[i] for key, column in self.columns.items()}
+        vanish_time = self._follow_recording(value)
         kinematics = _drive(value["kinematics"])
         shape = value["shape"] if value["shape"] is not None else _default_shape()
         state_dim = entry.state_dim or (len(kinematics.state_rows) if kinematics else 3)
@@ -248,7 +250,26 @@ class _Maker:
             watches=entry.fov is not None,
             start_time=value["start_time"],
             appear_time=value["appear_time"],
+            vanish_time=vanish_time,
         )
+
+    def _follow_recording(self, value: dict[str, Any]) -> float | None:
+        """Fill in what follows from a recording that the object replays; the time of its end, if it vanishes then."""
+        options = value["behavior"]
+        if not isinstance(options, Replay) or not options.times:
+            return None
+        limits = options.limits(self.world.step_time)
+        if value["kinematics"] is not None and value["kinematics"].speeds == 2:
+            rows = len(value["kinematics"].control_rows)
+            value["vel_max"] = value["vel_max"] or limits[:rows]
+            value["vel_min"] = value["vel_min"] or [-limit for limit in limits[:rows]]
+        value["state"] = value["state"] or options.start
+        if value["goal"] is None and value["waypoints"] is None:
+            value["goal"] = options.poses[-1]
+        if not options.vanish or self.role == "robot":
+            return None
+        value["appear_time"] = value["appear_time"] or options.times[0]
+        return options.times[-1]
 
     def _tau(self, kinematics: KinematicsOptions | None) -> float:
         if kinematics is None:

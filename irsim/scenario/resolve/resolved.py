@@ -90,12 +90,18 @@ class ObjectRecord:
     joined: bool = True  # whether it follows the behavior of its group
     start_time: float = 0.0  # until then it stands still [s]
     appear_time: float = 0.0  # until then it is not in the world [s]
+    vanish_time: float | None = None  # last time at which it is in the world [s]; None: it stays
     spreads: Spreads | None = None  # None: it starts as written
 
     @property
     def active_behavior(self) -> Any:
         """The options of what moves the object: of the behavior of its group, else of its own; None without any."""
         return self.behavior if self.group_behavior is None else self.group_behavior
+
+    @property
+    def recorded(self) -> bool:
+        """Whether it replays a recording, which says where it starts and ends."""
+        return getattr(self.behavior, "name", None) == "replay" and bool(getattr(self.behavior, "times", None))
 
     @property
     def moves_from(self) -> float:

@@ -1,8 +1,7 @@
-"""Convert maps of the ROS map server to scenarios and back."""
+"""Write maps of scenarios for the ROS map server."""
 
 from __future__ import annotations
 
-import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,24 +10,22 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from irsim.bridges.base import BridgeError
 from irsim.common.arrays import Floats
 from irsim.common.files import check_suffix, write_new
-from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of, ros_raster
-from irsim.components.maps._site import MapProblem, MapSite
-from irsim.diagnostics.errors import CodedError
+from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of
 from irsim.objects.obstacle_map import grid_values
 from irsim.scenario.resolve.resolved import ResolvedScenario
-from irsim.scenario.yaml.modeline import with_modeline
 from irsim.simulation.random_streams import fresh_seed
 from irsim.simulation.simulation import Simulation
 
-__all__ = ["MODES", "MapFileError", "MapFiles", "export_map", "import_map"]
+__all__ = ["MODES", "MapFileError", "MapFiles", "export_map"]
 
 _MAX_ASPECT_ERROR = 1e-6
 """Share by which the sides of a cell may differ for it to count as square."""
 
 
-class MapFileError(CodedError, ValueError):
+class MapFileError(BridgeError):
     """A map cannot be read or written."""
 
 
@@ -54,45 +51,6 @@ class MapFiles:
     def as_dict(self) -> dict[str, Any]:
         """The result as JSON types."""
         return dict(self.__dict__)
-
-
-def import_map(file: str | Path, out: str | Path, *, unknown: str = "free", overwrite: bool = False) -> MapFiles:
-    """Convert a map of the ROS map server to a scenario and a picture.
-
-    Args:
-        file: YAML file of the map.
-        out: Scenario file to write; the picture is written beside it, with the suffix ``.png``.
-        unknown: Whether unknown cells count as ``free`` or ``occupied``.
-        overwrite: Replace existing files.
-
-    Raises:
-        MapFileError: The map cannot be read.
-        TargetError: A file exists already.
-    """
-    source, target = Path(file), Path(out)
-    check_suffix(target, (".yaml", ".yml"))
-    try:
-        site = MapSite(folders=[Path()])
-        raster = ros_raster(site.find(str(source)), source.name, site, 100.0 if unknown == "occupied" else 0.0)
-    except MapProblem as problem:
-        raise MapFileError(problem.code, problem.message) from None
-    assert raster.width is not None
-    assert raster.height is not None
-    assert raster.origin is not None
-    values, picture = raster.values(), target.with_suffix(".png")
-    nx, ny = values.shape
-    text = (
-        "world:\n"
-        f"  width: {raster.width!r}\n  height: {raster.height!r}\n"
-        f"  offset: [{raster.origin[0]!r}, {raster.origin[1]!r}]\n"
-        f"  obstacle_map: {{name: image, path: {json.dumps(picture.name)}}}\n"
-    )
-    _check_new(picture, overwrite)
-    write_new(target, with_modeline(text, target), overwrite=overwrite)
-    grey = np.round(255 * (1 - values / 100)).astype(np.uint8)
-    Image.fromarray(np.ascontiguousarray(grey[:, ::-1].T)).save(picture, optimize=True)
-    occupied = int((values > 50).sum())
-    return MapFiles([str(target), str(picture)], nx, ny, raster.width / nx, raster.origin, occupied)
 
 
 def export_map(

@@ -1,0 +1,1 @@
+"""A bridge to CARLA: pedestrians, vehicles and lidars of a town."""

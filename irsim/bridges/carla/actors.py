@@ -1,0 +1,177 @@
+"""Spawning actors in a town, and destroying all that were spawned."""
+
+from __future__ import annotations
+
+import fnmatch
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from irsim.bridges.base import BridgeError
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
+
+__all__ = ["Ground", "Spawner", "find_actor", "place"]
+
+LIFTS = (0.5, 1.0, 1.5, 2.0)
+"""Heights above the ground [m] from which actors are dropped, one after the other until one has room."""
+_ABOVE, _BELOW = 2.0, 20.0
+"""The ray that finds the ground starts this much above the road and ends this much below [m]."""
+_FAR_ROAD = 30.0
+"""A road farther away than this [m] says nothing about the ground."""
+
+
+def place(carla: Any, at: Iterable[float], height: float) -> Any:
+    """A transform of CARLA for x, y [m], yaw [deg], and a height [m]."""
+    x, y, yaw = (float(value) for value in at)
+    return carla.Transform(carla.Location(x=x, y=y, z=float(height)), carla.Rotation(pitch=0.0, yaw=yaw, roll=0.0))
+
+
+class Ground:
+    """Heights of the ground.
+
+    Args:
+        carla: The module.
+        world: The world of the server.
+        choice: ``project``, ``road`` or one height [m].
+    """
+
+    def __init__(self, carla: Any, world: Any, choice: str | float) -> None:
+        self._carla, self._world, self._choice = carla, world, choice
+        self._map: Any = None
+        if isinstance(choice, str):
+            try:
+                self._map = world.get_map()
+            except RuntimeError:  # some towns have no roads
+                if choice == "road":
+                    what = "the town of the server has no roads (no OpenDRIVE)"
+                    raise BridgeError("bridge-mismatch", what, "ground: project") from None
+
+    def under(self, x: float, y: float) -> float:
+        """Height of the ground at a place where nothing stands yet [m].
+
+        Raises:
+            BridgeError: There is none.
+        """
+        road = self.road(x, y)
+        if self._choice != "project":
+            if road is None:
+                what = f"there is no road within {_FAR_ROAD:g} m of x={x:.1f}, y={y:.1f} of CARLA"
+                raise BridgeError("bridge-mismatch", what, "move the scenario with transform, or write ground: project")
+            return road
+        start = (0.0 if road is None else road) + _ABOVE
+        found = self._world.ground_projection(self._carla.Location(x=x, y=y, z=start), _ABOVE + _BELOW)
+        if found is not None:
+            return float(found.location.z)
+        if road is not None:
+            return road
+        what = f"there is no ground at x={x:.1f}, y={y:.1f} of CARLA"
+        raise BridgeError(
+            "bridge-mismatch", what, "move the scenario into the town with transform, or write ground: 0.0"
+        )
+
+    def road(self, x: float, y: float) -> float | None:
+        """Height of the nearest road [m], or the height that was given; None without a road near by."""
+        if not isinstance(self._choice, str):
+            return float(self._choice)
+        if self._map is None:
+            return None
+        location = self._carla.Location(x=x, y=y, z=0.0)
+        waypoint = self._map.get_waypoint(location, project_to_road=True, lane_type=self._carla.LaneType.Any)
+        if waypoint is None:
+            return None
+        found = waypoint.transform.location
+        return float(found.z) if abs(found.x - x) + abs(found.y - y) <= _FAR_ROAD else None
+
+
+class Spawner:
+    """Spawns actors and remembers them.
+
+    Args:
+        carla: The module.
+        world: The world of the server.
+
+    Attributes:
+        spawned: Ids of the actors, in order.
+    """
+
+    def __init__(self, carla: Any, world: Any) -> None:
+        self._carla, self._world = carla, world
+        self._library = world.get_blueprint_library()
+        self.spawned: list[int] = []
+
+    def blueprint(self, pattern: str, turn: int, attributes: Mapping[str, str]) -> Any:
+        """A blueprint.
+
+        Args:
+            pattern: Its name, or a pattern.
+            turn: Which of those that fit, counted round.
+            attributes: Attributes to set, those that it has.
+
+        Raises:
+            BridgeError: No blueprint fits.
+        """
+        names = sorted(str(blueprint.id) for blueprint in self._library)
+        fitting = [name for name in names if fnmatch.fnmatchcase(name, pattern)]
+        if not fitting:
+            family = [name for name in names if name.split(".")[0] == pattern.split(".")[0]] or names
+            fix = suggestion(pattern, family, f"such as {', '.join(family[:3])}")
+            raise BridgeError("bridge-mismatch", f"the server has no blueprint {clean(pattern)!r}", fix)
+        found = self._library.find(fitting[turn % len(fitting)])
+        for key, value in attributes.items():
+            if found.has_attribute(key):
+                found.set_attribute(key, value)
+        return found
+
+    def drop(self, name: str, blueprint: Any, at: Iterable[float], ground: float) -> Any:
+        """Spawn an actor a little above the ground, higher if there is no room.
+
+        Args:
+            name: What it is, for messages.
+            blueprint: Its blueprint.
+            at: x, y [m], yaw [deg] of CARLA.
+            ground: Height of the ground [m].
+
+        Raises:
+            BridgeError: There is no room.
+        """
+        x, y, yaw = (float(value) for value in at)
+        for lift in LIFTS:
+            actor = self._world.try_spawn_actor(blueprint, place(self._carla, (x, y, yaw), ground + lift))
+            if actor is not None:
+                self.spawned.append(int(actor.id))
+                return actor
+        what = f"there is no room in the town for '{clean(name)}' at x={x:.1f}, y={y:.1f} of CARLA, z={ground:.1f}"
+        raise BridgeError("bridge-mismatch", what, "move it, or move the scenario with transform")
+
+    def attach(self, blueprint: Any, transform: Any, parent: Any) -> Any:
+        """Spawn an actor on another one."""
+        actor = self._world.spawn_actor(blueprint, transform, attach_to=parent)
+        self.spawned.append(int(actor.id))
+        return actor
+
+    def destroy(self, actor: Any) -> None:
+        """Destroy one actor."""
+        self.spawned.remove(int(actor.id))
+        actor.destroy()
+
+
+def find_actor(world: Any, wanted: str | int, name: str) -> Any:
+    """The actor of others that has a role name or an id.
+
+    Raises:
+        BridgeError: There is none, or there are several.
+    """
+    actors = list(world.get_actors())
+    if isinstance(wanted, int):
+        found = [actor for actor in actors if actor.id == wanted]
+    else:
+        found = [actor for actor in actors if actor.attributes.get("role_name") == wanted]
+    if len(found) == 1:
+        return found[0]
+    roles = sorted({str(actor.attributes.get("role_name")) for actor in actors if actor.attributes.get("role_name")})
+    if found:
+        numbers = ", ".join(str(actor.id) for actor in found[:5])
+        what = f"'{clean(name)}' cannot follow {clean(str(wanted))!r}: {len(found)} actors have this role name"
+        raise BridgeError("bridge-mismatch", what, f"write the id of one: {numbers}")
+    what = f"'{clean(name)}' cannot follow {clean(str(wanted))!r}: the town has no such actor"
+    raise BridgeError("bridge-mismatch", what, f"role names in the town are {clean(', '.join(roles[:8])) or 'none'}")

@@ -1,0 +1,254 @@
+"""``openscenario``: trajectories as an OpenSCENARIO 1.0 file, for esmini and CARLA's ScenarioRunner.
+
+Each object is an entity that is put at its first pose and follows its recorded trajectory in time. Cars (drive
+``acker``) are vehicles, other objects that can move are pedestrians, the rest are obstacles. The frame is that of
+irsim: x forward, y to the left, heading counterclockwise, origin where the scenario has it. A file names no roads:
+write those of the town into ``RoadNetwork``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+from xml.sax.saxutils import XMLGenerator
+from xml.sax.xmlreader import AttributesImpl
+
+import numpy as np
+
+from irsim.bridges.carla.roles import ahead_of
+from irsim.bridges.export.episode import Actor, Episode
+from irsim.bridges.export.registry import Format
+from irsim.bridges.recorded import recorded_scene
+from irsim.bridges.scene import Agent, Circle
+from irsim.common.arrays import Floats
+from irsim.common.version import version
+from irsim.runs.files import RunError
+
+__all__ = ["FORMAT"]
+
+MAX_VERTICES = 2_000_000
+"""Number of poses of a file, about 150 bytes each."""
+_PERSON, _CAR, _THING = 1.8, 1.5, 1.0
+"""Heights of bodies [m], which a scenario has none of."""
+_NOT_XML = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_FOREVER = 1e10
+"""Limit of the speed and acceleration of vehicles without one."""
+
+
+class _Writer:
+    """Writes indented elements, whose attributes are escaped."""
+
+    def __init__(self, file: Any) -> None:
+        self._xml, self._depth = XMLGenerator(file, "utf-8", short_empty_elements=True), 0
+        self._xml.startDocument()
+
+    @contextmanager
+    def element(self, tag: str, /, **attributes: object) -> Iterator[None]:
+        """An element with others inside."""
+        self._xml.ignorableWhitespace("  " * self._depth)
+        self._xml.startElement(tag, _attributes(attributes))
+        self._xml.ignorableWhitespace("\n")
+        self._depth += 1
+        yield
+        self._depth -= 1
+        self._xml.ignorableWhitespace("  " * self._depth)
+        self._xml.endElement(tag)
+        self._xml.ignorableWhitespace("\n")
+
+    def leaf(self, tag: str, /, **attributes: object) -> None:
+        """An element without others inside."""
+        self._xml.ignorableWhitespace("  " * self._depth)
+        self._xml.startElement(tag, _attributes(attributes))
+        self._xml.endElement(tag)
+        self._xml.ignorableWhitespace("\n")
+
+
+def _attributes(values: dict[str, object]) -> AttributesImpl[str]:
+    return AttributesImpl({key: _text(value) for key, value in values.items()})
+
+
+def _text(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.6f}".rstrip("0").rstrip(".") if abs(value) < 1e9 else f"{value:g}"
+    return _NOT_XML.sub("\ufffd", str(value))
+
+
+def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+    """Write one run."""
+    (episode,) = episodes
+    vertices = (episode.last_step + 1) * len(episode.actors)
+    if vertices > MAX_VERTICES:
+        what = f"a file of OpenSCENARIO holds up to {MAX_VERTICES:,} poses, and this run has {vertices:,}"
+        raise RunError("bad-argument", what, "name fewer objects with --objects, or record a shorter run")
+    scene = recorded_scene(episode.run, episode.limits)
+    times, poses = _trajectories(episode)
+    present = [np.isfinite(poses[:, column]).all(axis=1) for column in range(len(episode.actors))]
+    shown = [column for column, rows in enumerate(present) if rows.any()]
+    with open(target, "w", encoding="utf-8", newline="\n") as file:
+        writer = _Writer(file)
+        with writer.element("OpenSCENARIO"):
+            _header(writer, episode)
+            with writer.element("Entities"):
+                for column in shown:
+                    _entity(writer, episode.actors[column], scene.agent(episode.actors[column].name))
+            with writer.element("Storyboard"):
+                with writer.element("Init"), writer.element("Actions"):
+                    for column in shown:
+                        _start(writer, episode.actors[column].name, poses[present[column], column][0])
+                moving = [column for column in shown if present[column].sum() > 1 and episode.actors[column].can_move]
+                _story(writer, episode, moving, times, poses, present)
+                with writer.element("StopTrigger"):
+                    _after(writer, "end of the run", float(times[-1]))
+    return _notes(episode, shown, present)
+
+
+def _notes(episode: Episode, shown: list[int], present: list[Any]) -> list[str]:
+    notes = ["RoadNetwork is empty: write the file or the town of your roads into it"]
+    absent = [actor.name for column, actor in enumerate(episode.actors) if column not in shown]
+    late = [episode.actors[column].name for column in shown if not present[column].all()]
+    if absent:
+        notes.append(f"never in the world, so left out: {', '.join(absent[:5])}")
+    if late:
+        notes.append(f"not in the world all the time, so standing where they appear before: {', '.join(late[:5])}")
+    return notes
+
+
+def _trajectories(episode: Episode) -> tuple[Floats, Floats]:
+    """(T,) times [s] and (T, M, 3) poses whose headings do not jump at half a turn."""
+    times, poses = [], []
+    for block in episode.blocks(scans=False):
+        times.append(block.trace.time)
+        poses.append(block.trace.pose)
+    pose = np.concatenate(poses)
+    known = np.nan_to_num(pose[:, :, 2])
+    pose[:, :, 2] += np.unwrap(known, axis=0) - known
+    return np.concatenate(times), pose
+
+
+def _header(writer: _Writer, episode: Episode) -> None:
+    created = str(episode.run.meta.get("created") or "2000-01-01T00:00:00")[:19]
+    about = f"run {episode.run.id} of irsim {version()}, seed {episode.run.meta['seed']}"
+    writer.leaf("FileHeader", revMajor=1, revMinor=0, date=created, description=about, author="irsim")
+    writer.leaf("CatalogLocations")
+    writer.leaf("RoadNetwork")
+
+
+def _entity(writer: _Writer, actor: Actor, agent: Agent) -> None:
+    """An object with its box; its name, a pedestrian's model and a vehicle's name are those of blueprints of CARLA."""
+    with writer.element("ScenarioObject", name=actor.name):
+        if actor.drive == "acker":
+            with writer.element("Vehicle", name="vehicle.tesla.model3", vehicleCategory="car"):
+                _box(writer, agent, _CAR)
+                speed = agent.high[0] if agent.high and np.isfinite(agent.high[0]) else _FOREVER
+                change = agent.acceleration[0] if agent.acceleration else _FOREVER
+                change = change if np.isfinite(change) else _FOREVER
+                writer.leaf("Performance", maxSpeed=float(speed), maxAcceleration=change, maxDeceleration=change)
+                base, track = agent.wheelbase or 1.0, 0.8 * _size(agent)[1]
+                with writer.element("Axles"):
+                    for name, x, steering in (("FrontAxle", base, 0.7), ("RearAxle", 0.0, 0.0)):
+                        wheels = {"wheelDiameter": 0.6, "trackWidth": track, "positionZ": 0.3}
+                        writer.leaf(name, maxSteering=steering, positionX=float(x), **wheels)
+                _properties(writer, actor)
+        elif actor.can_move:
+            facts = {"name": actor.name, "model": "walker.pedestrian.0001", "pedestrianCategory": "pedestrian"}
+            with writer.element("Pedestrian", mass=75.0, **facts):
+                _box(writer, agent, _PERSON)
+                _properties(writer, actor)
+        else:
+            mass = agent.mass if np.isfinite(agent.mass) else 1000.0
+            with writer.element("MiscObject", mass=float(mass), miscObjectCategory="obstacle", name=actor.name):
+                _box(writer, agent, _THING)
+                _properties(writer, actor)
+
+
+def _size(agent: Agent) -> tuple[float, float]:
+    """Length and width of the box around a footprint [m]."""
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for part in agent.parts:
+        if isinstance(part, Circle):
+            points = np.array(part.center) + np.array([[-part.radius] * 2, [part.radius] * 2])
+        else:
+            points = part.points if hasattr(part, "points") else part.corners
+        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+    length, width = np.where(np.isfinite(high - low), high - low, 2 * agent.radius)
+    return float(max(length, 0.01)), float(max(width, 0.01))
+
+
+def _box(writer: _Writer, agent: Agent, height: float) -> None:
+    length, width = _size(agent)
+    with writer.element("BoundingBox"):
+        writer.leaf("Center", x=ahead_of(agent), y=0.0, z=height / 2)
+        writer.leaf("Dimensions", width=width, length=length, height=height)
+
+
+def _properties(writer: _Writer, actor: Actor) -> None:
+    with writer.element("Properties"):
+        writer.leaf("Property", name="irsim:role", value=actor.role)
+
+
+def _position(writer: _Writer, pose: Floats) -> None:
+    x, y, heading = (float(value) for value in pose)
+    with writer.element("Position"):
+        writer.leaf("WorldPosition", x=x, y=y, z=0.0, h=heading, p=0.0, r=0.0)
+
+
+def _start(writer: _Writer, name: str, pose: Floats) -> None:
+    with writer.element("Private", entityRef=name), writer.element("PrivateAction"), writer.element("TeleportAction"):
+        _position(writer, pose)
+
+
+def _after(writer: _Writer, name: str, time: float) -> None:
+    """A condition that holds after a time [s]."""
+    with (
+        writer.element("ConditionGroup"),
+        writer.element("Condition", name=name, delay=0.0, conditionEdge="none"),
+        writer.element("ByValueCondition"),
+    ):
+        writer.leaf("SimulationTimeCondition", value=time, rule="greaterThan")
+
+
+def _story(
+    writer: _Writer, episode: Episode, moving: list[int], times: Floats, poses: Floats, present: list[Any]
+) -> None:  # fmt: skip
+    """One act, in which each object follows its trajectory; without any that moves, one in which nobody acts."""
+    with writer.element("Story", name="run"), writer.element("Act", name="run"):
+        for column in moving:
+            rows = present[column]
+            _maneuver(writer, episode.actors[column].name, times[rows], poses[rows, column])
+        if not moving:
+            with writer.element("ManeuverGroup", name="nothing moves", maximumExecutionCount=1):
+                writer.leaf("Actors", selectTriggeringEntities="false")
+        with writer.element("StartTrigger"):
+            _after(writer, "start of the run", -1.0)
+
+
+def _maneuver(writer: _Writer, name: str, times: Floats, poses: Floats) -> None:
+    with writer.element("ManeuverGroup", name=name, maximumExecutionCount=1):
+        with writer.element("Actors", selectTriggeringEntities="false"):
+            writer.leaf("EntityRef", entityRef=name)
+        with writer.element("Maneuver", name=name), writer.element("Event", name=name, priority="overwrite"):
+            with (
+                writer.element("Action", name=name),
+                writer.element("PrivateAction"),
+                writer.element("RoutingAction"),
+                writer.element("FollowTrajectoryAction"),
+            ):
+                with (
+                    writer.element("Trajectory", name=name, closed="false"),
+                    writer.element("Shape"),
+                    writer.element("Polyline"),
+                ):
+                    for time, pose in zip(times.tolist(), poses, strict=True):
+                        with writer.element("Vertex", time=time):
+                            _position(writer, pose)
+                with writer.element("TimeReference"):
+                    writer.leaf("Timing", domainAbsoluteRelative="absolute", scale=1.0, offset=0.0)
+                writer.leaf("TrajectoryFollowingMode", followingMode="position")
+            with writer.element("StartTrigger"):
+                _after(writer, f"start of {name}", -1.0)
+
+
+FORMAT = Format("openscenario", ".xosc", _write, ranges=False)

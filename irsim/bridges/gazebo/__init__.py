@@ -1,0 +1,1 @@
+"""Scenes and runs as worlds of Gazebo: SDF, and the meshes that it names."""

@@ -1,0 +1,204 @@
+"""Import of a map: find the kind of the file, read it, make the map of a level, write all files or none."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.occupancy import eroded, occupancy_of
+from irsim.bridges.maps.options import ImportLimits, ImportOptions
+from irsim.bridges.maps.sidecar import MapSidecar, scene_transform
+from irsim.bridges.maps.source import Kind, Occupancy, Scene, find_kind, unusable
+from irsim.bridges.maps.suggest import Trip, suggest_trip
+from irsim.bridges.maps.writing import files_of, write_all_or_none
+from irsim.common.arrays import Floats
+from irsim.common.extras import require
+from irsim.common.files import check_suffix
+from irsim.common.text import clean
+from irsim.diagnostics.errors import ArgumentError
+from irsim.results.map_import import MapImportResult, MapLevel, MapTrip
+from irsim.scenario.path_confinement import why_outside
+
+__all__ = ["import_map", "list_levels", "read_occupancy"]
+
+_MAX_COMPONENTS = 20
+_HALF = 50.0
+
+
+def import_map(
+    file: str | Path,
+    out: str | Path,
+    *,
+    ros_map: str | Path | None = None,
+    robot: bool = False,
+    overwrite: bool = False,
+    limits: ImportLimits | None = None,
+    **options: Any,
+) -> MapImportResult:
+    """Make a scenario of a map, a mesh, a navigation mesh, a USD stage or a road network.
+
+    Beside the scenario ``x.yaml`` are written its picture ``x.png`` and the sidecar ``x.bridge.json``, which says where
+    the map is in the world of the file: see :mod:`irsim.bridges.maps.sidecar`.
+
+    Args:
+        file: The file; its suffix and its first bytes say what it is.
+        out: Scenario to write.
+        ros_map: YAML file of a map for the ROS map server to write as well; its picture is written beside it.
+        robot: Whether the scenario gets a robot that drives from one end of the map to the other.
+        overwrite: Whether to replace existing files.
+        limits: How much an import may cost, and the folder that all files must lie in.
+        **options: Those of :class:`~irsim.bridges.maps.options.ImportOptions`.
+
+    Returns:
+        The files, the size of the map, its levels, and a start and a goal in it.
+
+    Raises:
+        BridgeError: The file cannot be used; nothing was written.
+        ArgumentError: An option has a wrong value.
+        ExtraError: A library is missing.
+        TargetError: A file exists already.
+    """
+    chosen, bounds = _options(options), limits or ImportLimits()
+    target, ros_target = _target(out, "out", bounds), None
+    if ros_map is not None:
+        ros_target = _target(ros_map, "ros_map", bounds)
+    kind, found, source = read_occupancy(file, chosen, bounds)
+    unknown = chosen.unknown or kind.unknown
+    values = eroded(found.values, chosen.radius / found.grid.resolution)
+    filled = np.where(values < 0, 100.0 if unknown == "occupied" else 0.0, values)
+    if robot and not (filled <= _HALF).any():
+        raise BridgeError("bridge-file", "the map has no free cell for a robot", "leave out the robot")
+    trip = suggest_trip(found, filled)
+    sidecar = MapSidecar(
+        scene_transform(found.frame, found.height, found.meters_per_unit),
+        found.frame,
+        found.height,
+        found.grid.resolution,
+        (found.grid.x, found.grid.y),
+        (found.grid.nx, found.grid.ny),
+        source,
+        {
+            "headroom": chosen.headroom,
+            "climb": chosen.climb,
+            "slope": chosen.slope,
+            "radius": max(chosen.radius, found.radius),
+        },
+        found.level,
+        unknown,
+    )
+    about = f"Made from {clean(source['file'], 100)}" + (f", level {found.level}" if found.levels else "")
+    placed = trip if robot else None
+    contents = files_of(found, values, filled, target, sidecar, about, placed, ros_target)
+    write_all_or_none(contents, overwrite=overwrite)
+    return _result(kind, found, values, filled, unknown, trip, [str(path) for path, _ in contents])
+
+
+def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **options: Any) -> MapImportResult:
+    """What :func:`import_map` would make of a file, without writing anything: its levels above all.
+
+    Args:
+        file: The file.
+        limits: How much it may cost.
+        **options: Those of :class:`~irsim.bridges.maps.options.ImportOptions`.
+
+    Raises:
+        BridgeError: The file cannot be used.
+        ArgumentError: An option has a wrong value.
+        ExtraError: A library is missing.
+    """
+    chosen = _options(options)
+    kind, found, _ = read_occupancy(file, chosen, limits or ImportLimits())
+    unknown = chosen.unknown or kind.unknown
+    values = eroded(found.values, chosen.radius / found.grid.resolution)
+    filled = np.where(values < 0, 100.0 if unknown == "occupied" else 0.0, values)
+    return _result(kind, found, values, filled, unknown, suggest_trip(found, filled), [])
+
+
+def read_occupancy(
+    file: str | Path, options: ImportOptions, limits: ImportLimits
+) -> tuple[Kind, Occupancy, dict[str, Any]]:
+    """Kind, map, and name, size and hash of a file.
+
+    Raises:
+        BridgeError: The file cannot be used.
+        ExtraError: A library is missing.
+    """
+    path = _confined(file, "file", limits)
+    kind = find_kind(path)
+    size = path.stat().st_size
+    if size > limits.bytes:
+        raise unusable(path, f"it has {size:,} bytes, and at most {limits.bytes:,} are read", "give a smaller file")
+    if kind.libraries:
+        require(kind.extra, *kind.libraries)
+    digest = hashlib.sha256()
+    with path.open("rb") as stream:
+        while block := stream.read(1 << 20):
+            digest.update(block)
+    source = {"file": path.name, "kind": kind.name, "bytes": size, "sha256": digest.hexdigest()}
+    try:
+        read = kind.read(path, options, limits)
+        found = occupancy_of(read, options, limits) if isinstance(read, Scene) else read
+    except MemoryError:
+        raise unusable(path, "it does not fit into memory", "give a coarser --resolution, or a smaller file") from None
+    return kind, found, source
+
+
+def _target(name: str | Path, where: str, limits: ImportLimits) -> Path:
+    """A file to write."""
+    target = _confined(name, where, limits)
+    check_suffix(target, (".yaml", ".yml"))
+    return target
+
+
+def _confined(name: str | Path, where: str, limits: ImportLimits) -> Path:
+    """The file of a name, which must not lead out of the folder of the limits."""
+    if limits.root is None:
+        return Path(name)
+    wrong = why_outside(str(name), Path(limits.root))
+    if wrong is not None:
+        fix = "give a file inside the workspace"
+        raise BridgeError("path-outside-workspace", f"'{clean(str(name), 200)}' {wrong}", fix, where=where)
+    return Path(limits.root) / name
+
+
+def _options(given: dict[str, Any]) -> ImportOptions:
+    try:
+        return ImportOptions(**given)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        names = ", ".join(ImportOptions.model_fields)
+        raise ArgumentError(f"the option {key} is wrong: {first['msg']}", f"options of imports are {names}") from None
+
+
+def _result(
+    kind: Kind, found: Occupancy, values: Floats, filled: Floats, unknown: str, trip: Trip | None, files: list[str]
+) -> MapImportResult:
+    free = filled <= _HALF
+    return MapImportResult(
+        kind=kind.name,
+        files=files,
+        columns=found.grid.nx,
+        rows=found.grid.ny,
+        resolution=found.grid.resolution,
+        origin=(found.grid.x, found.grid.y),
+        free_area=round(float(free.sum()) * found.grid.resolution**2, 4),
+        occupied=int((~free).sum()),
+        unknown=int((values < 0).sum()),
+        unknown_as=unknown,
+        level=found.level,
+        height=round(found.height, 4),
+        levels=[
+            MapLevel(level=k, height=round(height, 4), area=round(area, 4), roof=roof)
+            for k, (height, area, roof) in enumerate(found.levels)
+        ],
+        components=[round(area, 4) for area in found.regions[:_MAX_COMPONENTS]],
+        kept=found.kept,
+        trip=None if trip is None else MapTrip(start=trip.start, goal=trip.goal, clearance=trip.clearance),
+        notes=found.notes,
+    )

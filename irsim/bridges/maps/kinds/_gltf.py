@@ -1,0 +1,211 @@
+"""What a glTF file promises, checked against what it has, before a reader allocates anything."""
+
+from __future__ import annotations
+
+import binascii
+import json
+import re
+import struct
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.options import ImportLimits
+from irsim.bridges.maps.source import unusable
+from irsim.common.text import clean
+from irsim.scenario.path_confinement import why_outside
+
+__all__ = ["Beside", "check"]
+
+_MAX_JSON = 256 * 1024**2
+_SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+_COUNTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_mesh_quantization")
+_DATA = re.compile(r"data:[^,]{0,200};base64,")
+
+
+class Beside:
+    """Gives a reader the files beside a ``.gltf``: those that were checked, and nothing else."""
+
+    def __init__(self, folder: Path, names: dict[str, Path]) -> None:
+        self.folder, self.names = folder, names
+
+    def get(self, name: str) -> bytes:
+        """Content of a file.
+
+        Raises:
+            FileNotFoundError: It is none of the files that were checked.
+        """
+        if name not in self.names:
+            raise FileNotFoundError(name)
+        return self.names[name].read_bytes()
+
+    def __getitem__(self, name: str) -> bytes:
+        return self.get(name)
+
+    def keys(self) -> list[str]:
+        """Names of the files."""
+        return list(self.names)
+
+    def namespaced(self, namespace: str) -> Beside:
+        """The same files: parts of a file have none of their own."""
+        return self
+
+
+def check(path: Path, limits: ImportLimits) -> Beside:
+    """Check a ``.glb`` or ``.gltf`` file.
+
+    Returns:
+        What a reader may read beside the file.
+
+    Raises:
+        BridgeError: Something in it does not fit, is compressed, or refers to other places.
+    """
+    content, binary = _content(path)
+    try:
+        return _checked(path, content, binary, limits)
+    except BridgeError:
+        raise
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
+        raise unusable(path, f"its description is damaged ({type(error).__name__}: {str(error)[:80]})") from None
+
+
+def _content(path: Path) -> tuple[Any, int | None]:
+    """The description, and the size of the binary part of a ``.glb``; None for a ``.gltf``."""
+    size, binary = path.stat().st_size, None
+    with path.open("rb") as file:
+        if path.suffix.lower() == ".glb":
+            head = file.read(20)
+            if len(head) < 20 or head[:4] != b"glTF":
+                raise unusable(path, f"its header of 20 bytes is missing or ends after {len(head)}")
+            version, total, length, kind = struct.unpack("<4xIII4s", head)
+            if version != 2:
+                raise unusable(path, f"it has version {version} of glTF", "export it as glTF 2.0")
+            if kind != b"JSON" or 20 + length > size or total > size:
+                raise unusable(
+                    path, f"it ends after {size:,} bytes, and its header promises {max(total, 20 + length):,}"
+                )
+            start = 20 + length
+            if start + 8 <= size:
+                file.seek(start)
+                chunk, name = struct.unpack("<I4s", file.read(8))
+                if start + 8 + chunk > size:
+                    raise unusable(path, f"its binary part of {chunk:,} bytes ends after {size - start - 8:,}")
+                binary = chunk if name == b"BIN\0" else None
+            binary = binary or 0
+            file.seek(20)
+        else:
+            length = size
+        if length > _MAX_JSON:
+            raise unusable(path, f"its description has {length:,} bytes, and at most {_MAX_JSON:,} are read")
+        raw = file.read(length)
+    try:
+        content = json.loads(raw.decode("utf-8"))
+    except (UnicodeDecodeError, ValueError, RecursionError) as error:
+        raise unusable(path, f"its description is not JSON ({str(error)[:80]})") from None
+    if not isinstance(content, dict):
+        raise unusable(path, "its description is not a mapping")
+    return content, binary
+
+
+def _checked(path: Path, content: dict[str, Any], binary: int | None, limits: ImportLimits) -> Beside:
+    used = [*content.get("extensionsRequired", []), *content.get("extensionsUsed", [])]
+    packed = [name for name in _PACKED if name in used]
+    if packed:
+        raise unusable(path, f"its geometry is packed with {packed[0]}", "export it without compression of meshes")
+    names: dict[str, Path] = {}
+    buffers = [_buffer(path, k, item, binary, names, limits) for k, item in enumerate(content.get("buffers", []))]
+    views = []
+    for k, view in enumerate(content.get("bufferViews", [])):
+        begin, length = int(view.get("byteOffset", 0)), int(view["byteLength"])
+        if begin < 0 or length < 0 or begin + length > buffers[_index(view["buffer"])]:
+            raise unusable(path, f"its part bufferViews[{k}] reaches beyond its buffer")
+        views.append((length, int(view.get("byteStride", 0))))
+    counts = [_accessor(path, k, item, views) for k, item in enumerate(content.get("accessors", []))]
+    triangles = [_triangles(mesh, counts) for mesh in content.get("meshes", [])]
+    nodes = content.get("nodes", [])
+    parents = [0] * len(nodes)
+    for node in nodes:
+        for child in node.get("children", []):
+            parents[_index(child)] += 1
+    if max(parents, default=0) > 1:
+        raise unusable(path, f"its node {parents.index(max(parents))} has several parents")
+    for root in {_index(node) for scene in content.get("scenes", []) for node in scene.get("nodes", [])}:
+        if parents[root]:  # without this check nodes could go round in circles
+            raise unusable(path, f"its node {root} is below another one, or itself")
+    total = sum(triangles[_index(node["mesh"])] for node in nodes if "mesh" in node)
+    if total > limits.triangles:
+        raise unusable(
+            path, f"it has {total:,} triangles, and at most {limits.triangles:,} are read", "simplify the mesh"
+        )
+    return Beside(path.parent, names)
+
+
+def _buffer(
+    path: Path, k: int, item: dict[str, Any], binary: int | None, names: dict[str, Path], limits: ImportLimits
+) -> int:
+    """Size of a buffer [bytes]."""
+    length, uri = int(item["byteLength"]), item.get("uri")
+    if uri is None:
+        have = binary if binary is not None and k == 0 else 0
+    elif (data := _DATA.match(uri)) is not None:
+        try:
+            have = len(binascii.a2b_base64(uri[data.end() :]))
+        except binascii.Error:
+            have = 0
+    else:
+        have = _file_beside(path, uri, binary, names, limits)
+    if length < 0 or length > have:
+        raise unusable(path, f"its part buffers[{k}] promises {length:,} bytes and has {have:,}")
+    return length
+
+
+def _file_beside(path: Path, uri: str, binary: int | None, names: dict[str, Path], limits: ImportLimits) -> int:
+    """Size of a file that a ``.gltf`` names, in its own folder or below."""
+    name, shown = unquote(uri), clean(uri, 100)
+    why = "a .glb has all in itself" if binary is not None else None
+    if why is None and re.match(r"[A-Za-z][A-Za-z0-9+.-]*:", name):
+        why = "addresses are not followed"
+    if why is None:
+        outside = why_outside(name, path.parent)
+        why = None if outside is None else f"the name {outside}"
+    if why is not None:
+        fix = "export it as .glb with everything inside"
+        raise BridgeError("bridge-file", f"'{path.name}' refers to '{shown}', which is not read: {why}", fix)
+    file = path.parent / name
+    if not file.is_file():
+        raise unusable(path, f"there is no file '{shown}' beside it", "keep the files of a .gltf together")
+    size = file.stat().st_size
+    if size > limits.bytes:
+        raise unusable(path, f"'{shown}' has {size:,} bytes, and at most {limits.bytes:,} are read")
+    names[uri] = names[name] = file
+    return size
+
+
+def _accessor(path: Path, k: int, item: dict[str, Any], views: list[tuple[int, int]]) -> int:
+    """Number of values of an accessor, all of which are there."""
+    count, begin = int(item["count"]), int(item.get("byteOffset", 0))
+    size = _SIZES[item["componentType"]] * _COUNTS[item["type"]]
+    if "sparse" in item or "bufferView" not in item:
+        raise unusable(path, f"its part accessors[{k}] is sparse", "export it without sparse accessors")
+    length, stride = views[_index(item["bufferView"])]
+    need = begin + (count - 1) * max(stride, size) + size if count else 0
+    if count < 0 or begin < 0 or need > length:
+        raise unusable(path, f"its part accessors[{k}] promises {count:,} values, and there is room for fewer")
+    return count
+
+
+def _triangles(mesh: dict[str, Any], counts: list[int]) -> int:
+    total = 0
+    for primitive in mesh.get("primitives", []):
+        values = primitive.get("indices", primitive.get("attributes", {}).get("POSITION"))
+        mode = primitive.get("mode", 4)
+        total += 0 if values is None else counts[_index(values)] // (3 if mode == 4 else 1)
+    return total
+
+
+def _index(value: Any) -> int:
+    if type(value) is not int or value < 0:
+        raise ValueError(f"{value!r} is not an index")
+    return value

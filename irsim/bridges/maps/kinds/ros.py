@@ -1,0 +1,66 @@
+"""``ros``: maps of the ROS map server, a YAML file with a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from irsim.bridges.maps.grid import Grid
+from irsim.bridges.maps.options import ImportLimits, ImportOptions
+from irsim.bridges.maps.regions import masked_regions
+from irsim.bridges.maps.ros_server import MapFileError
+from irsim.bridges.maps.source import OCCUPIED, UNKNOWN, Kind, Occupancy
+from irsim.components.maps._rosmap import ros_raster
+from irsim.components.maps._site import MapProblem, MapSite
+from irsim.scenario.path_confinement import why_outside
+
+__all__ = ["KIND"]
+_HALF = 50.0
+"""Occupancy up to which a cell counts as free."""
+
+
+def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
+    """The map as it is.
+
+    Raises:
+        MapFileError: The map cannot be read.
+    """
+
+    def refuse(name: str, folders: object) -> str | None:
+        return None if limits.root is None else why_outside(name, path.parent)
+
+    site = MapSite(folders=[Path()] if limits.root is None else [], refuse=refuse)
+    try:
+        raster = ros_raster(path, path.name, site, UNKNOWN)
+    except MapProblem as problem:
+        raise MapFileError(problem.code, problem.message, problem.fix) from None
+    assert raster.width is not None
+    assert raster.origin is not None
+    values = raster.values()
+    grid = Grid(*raster.origin, raster.width / values.shape[0], *values.shape)
+    found = Occupancy(values, grid, "ros")
+    free = (values >= 0) & (values <= _HALF)
+    if not free.any():
+        return found
+    number, sizes = masked_regions(free)
+    found.regions = [float(size) * grid.resolution**2 for size in sizes]
+    if options.seed_point is not None:
+        column = grid.column_at(*options.seed_point)
+        kept = -1 if column is None else int(number.reshape(-1)[column])
+        if kept < 0:
+            x, y = options.seed_point
+            what = f"the seed point ({x:g}, {y:g}) is not free in this map"
+            raise MapFileError("bridge-file", what, "give a free place, or no seed point")
+        found.kept = kept
+        found.values = values.copy()
+        found.values[free & (number != kept)] = OCCUPIED
+    return found
+
+
+KIND = Kind(
+    name="ros",
+    title="the YAML file of a map of the ROS map server",
+    suffixes=(".yaml", ".yml"),
+    accepts=lambda head: b"image" in head or b"resolution" in head,
+    read=read,
+    unknown="free",
+)

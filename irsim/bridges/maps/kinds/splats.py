@@ -1,0 +1,105 @@
+"""``splats``: scenes of Gaussian splats (``.ply``): what stands between floor and headroom is occupied."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.frames import axes_of, inverse
+from irsim.bridges.maps.grid import Grid
+from irsim.bridges.maps.occupancy import cropped
+from irsim.bridges.maps.options import ImportLimits, ImportOptions
+from irsim.bridges.maps.regions import masked_regions
+from irsim.bridges.maps.sidecar import scene_transform
+from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, Kind, Occupancy
+from irsim.bridges.splats.occupancy import Plan, PlanOptions, find_floor, ground_plan, level_shares
+from irsim.bridges.splats.reading import read_splats
+from irsim.common.arrays import Floats
+
+__all__ = ["KIND"]
+
+_FRAMES = {"z": "irsim", "y": "habitat_yup", "-y": "colmap"}
+_SMALLEST_AREA_M2 = 0.5
+_MORE = 1.1
+"""How much more of the surfaces must be level along another axis before a note says so."""
+_MAX_REGIONS = 50
+
+
+def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
+    """The ground plan of a scene of splats.
+
+    Raises:
+        BridgeError: The file is damaged, nothing stands in the way, or there is no floor.
+    """
+    splats = read_splats(path)
+    up = "z" if options.up == "auto" else options.up
+    frame, unit = _FRAMES[up], options.meters_per_unit
+    notes = []
+    if options.up == "auto":
+        notes += _doubts(level_shares(splats))
+    if options.height is not None:
+        height = options.height
+    else:
+        height = find_floor(splats, axes_of(frame)[:, 2], unit=unit, opacity=options.opacity) * unit
+        height = round(height, 6)
+        notes.append(f"the floor was found at {height:.2f} m along the axis that points up; --height corrects it")
+    wanted = PlanOptions(
+        cell=options.resolution,
+        low=options.climb,
+        high=max(options.headroom, options.climb + 0.01),
+        opacity=options.opacity,
+        bounds=options.bounds,
+        max_cells=limits.cells,
+    )
+    plan = ground_plan(splats, inverse(scene_transform(frame, height, unit)), wanted)
+    if plan.too_large:
+        notes.append(f"{plan.too_large:,} splats were left out because they are larger than {wanted.max_size:g} m")
+    grid = Grid(*plan.origin, options.resolution, *plan.occupied.shape)
+    values, regions, kept = _kept(plan, grid, options)
+    areas = [round(float(cells) * grid.resolution**2, 4) for cells in regions[:_MAX_REGIONS]]
+    found = Occupancy(values, grid, frame, height, unit, 0, [(height, areas[0], False)], areas, kept, notes=notes)
+    return found if options.bounds is not None else cropped(found)
+
+
+def _kept(plan: Plan, grid: Grid, options: ImportOptions) -> tuple[Floats, list[int], int]:
+    """Values of the cells, number of cells of each connected part of the floor, and the part that is free."""
+    numbers, sizes = masked_regions(~plan.occupied & ~plan.unknown)
+    if not len(sizes) or sizes[0] * grid.resolution**2 < _SMALLEST_AREA_M2:
+        what = f"it has no connected floor of {_SMALLEST_AREA_M2:g} m²"
+        fix = "check which axis points up (--up y, z or -y), --height of the floor, --meters-per-unit and --climb"
+        raise BridgeError("bridge-file", what, fix)
+    kept = 0
+    if options.seed_point is not None:
+        column = grid.column_at(*options.seed_point)
+        kept = -1 if column is None else int(numbers.reshape(-1)[column])
+        if kept < 0:
+            x, y = options.seed_point
+            what = f"there is no floor at the seed point ({x:g}, {y:g})"
+            raise BridgeError("bridge-file", what, "give another point with --seed-point, or none")
+    values = np.full(plan.occupied.shape, UNKNOWN)
+    values[plan.occupied] = OCCUPIED
+    values[numbers == kept] = FREE
+    return values, [int(size) for size in sizes], kept
+
+
+def _doubts(shares: dict[str, float]) -> list[str]:
+    """A note if the axis that is taken to point up is not the one along which most is level."""
+    if shares["y"] > _MORE * shares["z"]:
+        return ["most surfaces are level along y: if y points up, give --up y; if it points down, --up=-y"]
+    return []
+
+
+def _may_be_splats(head: bytes) -> bool:
+    marks = (b" f_dc_0\n", b" f_dc_0\r", b" scale_0\n", b" packed_position\n")
+    return head.startswith(b"ply") and b"element face" not in head and any(mark in head for mark in marks)
+
+
+KIND = Kind(
+    name="splats",
+    title="a scene of Gaussian splats",
+    suffixes=(".ply",),
+    accepts=_may_be_splats,
+    read=read,
+)

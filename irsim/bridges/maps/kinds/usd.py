@@ -1,0 +1,103 @@
+"""``usd``: stages of OpenUSD, read in a process of its own.
+
+The library is C++ that trusts its files: a damaged one may end the process, and a stage can pull in any other file. The
+process has limits of memory and time, and :mod:`irsim.bridges.maps.kinds._usd_process` looks at the references of the
+layers before it opens the stage.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from irsim.bridges.maps.options import ImportLimits, ImportOptions
+from irsim.bridges.maps.source import Kind, Scene, unusable
+
+__all__ = ["KIND"]
+
+_MAX_FILES = 10_000
+"""Files in a ``.usdz``."""
+
+
+def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
+    """Triangles of the meshes and boxes of a stage that are visible, at the earliest time.
+
+    Raises:
+        BridgeError: The stage is damaged, refers to places outside of its folder, or has no meshes.
+    """
+    if path.suffix.lower() == ".usdz":
+        _check_archive(path, limits)
+    with tempfile.TemporaryDirectory(prefix="irsim-usd-") as folder:
+        out = Path(folder) / "stage.npz"
+        request = {"file": os.path.abspath(path), "out": str(out), "triangles": limits.triangles}
+        command = [sys.executable, "-m", "irsim.bridges.maps.kinds._usd_process"]
+        try:
+            done = subprocess.run(
+                command,
+                input=json.dumps(request),
+                capture_output=True,
+                text=True,
+                timeout=limits.seconds,
+                check=False,
+                cwd=folder,  # from which Python would import modules
+            )
+        except subprocess.TimeoutExpired:
+            what = f"reading it took longer than {limits.seconds:g} s"
+            raise unusable(path, what, "give a smaller stage, such as one without instances") from None
+        answer = _answer(done.stdout)
+        if "error" in answer:
+            raise unusable(path, answer["error"], answer.get("fix"))
+        if done.returncode != 0 or not out.is_file():
+            raise unusable(path, f"the library for USD failed on it (exit code {done.returncode})")
+        with np.load(out, allow_pickle=False) as stored:
+            triangles = stored["triangles"]
+    scale, frame = float(answer["meters_per_unit"]), answer["frame"]
+    if not np.isfinite(triangles).all():
+        raise unusable(path, "some of its points are no numbers")
+    if not len(triangles):
+        raise unusable(path, "it has no visible meshes", "export the stage with its meshes, not only references")
+    return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"])
+
+
+def _answer(text: str) -> dict[str, Any]:
+    """What the process said: its last line of JSON."""
+    lines = [line for line in text.splitlines() if line.startswith("{")]
+    found = json.loads(lines[-1]) if lines else {}
+    return found if isinstance(found, dict) else {}
+
+
+def _check_archive(path: Path, limits: ImportLimits) -> None:
+    """A ``.usdz`` stores its files uncompressed, so that it cannot grow when it is read."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            entries = archive.infolist()
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
+        raise unusable(path, f"it is no archive ({error})") from None
+    if len(entries) > _MAX_FILES:
+        raise unusable(path, f"it has {len(entries):,} files inside")
+    for entry in entries:
+        if entry.compress_type != zipfile.ZIP_STORED or entry.file_size != entry.compress_size:
+            raise unusable(path, f"its file '{entry.filename[:80]}' is compressed, which usdz does not allow")
+        if entry.flag_bits & 1 or entry.filename.startswith(("/", "\\")) or ".." in Path(entry.filename).parts:
+            raise unusable(path, f"its file '{entry.filename[:80]}' is encrypted or lies outside of it")
+    if sum(entry.file_size for entry in entries) > path.stat().st_size:
+        raise unusable(path, "its files overlap")
+
+
+KIND = Kind(
+    name="usd",
+    title="a stage of OpenUSD",
+    suffixes=(".usd", ".usda", ".usdc", ".usdz"),
+    accepts=lambda head: head.startswith((b"PXR-USDC", b"#usda", b"PK\x03\x04")),
+    read=read,
+    extra="usd",
+    libraries=("pxr",),
+)

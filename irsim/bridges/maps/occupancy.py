@@ -1,0 +1,173 @@
+"""From a scene to the map of one of its levels: free, occupied and unknown cells."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.grid import Bools, Grid, Ints, grid_over
+from irsim.bridges.maps.options import ImportLimits, ImportOptions
+from irsim.bridges.maps.regions import Level, find_levels
+from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, Occupancy, Scene
+from irsim.bridges.maps.voxels import Spans, Surfaces, floors_of, spans_of, walkable_of
+from irsim.common.arrays import Floats
+
+__all__ = ["cropped", "eroded", "occupancy_of", "within"]
+
+_MARGIN = 10
+"""Cells that are kept around the free ones."""
+
+
+def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> Occupancy:
+    """The map of one level of a scene.
+
+    Raises:
+        BridgeError: The scene has no place to stand, not that level, or too many cells.
+    """
+    headroom = options.headroom if scene.headroom is None else scene.headroom
+    climb = options.climb if scene.climb is None else scene.climb
+    parts = [part.reshape(-1, 3) for part in (scene.solid, scene.floors, scene.barred) if len(part)]
+    if not parts:
+        raise _empty("it has no triangles", "export the scene with its meshes")
+    low, high = (np.array([op(part[:, :2], axis=0) for part in parts]) for op in (np.min, np.max))
+    grid = grid_over(low.min(axis=0), high.max(axis=0), options.resolution, limits.cells)
+    spans = None
+    if len(scene.solid):
+        spans = spans_of(scene.solid, grid, math.radians(options.slope), climb)
+        surfaces = walkable_of(spans, headroom, climb)
+    else:
+        surfaces = floors_of(scene.floors, grid, headroom)
+    levels = find_levels(surfaces, grid, climb, headroom) if len(surfaces.column) else []
+    if not levels:
+        what = f"it has no connected floor of 0.5 m² with {headroom:g} m of free height"
+        raise _empty(what, "check which axis points up (--up y or z), and that it is in meters; or try less --headroom")
+    number = _chosen(levels, options)
+    level = levels[number]
+    region = _region(level, surfaces, grid, options)
+    values = _values(level.regions, region, surfaces, spans, grid, climb, headroom)
+    if len(scene.barred):
+        barred = floors_of(scene.barred, grid, headroom).column
+        flat = values.reshape(-1)
+        flat[barred[flat[barred] == UNKNOWN]] = OCCUPIED
+    listed = [(one.height, one.areas[0], one.roof) for one in levels]
+    found = Occupancy(values, grid, scene.frame, level.height, scene.meters_per_unit, number, listed, level.areas)
+    found.kept, found.radius, found.notes = region, scene.radius, list(scene.notes)
+    if spans is not None and len(levels) > 1 and options.level is None and options.height is None:
+        found.notes.append(f"level {number} of {len(levels)} was taken; --list-levels lists them, --level picks one")
+    return cropped(found)
+
+
+def _chosen(levels: list[Level], options: ImportOptions) -> int:
+    """Number of the level that is asked for, or of the largest that is no roof."""
+    if options.level is not None and options.height is not None:
+        raise BridgeError("bridge-file", "level and height both pick a level", "give one of --level and --height")
+    if options.level is not None:
+        if options.level >= len(levels):
+            listed = ", ".join(f"{k} at {level.height:.2f} m" for k, level in enumerate(levels))
+            raise BridgeError(
+                "bridge-file", f"there is no level {options.level}; levels are {listed}", "give one of them"
+            )
+        return options.level
+    if options.height is not None:
+        wanted = options.height
+        return min(range(len(levels)), key=lambda k: abs(levels[k].height - wanted))
+    if options.seed_point is not None and len(levels) == 1:
+        return 0
+    return max(range(len(levels)), key=lambda k: (not levels[k].roof, levels[k].areas[0]))
+
+
+def _region(level: Level, surfaces: Surfaces, grid: Grid, options: ImportOptions) -> int:
+    """Number of the connected part at the seed point; 0 without one."""
+    if options.seed_point is None:
+        return 0
+    x, y = options.seed_point
+    column = grid.column_at(x, y)
+    found = level.regions[(surfaces.column == column) & (level.regions >= 0)] if column is not None else []
+    if not len(found):
+        own = level.regions == 0
+        centers = grid.centers(surfaces.column[own])
+        near = centers[np.argmin(((centers - [x, y]) ** 2).sum(axis=1))]
+        what = f"there is no floor of this level at the seed point ({x:g}, {y:g})"
+        fix = f"the nearest place of its largest part is --seed-point {near[0]:.2f},{near[1]:.2f}"
+        raise BridgeError("bridge-file", what, fix)
+    return int(found[0])
+
+
+def _values(
+    regions: Ints, chosen: int, surfaces: Surfaces, spans: Spans | None, grid: Grid, climb: float, headroom: float
+) -> Floats:
+    """(nx, ny) free where the chosen part is, occupied where something else is known to be, else unknown."""
+    own = regions == chosen
+    values = np.full(grid.columns, UNKNOWN)
+    if spans is not None:
+        floor = np.full(grid.columns, np.nan)
+        floor[surfaces.column[own]] = surfaces.floor[own]
+        near = _filled(floor.reshape(grid.nx, grid.ny)).reshape(-1)
+        base = near[spans.column]
+        below = spans.low < base + headroom
+        values[spans.column[below]] = OCCUPIED
+        away = ~own & (np.abs(surfaces.floor - near[surfaces.column]) <= max(climb, 0.02))
+        values[surfaces.column[away]] = UNKNOWN  # a floor that cannot be reached, such as that inside of a wall
+        blocked = below & (spans.high > base + climb)
+        values[spans.column[blocked]] = OCCUPIED
+    values[surfaces.column[own]] = FREE
+    return values.reshape(grid.nx, grid.ny)
+
+
+def _filled(values: Floats) -> Floats:
+    """Fill cells without a value with the mean of ever larger blocks around them."""
+    if not np.isnan(values).any() or min(values.shape) == 0 or values.size == 1:
+        return np.nan_to_num(values)
+    nx, ny = values.shape
+    padded = np.full(((nx + 1) // 2 * 2, (ny + 1) // 2 * 2), np.nan)
+    padded[:nx, :ny] = values
+    blocks = padded.reshape(padded.shape[0] // 2, 2, padded.shape[1] // 2, 2)
+    count = (~np.isnan(blocks)).sum(axis=(1, 3))
+    total = np.nansum(blocks, axis=(1, 3))
+    coarse = _filled(np.where(count > 0, total / np.maximum(count, 1), np.nan))
+    fine = np.repeat(np.repeat(coarse, 2, axis=0), 2, axis=1)[:nx, :ny]
+    return np.where(np.isnan(values), fine, values)
+
+
+def within(marked: Bools, cells: float) -> Bools:
+    """Which cells lie within a distance [cells] of a marked one or of the edge of the array."""
+    reach = math.floor(cells)
+    padded = np.pad(marked, reach + 1, constant_values=True)
+    found = np.zeros_like(marked)
+    nx, ny = marked.shape
+    sums = np.zeros((padded.shape[0], padded.shape[1] + 1), np.int32)
+    np.cumsum(padded, axis=1, out=sums[:, 1:])
+    for step in range(-reach, reach + 1):
+        half = math.floor(math.sqrt(cells * cells - step * step))
+        rows = sums[reach + 1 + step : reach + 1 + step + nx]
+        middle = reach + 1
+        found |= rows[:, middle + half + 1 : middle + half + 1 + ny] > rows[:, middle - half : middle - half + ny]
+    return found
+
+
+def eroded(values: Floats, cells: float) -> Floats:
+    """Values whose free cells keep a distance [cells] from all others; those that are lost are occupied."""
+    if cells <= 0:
+        return values
+    free = values == FREE
+    return np.where(free & within(~free, cells), OCCUPIED, values)
+
+
+def cropped(found: Occupancy) -> Occupancy:
+    """The part of a map around its free cells."""
+    i, j = np.nonzero(found.values == FREE)
+    if not len(i):
+        return found
+    first = max(int(i.min()) - _MARGIN, 0), max(int(j.min()) - _MARGIN, 0)
+    last = min(int(i.max()) + _MARGIN + 1, found.grid.nx), min(int(j.max()) + _MARGIN + 1, found.grid.ny)
+    grid, side = found.grid, found.grid.resolution
+    x, y = (round(start / side + k) * side for start, k in zip((grid.x, grid.y), first, strict=True))
+    found.values = np.ascontiguousarray(found.values[first[0] : last[0], first[1] : last[1]])
+    found.grid = Grid(round(x, 9), round(y, 9), side, *found.values.shape)
+    return found
+
+
+def _empty(what: str, fix: str) -> BridgeError:
+    return BridgeError("bridge-file", f"the scene is not usable: {what}", fix)

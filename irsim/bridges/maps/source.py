@@ -1,0 +1,143 @@
+"""What readers of files hand over: the triangles of a scene, or a map that is ready; and the kinds of files."""
+
+from __future__ import annotations
+
+import pkgutil
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.grid import Grid, Triangles
+from irsim.bridges.maps.options import ImportLimits, ImportOptions
+from irsim.common.arrays import Floats
+from irsim.common.text import clean
+
+__all__ = ["FREE", "OCCUPIED", "UNKNOWN", "Kind", "Occupancy", "Scene", "find_kind", "kinds", "unusable"]
+
+FREE, OCCUPIED, UNKNOWN = 0.0, 100.0, -1.0
+"""Values of cells, as in occupancy grids of ROS; those between free and occupied are probabilities."""
+_HEAD = 4096
+"""Bytes of a file by which its kind is known."""
+
+
+@dataclass
+class Scene:
+    """Triangles of a scene.
+
+    Attributes:
+        frame: Convention of the file's axes, see :mod:`irsim.bridges.frames`.
+        solid: Surfaces of solid things, counterclockwise seen from outside; empty if the file has floors instead.
+        floors: Places where one can walk or drive by what the file says.
+        barred: Surfaces known to be no such places.
+        meters_per_unit: Length of a unit of the file [m].
+        headroom, climb: What the floors were made for [m]; None if the file does not say.
+        radius: Distance from walls that the floors keep already [m].
+        notes: Remarks for the user.
+    """
+
+    frame: str
+    solid: Triangles = field(default_factory=lambda: np.zeros((0, 3, 3)))
+    floors: Triangles = field(default_factory=lambda: np.zeros((0, 3, 3)))
+    barred: Triangles = field(default_factory=lambda: np.zeros((0, 3, 3)))
+    meters_per_unit: float = 1.0
+    headroom: float | None = None
+    climb: float | None = None
+    radius: float = 0.0
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Occupancy:
+    """A map that is ready to be written.
+
+    Attributes:
+        values: (nx, ny) occupancies 0 to 100, -1 where unknown.
+        grid: The cells.
+        frame: Convention of the axes of the world that it was made from.
+        height: Height of the floor along the upward axis [m].
+        meters_per_unit: Length of a unit of that world [m].
+        level: Number of the level, the lowest is 0.
+        levels: For each level: height [m], area of its largest connected part [m²], whether it is a roof.
+        regions: Areas of the connected parts of the level [m²], the largest first.
+        kept: Number of the part that is free in the map; None if all are.
+        radius: Distance from walls that free cells keep already [m].
+        notes: Remarks for the user.
+    """
+
+    values: Floats
+    grid: Grid
+    frame: str
+    height: float = 0.0
+    meters_per_unit: float = 1.0
+    level: int = 0
+    levels: list[tuple[float, float, bool]] = field(default_factory=list)
+    regions: list[float] = field(default_factory=list)
+    kept: int | None = None
+    radius: float = 0.0
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of files that maps are made from; module ``irsim.bridges.maps.kinds.x`` has it as ``KIND``.
+
+    Attributes:
+        name: Its name.
+        title: What such files are, for messages.
+        suffixes: How names of such files end.
+        accepts: Whether a file may be of this kind, by its first bytes.
+        read: Reads a file; its errors are :class:`~irsim.bridges.base.BridgeError`.
+        unknown: Whether unknown cells count as free or occupied unless the caller decides.
+        extra: Extra of pyproject.toml whose libraries it needs.
+        libraries: Their modules.
+    """
+
+    name: str
+    title: str
+    suffixes: tuple[str, ...]
+    accepts: Callable[[bytes], bool]
+    read: Callable[[Path, ImportOptions, ImportLimits], Scene | Occupancy]
+    unknown: str = "occupied"
+    extra: str = "mesh"
+    libraries: tuple[str, ...] = ()
+
+
+@cache
+def kinds() -> tuple[Kind, ...]:
+    """All kinds, sorted by name."""
+    package = import_module("irsim.bridges.maps.kinds")
+    names = [info.name for info in pkgutil.iter_modules(package.__path__) if not info.name.startswith("_")]
+    return tuple(import_module(f"{package.__name__}.{name}").KIND for name in sorted(names))
+
+
+def find_kind(path: Path) -> Kind:
+    """The kind of a file, by its suffix and its first bytes.
+
+    Raises:
+        BridgeError: The file does not exist, or is of no known kind.
+    """
+    try:
+        with path.open("rb") as file:
+            head = file.read(_HEAD)
+    except OSError as error:
+        raise unusable(path, f"it cannot be read: {error.strerror or error}", "check the name of the file") from None
+    suffix = path.suffix.lower()
+    named = [kind for kind in kinds() if suffix in kind.suffixes]
+    fitting = [kind for kind in named or kinds() if kind.accepts(head)]
+    if fitting:
+        return fitting[0]
+    if named:
+        raise unusable(path, f"it is {'empty' if not head else f'not {named[0].title}, as its name says'}")
+    known = ", ".join(sorted({suffix for kind in kinds() for suffix in kind.suffixes}))
+    raise unusable(path, "no map is made from files of this kind", f"give a file with one of the suffixes {known}")
+
+
+def unusable(path: Path, why: str, fix: str | None = None) -> BridgeError:
+    """The error that a file cannot be used."""
+    advice = "write the file again with the program that made it" if fix is None else fix
+    return BridgeError("bridge-file", f"'{clean(path.name, 200)}' cannot be imported: {why}", advice)

@@ -1,0 +1,139 @@
+"""The files of an imported map: scenario, picture, sidecar, and a map for the ROS map server."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import os
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from irsim.bridges.maps.sidecar import MapSidecar, sidecar_path
+from irsim.bridges.maps.source import Occupancy
+from irsim.bridges.maps.suggest import Trip
+from irsim.common.arrays import Floats
+from irsim.common.files import TargetError, create_bytes, replace_bytes
+from irsim.components.maps._rosmap import RosMeta, pixels_of
+from irsim.scenario.yaml.modeline import with_modeline
+
+__all__ = ["files_of", "write_all_or_none"]
+
+_ROBOT_RADIUS = 0.2
+_ROOM = 0.8
+"""Share of the clearance of a trip that the robot's radius may have."""
+_SPEED = 0.5
+"""Speed by which the time limit is set [m/s], half of the robot's own."""
+
+
+def files_of(
+    found: Occupancy,
+    values: Floats,
+    filled: Floats,
+    target: Path,
+    sidecar: MapSidecar,
+    about: str,
+    trip: Trip | None,
+    ros_map: Path | None,
+) -> list[tuple[Path, bytes]]:
+    """Paths and contents of all files of an imported map.
+
+    Args:
+        found: Where the map is.
+        values: (nx, ny) occupancies, -1 where unknown.
+        filled: (nx, ny) the same with unknown cells filled in.
+        target: The scenario.
+        sidecar: What goes beside it.
+        about: A sentence about the source.
+        trip: Start and goal of a robot; None for no robot.
+        ros_map: YAML file of a map for the ROS map server; None for none.
+    """
+    picture = target.with_suffix(".png")
+    grid = found.grid
+    width, height = grid.nx * grid.resolution, grid.ny * grid.resolution
+    lines = [f"# {about}; {sidecar_path(target).name} says where it is in the world of that file.", "world:"]
+    if trip is not None:
+        lines += [f"  time_limit: {_time_limit(trip, width + height)}"]
+    lines += [
+        f"  width: {_short(width)}",
+        f"  height: {_short(height)}",
+        f"  offset: [{_short(grid.x)}, {_short(grid.y)}]",
+        f"  obstacle_map: {{name: image, path: {json.dumps(picture.name)}}}",
+    ]
+    if trip is not None:
+        lines += _robot(trip)
+    grey = np.round(255 * (1 - filled / 100)).astype(np.uint8)
+    contents = [
+        (target, with_modeline("\n".join(lines) + "\n", target).encode()),
+        (picture, _image(grey[:, ::-1].T, "PNG")),
+        (sidecar_path(target), sidecar.as_json().encode()),
+    ]
+    if ros_map is not None:
+        image = ros_map.with_suffix(".pgm")
+        meta = RosMeta(image.name, float(_short(grid.resolution)), (float(_short(grid.x)), float(_short(grid.y)), 0.0))
+        contents += [(ros_map, meta.as_yaml().encode()), (image, _image(pixels_of(values, meta), "PPM"))]
+    return contents
+
+
+def _robot(trip: Trip) -> list[str]:
+    radius = round(min(_ROBOT_RADIUS, _ROOM * trip.clearance), 3)
+    pose, goal = ([round(x, 3) for x in place] for place in (trip.start, trip.goal))
+    return [
+        "robot:",
+        "  - kinematics: {name: diff}",
+        f"    shape: {{name: circle, radius: {radius}}}",
+        f"    state: {pose}",
+        f"    goal: {goal}",
+        "    behavior: {name: follow}",
+    ]
+
+
+def _time_limit(trip: Trip, extent: float) -> int:
+    """Time for a way around the whole map [s]."""
+    direct = math.dist(trip.start[:2], trip.goal[:2])
+    return math.ceil((30 + (2 * direct + extent) / _SPEED) / 10) * 10
+
+
+def _image(pixels: np.ndarray, kind: str) -> bytes:
+    target = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(pixels)).save(target, format=kind, optimize=kind == "PNG")
+    return target.getvalue()
+
+
+def _short(value: float) -> str:
+    """A number without the digits that rounding left."""
+    return repr(round(value, 9))
+
+
+def write_all_or_none(contents: list[tuple[Path, bytes]], *, overwrite: bool) -> None:
+    """Write files; if one cannot be written, those that are new are deleted.
+
+    Raises:
+        TargetError: Two are the same file, or one exists and ``overwrite`` is not set.
+    """
+    if len({path.absolute() for path, _ in contents}) < len(contents):
+        raise TargetError("bad-argument", "two of the files would have the same name", "give the map another name")
+    if not overwrite:
+        for path, _ in contents:
+            if os.path.lexists(path):
+                raise TargetError("file-exists", f"{path} exists; --force overwrites it, -o names another file")
+    made: list[Path] = []
+    try:
+        for path, content in contents:
+            new = not os.path.lexists(path)
+            if overwrite:
+                replace_bytes(path, content, mode=None)
+            else:
+                create_bytes(path, content, mode=0o666)
+            if new:
+                made.append(path)
+    except BaseException as error:
+        for path in made:
+            with suppress(OSError):
+                path.unlink()
+        if isinstance(error, FileExistsError):
+            raise TargetError("file-exists", f"{path} exists; --force overwrites it") from None
+        raise

@@ -1,0 +1,153 @@
+"""Contacts between bodies in MuJoCo, counted, and checked against the footprints of irsim."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from irsim.bridges.mujoco.mjcf import MAP_BODY, body_name
+from irsim.bridges.mujoco.physics import Physics
+from irsim.bridges.scene import Circle, Line, Part
+from irsim.bridges.solids.cells import merged_cells
+from irsim.common.arrays import Floats
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
+__all__ = ["Contact", "Contacts"]
+
+_GHOST = 0.02
+"""Distance of footprints from which a contact is one that irsim does not have [m]: walls are 1 cm thick in MuJoCo."""
+_BOUNCE_S = 0.5
+"""Time without contact after which the next one counts as another one [s]."""
+_MAX_LISTED = 1000
+"""Contacts beyond this number are counted but not listed."""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The begin of a contact between two objects.
+
+    Attributes:
+        time: Simulated time [s].
+        objects: Their names; ``map`` and ``walls`` for what is no object.
+        gap: Distance of their footprints in irsim [m].
+        ghost: Whether the footprints do not touch, so that irsim has no contact there.
+    """
+
+    time: float
+    objects: tuple[str, str]
+    gap: float
+    ghost: bool
+
+
+class Contacts:
+    """Watches which objects touch each other.
+
+    Args:
+        physics: The model.
+
+    Attributes:
+        found: Begins of contacts, the first thousand.
+        count: Number of begins of contacts.
+        ghosts: Number of those that irsim does not have.
+    """
+
+    def __init__(self, physics: Physics) -> None:
+        self.found: list[Contact] = []
+        self.count = self.ghosts = 0
+        self._scene = physics.scene
+        self._physics = physics
+        self._owner = self._owners(physics)
+        self._last: dict[int, float] = {}
+
+    def _owners(self, physics: Physics) -> np.ndarray:
+        """(geoms,) row of the object that a geom belongs to; N: map, N + 1: walls, -1: ground and wheels."""
+        model, count = physics.model, len(physics.scene.agents)
+        rows = {body_name(agent): agent.index for agent in physics.scene.agents}
+        rows |= {MAP_BODY: count, "irsim/walls": count + 1}
+        owner = np.full(model.ngeom, -1, dtype=np.int64)
+        for geom in range(model.ngeom):
+            if model.geom_contype[geom] & 6:
+                owner[geom] = rows.get(model.body(int(model.geom_bodyid[geom])).name, -1)
+        return owner
+
+    def watch(self, model: Any, data: Any, time: float) -> None:
+        """Look at the contacts after a period of the physics; a pair that bounces goes on touching."""
+        if not data.ncon:
+            return
+        pairs = self._owner[data.contact.geom]
+        pairs = pairs[(pairs >= 0).all(axis=1) & (data.contact.dist <= 0)]
+        if not len(pairs):
+            return
+        pairs.sort(axis=1)
+        width = len(self._scene.agents) + 2
+        for pair in sorted(set((pairs[:, 0] * width + pairs[:, 1]).tolist())):
+            if time - self._last.get(pair, -math.inf) > _BOUNCE_S:
+                self._begin(divmod(pair, width), data, time)
+            self._last[pair] = time
+
+    def _begin(self, pair: tuple[int, int], data: Any, time: float) -> None:
+        gap = self._gap(pair, data)
+        ghost = gap > _GHOST
+        self.count += 1
+        self.ghosts += ghost
+        if len(self.found) < _MAX_LISTED:
+            one, other = map(self._name, pair)
+            self.found.append(Contact(round(time, 6), (one, other), gap, ghost))
+
+    def _name(self, row: int) -> str:
+        names = self._scene.names
+        return names[row] if row < len(names) else ("map", "walls")[row - len(names)]
+
+    def _gap(self, pair: tuple[int, int], data: Any) -> float:
+        """Distance of the footprints of two objects as irsim has them, at their poses in MuJoCo [m]."""
+        import shapely
+
+        one, other = (self._placed(row, data) for row in pair)
+        return float(shapely.distance(one, other).min())
+
+    def _placed(self, row: int, data: Any) -> Any:
+        from shapely.affinity import affine_transform
+
+        if row >= len(self._scene.agents):
+            return self._map if row == len(self._scene.agents) else self._walls
+        agent = self._scene.agents[row]
+        body = self._physics.model.body(body_name(agent)).id
+        (x, y), turn = data.xpos[body, :2], data.xmat[body].reshape(3, 3)
+        yaw = float(np.arctan2(turn[1, 0], turn[0, 0]))
+        cosine, sine = np.cos(yaw), np.sin(yaw)
+        return affine_transform(_footprint(agent.parts), [cosine, -sine, sine, cosine, x, y])
+
+    @cached_property
+    def _map(self) -> Any:
+        import shapely
+
+        assert self._scene.grid is not None
+        return shapely.box(*merged_cells(self._scene.grid).T)
+
+    @cached_property
+    def _walls(self) -> Any:
+        import shapely
+
+        return shapely.box(*self._scene.low, *self._scene.high).exterior
+
+
+def _footprint(parts: tuple[Part, ...]) -> BaseGeometry:
+    """The footprint as a shape of shapely, body frame."""
+    import shapely
+
+    shapes: list[BaseGeometry] = []
+    for part in parts:
+        if isinstance(part, Circle):
+            shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=32))
+        elif isinstance(part, Line):
+            points: Floats = np.vstack([part.points, part.points[:1]]) if part.closed else part.points
+            shapes.append(shapely.LineString(points))
+        else:
+            shapes.append(shapely.Polygon(part.corners))
+    return shapely.union_all(shapes)

@@ -1,0 +1,129 @@
+"""Bodies of robots in MJCF: what moves them, by drive."""
+
+from __future__ import annotations
+
+import math
+from xml.etree import ElementTree as ET
+
+from irsim.bridges.mujoco.rigs import PLANAR, PUSHED, TURNING, Rig
+from irsim.bridges.mujoco.xml import numbers
+from irsim.components.bridges.mujoco import Mujoco
+
+__all__ = ["add_actuators", "add_robot"]
+
+_CASTER_GAP = 5e-4
+"""Distance between casters and the ground [m], so that wheels carry the robot."""
+_GRIP = 0.9
+"""Share of the friction with the ground that motors use at most, so that wheels do not spin."""
+_GRAVITY = 9.81
+_SLIDING = 0.4
+"""Coefficient of friction between the ground and what is pushed."""
+_STEERING_RATE = 60.0
+"""Natural frequency of the steering servos [rad/s]."""
+_STEERING_SHARE = 1e-3
+"""Inertia of a steered wheel about its vertical axis, as share of the mass of the robot times its wheelbase squared."""
+_DARK = "0.15 0.15 0.15 1"
+
+
+def add_robot(body: ET.Element, rig: Rig, pose: tuple[float, float, float], options: Mujoco) -> None:
+    """Add joints, inertia, wheels and casters to the body of a robot, whose origin is on the ground.
+
+    Args:
+        body: The body.
+        rig: Its dimensions.
+        pose: x, y [m], yaw [rad] at the start, world frame.
+        options: Physics.
+    """
+    name, away = body.get("name", ""), max(1.0, 6 * rig.gyration)
+    ET.SubElement(body, "camera", name=f"{name}/camera", pos=numbers(-away, 0, rig.top + 0.7 * away), fovy="60",
+                  xyaxes="0 -1 0 0.5 0 0.866")  # fmt: skip
+    if rig.drive in PLANAR:
+        _planar(body, rig, pose)
+        return
+    ET.SubElement(body, "freejoint", name=f"{name}/free")
+    wheels = 2 if rig.drive == "diff" else 4
+    _inertia(body, rig, rig.mass - wheels * rig.wheel_mass)
+    for side, y in (("left", rig.half_track), ("right", -rig.half_track)):
+        _wheel(body, f"{name}/{side}", 0.0, y, rig.wheel_radius, rig, options)
+        if rig.drive == "acker":
+            steer = ET.SubElement(body, "body", name=f"{name}/steer_{side}")
+            steer.set("pos", numbers(rig.wheelbase, y, rig.wheel_radius))
+            ET.SubElement(steer, "joint", name=f"{name}/steer_{side}", type="hinge", axis="0 0 1",
+                          armature=numbers(_steering_inertia(rig)))  # fmt: skip
+            ET.SubElement(steer, "inertial", pos="0 0 0", mass="1e-3", diaginertia="1e-6 1e-6 1e-6")
+            _wheel(steer, f"{name}/front_{side}", 0.0, 0.0, 0.0, rig, options)
+    if rig.drive == "diff":
+        size = 0.3 * rig.wheel_radius
+        for x in (rig.front, -rig.back):
+            ET.SubElement(body, "geom", {"class": "caster", "pos": numbers(x, 0, size + _CASTER_GAP),
+                                         "size": numbers(size)})  # fmt: skip
+
+
+def add_actuators(actuators: ET.Element, name: str, rig: Rig, options: Mujoco) -> None:
+    """Add what drives a robot: velocities of wheels or of planar joints, angles of steered wheels."""
+    grip = _GRIP * options.friction * rig.mass * _GRAVITY
+    if rig.drive == PUSHED:
+        return
+    if rig.drive in ("omni", "omni_angular"):
+        force = numbers(-grip, grip)
+        for axis in ("x", "y"):
+            ET.SubElement(actuators, "velocity", name=f"{name}/{axis}", joint=f"{name}/{axis}", forcerange=force,
+                          kv=numbers(rig.mass / options.lag))  # fmt: skip
+        if rig.drive == "omni_angular":
+            torque, inertia = grip * rig.gyration, rig.mass * rig.gyration**2
+            ET.SubElement(actuators, "velocity", name=f"{name}/yaw", joint=f"{name}/yaw",
+                          kv=numbers(inertia / options.lag), forcerange=numbers(-torque, torque))  # fmt: skip
+        return
+    torque = grip * rig.wheel_radius / 2
+    gain = rig.mass * rig.wheel_radius**2 / (2 * options.lag)
+    for side in ("left", "right"):
+        ET.SubElement(actuators, "velocity", name=f"{name}/{side}", joint=f"{name}/{side}", kv=numbers(gain),
+                      forcerange=numbers(-torque, torque))  # fmt: skip
+    if rig.drive == "acker":
+        stiffness = _steering_inertia(rig) * _STEERING_RATE**2
+        damping = 2 * _steering_inertia(rig) * _STEERING_RATE
+        for side in ("left", "right"):
+            ET.SubElement(actuators, "position", name=f"{name}/steer_{side}", joint=f"{name}/steer_{side}",
+                          kp=numbers(stiffness), kv=numbers(damping))  # fmt: skip
+
+
+def _steering_inertia(rig: Rig) -> float:
+    return _STEERING_SHARE * rig.mass * rig.wheelbase**2
+
+
+def _planar(body: ET.Element, rig: Rig, pose: tuple[float, float, float]) -> None:
+    """Joints along the axes of the world, and one about the vertical axis for a robot that turns.
+
+    Their positions are the coordinates of the robot: axes of joints are given in the frame that the body starts in.
+    """
+    name, (x, y, yaw) = body.get("name", ""), pose
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    drag = _SLIDING * rig.mass * _GRAVITY if rig.drive == PUSHED else 0.0
+    for axis, start, direction in (("x", x, (cosine, -sine, 0.0)), ("y", y, (sine, cosine, 0.0))):
+        ET.SubElement(body, "joint", name=f"{name}/{axis}", type="slide", axis=numbers(*direction), ref=numbers(start),
+                      frictionloss=numbers(drag))  # fmt: skip
+    if rig.drive in TURNING:
+        ET.SubElement(body, "joint", name=f"{name}/yaw", type="hinge", axis="0 0 1", ref=numbers(yaw),
+                      frictionloss=numbers(drag * rig.gyration))  # fmt: skip
+    _inertia(body, rig, rig.mass)
+
+
+def _inertia(body: ET.Element, rig: Rig, mass: float) -> None:
+    """Mass and moments of inertia of the body of a robot without its wheels."""
+    upright = mass * rig.gyration**2
+    tilting = mass * (rig.gyration**2 / 2 + (rig.top - rig.clearance) ** 2 / 12)
+    ET.SubElement(body, "inertial", pos=numbers(*rig.center, min(0.05, rig.wheel_radius)), mass=numbers(mass),
+                  diaginertia=numbers(max(tilting, upright / 2), max(tilting, upright / 2), upright))  # fmt: skip
+
+
+def _wheel(body: ET.Element, name: str, x: float, y: float, z: float, rig: Rig, options: Mujoco) -> None:
+    """A wheel that turns about the y axis. It touches the ground in one point, as a sphere, and looks like a disk."""
+    wheel = ET.SubElement(body, "body", name=name, pos=numbers(x, y, z))
+    ET.SubElement(wheel, "joint", name=name, type="hinge", axis="0 1 0")
+    inertia = rig.wheel_mass * rig.wheel_radius**2 * 0.5
+    ET.SubElement(wheel, "inertial", pos="0 0 0", mass=numbers(rig.wheel_mass),
+                  diaginertia=numbers(inertia / 2 + 1e-9, inertia + 1e-9, inertia / 2 + 1e-9))  # fmt: skip
+    ET.SubElement(wheel, "geom", {"class": "wheel", "size": numbers(rig.wheel_radius),
+                                  "friction": numbers(options.friction, 0.005, 0.0001)})  # fmt: skip
+    ET.SubElement(wheel, "geom", {"class": "seen", "type": "cylinder", "euler": "1.5707963267949 0 0", "rgba": _DARK,
+                                  "size": numbers(rig.wheel_radius, 0.2 * rig.wheel_radius)})  # fmt: skip

@@ -1,0 +1,1 @@
+"""Recorded pedestrians: files of the data sets ETH, UCY and TrajNet become scenarios that replay them."""

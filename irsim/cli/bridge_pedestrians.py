@@ -1,0 +1,120 @@
+"""``irsim bridge import-pedestrians``: recorded pedestrians of a data set become a scenario that replays them."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from irsim.cli.options import Json
+
+__all__ = ["import_pedestrians"]
+
+
+def import_pedestrians(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="ETH's obsmat.txt, UCY's .vsp, or lines 'frame id x y' (TrajNet).")
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Scenario to write.")],
+    form: Annotated[
+        str | None,
+        typer.Option("--format", metavar="FORMAT", help="obsmat, vsp or trajnet.", show_default="as the file looks"),
+    ] = None,
+    fps: Annotated[
+        float | None,
+        typer.Option(help="Frames per second.", show_default="25 for .vsp, else such that rows are 0.4 s apart"),
+    ] = None,
+    start: Annotated[float, typer.Option("--from", help="Start of the window of time, in seconds.")] = 0.0,
+    end: Annotated[float | None, typer.Option("--to", help="End of the window of time, in seconds.")] = None,
+    crop: Annotated[str | None, typer.Option(metavar="X0,Y0,X1,Y1", help="Keep this area, in metres.")] = None,
+    homography: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="3 x 3 matrix from pixels to metres, for .vsp.")
+    ] = None,
+    scale: Annotated[float | None, typer.Option(help="Metres of a pixel, instead of a homography.")] = None,
+    image_size: Annotated[
+        str | None,
+        typer.Option(
+            metavar="W,H", help="Size of the picture, if the homography counts pixels from the upper left corner."
+        ),
+    ] = None,
+    robot_start: Annotated[
+        str | None, typer.Option(metavar="X,Y", help="Start of the robot.", show_default="left edge")
+    ] = None,
+    robot_goal: Annotated[
+        str | None, typer.Option(metavar="X,Y", help="Goal of the robot.", show_default="right edge")
+    ] = None,
+    behavior: Annotated[str, typer.Option(help="Behavior of the robot.")] = "orca",
+    robot: Annotated[bool, typer.Option("--robot/--no-robot", help="Add a robot.")] = True,
+    step_time: Annotated[float, typer.Option(help="Step time of the scenario, in seconds.")] = 0.1,
+    radius: Annotated[float, typer.Option(help="Radius of a pedestrian, in metres.")] = 0.25,
+    margin: Annotated[float, typer.Option(help="Free border around all that is recorded, in metres.")] = 1.0,
+    smooth: Annotated[bool, typer.Option("--smooth", help="Smooth curves between the recorded places.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the scenario if it exists.")] = False,
+    json_output: Json = False,
+) -> None:
+    """Turn recorded pedestrians into a scenario: each is an obstacle that walks as it did, at its recorded times.
+
+    Write into a checkout of your own only what the licence of the data allows; irsim ships none.
+    """
+    from rich.text import Text
+
+    from irsim.bridges.pedestrians.importing import import_pedestrians as convert
+    from irsim.bridges.pedestrians.rows import FORMATS
+    from irsim.bridges.pedestrians.scenario import Layout
+    from irsim.bridges.pedestrians.tracks import Window
+    from irsim.cli.output import console
+    from irsim.diagnostics.errors import ArgumentError
+
+    if form is not None and form not in FORMATS:
+        raise ArgumentError(f"{form!r} is not a format of pedestrians", f"choose {', '.join(FORMATS)}")
+    box: Any = _numbers("--crop", crop, 4)
+    size: Any = _numbers("--image-size", image_size, 2)
+    begin: Any = _numbers("--robot-start", robot_start, 2)
+    goal: Any = _numbers("--robot-goal", robot_goal, 2)
+    layout = Layout(
+        file.name, step_time, radius, margin, "cubic" if smooth else "linear", begin, goal, behavior, robot
+    )  # fmt: skip
+    found = convert(
+        file,
+        out,
+        form=form,
+        fps=fps,
+        window=Window(start, float("inf") if end is None else end, box),
+        homography=homography,
+        scale=scale,
+        image_size=size,
+        layout=layout,
+        overwrite=force,
+    )
+    if json_output:
+        typer.echo(json.dumps(asdict(found)))
+        return
+    console().print(
+        Text.assemble(
+            "wrote ", (found.file, "bold"), f": {found.pedestrians} pedestrians, {found.rows} recorded places, "
+            f"{found.duration:g} s",
+        ),
+        soft_wrap=True,
+    )  # fmt: skip
+    for note in found.notes:
+        console().print(f"note: {note}", style="yellow", soft_wrap=True)
+    console().print(Text.assemble("run it: ", (f"irsim run {found.file}", "cyan")), soft_wrap=True)
+
+
+def _numbers(option: str, text: str | None, count: int) -> tuple[float, ...] | None:
+    """Numbers separated by commas."""
+    from irsim.diagnostics.errors import ArgumentError
+
+    if text is None:
+        return None
+    try:
+        values = tuple(float(word) for word in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != count or not all(map(math.isfinite, values)):
+        raise ArgumentError(f"{option} must be {count} numbers separated by commas, got {text[:40]!r}", f"{option} 0,0")
+    return values

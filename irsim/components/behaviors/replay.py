@@ -1,0 +1,103 @@
+"""``replay``: be where a recording says, at its times."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from functools import cached_property
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+import irsim._core as core
+from irsim.components.behaviors._options import BehaviorOptions
+from irsim.options.base import problem
+from irsim.options.registry import BEHAVIORS
+from irsim.options.units import Bool
+from irsim.options.vectors import Component, Pose
+
+__all__ = ["Replay"]
+
+_MARGIN = 1 + 1e-6
+"""Factor on the highest recorded speed, so that rounding does not make a limit cut it."""
+_SLOWEST = 0.01
+"""Least limit, of somebody who stands [m/s]."""
+
+
+class Replay(BehaviorOptions):
+    """Be at recorded places at recorded times, whoever is in the way: pedestrians of a data set, a robot from a bag.
+
+    Objects with the drives `omni` and `omni_angular` are exactly there, others follow as well as they can; `omni` keeps
+    its heading. An obstacle comes into the world at its first time and leaves it after its last one, without waiting
+    for room, and goes on where a collision would stop it; what collides with it stops. `state`, `goal`, `vel_max` and
+    `vel_min` need not be given: they follow from the recording. `irsim bridge import-pedestrians` writes scenarios with
+    this behavior.
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "replay", "times": [0, 0.4, 0.8], "poses": [[1, 2], [1.5, 2], [2, 2.1]]}]
+    }
+    also_called: ClassVar[dict[str, str]] = {
+        "t": "times",
+        "stamps": "times",
+        "positions": "poses",
+        "points": "poses",
+        "trajectory": "poses",
+    }
+
+    name: Literal["replay"] = "replay"
+    times: Annotated[
+        list[Annotated[Component, Field(ge=0)]], Field(max_length=1_000_000, json_schema_extra={"x-unit": "s"})
+    ] = []
+    """Recorded times, increasing, on the clock of the scenario."""
+    poses: Annotated[list[Pose], Field(max_length=1_000_000)] = []
+    """Where the object is at each of the times: [x, y] or [x, y, heading]. Without headings it looks where it goes."""
+    interpolation: Literal["linear", "cubic"] = "linear"
+    """How it moves between two recorded times: straight at constant speed, or along a smooth curve through the places,
+    whose speed has no jumps."""
+    vanish: Bool = True
+    """An obstacle is in the world only from the first to the last time. With false, and if it is a robot, it stays at
+    its first and last pose."""
+
+    @model_validator(mode="after")
+    def _check_times(self) -> Replay:
+        if len(self.times) != len(self.poses):
+            what = f"{len(self.times)} times and {len(self.poses)} poses do not belong together"
+            raise problem("wrong-length", what, fix="give one pose for each time")
+        for number, (before, after) in enumerate(itertools.pairwise(self.times), 1):
+            if not after > before:
+                what = f"times must increase, but times[{number}] = {after:g} follows {before:g}"
+                raise problem("invalid-value", what, fix="sort the rows by time, and leave out those that come twice")
+        return self
+
+    @property
+    def start(self) -> list[float]:
+        """First pose; without a recorded heading it looks where it goes first."""
+        first = self.poses[0]
+        if len(first) > 2:
+            return list(first)
+        moved = next((pose for pose in self.poses if pose[:2] != first[:2]), first)
+        return [*first, math.atan2(moved[1] - first[1], moved[0] - first[0])]
+
+    @cached_property
+    def top_speed(self) -> float:
+        """Speed that it never exceeds [m/s], positive."""
+        if len(self.times) < 2:
+            return _SLOWEST
+        times, places = np.array(self.times), np.array([pose[:2] for pose in self.poses])
+        legs = np.diff(places, axis=0) / np.diff(times)[:, None]
+        fastest = np.hypot(*legs.T).max()
+        if self.interpolation == "cubic":  # on a leg, the velocity is a quadratic curve between these three
+            ahead = (places[2:] - places[:-2]) / (times[2:] - times[:-2])[:, None]
+            slopes = np.concatenate([legs[:1], ahead, legs[-1:]])
+            middle = 3 * legs - slopes[:-1] - slopes[1:]
+            fastest = max(fastest, *(np.hypot(*part.T).max() for part in (slopes, middle)))
+        return max(_SLOWEST, float(fastest) * _MARGIN)
+
+    def limits(self, step_time: float) -> list[float]:
+        """Upper limits of the controls that it needs: two speeds [m/s] and a turn rate [rad/s]."""
+        return [self.top_speed, self.top_speed, _MARGIN * math.pi / step_time]
+
+
+BEHAVIORS.register(Replay, kernel=core.ReplayOptions)

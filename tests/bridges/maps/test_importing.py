@@ -1,0 +1,256 @@
+"""The import as a whole: kinds of files, what is written, what is refused, and the command."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+from irsim import api
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps import import_map, list_levels, read_sidecar
+from irsim.bridges.maps.options import ImportLimits
+from irsim.bridges.maps.source import find_kind, kinds
+from irsim.cli.app import app
+from irsim.common.extras import ExtraError
+from irsim.common.files import TargetError
+from irsim.diagnostics.errors import ArgumentError
+from irsim.scenario.read import read
+from tests.bridges.maps.flat import box, write_glb, write_obj
+from tests.bridges.maps.navmesh_files import TWO_ROOMS, UPSTAIRS, mesh_set, tile
+
+
+@pytest.fixture
+def scene(tmp_path) -> Path:
+    file = tmp_path / "flat.navmesh"
+    file.write_bytes(mesh_set(tile(TWO_ROOMS), tile(UPSTAIRS)))
+    return file
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_run_follows_at_once(scene, tmp_path) -> None:
+    result = import_map(scene, tmp_path / "flat.yaml", robot=True)
+    assert names(tmp_path) == ["flat.bridge.json", "flat.navmesh", "flat.png", "flat.yaml"]
+    assert api.validate(tmp_path / "flat.yaml", strict=True).valid
+    run = api.run(tmp_path / "flat.yaml", seed=1)
+    assert run.outcome == "success"
+    assert result.trip is not None
+    assert result.trip.clearance >= 0.3
+    sidecar = read_sidecar(tmp_path / "flat.yaml")
+    assert sidecar.source["sha256"] == hashlib.sha256(scene.read_bytes()).hexdigest()
+    assert sidecar.source["file"] == "flat.navmesh"
+    assert sidecar.size == (result.columns, result.rows)
+
+
+def test_a_map_for_ros_keeps_what_is_unknown(scene, tmp_path) -> None:
+    import_map(scene, tmp_path / "a.yaml", ros_map=tmp_path / "map.yaml")
+    meta = yaml.safe_load((tmp_path / "map.yaml").read_text())
+    assert meta["image"] == "map.pgm"
+    for unknown in ("free", "occupied"):
+        back = import_map(tmp_path / "map.yaml", tmp_path / f"{unknown}.yaml", unknown=unknown)
+        first = import_map(scene, tmp_path / f"{unknown}-2.yaml", unknown=unknown)
+        a, b = (read(tmp_path / name).scenario.grid.cells.occupied for name in (f"{unknown}.yaml", f"{unknown}-2.yaml"))
+        assert (a == b).all()
+        assert back.unknown == first.unknown > 0
+        assert back.origin == pytest.approx(first.origin)
+
+
+def test_a_seed_point_of_a_map_of_ros(scene, tmp_path) -> None:
+    file = tmp_path / "rooms.navmesh"
+    file.write_bytes(mesh_set(tile(((0, 0, 3, 3, 0), (4, 0, 6, 3, 0)))))
+    import_map(file, tmp_path / "a.yaml", ros_map=tmp_path / "map.yaml", seed_point=(1.0, 1.0))
+    one = import_map(tmp_path / "map.yaml", tmp_path / "b.yaml", unknown="occupied")
+    assert one.free_area == pytest.approx(9, rel=0.02)
+    with pytest.raises(BridgeError, match="not free") as caught:
+        import_map(tmp_path / "map.yaml", tmp_path / "c.yaml", seed_point=(5.0, 1.0))
+    assert caught.value.code == "bridge-file"
+
+
+def test_the_radius_is_taken_away(scene, tmp_path) -> None:
+    free = import_map(scene, tmp_path / "a.yaml").free_area
+    assert import_map(scene, tmp_path / "b.yaml", radius=0.2).free_area < free - 3
+    assert read_sidecar(tmp_path / "b.yaml").agent["radius"] == 0.2
+
+
+def test_files_are_all_written_or_none(scene, tmp_path, monkeypatch) -> None:
+    (tmp_path / "flat.png").write_text("mine")
+    with pytest.raises(TargetError, match=r"flat\.png exists"):
+        import_map(scene, tmp_path / "flat.yaml")
+    assert names(tmp_path) == ["flat.navmesh", "flat.png"]
+    import_map(scene, tmp_path / "flat.yaml", overwrite=True)
+    assert (tmp_path / "flat.png").read_bytes()[:4] == b"\x89PNG"
+    with pytest.raises(TargetError, match="same name"):
+        import_map(scene, tmp_path / "x.yaml", ros_map=tmp_path / "x.yaml")
+    with pytest.raises(TargetError, match="suffixes"):
+        import_map(scene, tmp_path / "x.json")
+    written = []
+    real = os.open
+
+    def full(path, flags, mode=0o777, **options):
+        if str(path).endswith("y.png"):
+            raise OSError(28, "No space left on device", str(path))
+        written.append(str(path))
+        return real(path, flags, mode, **options)
+
+    monkeypatch.setattr(os, "open", full)
+    with pytest.raises(OSError, match="No space"):
+        import_map(scene, tmp_path / "y.yaml")
+    assert any(path.endswith("y.yaml") for path in written)
+    assert not [name for name in names(tmp_path) if name.startswith("y.")]
+
+
+def test_levels_are_listed_without_files(scene, tmp_path) -> None:
+    result = list_levels(scene)
+    assert [one.height for one in result.levels] == pytest.approx([0.1, 3.0])
+    assert names(tmp_path) == ["flat.navmesh"]
+
+
+def test_kinds_are_found_by_name_and_content(scene, tmp_path) -> None:
+    assert [kind.name for kind in kinds() if kind.name in ("mesh", "navmesh", "opendrive", "ros", "usd")] == [
+        "mesh", "navmesh", "opendrive", "ros", "usd",
+    ]  # fmt: skip
+    triangles = box([0, 0, 0], [1, 1, 1])
+    assert find_kind(write_glb(tmp_path / "a.glb", triangles)).name == "mesh"
+    assert find_kind(write_obj(tmp_path / "a.obj", triangles)).name == "mesh"
+    bare = tmp_path / "no_suffix"
+    bare.write_bytes(scene.read_bytes())
+    assert find_kind(bare).name == "navmesh"
+    for name, content, said in [
+        ("a.txt", b"hello", "suffixes .glb, .gltf"),
+        ("b.glb", b"hello", "not a mesh, as its name says"),
+        ("c.glb", b"", "it is empty"),
+        ("d.navmesh", b"\x89PNG", "not a navigation mesh"),
+        ("e.usd", b"hello", "not a stage"),
+        ("f.yaml", b"robot: []", "not the YAML file of a map"),
+        ("none.glb", None, "cannot be read"),
+    ]:
+        if content is not None:
+            (tmp_path / name).write_bytes(content)
+        with pytest.raises(BridgeError, match=said) as caught:
+            import_map(tmp_path / name, tmp_path / "x.yaml")
+        assert caught.value.code == "bridge-file"
+    with pytest.raises(BridgeError, match="cannot be read"):
+        import_map(tmp_path, tmp_path / "x.yaml")
+
+
+def test_a_server_sets_limits(scene, tmp_path) -> None:
+    inside = ImportLimits(root=str(tmp_path))
+    assert import_map("flat.navmesh", "maps.yaml", limits=inside).files[0].endswith("maps.yaml")
+    assert (tmp_path / "maps.yaml").is_file()
+    for file, out, ros in [
+        ("../flat.navmesh", "a.yaml", None),
+        ("/etc/passwd", "a.yaml", None),
+        ("flat.navmesh", "../a.yaml", None),
+        ("flat.navmesh", "a.yaml", "/tmp/b.yaml"),
+    ]:
+        with pytest.raises(BridgeError) as caught:
+            import_map(file, out, ros_map=ros, limits=inside)
+        assert caught.value.code == "path-outside-workspace"
+    with pytest.raises(BridgeError, match="at most 100 are read"):
+        import_map(scene, tmp_path / "a.yaml", limits=ImportLimits(bytes=100))
+    with pytest.raises(BridgeError, match="--resolution"):
+        import_map(scene, tmp_path / "a.yaml", limits=ImportLimits(cells=500))
+    with pytest.raises(BridgeError, match="at most 3 are read"):
+        import_map(scene, tmp_path / "a.yaml", limits=ImportLimits(triangles=3))
+    (tmp_path / "map.yaml").write_text("{image: ../x.pgm, resolution: 1, origin: [0, 0, 0]}")
+    with pytest.raises(BridgeError) as wrong:
+        import_map("map.yaml", "b.yaml", limits=inside)
+    assert wrong.value.code == "path-outside-workspace"
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"resolution": 0}, {"resolution": float("nan")}, {"headroom": -1}, {"slope": 90}, {"climb": float("inf")},
+        {"up": "x"}, {"level": -1}, {"seed_point": (1,)}, {"seed_point": (float("nan"), 0)}, {"unknown": "maybe"},
+        {"colour": "red"}, {"lanes": "fly"},
+    ],
+)  # fmt: skip
+def test_options_are_checked(scene, tmp_path, options) -> None:
+    with pytest.raises(ArgumentError, match=next(iter(options))):
+        import_map(scene, tmp_path / "x.yaml", **options)
+    assert names(tmp_path) == ["flat.navmesh"]
+
+
+def test_a_missing_library_is_named(tmp_path, monkeypatch) -> None:
+    found = importlib.util.find_spec
+    hidden = ("trimesh", "pxr")
+    monkeypatch.setattr("irsim.common.extras.find_spec", lambda name: None if name in hidden else found(name))
+    with pytest.raises(ExtraError, match=r"irsim-mcp\[mesh\]"):
+        import_map(write_glb(tmp_path / "a.glb", box([0, 0, 0], [1, 1, 1])), tmp_path / "x.yaml")
+    (tmp_path / "a.usda").write_text("#usda 1.0\n")
+    with pytest.raises(ExtraError, match=r"irsim-mcp\[usd\]"):
+        import_map(tmp_path / "a.usda", tmp_path / "x.yaml")
+
+
+def test_archives_that_would_grow_are_refused(tmp_path, monkeypatch) -> None:
+    import zipfile
+
+    monkeypatch.setattr("irsim.common.extras.find_spec", lambda name: True)
+    file = tmp_path / "bomb.usdz"
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("a.usda", b"0" * 10_000_000)
+    with pytest.raises(BridgeError, match="compressed"):
+        import_map(file, tmp_path / "x.yaml")
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("../a.usda", b"#usda 1.0")
+    with pytest.raises(BridgeError, match="outside of it"):
+        import_map(file, tmp_path / "x.yaml")
+    file.write_bytes(b"PK\x03\x04" + bytes(100))
+    with pytest.raises(BridgeError, match="no archive"):
+        import_map(file, tmp_path / "x.yaml")
+
+
+def call(*words: str):
+    return CliRunner().invoke(app, ["map", "import", *words])
+
+
+def test_the_command(scene, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    listed = call("flat.navmesh", "--list-levels")
+    assert listed.exit_code == 0
+    assert "level 1: floor at 3.00 m, 9.0 m² connected" in listed.output
+    done = call("flat.navmesh", "-o", "up.yaml", "--height", "2.8", "--robot")
+    assert done.exit_code == 0
+    for said in (
+        "wrote up.yaml, up.png, up.bridge.json",
+        "floor at 3.00 m, 9.0 m² connected",
+        "this one",
+        "irsim run up.yaml",
+    ):
+        assert said in done.output, said
+    answer = json.loads(call("flat.navmesh", "-o", "b.yaml", "--seed-point", "1,1", "--json").output)
+    assert answer["files"] == ["b.yaml", "b.png", "b.bridge.json"]
+    assert answer["trip"]["start"][2] == answer["trip"]["goal"][2]
+    for words, said in [
+        (("flat.navmesh",), "add -o"),
+        (("flat.navmesh", "-o", "c.yaml", "--level", "7"), "no level 7"),
+        (("flat.navmesh", "-o", "c.yaml", "--seed-point", "1;1"), "--seed-point 1.5,2"),
+        (("flat.navmesh", "-o", "c.yaml", "--resolution", "-1"), "resolution"),
+        (("flat.navmesh", "-o", "b.yaml"), "exists"),
+        (("none.glb", "-o", "c.yaml"), "cannot be read"),
+    ]:
+        wrong = call(*words)
+        assert wrong.exit_code == 2, wrong.output
+        assert said in wrong.output
+    assert not Path("c.yaml").exists()
+
+
+def test_the_map_is_where_the_scene_is(scene, tmp_path) -> None:
+    import_map(scene, tmp_path / "a.yaml", resolution=0.1)
+    grid = read(tmp_path / "a.yaml").scenario.grid
+    free = np.argwhere(grid.cells.occupied == 0)
+    low = np.array(grid.origin) + free.min(axis=0) * 0.1
+    high = np.array(grid.origin) + (free.max(axis=0) + 1) * 0.1
+    assert low == pytest.approx([0, 0], abs=0.06)
+    assert high == pytest.approx([7, 3], abs=0.06)

@@ -1,0 +1,75 @@
+"""A scene with every drive and every kind of footprint, for tests of bridges."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from irsim.bridges.scene import Agent, Circle, Grid, Lidar, Line, Part, Polygon, SceneDescription
+from irsim.bridges.state import Motion, WorldState
+
+__all__ = ["gallery", "motion_of", "state_of"]
+
+_U = np.array([[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]], dtype=float)
+_FENCE = np.array([[-3.0, 0.0], [3.0, 0.0], [4.0, -1.0]])
+_CAR = np.array([[-0.8, -0.9], [3.8, -0.9], [3.8, 0.9], [-0.8, 0.9]])
+
+
+def agent(index: int, name: str, drive: str | None, parts: tuple[Part, ...], **more: Any) -> Agent:
+    plain = Agent(
+        index=index, name=name, role="robot", drive=drive, moves=drive is not None, pose=(0.0, 0.0, 0.0), goals=(),
+        parts=parts, radius=0.3, low=(-1.0, -1.0), high=(1.0, 1.0), acceleration=(math.inf, math.inf), wheelbase=None,
+        mass=math.inf, color=(0.2, 0.5, 0.8),
+    )  # fmt: skip
+    return replace(plain, **more)
+
+
+def gallery() -> SceneDescription:
+    """Four robots, a U-shaped block, a person, a wall, a box that can be pushed, a drawn zone, a map and walls."""
+    lidar = Lidar("rover/0", 0, (0.1, 0.05, 0.3), -3.1, 3.1, 181, 0.0, 10.0, 0.1)
+    disk = (Circle((0.0, 0.0), 0.3),)
+    thing: dict[str, Any] = {"role": "obstacle", "moves": False}
+    agents = (
+        agent(0, "rover", "diff", disk, lidars=(lidar,)),
+        agent(1, "slider", "omni", disk, pose=(1.0, 3.0, 1.0)),
+        agent(2, "turner", "omni_angular", disk, pose=(-2.0, 3.0, 1.0)),
+        agent(3, "car", "acker", (Polygon(_CAR),), pose=(-6.0, -3.0, 0.5), radius=4.0, wheelbase=3.0),
+        agent(4, "block", None, (Polygon(_U),), pose=(3.0, -4.0, 0.2), radius=4.3, **thing),
+        agent(5, "person", "omni", (Circle((0.0, 0.0), 0.2),), pose=(-4.0, 0.0, 0.0), role="obstacle"),
+        agent(6, "fence", None, (Line(_FENCE),), pose=(0.0, 6.0, 0.0), **thing),
+        agent(7, "box", None, (Polygon(np.array([[-0.3, -0.3], [0.3, -0.3], [0.3, 0.3], [-0.3, 0.3]])),),
+              pose=(2.0, 0.0, 0.0), mass=2.0, **thing),
+        agent(8, "zone", None, (Circle((0.0, 0.0), 1.0),), pose=(-6.0, 6.0, 0.0), solid=False, **thing),
+    )  # fmt: skip
+    occupied = np.zeros((20, 20), dtype=bool)
+    occupied[0, :], occupied[5:8, 19] = True, True
+    grid = Grid(occupied, (1.0, 1.0), (-10.0, -10.0))
+    return SceneDescription("gallery", 0.1, (-10.0, -10.0), (10.0, 10.0), agents, grid, walls=True, seed=3)
+
+
+def state_of(scene: SceneDescription, pose: Any = None, step: int = 0) -> WorldState:
+    """The state at the start, or with other poses."""
+    count = len(scene.agents)
+    where = np.array([one.pose for one in scene.agents]) if pose is None else np.array(pose, dtype=float)
+    nothing, no = np.zeros((count, 3)), np.zeros(count, dtype=bool)
+    return WorldState(step, step * scene.step_time, where, nothing, nothing, nothing * np.nan, no, no, no)
+
+
+def motion_of(scene: SceneDescription, state: WorldState, **controls: tuple[float, ...]) -> Motion:
+    """What is wanted in the step after a state, as irsim's drives move; a car has control and steering angle."""
+    control, pose = np.zeros((len(scene.agents), 3)), state.pose.copy()
+    for name, given in controls.items():
+        one = scene.agent(name)
+        row, yaw = one.index, state.pose[one.index, 2]
+        control[row, : len(given)] = given
+        left = given[1] if one.drive in ("omni", "omni_angular") else 0.0
+        rate = {"diff": given[-1], "omni_angular": given[-1]}.get(str(one.drive), 0.0)
+        if one.drive == "acker":
+            assert one.wheelbase is not None
+            rate = given[0] * math.tan(given[1]) / one.wheelbase
+        along = np.array([math.cos(yaw), math.sin(yaw)]) * given[0] + np.array([-math.sin(yaw), math.cos(yaw)]) * left
+        pose[row] += np.array([*along, rate]) * scene.step_time
+    return Motion(state.step, state.time, control, pose, (pose - state.pose) / scene.step_time)

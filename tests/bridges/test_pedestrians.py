@@ -1,0 +1,219 @@
+"""Recorded pedestrians become scenarios whose obstacles are where they were recorded, when they were recorded."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.bridges.base import BridgeError
+from irsim.bridges.pedestrians.importing import import_pedestrians
+from irsim.bridges.pedestrians.rows import read_recording
+from irsim.bridges.pedestrians.scenario import Layout
+from irsim.bridges.pedestrians.tracks import Window
+from irsim.common.files import TargetError
+from irsim.diagnostics.errors import ArgumentError
+from tests.bridges import crowds
+
+FILES = {"obsmat.txt": crowds.obsmat, "biwi.txt": crowds.trajnet, "commas.csv": lambda: crowds.trajnet(", ")}
+
+
+@pytest.fixture
+def convert(tmp_path):
+    def run(text: str, name: str = "crowd.txt", **options):
+        source = tmp_path / name
+        source.write_text(text)
+        out = tmp_path / "scene.yaml"
+        return out, import_pedestrians(source, out, **options)
+
+    return run
+
+
+def replayed(scene: Path) -> dict[str, dict[int, tuple[float, float]]]:
+    """Name -> step -> place of the obstacles, as simulated, while they are in the world."""
+    found: dict[str, dict[int, tuple[float, float]]] = {}
+    env = irsim.make(str(scene), headless=True, log_level="ERROR")
+    try:
+        for step in range(100):
+            for item in env.obstacle_list:
+                x, y = item.state[:2, 0].tolist()
+                if x == x:
+                    found.setdefault(item.name, {})[step] = (x, y)
+            env.step()
+    finally:
+        env.end(ending_time=0.0)
+    return found
+
+
+def check_places(scene: Path) -> None:
+    found = replayed(scene)
+    assert set(found) == {f"ped_{who}" for who in crowds.walks()}
+    for who, way in crowds.walks().items():
+        places = found[f"ped_{who}"]
+        assert (min(places), max(places)) == (4 * way[0][0], 4 * way[-1][0]), "it is there as long as it was recorded"
+        recorded = np.array([(x, y) for _, x, y in way])
+        np.testing.assert_allclose([places[4 * row] for row, _, _ in way], recorded, atol=1e-9)
+
+
+@pytest.mark.parametrize("smooth", ["linear", "cubic"])
+@pytest.mark.parametrize("name", FILES)
+def test_places_at_recorded_times_are_exact(convert, name: str, smooth: str) -> None:
+    scene, found = convert(FILES[name](), name, layout=Layout(name, interpolation=smooth))
+    assert found.format == ("obsmat" if name == "obsmat.txt" else "trajnet")
+    assert (found.pedestrians, found.fps, found.duration) == (3, 15.0, pytest.approx(7.6))
+    assert [item.message for item in irsim.validate(str(scene)).findings if item.severity == "error"] == []
+    check_places(scene)
+
+
+@pytest.mark.parametrize("mapped", ["scale", "homography", "corner"])
+def test_splines_in_pixels(convert, tmp_path: Path, mapped: str) -> None:
+    matrix = np.diag([0.02, 0.02, 1.0])
+    if mapped == "corner":  # counts from the upper left corner of a picture of 720 x 576, y downwards
+        matrix = matrix @ np.array([[1, 0, -360], [0, -1, 288], [0, 0, 1.0]])
+    np.savetxt(tmp_path / "H.txt", 3.0 * matrix)
+    options = {"scale": 0.02} if mapped == "scale" else {"homography": tmp_path / "H.txt"}
+    if mapped == "corner":
+        options["image_size"] = (720, 576)
+    scene, found = convert(crowds.vsp(), "crowd.vsp", **options)
+    assert (found.format, found.pedestrians, found.fps) == ("vsp", 3, 25.0)
+    places = replayed(scene)
+    for number, way in enumerate(crowds.walks().values()):
+        for row, x, y in way:
+            assert places[f"ped_{number}"][4 * row] == pytest.approx((x, y), abs=1e-9)
+
+
+def test_a_run_with_a_robot(convert) -> None:
+    scene, _ = convert(crowds.trajnet(), layout=Layout("x", start=(-4, 3), goal=(5, 3)))
+    result = irsim.run(str(scene))
+    assert result.robots[0].name == "robot"
+    assert not irsim.validate(str(scene)).findings
+
+
+def test_windows_of_time_and_space(convert) -> None:
+    scene, found = convert(crowds.trajnet(), window=Window(start=4.0, end=6.0), layout=Layout("x", robot=False))
+    assert found.duration == pytest.approx(2.0)
+    places = replayed(scene)
+    assert places["ped_1"][0] == pytest.approx(crowds.walks()[1][10][1:], abs=1e-9)
+    scene, found = convert(crowds.trajnet(), window=Window(box=(-10, -10, 2.9, 10)), overwrite=True)
+    assert found.pedestrians == 2, "who leaves the area vanishes"
+    assert max(x for x, _ in replayed(scene)["ped_1"].values()) <= 2.9
+
+
+def test_who_comes_back_into_the_area_is_another_obstacle(convert) -> None:
+    rows = [f"{10 * k} 5 {x} 0" for k, x in enumerate([0, 1, 5, 5, 1, 0, 5, 0])]
+    scene, found = convert("\n".join(rows), window=Window(box=(-1, -1, 2, 1)))
+    assert found.pedestrians == 2
+    assert "1 with a single row" in " ".join(found.notes)
+    assert set(replayed(scene)) == {"ped_5", "ped_5_2"}
+
+
+def test_frame_rates(convert) -> None:
+    _, slow = convert("0 1 0 0\n10 1 1 0\n20 1 2 0\n40 1 3 0\n")
+    assert slow.fps == pytest.approx(25.0)
+    assert "--fps" in " ".join(slow.notes)
+    _, given = convert("0 1 0 0\n10 1 1 0\n", fps=30.0, overwrite=True)
+    assert given.duration == pytest.approx(1 / 3)
+    assert "between steps" in " ".join(given.notes)
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "expected"),
+    [
+        ("", "a.txt", "is empty"),
+        ("# only a comment\n\n", "a.txt", "is empty"),
+        ("0 1 0 0\n1 1 nan 0\n", "a.txt", "line 2 .*'nan', which is not finite"),
+        ("0 1 0 0\n\n1 1 0 -inf\n", "a.txt", "line 3 .*not finite"),
+        ("0 1 0 0\n1 1e300 0 0\n", "a.txt", "line 2 .*too large"),
+        ("0 1.5 0 0\n", "a.txt", "line 1 .*not whole"),
+        ("0 1 0 0\n1 1 0 2e9\n", "a.txt", "line 2 .*too far away"),
+        ("0 1 0 0\n1 1 0\n", "a.txt", "line 2 .*3 columns instead of 4 numbers"),
+        ("0 1 0\n", "a.txt", "line 1 .*3 columns, and files of pedestrians have 4 or 8"),
+        ("0 1 0 0 0 0 0 0\n1 1 0 0\n", "a.txt", "line 2 .*instead of 8 numbers"),
+        ("frame id x y\n", "a.txt", "line 1 .*'frame' instead of a number"),
+        ("0 1 0 0\n0 1 2 0\n", "a.txt", "person 1 is at two places in frame 0"),
+        ("0 1 0 0\n1e12 1 2 0\n1e12 2 2 0\n1000000000001 2 2 0", "a.txt", "lasts"),
+        ("0 1 0 0\n", "a.txt", "nobody"),
+        ("\x00\x01\x02" * 2000, "a.txt", "line 1 .*longer than"),
+        ("2 - the number of splines\n1 - Num of control points\n0 0 0 0\n", "a.vsp", "ends before spline 2 of 2"),
+        ("1 - the number of splines\n9 - Num\n0 0 0 0\n", "a.vsp", "ends before point 2 of 9 of spline 1"),
+        ("999999999 - the number of splines\n", "a.vsp", "ends before spline 1"),
+        ("99999999999999999999 - splines\n", "a.vsp", "line 1 .*count"),
+        ("-1 - splines\n", "a.vsp", "line 1 .*count"),
+        ("1 - splines\n1 - points\n0 0 0\n", "a.vsp", "line 3 .*3 columns"),
+        ("", "a.vsp", "ends before the number of splines"),
+    ],
+)
+def test_bad_files_are_refused_and_nothing_is_written(tmp_path: Path, text: str, name: str, expected: str) -> None:
+    (tmp_path / name).write_text(text)
+    with pytest.raises(BridgeError, match=expected) as caught:
+        import_pedestrians(tmp_path / name, tmp_path / "out.yaml", scale=1.0)
+    assert caught.value.code == "bridge-file"
+    assert sorted(path.name for path in tmp_path.iterdir()) == [name]
+
+
+def test_endless_files_are_refused_at_once(tmp_path: Path, monkeypatch) -> None:
+    huge = tmp_path / "huge.txt"
+    with open(huge, "wb") as file:
+        file.truncate(20_000_000_000)  # sparse: 1e9 lines of 20 characters
+    since = time.perf_counter()
+    with pytest.raises(BridgeError, match="more than 134 MB"):
+        read_recording(huge)
+    assert time.perf_counter() - since < 1
+    huge.unlink()
+    monkeypatch.setattr("irsim.bridges.pedestrians.rows._MAX_LINES", 1000)
+    (tmp_path / "many.txt").write_text("\n" * 2000)
+    with pytest.raises(BridgeError, match="line 1001"):
+        read_recording(tmp_path / "many.txt")
+    monkeypatch.setattr("irsim.bridges.pedestrians.rows._MAX_ROWS", 10)
+    (tmp_path / "rows.txt").write_text("".join(f"{k} 1 0 0\n" for k in range(20)))
+    with pytest.raises(BridgeError, match="row 11"):
+        read_recording(tmp_path / "rows.txt")
+    for path in (tmp_path, tmp_path / "none.txt", Path("/dev/zero")):
+        with pytest.raises(BridgeError, match=r"no file|cannot be read"):
+            read_recording(path)
+
+
+def test_more_rows_than_a_scenario_holds(convert) -> None:
+    lines = [f"{frame} {who} {who * 0.001} {frame * 0.001}" for who in range(200) for frame in range(2000)]
+    with pytest.raises(BridgeError, match="400000 rows"):
+        convert("\n".join(lines))
+
+
+def test_options_that_do_not_fit(convert, tmp_path: Path) -> None:
+    with pytest.raises(ArgumentError, match="pixels"):
+        convert(crowds.vsp(), "crowd.vsp")
+    with pytest.raises(ArgumentError, match="fps"):
+        convert(crowds.trajnet(), fps=-3.0)
+    (tmp_path / "H.txt").write_text("1 2 3\n4 5 6\n")
+    with pytest.raises(BridgeError, match="no homography"):
+        convert(crowds.vsp(), "crowd.vsp", homography=tmp_path / "H.txt")
+    (tmp_path / "H.txt").write_text("1 0 0\n0 1 0\n0 1 0\n")
+    with pytest.raises(BridgeError, match="no homography"):
+        convert(crowds.vsp(), "crowd.vsp", homography=tmp_path / "H.txt")
+    scene, _ = convert(crowds.trajnet())
+    before = scene.read_text()
+    with pytest.raises(TargetError, match="exists"):
+        convert(crowds.trajnet(), window=Window(end=3.0))
+    assert scene.read_text() == before
+
+
+def test_the_command(tmp_path: Path) -> None:
+    from typer.testing import CliRunner
+
+    from irsim.cli.bridge import bridge_app
+
+    (tmp_path / "obsmat.txt").write_text(crowds.obsmat())
+    out = tmp_path / "scene.yaml"
+    arguments = ["import-pedestrians", str(tmp_path / "obsmat.txt"), "-o", str(out), "--to", "5", "--json",
+                 "--robot-start=-4,3", "--robot-goal=5,3", "--smooth"]  # fmt: skip
+    done = CliRunner().invoke(bridge_app, arguments)
+    assert done.exit_code == 0, done.output
+    answer = json.loads(done.stdout)
+    assert (answer["format"], answer["pedestrians"]) == ("obsmat", 3)
+    assert "interpolation: cubic" in out.read_text()
+    refused = CliRunner().invoke(bridge_app, [*arguments, "--force", "--crop", "1,2,3"])
+    assert refused.exit_code == 2

@@ -1,0 +1,36 @@
+"""The page about CARLA: its scenarios run as written, with a stand-in (not CARLA)."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from irsim.cli.app import app
+from tests.interop.carla.conftest import ROOT, StandIn
+
+pytestmark = pytest.mark.interop
+PAGE = (ROOT / "skills" / "irsim-runner" / "bridges" / "carla.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["crossing.yaml", "drive.yaml"])
+def test_scenarios_run(stand_in: Callable[..., StandIn], tmp_path: Path, name: str) -> None:
+    town = stand_in(ground=0.1)
+    (text,) = [one for one in re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL) if f"# {name}" in one]
+    path, out = tmp_path / name, tmp_path / "run.xosc"
+    path.write_text(text.replace("{name: carla", f"{{name: carla, port: {town.port}"))
+    steps = "150" if name == "crossing.yaml" else "60"
+    done = CliRunner().invoke(app, ["run", str(path), "--steps", steps, "--json", "--export", str(out)])
+    assert done.exit_code == 0, done.output
+    assert json.loads(done.stdout)["steps"] > 50
+    town.check_clean()
+    assert out.read_text().startswith("<?xml")
+    spawned = [event["blueprint"].split(".")[0] for event in town.events("spawn")]
+    assert spawned == (["walker"] * 4 if name == "crossing.yaml" else ["vehicle", "sensor"])
+    if name == "crossing.yaml":
+        first = town.path_of("obstacle_0")
+        assert first[-1, 1] < first[0, 1] - 5  # point 2 of the checklist

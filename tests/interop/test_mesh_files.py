@@ -1,0 +1,179 @@
+"""Meshes as others write and read them: trimesh's exporters, all formats alike, large ones in time, hostile ones refused."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from irsim import api
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps import import_map, read_sidecar
+from irsim.scenario.read import read
+from tests.bridges.maps.flat import box, flat, house, write_glb, write_obj, y_up
+
+pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("meshes")]
+trimesh = pytest.importorskip("trimesh")
+
+
+def soup(triangles: np.ndarray):
+    return trimesh.Trimesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3), process=False)
+
+
+def cells(folder: Path, name: str) -> np.ndarray:
+    return read(folder / f"{name}.yaml").scenario.grid.cells.occupied
+
+
+def test_a_flat_from_a_file_to_a_run(tmp_path) -> None:
+    """The three commands of the documentation, as functions."""
+    result = import_map(write_glb(tmp_path / "flat.glb", flat()), tmp_path / "flat.yaml", robot=True)
+    assert result.free_area == pytest.approx(40.5, abs=0.5)
+    assert api.validate(tmp_path / "flat.yaml").valid
+    run = api.run(tmp_path / "flat.yaml", seed=0)
+    assert run.outcome == "success"
+    sidecar = read_sidecar(tmp_path / "flat.yaml")
+    assert sidecar.frame == "habitat_yup"
+    there = sidecar.to_scene([[1.8, 1.45]], height=0.75)  # the middle of the table top
+    assert there == pytest.approx(np.array([[1.8, 0.75, -1.45]]), abs=0.01)
+
+
+@pytest.mark.parametrize("suffix", ["glb", "gltf", "obj", "ply", "stl"])
+def test_every_format_gives_the_same_map(tmp_path, suffix) -> None:
+    up = "y" if suffix in ("glb", "gltf", "obj") else "z"
+    mesh = soup(y_up(flat()) if up == "y" else flat())
+    file = tmp_path / f"flat.{suffix}"
+    if suffix == "gltf":
+        for name, content in trimesh.exchange.gltf.export_gltf(trimesh.Scene(mesh)).items():
+            (tmp_path / ("flat.gltf" if name.endswith(".gltf") else name)).write_bytes(content)
+    else:
+        mesh.export(file)
+    import_map(file, tmp_path / "a.yaml")
+    import_map(write_obj(tmp_path / "plain.obj", y_up(flat())), tmp_path / "b.yaml")
+    a, b = cells(tmp_path, "a"), cells(tmp_path, "b")
+    assert a.shape == b.shape
+    assert (a != b).mean() < 0.01
+
+
+def test_nodes_move_and_mirror_their_meshes(tmp_path) -> None:
+    scene = trimesh.Scene()
+    turned = np.diag([1.0, 1.0, -1.0, 1.0])
+    turned[:3, 3] = [3.0, 0.5, 0.0]
+    scene.add_geometry(soup(y_up(flat())), transform=turned)
+    scene.export(tmp_path / "moved.glb")
+    result = import_map(tmp_path / "moved.glb", tmp_path / "moved.yaml")
+    assert result.free_area == pytest.approx(40.5, abs=0.5)
+    assert result.height == pytest.approx(0.5, abs=0.01)
+    assert result.origin[0] > 2.5
+    assert result.origin[1] < -5
+
+
+def test_a_scan_with_its_winding_reversed_and_one_with_another_up(tmp_path) -> None:
+    inside_out = write_glb(tmp_path / "a.glb", flat()[:, ::-1])
+    ceiling = import_map(inside_out, tmp_path / "a.yaml")
+    assert ceiling.levels
+    sheet = np.array([[[0, 0, 0], [9, 9, 0], [9, 0, 0]], [[0, 0, 0], [0, 9, 0], [9, 9, 0]]], float)
+    down = import_map(write_glb(tmp_path / "b.glb", sheet), tmp_path / "b.yaml")
+    assert down.free_area == pytest.approx(81, rel=0.02)
+    assert any("face downward" in note for note in down.notes)
+    lying = write_obj(tmp_path / "c.obj", flat())  # z up, and OBJ is taken as y up
+    assert any("give --up z" in note for note in import_map(lying, tmp_path / "c.yaml").notes)
+    assert import_map(lying, tmp_path / "d.yaml", up="z").free_area == pytest.approx(40.5, abs=0.5)
+
+
+def test_levels_and_seed_points(tmp_path) -> None:
+    file = write_glb(tmp_path / "house.glb", house())
+    upper = import_map(file, tmp_path / "up.yaml", level=1)
+    assert upper.height == pytest.approx(2.8, abs=0.01)
+    assert read_sidecar(tmp_path / "up.yaml").to_scene([[1.0, 1.0]])[0, 1] == pytest.approx(2.8, abs=0.01)
+    bed = import_map(file, tmp_path / "bed.yaml", seed_point=(7.0, 5.0))
+    assert bed.kept == 1
+    assert bed.free_area == pytest.approx(3.2, abs=0.4)
+
+
+def test_three_million_triangles_in_seconds(tmp_path) -> None:
+    """A noisy floor of 30 m x 20 m. The limit is for a loaded machine; alone it takes about 6 s of processor time."""
+    n = 1250
+    rng = np.random.default_rng(0)
+    x, y = np.meshgrid(np.linspace(0, 30, n), np.linspace(0, 20, n), indexing="ij")
+    points = np.stack([x, rng.normal(0, 0.01, x.shape), -y], -1)
+    k = np.arange(n * n).reshape(n, n)
+    quads = [k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]]
+    faces = np.concatenate([np.stack([quads[a].ravel() for a in abc], 1) for abc in ((0, 1, 2), (0, 2, 3))])
+    trimesh.Trimesh(points.reshape(-1, 3), faces, process=False).export(tmp_path / "scan.glb")
+    begin = time.process_time()
+    result = import_map(tmp_path / "scan.glb", tmp_path / "scan.yaml")
+    assert time.process_time() - begin < 20
+    assert len(faces) > 3_100_000
+    assert result.free_area == pytest.approx(600, rel=0.02)
+
+
+@pytest.mark.parametrize("suffix", ["glb", "obj", "ply", "stl"])
+def test_files_that_end_anywhere_give_a_map_or_an_error(tmp_path, suffix) -> None:
+    mesh = soup(y_up(box([0, 0, 0], [2, 2, 1])) if suffix in ("glb", "obj") else box([0, 0, 0], [2, 2, 1]))
+    mesh.export(tmp_path / f"whole.{suffix}")
+    content = (tmp_path / f"whole.{suffix}").read_bytes()
+    for length in range(0, len(content), 11):
+        (tmp_path / f"cut.{suffix}").write_bytes(content[:length])
+        try:
+            import_map(tmp_path / f"cut.{suffix}", tmp_path / "cut.yaml")
+        except BridgeError:
+            assert not (tmp_path / "cut.yaml").exists()
+        else:
+            assert suffix == "obj"  # each line of which stands for itself
+            for name in ("cut.yaml", "cut.png", "cut.bridge.json"):
+                (tmp_path / name).unlink()
+
+
+@pytest.mark.parametrize("suffix", ["glb", "obj", "ply", "stl"])
+@given(data=st.data())
+@settings(max_examples=40, deadline=None)
+def test_changed_bytes_give_a_map_or_an_error(tmp_path_factory, suffix, data) -> None:
+    folder = tmp_path_factory.mktemp("changed")
+    soup(box([0, 0, 0], [2, 2, 1])).export(folder / f"box.{suffix}")
+    content = bytearray((folder / f"box.{suffix}").read_bytes())
+    for _ in range(data.draw(st.integers(1, 5))):
+        content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
+    (folder / f"box.{suffix}").write_bytes(content)
+    try:
+        import_map(folder / f"box.{suffix}", folder / "box.yaml", resolution=0.2)
+    except BridgeError as error:
+        assert error.code == "bridge-file"
+        assert not (folder / "box.yaml").exists()
+
+
+def test_other_hostile_files(tmp_path) -> None:
+    triangles = box([0, 0, 0], [2, 2, 1])
+    nan = triangles.copy()
+    nan[0, 0, 0] = np.nan
+    soup(nan).export(tmp_path / "nan.stl")
+    soup(box([0, 0, 0], [80_000, 80_000, 1])).export(tmp_path / "land.stl")
+    (tmp_path / "faces.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+    (tmp_path / "points.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
+    (tmp_path / "big.obj").write_text("v 0 0 0\nv 1e39 0 0\nv 0 1e39 1e39\nf 1 2 3\n")
+    trimesh.PointCloud(np.random.default_rng(0).random((9, 3))).export(tmp_path / "cloud.ply")
+    for name, said in [
+        ("nan.stl", "no numbers"),
+        ("land.stl", "--resolution"),
+        ("faces.obj", "vertex|damaged"),
+        ("points.obj", "no triangles|damaged"),
+        ("big.obj", "--resolution|no numbers"),
+        ("cloud.ply", "no faces"),
+    ]:
+        with pytest.raises(BridgeError, match=said):
+            import_map(tmp_path / name, tmp_path / "x.yaml")
+    assert not (tmp_path / "x.yaml").exists()
+
+
+def test_an_obj_names_materials_and_nothing_is_opened(tmp_path, monkeypatch) -> None:
+    text = write_obj(tmp_path / "a.obj", y_up(flat())).read_text()
+    (tmp_path / "secret.mtl").write_text("newmtl x\nmap_Kd http://127.0.0.1:9/x.png\n")
+    (tmp_path / "a.obj").write_text("mtllib secret.mtl\nusemtl x\n" + text)
+    opened = []
+    real = Path.open
+    monkeypatch.setattr(Path, "open", lambda self, *rest, **more: opened.append(self.name) or real(self, *rest, **more))
+    import_map(tmp_path / "a.obj", tmp_path / "a.yaml")
+    assert "secret.mtl" not in opened

@@ -1,0 +1,108 @@
+"""Worlds in SDF, read by the official parser, libsdformat."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import irsim
+from irsim.bridges.describe import describe_scene
+from irsim.bridges.gazebo.sdf import SdfWorld
+
+pytestmark = pytest.mark.interop
+
+TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
+Parser = Callable[..., subprocess.CompletedProcess[str]]
+RUN = """
+world: {width: 12, height: 8, boundary: walls, obstacle_map: {name: perlin, resolution: 0.5, fill: 0.1, seed: 9}}
+robot:
+  - {name: rover, shape: {name: circle, radius: 0.2}, state: [1, 1, 0], goal: [11, 7, 0], kinematics: {name: diff}, behavior: {name: dash},
+     sensors: [{name: lidar2d, number: 31, range_max: 5}]}
+obstacle:
+  - {number: 3, distribution: {name: manual}, shape: {name: circle, radius: 0.2}, kinematics: {name: omni},
+     state: [[4, 2, 0], [5, 5, 0], [8, 3, 0]],
+     goal: [[8, 6, 0], [2, 5, 0], [8, 7, 0]], behavior: {name: dash}}
+  - {shape: {name: polygon, vertices: [[0, 0], [2, 0], [2, 2], [1, 0.5], [0, 2]]}, state: [9, 5, 0]}
+"""
+
+
+@pytest.fixture(scope="module")
+def parser(tmp_path_factory: pytest.TempPathFactory) -> Parser:
+    """The official parser, compiled once."""
+    compiler, config = shutil.which("g++"), shutil.which("pkg-config")
+    if compiler is None or config is None:
+        pytest.skip("g++ and pkg-config are needed")
+    flags = subprocess.run([config, "--cflags", "--libs", "sdformat12"], capture_output=True, text=True, check=False)
+    if flags.returncode != 0:
+        pytest.skip("libsdformat-dev is needed")
+    program = tmp_path_factory.mktemp("parser") / "check_sdf"
+    source = Path(__file__).with_name("check_sdf.cpp")
+    subprocess.run([compiler, "-std=c++17", str(source), "-o", str(program), *flags.stdout.split()], check=True)
+
+    def parse(*files: Path) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([str(program), *map(str, files)], capture_output=True, text=True, check=False)
+
+    return parse
+
+
+def numbers_of(line: str) -> dict[str, int]:
+    words = line.split()
+    return {word: int(number) for word, number in zip(words[::2], words[1::2], strict=True)}
+
+
+def test_a_recorded_run_has_no_errors(parser: Parser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    irsim.run(text=RUN, seed=1, steps=20, record=True)
+    irsim.export_run("last", "town", to="sdf")
+    done = parser(tmp_path / "town" / "world.sdf")
+    assert done.stderr == ""
+    found = numbers_of(done.stdout)
+    assert found["errors"] == found["empty"] == 0
+    assert (found["actors"], found["waypoints"]) == (3, 63)
+    assert (found["lidars"], found["beams"]) == (1, 31)
+    assert found["models"] == 5  # ground, walls, map, robot, polygon
+    assert found["visuals"] > 20
+
+
+def test_every_template_is_a_world_without_errors(parser: Parser, tmp_path: Path) -> None:
+    files = []
+    for path in sorted(TEMPLATES.glob("*/scenario.yaml")):
+        env = irsim.make(str(path), headless=True, log_level="ERROR")
+        text = SdfWorld(describe_scene(env.simulation), {}).write()
+        env.end(ending_time=0.0)
+        files.append(tmp_path / f"{path.parent.name}.sdf")
+        files[-1].write_text(text, encoding="utf-8")
+    done = parser(*files)
+    assert done.stderr == ""
+    assert done.returncode == 0
+    found = [numbers_of(line) for line in done.stdout.splitlines()]
+    assert len(found) == len(files) >= 40
+    assert all(one["models"] >= 2 and one["empty"] == 0 for one in found)
+
+
+@pytest.mark.parametrize(
+    ("good", "bad"),
+    [
+        ("</world>", ""),
+        ('<model name="rover">', "<model>"),
+        ("<horizontal>", "<sideways>"),
+        ("<trajectory", "<path"),
+        ("<mass>", "<mass>-"),
+    ],
+)
+def test_a_broken_file_is_rejected(
+    parser: Parser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, good: str, bad: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    irsim.run(text=RUN, seed=1, steps=3, record=True)
+    irsim.export_run("last", "town", to="sdf")
+    text = Path("town/world.sdf").read_text(encoding="utf-8")
+    assert good in text
+    Path("town/broken.sdf").write_text(text.replace(good, bad), encoding="utf-8")
+    done = parser(tmp_path / "town" / "broken.sdf")
+    assert done.returncode == 1
+    assert done.stderr != ""

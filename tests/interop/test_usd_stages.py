@@ -1,0 +1,184 @@
+"""Stages written by OpenUSD's own library: placement, units, axes, instances, and what is refused."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps import import_map, read_sidecar
+from irsim.bridges.maps.options import ImportLimits
+from irsim.scenario.read import read
+from tests.bridges.maps.flat import box, flat, house, y_up
+
+pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("usd")]
+pxr = pytest.importorskip("pxr")
+from pxr import Gf, Usd, UsdGeom, UsdUtils, Vt  # noqa: E402
+
+
+def add_mesh(stage, path: str, triangles: np.ndarray):
+    mesh = UsdGeom.Mesh.Define(stage, path)
+    mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(triangles.reshape(-1, 3), np.float32)))
+    mesh.CreateFaceVertexCountsAttr([3] * len(triangles))
+    mesh.CreateFaceVertexIndicesAttr(list(range(3 * len(triangles))))
+    return mesh
+
+
+def new_stage(file: Path, up: str = "Z", unit: float = 1.0):
+    stage = Usd.Stage.CreateNew(str(file))
+    UsdGeom.SetStageUpAxis(stage, up)
+    UsdGeom.SetStageMetersPerUnit(stage, unit)
+    world = UsdGeom.Xform.Define(stage, "/World")
+    stage.SetDefaultPrim(world.GetPrim())
+    return stage, world
+
+
+@pytest.mark.parametrize(("up", "unit", "suffix"), [("Z", 1.0, "usda"), ("Y", 0.01, "usdc"), ("Y", 1.0, "usd")])
+def test_a_flat_in_any_unit_and_axis(tmp_path, up, unit, suffix) -> None:
+    file = tmp_path / f"flat.{suffix}"
+    stage, world = new_stage(file, up, unit)
+    triangles = y_up(flat()) if up == "Y" else flat()
+    add_mesh(stage, "/World/flat", triangles / unit)
+    UsdGeom.XformCommonAPI(world).SetTranslate(Gf.Vec3d(*(np.array([2.0, 0.0, 0.0]) / unit)))
+    stage.Save()
+    result = import_map(file, tmp_path / "flat.yaml")
+    assert result.free_area == pytest.approx(40.5, abs=0.6)
+    assert [round(one.height, 1) for one in result.levels] == [0.0, 2.8]
+    scenario = read(tmp_path / "flat.yaml").scenario
+    assert scenario.grid.origin[0] == pytest.approx(1.85, abs=0.11)
+    sidecar = read_sidecar(tmp_path / "flat.yaml")
+    table = np.array([2.0 + 1.8, 0.75, -1.45] if up == "Y" else [2.0 + 1.8, 1.45, 0.75]) / unit
+    assert sidecar.to_scene([[3.8, 1.45]], height=0.75) == pytest.approx(table[None], abs=0.01 / unit)
+    assert sidecar.scale == pytest.approx(1 / unit)
+
+
+def test_turned_mirrored_and_instanced(tmp_path) -> None:
+    """Two instances of a room, one mirrored, beside a cube that is scaled; what is hidden or a guide does not count."""
+    file = tmp_path / "rooms.usda"
+    stage, _ = new_stage(file)
+    prototype = stage.CreateClassPrim("/Prototype")
+    add_mesh(stage, "/Prototype/floor", box([0, 0, -0.1], [4, 3, 0]))
+    for name, x, scale in [("a", 0.0, (1, 1, 1)), ("b", 8.0, (-1, 1, 1))]:
+        instance = UsdGeom.Xform.Define(stage, f"/World/{name}")
+        instance.GetPrim().GetReferences().AddInternalReference("/Prototype")
+        instance.GetPrim().SetInstanceable(True)
+        api = UsdGeom.XformCommonAPI(instance)
+        api.SetTranslate((x, 0, 0))
+        api.SetScale(scale)
+    assert prototype
+    cube = UsdGeom.Cube.Define(stage, "/World/pillar")
+    cube.CreateSizeAttr(2.0)
+    UsdGeom.XformCommonAPI(cube).SetTranslate((2.0, 1.5, 1.0))
+    UsdGeom.XformCommonAPI(cube).SetScale((0.25, 0.25, 1.0))
+    hidden = add_mesh(stage, "/World/hidden", box([5, 1, 0], [6, 2, 2]))
+    UsdGeom.Imageable(hidden).MakeInvisible()
+    guide = add_mesh(stage, "/World/guide", box([6, 1, 0], [7, 2, 2]))
+    guide.CreatePurposeAttr(UsdGeom.Tokens.guide)
+    UsdGeom.Sphere.Define(stage, "/World/ball")
+    stage.Save()
+    result = import_map(file, tmp_path / "rooms.yaml")
+    assert result.free_area == pytest.approx(8 * 3 - 0.5 * 0.5, rel=0.02)
+    assert any("Sphere" in note for note in result.notes)
+
+
+def test_polygons_with_more_corners_and_left_handed_ones(tmp_path) -> None:
+    stage, _ = new_stage(tmp_path / "a.usda")
+    mesh = UsdGeom.Mesh.Define(stage, "/World/floor")
+    mesh.CreatePointsAttr([(0, 0, 0), (4, 0, 0), (5, 2, 0), (4, 4, 0), (0, 4, 0)])
+    mesh.CreateFaceVertexCountsAttr([5])
+    mesh.CreateFaceVertexIndicesAttr([0, 4, 3, 2, 1])
+    mesh.CreateOrientationAttr(UsdGeom.Tokens.leftHanded)
+    stage.Save()
+    assert import_map(tmp_path / "a.usda", tmp_path / "a.yaml").free_area == pytest.approx(18, rel=0.03)
+
+
+def test_an_archive_and_levels(tmp_path) -> None:
+    stage, _ = new_stage(tmp_path / "house.usdc", "Y")
+    add_mesh(stage, "/World/house", y_up(house()))
+    stage.Save()
+    assert UsdUtils.CreateNewUsdzPackage(str(tmp_path / "house.usdc"), str(tmp_path / "house.usdz"))
+    upper = import_map(tmp_path / "house.usdz", tmp_path / "up.yaml", level=1)
+    assert upper.height == pytest.approx(2.8, abs=0.01)
+    with zipfile.ZipFile(tmp_path / "bomb.usdz", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.write(tmp_path / "house.usdc", "house.usdc")
+    with pytest.raises(BridgeError, match="compressed"):
+        import_map(tmp_path / "bomb.usdz", tmp_path / "x.yaml")
+
+
+def test_layers_beside_the_stage_are_read_and_others_are_not(tmp_path) -> None:
+    (tmp_path / "scene" / "parts").mkdir(parents=True)
+    for folder in ("scene/parts", ""):
+        part = Usd.Stage.CreateNew(str(tmp_path / folder / "part.usda"))
+        UsdGeom.SetStageMetersPerUnit(part, 1.0)
+        part.SetDefaultPrim(UsdGeom.Xform.Define(part, "/Part").GetPrim())
+        add_mesh(part, "/Part/floor", box([0, 0, -0.1], [4, 3, 0]))
+        part.Save()
+    for reference, said in [
+        ("./parts/part.usda", None),
+        ("../part.usda", "outside of its folder"),
+        (str(tmp_path / "part.usda"), "outside of its folder"),
+        ("https://127.0.0.1:9/part.usda", "outside of its folder"),
+    ]:
+        file = tmp_path / "scene" / "scene.usda"
+        file.write_text(
+            f'#usda 1.0\n(\n    upAxis = "Z"\n    metersPerUnit = 1\n)\ndef Xform "World" (\n'
+            f"    prepend references = @{reference}@\n)\n{{\n}}\n"
+        )
+        if said is None:
+            assert import_map(file, tmp_path / "ok.yaml").free_area == pytest.approx(12, rel=0.03)
+        else:
+            with pytest.raises(BridgeError, match=said):
+                import_map(file, tmp_path / "x.yaml")
+
+
+def test_damaged_and_hostile_stages(tmp_path) -> None:
+    stage, _ = new_stage(tmp_path / "good.usdc")
+    mesh = add_mesh(stage, "/World/box", box([0, 0, 0], [2, 2, 1]))
+    stage.Save()
+    content = (tmp_path / "good.usdc").read_bytes()
+    for length in (8, 60, len(content) // 2, len(content) - 3):
+        (tmp_path / "cut.usdc").write_bytes(content[:length])
+        with pytest.raises(BridgeError):
+            import_map(tmp_path / "cut.usdc", tmp_path / "x.yaml")
+    text = tmp_path / "text.usda"
+    text.write_text('#usda 1.0\ndef Mesh "a" {\n    point3f[] points = [(0,')
+    with pytest.raises(BridgeError):
+        import_map(text, tmp_path / "x.yaml")
+    for name, points, counts, index, said in [
+        ("nan", [(np.nan, 0, 0), (1, 0, 0), (0, 1, 0)], [3], [0, 1, 2], "no numbers"),
+        ("index", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [3], [0, 1, 7], "does not have"),
+        ("count", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [2000000000], [0, 1, 2], "need 2,000,000,000"),
+        ("negative", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [-3], [0, 1, 2], "need"),
+        ("empty", [], [], [], "no visible meshes"),
+    ]:
+        stage, _ = new_stage(tmp_path / f"{name}.usda")
+        mesh = UsdGeom.Mesh.Define(stage, "/World/a")
+        mesh.CreatePointsAttr(points)
+        mesh.CreateFaceVertexCountsAttr(counts)
+        mesh.CreateFaceVertexIndicesAttr(index)
+        stage.Save()
+        with pytest.raises(BridgeError, match=said):
+            import_map(tmp_path / f"{name}.usda", tmp_path / "x.yaml")
+    with pytest.raises(BridgeError, match=r"longer than 0\.01 s"):
+        import_map(tmp_path / "good.usdc", tmp_path / "x.yaml", limits=ImportLimits(seconds=0.01))
+    assert not (tmp_path / "x.yaml").exists()
+
+
+def test_changed_bytes_never_end_the_program(tmp_path) -> None:
+    stage, _ = new_stage(tmp_path / "good.usdc")
+    add_mesh(stage, "/World/box", box([0, 0, 0], [2, 2, 1]))
+    stage.Save()
+    content = (tmp_path / "good.usdc").read_bytes()
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        spoiled = bytearray(content)
+        for place in rng.integers(8, len(content), 12):
+            spoiled[place] = rng.integers(256)
+        (tmp_path / "spoiled.usdc").write_bytes(spoiled)
+        try:
+            import_map(tmp_path / "spoiled.usdc", tmp_path / "x.yaml", overwrite=True)
+        except BridgeError as error:
+            assert error.code == "bridge-file"
