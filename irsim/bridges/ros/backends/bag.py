@@ -28,17 +28,19 @@ class BagFolder:
     """A folder of rosbag2 that is written message by message.
 
     Args:
-        target: The folder, which must not exist.
+        target: The folder, which is made if it does not exist.
         messages: Makes messages, and their CDR.
         storage: How messages are stored.
+        name: Name that the folder will have, after which the file in it is named.
     """
 
-    def __init__(self, target: Path, messages: Messages, storage: Storage = "sqlite3") -> None:
+    def __init__(self, target: Path, messages: Messages, storage: Storage, name: str) -> None:
         require("bag", "rosbags")
         from rosbags.rosbag2 import StoragePlugin, Writer
 
         plugin = StoragePlugin.SQLITE3 if storage == "sqlite3" else StoragePlugin.MCAP
-        self._writer = Writer(target, version=_NEWEST, storage_plugin=plugin)
+        self._target, self._inner = target, target / name  # rosbags names the file after its folder
+        self._writer = Writer(self._inner, version=_NEWEST, storage_plugin=plugin)
         self._writer.open()
         self._messages = messages
 
@@ -46,10 +48,13 @@ class BagFolder:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
-        if kind is None:
-            self._writer.close()
-        else:
+        if kind is not None:
             self._writer.abort()
+            return
+        self._writer.close()
+        for file in self._inner.iterdir():
+            file.rename(self._target / file.name)
+        self._inner.rmdir()
 
     def topic(
         self, name: str, kind: str, *, latched: bool = False, qos: Qos | None = None, **about: str
@@ -107,7 +112,7 @@ class BagBackend(Backend):
             raise BridgeError("file-exists", f"'{folder}' exists", "name another folder, or remove it")
         self._target = folder
         self._temporary = folder.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
-        self._bag: BagFolder | None = BagFolder(self._temporary, messages, storage)
+        self._bag: BagFolder | None = BagFolder(self._temporary, messages, storage, folder.name)
         self._added = {topic: self._bag.topic(topic.name, topic.kind, qos=topic.qos) for topic in self.topics}
         self.stamp = 0
         """Time of the messages that are published next [ns]."""
