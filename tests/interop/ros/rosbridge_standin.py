@@ -13,10 +13,12 @@ import sys
 from typing import Any
 
 from autobahn.asyncio.websocket import WebSocketServerFactory, WebSocketServerProtocol
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 PORT, ROS = int(sys.argv[1]), int(sys.argv[2])
 STORE = get_typestore(Stores.ROS2_HUMBLE if ROS == 2 else Stores.ROS1_NOETIC)
+if ROS == 1:
+    STORE.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", "tf2_msgs/msg/TFMessage"))
 TWIST = {"linear": {"x": 0.4, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.5}}
 BAD = {"linear": {"x": None, "y": 0.0, "z": 0.0}, "angular": "fast"}
 

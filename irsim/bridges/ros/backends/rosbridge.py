@@ -43,10 +43,9 @@ class RosbridgeBackend(Backend):
         require("rosbridge", "roslibpy", "rosbags")
         super().__init__(node, topics, inbox, messages)
         import roslibpy
-        from rosbags.typesys import Stores, get_typestore
 
         self._address, self._timeout, self._ros_version = f"{host}:{port}", timeout, ros
-        self._store = messages.store if ros == 2 else get_typestore(Stores.ROS1_NOETIC)
+        self._store = messages.store if ros == 2 else _definitions_of_ros1()
         self._gone: float | None = None
         self._publishers: dict[Topic, Any] = {}
         self._subscribers: list[Any] = []
@@ -113,6 +112,16 @@ class RosbridgeBackend(Backend):
             time.sleep(0.01)
         time.sleep(0.05)
         client.terminate()
+
+
+def _definitions_of_ros1() -> Any:
+    """Type store with the definitions of Noetic."""
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.ROS1_NOETIC)
+    kind = "tf2_msgs/msg/TFMessage"  # which rosbags leaves out
+    store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", kind))
+    return store
 
 
 def plain(message: Any, kind: str, store: Any, ros: int) -> dict[str, Any]:
