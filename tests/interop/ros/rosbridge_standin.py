@@ -1,8 +1,8 @@
 """A stand-in for rosbridge_server, not rosbridge_server: `rosbridge_standin.py PORT ROS [silent]`.
 
-It speaks the operations advertise, publish and subscribe of the protocol rosbridge 2.0 over WebSocket. As the server does,
-it knows the definitions of messages and refuses fields that a message does not have; here they are turned into CDR. It
-also plays a robot: it sends commands to those who subscribe to them. Lines of output: `TOPIC TEXT`.
+It speaks the operations advertise, publish and subscribe of the protocol rosbridge 2.0 over WebSocket. As the server
+does, it knows the definitions of messages and refuses fields that a message does not have; here they are turned into
+CDR. It also plays a robot: it sends commands to those who subscribe to them. Lines of output: `TOPIC TEXT`.
 """
 
 from __future__ import annotations
@@ -54,11 +54,11 @@ def member(value: Any, definition: Any) -> Any:
 
 
 class Server(WebSocketServerProtocol):  # type: ignore[misc]
-    def onOpen(self) -> None:  # noqa: N802
+    def onOpen(self) -> None:
         self.kinds: dict[str, str] = {}
         self.count = 0
 
-    def onMessage(self, payload: bytes, isBinary: bool) -> None:  # noqa: N802, N803
+    def onMessage(self, payload: bytes, isBinary: bool) -> None:
         said = json.loads(payload)
         topic = said.get("topic", "")
         if said["op"] == "advertise":

@@ -81,6 +81,6 @@ def test_both_ways_with_a_node_of_ros_1(
 
 def test_without_a_master_the_error_says_so(make_env: Callable[[str], Any], monkeypatch: pytest.MonkeyPatch) -> None:
     env = make_env(f"{SCENE}bridges: [{{name: ros1, master: 'http://127.0.0.1:{free_port()}'}}]\n")
-    with pytest.raises(irsim.bridges.base.BridgeError, match="no ROS master answers at .*start roscore"):
+    with pytest.raises(irsim.bridges.base.BridgeError, match=r"no ROS master answers at .*start roscore"):
         irsim.connect(env)
     assert "roscore" not in os.environ.get("ROS_MASTER_URI", "")
