@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -106,3 +107,23 @@ def test_odometry_that_is_not_finite_is_left_out(tmp_path: Path, monkeypatch: py
     assert found.poses == 29
     assert found.notes == ["1 messages were not usable and left out", "the bag has no scans, so there is no map"]
     assert irsim.run("s.yaml").outcome == "success"
+
+
+def test_the_commands_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("hall.yaml").write_text(ROOM)
+    page = Path(__file__).parents[3] / "skills" / "irsim-runner" / "bridges" / "ros2.md"
+    block = page.read_text().split("## Bags")[1].split("```bash\n")[1].split("```")[0]
+    for line in block.strip().splitlines():
+        done = CliRunner().invoke(app, shlex.split(line, comments=True)[1:])
+        assert done.exit_code == 0, (line, done.output)
+    assert Path("again.png").exists()
+
+
+def test_the_doctor_is_content() -> None:
+    done = CliRunner().invoke(app, ["bridge", "doctor", "ros2", "ros1", "rosbridge", "rosbag", "--json"])
+    states = {one["part"]: one["state"] for one in json.loads(done.stdout)}
+    assert states == {
+        "rclpy": "missing", "cyclonedds": "ready", "zenoh": "ready", "rospy": "there", "roslibpy": "there",
+        "rosbags": "ready",
+    }, done.stdout  # fmt: skip

@@ -56,16 +56,13 @@ class BagFolder:
             file.rename(self._target / file.name)
         self._inner.rmdir()
 
-    def topic(
-        self, name: str, kind: str, *, latched: bool = False, qos: Qos | None = None, **about: str
-    ) -> tuple[Any, str]:
+    def topic(self, name: str, kind: str, *, latched: bool = False, **about: str) -> tuple[Any, str]:
         """Add a topic.
 
         Args:
             name: Its name.
             kind: Type of its messages.
             latched: Whether new subscribers get its last message.
-            qos: Its quality of service; default: by ``latched``.
             **about: Further facts, which go into the custom data of the bag.
 
         Returns:
@@ -73,9 +70,12 @@ class BagFolder:
         """
         for key, value in about.items():
             self._writer.set_custom_data(f"{name} {key}", value)
-        quality = qos or (LATCHED if latched else STATE)
+        return self.topic_of(name, kind, LATCHED if latched else STATE)
+
+    def topic_of(self, name: str, kind: str, qos: Qos) -> tuple[Any, str]:
+        """Add a topic with a quality of service."""
         added = self._writer.add_connection(
-            name, kind, typestore=self._messages.store, offered_qos_profiles=[_stored(quality)]
+            name, kind, typestore=self._messages.store, offered_qos_profiles=[_stored(qos)]
         )
         return added, kind
 
@@ -113,7 +113,7 @@ class BagBackend(Backend):
         self._target = folder
         self._temporary = folder.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
         self._bag: BagFolder | None = BagFolder(self._temporary, messages, storage, folder.name)
-        self._added = {topic: self._bag.topic(topic.name, topic.kind, qos=topic.qos) for topic in self.topics}
+        self._added = {topic: self._bag.topic_of(topic.name, topic.kind, topic.qos) for topic in self.topics}
         self.stamp = 0
         """Time of the messages that are published next [ns]."""
 

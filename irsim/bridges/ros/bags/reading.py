@@ -149,7 +149,7 @@ def _chosen(reader: Any, kind: str, name: str | None, option: str, *, needed: bo
     if len(names) != 1:
         what = f"the bag has {len(names)} topics with messages {short}: {listed}"
         raise BridgeError("bridge-file", what, f"name one with {option}" if names else "record the topic, too")
-    return names[0]
+    return str(names[0])
 
 
 def _time(message: Any, stamp: int) -> float:
