@@ -2,7 +2,7 @@
 
 It speaks the operations advertise, publish and subscribe of the protocol rosbridge 2.0 over WebSocket. As the server
 does, it knows the definitions of messages and refuses fields that a message does not have; here they are turned into
-CDR. It also plays a robot: it sends commands to those who subscribe to them. Lines of output: `TOPIC TEXT`.
+CDR. It also plays a robot: it sends commands and odometry to those who subscribe. Lines of output: `TOPIC TEXT`.
 """
 
 from __future__ import annotations
@@ -71,12 +71,32 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
             say(topic, f"{len(cdr)} {json.dumps(said['msg'])[:400]}")
         elif said["op"] == "subscribe":
             say("subscribe", f"{topic} {said['type']}")
+            if topic.endswith("odom"):
+                asyncio.get_running_loop().call_later(0.1, self.odometry, topic)
             if topic.endswith("cmd_vel") and len(sys.argv) < 4:
                 asyncio.get_running_loop().call_later(0.1, self.command, topic)
 
+    def odometry(self, topic: str) -> None:
+        """Say again and again that the robot stands at the origin."""
+        if self.state != self.STATE_OPEN:
+            return
+        time = {"sec": 1, "nanosec": 0} if ROS == 2 else {"secs": 1, "nsecs": 0}
+        pose = {"position": {"x": 0, "y": 0, "z": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}
+        zero = {"linear": {"x": 0, "y": 0, "z": 0}, "angular": {"x": 0, "y": 0, "z": 0}}
+        message = {
+            "header": {"stamp": time, "frame_id": "odom"},
+            "child_frame_id": "base_link",
+            "pose": {"pose": pose, "covariance": [0] * 36},
+            "twist": {"twist": zero, "covariance": [0] * 36},
+        }
+        self.sendMessage(json.dumps({"op": "publish", "topic": topic, "msg": message}).encode())
+        asyncio.get_running_loop().call_later(0.02, self.odometry, topic)
+
     def command(self, topic: str) -> None:
+        if self.state != self.STATE_OPEN:
+            return
         self.count += 1
-        message = BAD if self.count % 10 == 0 else TWIST
+        message = BAD if self.count % 20 > 16 else TWIST  # three in a row, so that a step meets one
         self.sendMessage(json.dumps({"op": "publish", "topic": topic, "msg": message}).encode())
         asyncio.get_running_loop().call_later(0.02, self.command, topic)
 
