@@ -12,16 +12,16 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from irsim.simulation.simulation import Simulation
-
 __all__ = ["ExternalDrives", "PythonDecision", "PythonMeasurement", "StepHooks", "WideControls"]
 
-PythonDecision = Callable[["Simulation"], None]
-"""Fills ``command`` of the rows that it decides for; called between the native decisions and the motion. Its method
-``claim(simulation)``, if it has one, marks rows as ``given`` before the native decisions, which then skip them."""
+PythonDecision = Callable[[Any], None]
+"""Is called with the simulation between the native decisions and the motion, and fills ``command`` of the rows that it
+decides for. Its method ``claim(simulation)``, if it has one, marks rows as ``given`` before the native decisions, which
+then skip them."""
 
-PythonMeasurement = Callable[["Simulation", "NDArray[np.bool_] | None"], None]
-"""Updates the sensors that it computes, in the worlds of the mask (None: all); called after the native sensors."""
+PythonMeasurement = Callable[[Any, "NDArray[np.bool_] | None"], None]
+"""Is called with the simulation and a mask of worlds (None: all) after the native sensors, and updates the sensors that it
+computes in these worlds."""
 
 
 class WideControls(Protocol):

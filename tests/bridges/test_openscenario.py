@@ -59,6 +59,17 @@ def test_only_some_objects(run: Run) -> None:
     assert [one.get("name") for one in root.iter("ScenarioObject")] == ["walker"]
 
 
+def test_in_the_world_of_roads(run: Run) -> None:
+    given = {"x": 10.0, "y": -4.0, "yaw": 90.0, "roads": "Town03", "pedestrian": "walker.pedestrian.0042"}
+    result = irsim.export_run(run, "run.xosc", options=given)
+    assert result.notes == []
+    root, pose = ET.parse("run.xosc").getroot(), run.trace().pose[:, 1]
+    wanted = np.stack([10 - pose[:, 1], -4 + pose[:, 0], pose[:, 2] + np.pi / 2], axis=1)
+    np.testing.assert_allclose(_vertices(root, "walker"), wanted, atol=1e-5)
+    assert root.find("RoadNetwork/LogicFile").get("filepath") == "Town03"
+    assert next(root.iter("Pedestrian")).get("model") == "walker.pedestrian.0042"
+
+
 def test_a_run_that_is_too_long_writes_nothing(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(openscenario, "MAX_VERTICES", 30)
     with pytest.raises(RunError, match=r"holds up to 30 poses, and this run has 42"):

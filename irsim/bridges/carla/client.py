@@ -8,15 +8,15 @@ from contextlib import contextmanager
 from typing import Any
 
 from irsim.bridges.base import BridgeError, BridgeLostError
+from irsim.bridges.carla.probe import server_version
 from irsim.common.extras import ExtraError, require
 from irsim.common.text import clean
 from irsim.components.bridges.carla import Carla
 
-__all__ = ["START", "connect", "import_client", "server_errors"]
+__all__ = ["NEWEST_PYTHON", "connect", "import_client", "server_errors"]
 
 NEWEST_PYTHON = (3, 12)
 """The newest Python that the client is made for."""
-START = "start a server first, such as ./CarlaUE4.sh -RenderOffScreen, and check host, port and timeout"
 _LONGEST = 300
 _LOST = ("time-out", "timeout", "rpc::", "connection", "broken pipe")
 """Words of errors of a server that is gone."""
@@ -73,17 +73,15 @@ def connect(options: Carla) -> tuple[Any, Any, Any]:
     Raises:
         ExtraError: The client library is missing.
         BridgeLostError: No server answers within the timeout.
-        BridgeError: The server has another version, or another town.
+        BridgeError: What answers is not CARLA, or has another version or another town.
     """
     carla = import_client()
     address = f"{options.host}:{options.port}"
-    try:
+    theirs = server_version(options.host, options.port, options.timeout)
+    with server_errors("connecting", address):
         client = carla.Client(options.host, options.port)
         client.set_timeout(options.timeout)
-        theirs, ours = client.get_server_version(), client.get_client_version()
-    except RuntimeError as error:
-        what = f"no CARLA server answers at {address} within {options.timeout:g} s: {clean(str(error), _LONGEST)}"
-        raise BridgeLostError(what, START) from None
+        ours = client.get_client_version()
     if theirs != ours and not options.any_version:
         what = f"the CARLA server at {address} has version {clean(theirs, 40)}, and the client of this Python {ours}"
         fix = f"install the client of the server: pip install carla=={clean(theirs, 40)}; or try any_version: true"

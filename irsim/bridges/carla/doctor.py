@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import sys
 
 import numpy as np
 
+from irsim.bridges.carla.client import NEWEST_PYTHON
 from irsim.bridges.carla.places import Places
 from irsim.bridges.doctor import Part
 
@@ -14,7 +16,9 @@ __all__ = ["LEFT_CURVE", "PARTS"]
 _LENGTH, _CURVATURE = 20.0, 0.05
 LEFT_CURVE = f"""<?xml version="1.0"?>
 <OpenDRIVE>
-  <header revMajor="1" revMinor="4" name="curve" version="1" north="0" south="0" east="0" west="0"/>
+  <header revMajor="1" revMinor="4" name="curve" version="1" north="0" south="0" east="0" west="0">
+    <geoReference><![CDATA[+proj=tmerc +lat_0=0 +lon_0=0]]></geoReference>
+  </header>
   <road name="curve" length="{_LENGTH}" id="1" junction="-1">
     <link/>
     <planView>
@@ -50,5 +54,8 @@ def _curve() -> str:
     return "the client reads a road, whose left curve is where irsim has it; a server was not asked"
 
 
-PARTS = (Part("carla", "carla", "carla", _curve),)
+_NONE = "CARLA has no client for this Python: use Python 3.10 to 3.12, then pip install 'irsim-mcp[carla]'"
+PARTS = (
+    Part("carla", "carla", "carla", _curve) if sys.version_info[:2] <= NEWEST_PYTHON else Part("carla", None, _NONE),
+)
 """The libraries of the bridge."""

@@ -23,6 +23,8 @@ __all__ = [
     "walker_commands",
 ]
 
+_HERE = 1e-6
+"""Distance [m] below which a walker stands."""
 _STANDS = 1e-3
 """Speed [m/s] below which a car keeps its steering angle."""
 
@@ -63,8 +65,10 @@ def walker_commands(
         commands.append(carla.command.ApplyTransform(number, place(carla, before, here[2])))
     away = float(after[0]) - x, float(after[1]) - y
     distance = math.hypot(*away)
-    direction = (away[0] / distance, away[1] / distance) if distance > 1e-6 else (1.0, 0.0)
-    control = carla.WalkerControl(carla.Vector3D(*direction, 0.0), distance / period if distance > 1e-6 else 0.0, False)
+    course, speed = math.radians(float(after[2])), 0.0
+    if distance > _HERE:
+        course, speed = math.atan2(away[1], away[0]), distance / period
+    control = carla.WalkerControl(carla.Vector3D(math.cos(course), math.sin(course), 0.0), speed, False)
     commands.append(carla.command.ApplyWalkerControl(number, control))
     return commands, put
 

@@ -6,16 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from irsim.bridges.base import BridgeError
-from irsim.bridges.scene import Agent, Circle, Lidar, SceneDescription
-from irsim.common.arrays import Floats
+from irsim.bridges.footprint import box_of
+from irsim.bridges.scene import Agent, Lidar, SceneDescription
 from irsim.common.text import clean
 from irsim.components.bridges.carla import Carla
 from irsim.diagnostics.diagnostic import suggestion
 
-__all__ = ["Role", "ahead_of", "cast"]
+__all__ = ["Role", "cast"]
 
 USUAL_WHEELBASE = 1.0
 """Of a car whose shape has none [m], as its drive has it."""
@@ -67,26 +65,12 @@ def cast(scene: SceneDescription, options: Carla) -> tuple[Role, ...]:
         elif agent.name in walkers:
             roles.append(Role(agent, "walker", lidars=lidars))
         elif agent.name in options.follow:
-            ahead = ahead_of(agent)
+            ahead = box_of(agent).ahead
             roles.append(Role(agent, "followed", True, ahead, followed=options.follow[agent.name]))
     if not roles:
         fix = "name objects under walkers or vehicles; without names, all objects that can move are in the town"
         raise BridgeError("bridge-mismatch", "no object of the scenario is in the town of CARLA", fix)
     return tuple(roles)
-
-
-def ahead_of(agent: Agent) -> float:
-    """How far the middle of a footprint is ahead of the origin of its object [m]: a car turns about its rear axle."""
-    xs: list[Floats] = []
-    for part in agent.parts:
-        if isinstance(part, Circle):
-            xs.append(np.array([part.center[0] - part.radius, part.center[0] + part.radius]))
-        else:
-            xs.append((part.points if hasattr(part, "points") else part.corners)[:, 0])
-    if not xs:
-        return 0.0
-    along = np.concatenate(xs)
-    return float(along.min() + along.max()) / 2
 
 
 def _vehicle(agent: Agent, options: Carla, lidars: tuple[Lidar, ...]) -> Role:
@@ -99,7 +83,7 @@ def _vehicle(agent: Agent, options: Carla, lidars: tuple[Lidar, ...]) -> Role:
         if wheelbase is None:
             what = f"'{agent.name}' has no wheelbase, so that its turns are no steering angles"
             raise BridgeError("bridge-mismatch", what, "wheelbase: 2.87, or command: velocity")
-    return Role(agent, "vehicle", external, ahead_of(agent), lidars, wheelbase or USUAL_WHEELBASE)
+    return Role(agent, "vehicle", external, box_of(agent).ahead, lidars, wheelbase or USUAL_WHEELBASE)
 
 
 def _check_names(scene: SceneDescription, given: dict[str, Sequence[str]]) -> None:

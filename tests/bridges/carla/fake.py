@@ -165,10 +165,6 @@ class Client:
     def set_timeout(self, timeout: float) -> None:
         self.timeouts.append(timeout)
 
-    def get_server_version(self) -> str:
-        self.server.call("version")
-        return self.server.version
-
     def get_client_version(self) -> str:
         return "0.9.16"
 

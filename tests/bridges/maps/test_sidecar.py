@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.frames import FRAMES, camera_pose, pose_matrix, to_frame
+from irsim.bridges.frames import FRAMES, axes_of, camera_pose, pose_matrix, to_frame
 from irsim.bridges.maps.sidecar import MapSidecar, find_sidecar, read_sidecar, scene_transform, sidecar_path
 
 POSES = st.tuples(st.floats(-99, 99), st.floats(-99, 99), st.floats(-3.1, 3.1))
@@ -45,7 +45,7 @@ def test_there_and_back(pose, frame, unit) -> None:
     assert turn.T @ turn == pytest.approx(np.eye(3), abs=1e-9)
     assert np.linalg.det(turn) == pytest.approx(1)
     ahead = one.to_scene([[pose[0] + math.cos(pose[2]), pose[1] + math.sin(pose[2])]]) - one.to_scene([pose])
-    assert turn[:, 0] / unit == pytest.approx(ahead[0], abs=1e-6)  # forward is x in each of these frames
+    assert turn @ axes_of(frame)[:, 0] / unit == pytest.approx(ahead[0], abs=1e-6)
 
 
 @given(pose=POSES, frame=st.sampled_from(FRAMES))

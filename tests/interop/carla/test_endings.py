@@ -85,13 +85,9 @@ def test_actors_that_were_spawned_before_a_failure_are_destroyed(
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        (", walker_blueprint: walker.robot", "no blueprint 'walker.robot'"),
         (", town: Town07", "failed to generate map"),
         (", ground: road", "has no roads"),
         (", follow: {pillar: hero}", "the town has no such actor"),
-        (", tick: 0.03", "not a whole number of ticks"),
-        (", walkers: [ghost]", "has no object 'ghost'"),
-        (", lidar: {}", "no object in the town has a lidar"),
     ],
 )
 def test_what_does_not_fit_is_said(stand_in: Callable[..., StandIn], tmp_path: Path, more: str, message: str) -> None:

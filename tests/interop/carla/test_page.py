@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 
@@ -34,3 +35,15 @@ def test_scenarios_run(stand_in: Callable[..., StandIn], tmp_path: Path, name: s
     if name == "crossing.yaml":
         first = town.path_of("obstacle_0")
         assert first[-1, 1] < first[0, 1] - 5  # point 2 of the checklist
+
+
+def test_recorded_runs_are_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (text,) = [one for one in re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL) if "# crossing.yaml" in one]
+    Path("crossing.yaml").write_text(text.split("bridges:")[0])
+    (block,) = [one for one in re.findall(r"```bash\n(.*?)```", PAGE, re.DOTALL) if "openscenario" in one]
+    for command in block.splitlines():
+        done = CliRunner().invoke(app, shlex.split(command.split("#")[0])[1:])
+        assert done.exit_code == 0, done.output
+    (file,) = Path().glob("*.xosc")
+    assert '<LogicFile filepath="Town03"/>' in file.read_text()

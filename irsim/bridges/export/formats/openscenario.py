@@ -2,12 +2,13 @@
 
 Each object is an entity that is put at its first pose and follows its recorded trajectory in time. Cars (drive
 ``acker``) are vehicles, other objects that can move are pedestrians, the rest are obstacles. The frame is that of
-irsim: x forward, y to the left, heading counterclockwise, origin where the scenario has it. A file names no roads:
-write those of the town into ``RoadNetwork``.
+irsim, x forward, y to the left, heading counterclockwise, moved by the options `x`, `y` and `yaw`. Options `roads`,
+`pedestrian` and `car` name the road network and the models.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,13 +19,15 @@ from xml.sax.xmlreader import AttributesImpl
 
 import numpy as np
 
-from irsim.bridges.carla.roles import ahead_of
 from irsim.bridges.export.episode import Actor, Episode
 from irsim.bridges.export.registry import Format
+from irsim.bridges.footprint import box_of
 from irsim.bridges.recorded import recorded_scene
-from irsim.bridges.scene import Agent, Circle
+from irsim.bridges.scene import Agent
 from irsim.common.arrays import Floats
 from irsim.common.version import version
+from irsim.options.base import Options
+from irsim.options.units import Degrees, Meters
 from irsim.runs.files import RunError
 
 __all__ = ["FORMAT"]
@@ -36,6 +39,23 @@ _PERSON, _CAR, _THING = 1.8, 1.5, 1.0
 _NOT_XML = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _FOREVER = 1e10
 """Limit of the speed and acceleration of vehicles without one."""
+
+
+class OpenScenarioOptions(Options):
+    """Where the trajectories are in the world of the roads, and what the bodies are there."""
+
+    x: Meters = 0.0
+    """x of the origin of the scenario."""
+    y: Meters = 0.0
+    """y of the origin, to the left of x; that of CARLA has the other sign."""
+    yaw: Degrees = 0.0
+    """Direction of the x axis of the scenario, counterclockwise; that of CARLA has the other sign."""
+    roads: str = ""
+    """OpenDRIVE file, or for ScenarioRunner the town, such as Town03; empty leaves it out."""
+    pedestrian: str = "walker.pedestrian.0001"
+    """Model of pedestrians; for CARLA a blueprint."""
+    car: str = "vehicle.tesla.model3"
+    """Name of vehicles; for CARLA a blueprint."""
 
 
 class _Writer:
@@ -84,16 +104,19 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
         what = f"a file of OpenSCENARIO holds up to {MAX_VERTICES:,} poses, and this run has {vertices:,}"
         raise RunError("bad-argument", what, "name fewer objects with --objects, or record a shorter run")
     scene = recorded_scene(episode.run, episode.limits)
+    options = episode.options or OpenScenarioOptions()
+    assert isinstance(options, OpenScenarioOptions)
     times, poses = _trajectories(episode)
+    poses = _moved(poses, options)
     present = [np.isfinite(poses[:, column]).all(axis=1) for column in range(len(episode.actors))]
     shown = [column for column, rows in enumerate(present) if rows.any()]
     with open(target, "w", encoding="utf-8", newline="\n") as file:
         writer = _Writer(file)
         with writer.element("OpenSCENARIO"):
-            _header(writer, episode)
+            _header(writer, episode, options.roads)
             with writer.element("Entities"):
                 for column in shown:
-                    _entity(writer, episode.actors[column], scene.agent(episode.actors[column].name))
+                    _entity(writer, episode.actors[column], scene.agent(episode.actors[column].name), options)
             with writer.element("Storyboard"):
                 with writer.element("Init"), writer.element("Actions"):
                     for column in shown:
@@ -102,11 +125,11 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
                 _story(writer, episode, moving, times, poses, present)
                 with writer.element("StopTrigger"):
                     _after(writer, "end of the run", float(times[-1]))
-    return _notes(episode, shown, present)
+    return _notes(episode, shown, present, options)
 
 
-def _notes(episode: Episode, shown: list[int], present: list[Any]) -> list[str]:
-    notes = ["RoadNetwork is empty: write the file or the town of your roads into it"]
+def _notes(episode: Episode, shown: list[int], present: list[Any], options: OpenScenarioOptions) -> list[str]:
+    notes = [] if options.roads else ["no roads are named: give the option roads, a file of OpenDRIVE or a town"]
     absent = [actor.name for column, actor in enumerate(episode.actors) if column not in shown]
     late = [episode.actors[column].name for column in shown if not present[column].all()]
     if absent:
@@ -128,32 +151,43 @@ def _trajectories(episode: Episode) -> tuple[Floats, Floats]:
     return np.concatenate(times), pose
 
 
-def _header(writer: _Writer, episode: Episode) -> None:
+def _moved(poses: Floats, options: OpenScenarioOptions) -> Floats:
+    """(..., 3) poses in the world of the roads."""
+    yaw = math.radians(options.yaw)
+    x, y, heading = np.moveaxis(poses, -1, 0)
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    moved = (options.x + cosine * x - sine * y, options.y + sine * x + cosine * y, heading + yaw)
+    return np.stack(moved, axis=-1)
+
+
+def _header(writer: _Writer, episode: Episode, roads: str) -> None:
     created = str(episode.run.meta.get("created") or "2000-01-01T00:00:00")[:19]
     about = f"run {episode.run.id} of irsim {version()}, seed {episode.run.meta['seed']}"
     writer.leaf("FileHeader", revMajor=1, revMinor=0, date=created, description=about, author="irsim")
     writer.leaf("CatalogLocations")
-    writer.leaf("RoadNetwork")
+    with writer.element("RoadNetwork"):
+        if roads:
+            writer.leaf("LogicFile", filepath=roads)
 
 
-def _entity(writer: _Writer, actor: Actor, agent: Agent) -> None:
-    """An object with its box; its name, a pedestrian's model and a vehicle's name are those of blueprints of CARLA."""
+def _entity(writer: _Writer, actor: Actor, agent: Agent, options: OpenScenarioOptions) -> None:
+    """An object with its box."""
     with writer.element("ScenarioObject", name=actor.name):
         if actor.drive == "acker":
-            with writer.element("Vehicle", name="vehicle.tesla.model3", vehicleCategory="car"):
+            with writer.element("Vehicle", name=options.car, vehicleCategory="car"):
                 _box(writer, agent, _CAR)
                 speed = agent.high[0] if agent.high and np.isfinite(agent.high[0]) else _FOREVER
                 change = agent.acceleration[0] if agent.acceleration else _FOREVER
                 change = change if np.isfinite(change) else _FOREVER
                 writer.leaf("Performance", maxSpeed=float(speed), maxAcceleration=change, maxDeceleration=change)
-                base, track = agent.wheelbase or 1.0, 0.8 * _size(agent)[1]
+                base, track = agent.wheelbase or 1.0, 0.8 * box_of(agent).width
                 with writer.element("Axles"):
                     for name, x, steering in (("FrontAxle", base, 0.7), ("RearAxle", 0.0, 0.0)):
                         wheels = {"wheelDiameter": 0.6, "trackWidth": track, "positionZ": 0.3}
                         writer.leaf(name, maxSteering=steering, positionX=float(x), **wheels)
                 _properties(writer, actor)
         elif actor.can_move:
-            facts = {"name": actor.name, "model": "walker.pedestrian.0001", "pedestrianCategory": "pedestrian"}
+            facts = {"name": actor.name, "model": options.pedestrian, "pedestrianCategory": "pedestrian"}
             with writer.element("Pedestrian", mass=75.0, **facts):
                 _box(writer, agent, _PERSON)
                 _properties(writer, actor)
@@ -164,24 +198,11 @@ def _entity(writer: _Writer, actor: Actor, agent: Agent) -> None:
                 _properties(writer, actor)
 
 
-def _size(agent: Agent) -> tuple[float, float]:
-    """Length and width of the box around a footprint [m]."""
-    low, high = np.full(2, np.inf), np.full(2, -np.inf)
-    for part in agent.parts:
-        if isinstance(part, Circle):
-            points = np.array(part.center) + np.array([[-part.radius] * 2, [part.radius] * 2])
-        else:
-            points = part.points if hasattr(part, "points") else part.corners
-        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
-    length, width = np.where(np.isfinite(high - low), high - low, 2 * agent.radius)
-    return float(max(length, 0.01)), float(max(width, 0.01))
-
-
 def _box(writer: _Writer, agent: Agent, height: float) -> None:
-    length, width = _size(agent)
+    box = box_of(agent)
     with writer.element("BoundingBox"):
-        writer.leaf("Center", x=ahead_of(agent), y=0.0, z=height / 2)
-        writer.leaf("Dimensions", width=width, length=length, height=height)
+        writer.leaf("Center", x=box.ahead, y=box.left, z=height / 2)
+        writer.leaf("Dimensions", width=box.width, length=box.length, height=height)
 
 
 def _properties(writer: _Writer, actor: Actor) -> None:
@@ -251,4 +272,4 @@ def _maneuver(writer: _Writer, name: str, times: Floats, poses: Floats) -> None:
                 _after(writer, f"start of {name}", -1.0)
 
 
-FORMAT = Format("openscenario", ".xosc", _write, ranges=False)
+FORMAT = Format("openscenario", ".xosc", _write, ranges=False, options=OpenScenarioOptions)

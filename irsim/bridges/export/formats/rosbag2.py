@@ -1,7 +1,7 @@
 """``rosbag2``: a bag of ROS 2, which ``ros2 bag play`` plays and Foxglove opens.
 
 The folder has the topics of the format ``mcap``; the scenario, seed, versions and result are in the custom data of
-``metadata.yaml``.
+``metadata.yaml``. The option ``storage`` is ``sqlite3``, which opens in all releases of ROS 2, or ``mcap``.
 """
 
 from __future__ import annotations

@@ -1,0 +1,46 @@
+"""The box around a footprint, for programs that know bodies as boxes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from irsim.bridges.scene import Agent, Circle, Polygon
+
+__all__ = ["Box", "box_of"]
+
+_THINNEST = 0.01
+"""Smallest side of a box [m]: walls have no thickness."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box whose sides are along the axes of the body.
+
+    Attributes:
+        ahead: How far its middle is ahead of the origin of the body [m]: a car turns about its rear axle.
+        left: How far its middle is to the left of it [m].
+        length: Size along x [m].
+        width: Size along y [m].
+    """
+
+    ahead: float
+    left: float
+    length: float
+    width: float
+
+
+def box_of(agent: Agent) -> Box:
+    """The smallest such box around a footprint; around its circle if it has none."""
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for part in agent.parts:
+        if isinstance(part, Circle):
+            points = np.array(part.center) + np.array([[-part.radius] * 2, [part.radius] * 2])
+        else:
+            points = part.corners if isinstance(part, Polygon) else part.points
+        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+    if not np.isfinite(low).all():
+        low, high = np.full(2, -agent.radius), np.full(2, agent.radius)
+    (ahead, left), (length, width) = (low + high) / 2, np.maximum(high - low, _THINNEST)
+    return Box(float(ahead), float(left), float(length), float(width))

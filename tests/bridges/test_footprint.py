@@ -1,0 +1,29 @@
+"""Boxes around footprints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from irsim.bridges.footprint import Box, box_of
+from irsim.bridges.scene import Agent, Circle, Line, Polygon
+
+
+def _agent(*parts: Any) -> Agent:
+    return Agent(0, "a", "robot", None, True, (0, 0, 0), (), parts, 0.5, (), (), (), None, 1.0, (0, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("parts", "box"),
+    [
+        ((Circle((0.0, 0.0), 0.2),), Box(0, 0, 0.4, 0.4)),
+        ((Polygon(np.array([[-1.0, -1], [3, -1], [3, 1], [-1, 1]])),), Box(1, 0, 4, 2)),
+        ((Circle((0.0, 1.0), 0.5), Circle((2.0, 0.0), 0.5)), Box(1, 0.5, 3, 2)),
+        ((Line(np.array([[0.0, 0], [4, 0]])),), Box(2, 0, 4, 0.01)),
+        ((), Box(0, 0, 1, 1)),
+    ],
+)
+def test_box(parts: Any, box: Box) -> None:
+    assert vars(box_of(_agent(*parts))) == pytest.approx(vars(box))
