@@ -111,7 +111,7 @@ def test_the_robot_stops_when_we_crash_or_hang(drive: Callable[..., tuple[Robot,
         assert irsim.process.wait(10) == 1
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_the_robot_stops_when_we_are_killed(drive: Callable[..., tuple[Robot, Peer]], number: int) -> None:
     robot, irsim = drive()
     until(lambda: max(robot.speeds(), default=0) > 0.3, START_S, "not driven")
