@@ -79,5 +79,8 @@ class Avocado(BehaviorOptions):
     """Largest noise on the velocity of another object, along and across the line of sight, while it gets no attention:
     it ends deadlocks. `eta` of the paper."""
 
+    def draws(self) -> bool:
+        return self.noise > 0
+
 
 BEHAVIORS.register(Avocado, kernel=core.AvocadoOptions)

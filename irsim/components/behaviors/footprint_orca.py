@@ -40,5 +40,8 @@ class FootprintOrca(BehaviorOptions):
     backward: Bool = True
     """Whether drives that cannot move sideways also drive backward, if `vel_min` allows it."""
 
+    def draws(self) -> bool:
+        return True  # the directions that it tries without progress
+
 
 BEHAVIORS.register(FootprintOrca, kernel=core.FootprintOrcaOptions)
