@@ -5,7 +5,7 @@ from __future__ import annotations
 from irsim.benchmarks.suite_files import load_suite, suite_names
 from irsim.lookup.answer import Answer, Key
 from irsim.policies.converters.features import CONVERTERS
-from irsim.policies.description import describe_policy, list_policies
+from irsim.policies.description import PolicyInfo, describe_policy, list_policies
 from irsim.policies.registry import POLICIES
 from irsim.policies.trained import trained_policies
 
@@ -44,19 +44,35 @@ def _policy(name: str, notes: list[str]) -> Answer:
         "scenes of the training": f"seeds from {card['seeds'][-1]}" if card.get("seeds") else "",
         "decisions of the training": f"{card['steps']:,}" if card.get("steps") else "",
         "license": card.get("license", ""),
+        "not installed": info.install or "",
     }
     groups = {"facts": [Key(name=key, text=text) for key, text in facts.items() if text]}
     if info.options:
-        groups["options"] = [Key(name=key, text=f"default {text}") for key, text in info.options.items()]
+        groups["options"] = [
+            Key(name=key, text=_option(text, info.meanings.get(key, ""))) for key, text in info.options.items()
+        ]
     return Answer(
         topic=name,
         kind="policy",
         title=f"{info.kind} policy {name}",
         text=" ".join([f"{info.about.rstrip('.')}.", *notes]),
         groups=groups,
-        example=f"irsim benchmark scenario.yaml --policies orca,{name}",
+        example=f"irsim benchmark scenario.yaml --policies {_in_list(info)}",
         see=["policies"],
     )
+
+
+def _option(default: str, meaning: str) -> str:
+    said = default if default == "required" else f"default {default}"
+    return f"{said}. {meaning}" if meaning else said
+
+
+def _in_list(info: PolicyInfo) -> str:
+    """The policy beside `orca`, as it is written in a command."""
+    required = [key for key, default in info.options.items() if default == "required"]
+    if not required:
+        return f"orca,{info.name}"
+    return f"'orca,{{name: {info.name}, {', '.join(f'{key}: …' for key in required)}}}'"
 
 
 def policies_answer() -> Answer:

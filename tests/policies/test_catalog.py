@@ -95,6 +95,9 @@ def test_files_have_a_digest_and_are_found_from_their_folder(tmp_path: Path) -> 
     ("source", "message"),
     [
         ("orka", "unknown-policy: there is no policy 'orka'. Fix: did you mean orca"),
+        ("ppo", "there is no policy 'ppo'. Fix: did you mean multi_robot"),
+        ("sarl.pt", "there is no policy 'sarl.pt'. Fix: irsim convert makes a policy file"),
+        ("{name: sarl, decision_dt: 1e9}", "must be a time .s. above 0, got '1e9'"),
         ("stil", "there is no policy 'stil'. Fix: did you mean still"),
         ("xyzzy", r"Fix: choose one of as-written, .*dash, .*random.* or a file"),
         ("nett.npz", "there is no file 'nett.npz'. Fix: did you mean net.npz"),

@@ -80,6 +80,7 @@ class Avocado(BehaviorOptions):
     it ends deadlocks. `eta` of the paper."""
 
     def draws(self) -> bool:
+        """Whether there is noise."""
         return self.noise > 0
 
 

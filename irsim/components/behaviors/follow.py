@@ -75,6 +75,7 @@ class Follow(BehaviorOptions):
     does not enter them, not even to give way. One that starts in a zone or is pushed into it leaves it."""
 
     def draws(self) -> bool:
+        """Whether its local behavior draws random numbers."""
         return isinstance(self.local, BehaviorOptions) and self.local.draws()
 
 

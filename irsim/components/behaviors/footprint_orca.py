@@ -41,7 +41,8 @@ class FootprintOrca(BehaviorOptions):
     """Whether drives that cannot move sideways also drive backward, if `vel_min` allows it."""
 
     def draws(self) -> bool:
-        return True  # the directions that it tries without progress
+        """True: the directions that it tries without progress are random."""
+        return True
 
 
 BEHAVIORS.register(FootprintOrca, kernel=core.FootprintOrcaOptions)
