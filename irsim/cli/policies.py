@@ -51,7 +51,7 @@ def policies(
     period = "every step" if one.decision_dt is None else f"every {one.decision_dt:g} s"
     facts = {
         "kind": one.kind, "returns": one.output, "needs": ", ".join(one.needs) or "nothing else",
-        "drives": ", ".join(one.drives), "decides": period, "sha256": one.digest or "",
+        "does not see": one.unseen, "drives": ", ".join(one.drives), "decides": period, "sha256": one.digest or "",
         "not installed": one.install or "",
         "options": "" if one.meanings else "; ".join(f"{key}: {value}" for key, value in one.options.items()),
     }  # fmt: skip

@@ -38,6 +38,7 @@ class PolicyInfo:
         decision_dt: Time between two decisions [s]; None: every step.
         options: Option → its default in words; ``required`` without one.
         meanings: Option → what it means.
+        unseen: What it does not see; empty if that is not known.
         install: How the package is installed that it needs; None if it is, or needs none.
         digest: SHA-256 of its file; None without one.
         facts: What a network says of itself: parts that it observes, what it returns, layers, sizes, card.
@@ -52,6 +53,7 @@ class PolicyInfo:
     decision_dt: float | None = None
     options: dict[str, str] = field(default_factory=dict)
     meanings: dict[str, str] = field(default_factory=dict)
+    unseen: str = ""
     install: str | None = None
     digest: str | None = None
     facts: dict[str, Any] = field(default_factory=dict)
@@ -130,6 +132,7 @@ def _info(name: str, kind: str, policy: Any, about: str, options: dict[str, str]
         options=options,
         meanings={key: text for key, text in _arguments(policy).items() if key in options},
         install=None if package is None or is_installed(package[0]) else package[1],
+        unseen=_unseen(needs) if isinstance(policy, NetworkPolicy) else "",
         digest=policy.digest if known else None,
         facts=policy.describe() if isinstance(policy, NetworkPolicy) else {},
     )
@@ -146,6 +149,15 @@ def _words(needs: Needs) -> list[str]:
     if needs.map:
         found.append(f"the map in cells of {needs.map_resolution:g} m")
     return found
+
+
+def _unseen(needs: Needs) -> str:
+    """What a network does not see that observes this."""
+    if needs.scan or needs.map:
+        return ""
+    if not needs.neighbors:
+        return "anything but itself and its goal"
+    return "walls and maps" if needs.static_neighbors else "static obstacles, walls and maps"
 
 
 def _about(thing: Any) -> str:

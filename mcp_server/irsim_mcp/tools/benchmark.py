@@ -37,7 +37,7 @@ __all__ = ["Benchmark", "answer", "tool"]
 _DESCRIPTION = """
     Compare policies: every scenario under every policy with the same seeds. Rows have shares of
     success, collision and timeout, the mean time as [value, low, high] (95 %), and seeds that failed; diff
-    is the difference from the first, seed by seed; a note: what deciding costs. Work over wait_s
+    is the difference from the first, seed by seed; note: what deciding costs. Work over wait_s
     becomes a job. Next: get_job (detailed: more metrics), inspect_run with the job_id, or run_episode with a
     seed that failed.
 """
