@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.api.export_after import check_exports, export_all, kept_or_temporary
 from irsim.api.picture_notes import ended_before, extent_of, moved_view
 from irsim.api.read_input import policy_of_suite, read_input
 from irsim.api.take_snapshot import snapshot, snapshot_of
+from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
+from irsim.bridges.connect import connect, open_bridges
+from irsim.bridges.options import bridge_text, read_bridges
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
 from irsim.diagnostics.errors import ArgumentError, PolicyLostError
@@ -33,6 +38,7 @@ from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
+from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.random_streams import fresh_seed
 from irsim.validation.scene_table import scene_table
 from irsim.validation.validate import diff, fix, validate
@@ -65,10 +71,12 @@ def run(
     policy: PolicySource | None = None,
     behavior: str | Mapping[str, Any] | None = None,
     perturb: Perturbations | None = None,
+    bridges: Sequence[str | Mapping[str, Any]] = (),
     imports: Sequence[str] = (),
     save: str | Path | None = None,
     show: bool = False,
     record: bool | str | Path = False,
+    export: str | Path | Sequence[str | Path] = (),
     recorded: Callable[[str], None] | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
@@ -87,12 +95,15 @@ def run(
         behavior: Another name of ``policy``.
         perturb: Starts, speeds and delays that differ from the scenario, as the seed draws them: see
             :func:`irsim.benchmark`.
+        bridges: Connections to other programs, besides those of the scenario: mappings such as ``{"name":
+            "json_lines"}``, or their text. Each takes part in the steps.
         imports: Modules to import first, for behaviors that they register.
         save: Also write an animation to this file (gif, mp4, apng, …).
         show: Also show the episode live in a window.
         record: Also record the run: True records to a folder below ``.irsim/runs`` of the current directory, which is
             deleted 24 hours after its last use; a path records to a new folder that is kept.
             :func:`irsim.runs.open_run` reads the recording.
+        export: Files to write when the run is over, each in the format of its suffix: see :func:`irsim.export_run`.
         recorded: Callback ``(run_id)``, called when the recording starts.
         limits: Limits of the loader and of the run.
         progress: Callback ``(steps_done, steps_total)``.
@@ -105,6 +116,8 @@ def run(
         BenchmarkError: There is no such policy, or ``perturb`` is not a valid perturbation.
         PolicyError: The policy cannot drive these robots, or failed. One in another process that is lost ends the run
             with that reason instead.
+        BridgeError: A bridge is not valid, or failed, or may not be opened; a program that is lost during the run ends
+            the run with that reason instead.
         ArgumentError: ``steps`` is not a whole number, or both ``policy`` and ``behavior`` are given.
         RunError: The folder to record to is not empty.
         ValueError: Neither or both of ``path`` and ``text`` are given.
@@ -127,24 +140,32 @@ def run(
         (fresh_seed() for _ in range(MAX_TRIES)) if chosen is None else [chosen],
     )
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
+    connected = _bridges(scenario, bridges, limits)
     options = {
         "strict": strict,
         "imports": list(imports),
         **({} if behavior_text is None else {"behavior": behavior_text}),
         **({} if driver is None else {"policy": driver.text or driver.name, "policy_digest": driver.digest}),
         **({"perturb": perturb_texts} if perturb_texts else {}),
+        **({"bridges": [bridge.name for bridge in connected]} if connected else {}),
     }
-    with recording(env, path, record, horizon=horizon, options=options) as recorder:
-        if recorder is not None and recorded is not None:
+    targets = check_exports([export] if isinstance(export, (str, Path)) else export)
+    with (
+        kept_or_temporary(record, targets) as kept,
+        connect(env, connected) if connected else nullcontext() as connection,
+        recording(env, path, kept, horizon=horizon, options=options) as recorder,
+    ):
+        if recorder is not None and recorded is not None and record is not False:
             recorded(recorder.run_id)
-        files, lost = list[str](), None
+        files, lost, who = list[str](), None, ""
         try:
             if save is None and not show:
                 advance(env, horizon, progress, recorder=recorder)
             else:
                 files = _animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
-        except PolicyLostError as error:
+        except (PolicyLostError, BridgeLostError) as error:
             lost = error.message
+            who = "program of a bridge" if isinstance(error, BridgeLostError) else "policy"
         result = run_result(
             env,
             path,
@@ -157,16 +178,39 @@ def run(
             behavior=behavior_text,
             policy=driver,
             perturb=perturb_texts,
+            bridges=[bridge_text(one) for one in read_bridges(bridges)],
             lost=lost,
         )
         if lost is not None:
-            result.summary += "; the policy was lost, which ended the run"
+            result.summary += f"; the {who} was lost, which ended the run"
+        if connection is not None:
+            result.notes += connection.notes()
         if skipped := crowded_message(crowded):
             result.summary += f"; {skipped}"
         if recorder is not None:
             recorder.finish(result)
+            exported, notes = export_all(Path(recorder.folder), targets)
+            result.files += exported
+            result.notes += notes
+            if record is False:
+                result.run_id, result.artifacts = None, {}  # of a record that is deleted now
     env.end(ending_time=0.0)
     return result
+
+
+def _bridges(scenario: ResolvedScenario, more: Sequence[Any], limits: Limits | None) -> list[Bridge]:
+    """The bridges of a scenario and further ones, not opened yet.
+
+    Raises:
+        BridgeError: They may not be opened here, or a further one is not valid.
+    """
+    options = [*scenario.bridges, *read_bridges(more)]
+    if options and not (limits or DEFAULT_LIMITS).bridges:
+        what = f"the scenario has bridges ({', '.join(str(one.name) for one in options)}), which are not opened here"
+        raise BridgeError(
+            "bridges-disabled", what, "leave out the key bridges, or start irsim-mcp with --enable-bridges"
+        )
+    return open_bridges(options)
 
 
 def _opened(policy: Any, behavior: Any, limits: Limits | None) -> tuple[Policy | None, str | None]:

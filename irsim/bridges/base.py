@@ -63,5 +63,9 @@ class Bridge:
     def push(self, state: WorldState) -> None:
         """Show the world after a step."""
 
+    def notes(self) -> list[str]:
+        """What is worth telling when the run is over, before ``close``; one sentence each."""
+        return []
+
     def close(self) -> None:
         """Stop the robots and disconnect; a second call does nothing."""

@@ -117,6 +117,13 @@ class Connection:
     def __exit__(self, *error: object) -> None:
         self.close()
 
+    def notes(self) -> list[str]:
+        """What the bridges tell when the run is over."""
+        found = [note for bridge in self.bridges for note in bridge.notes()]
+        if self.late > 0.5 * float(self.simulation.scenario.world.step_time):
+            found.append(f"steps came up to {self.late:.2g} s later than the time on the wall asks for")
+        return found
+
     def close(self) -> None:
         """Stop the robots of others and disconnect; a second call does nothing."""
         if self._open:

@@ -27,6 +27,7 @@ from irsim.cli import (
     train,
     validate,
 )
+from irsim.cli.bridge import bridge_app
 from irsim.cli.guard import handle_errors
 from irsim.cli.map import map_app
 from irsim.cli.skills import skills_app
@@ -84,4 +85,5 @@ for _command in (
 ):
     app.command(_command.__name__.replace("_", "-"))(handle_errors(_command))
 app.add_typer(map_app)
+app.add_typer(bridge_app)
 app.add_typer(skills_app)

@@ -58,7 +58,7 @@ def handle_errors(command: Callable[P, R]) -> Callable[P, R]:
     return call
 
 
-_FAILURES = frozenset({"file-access", "no-cluster", "not-writable", "worker-failed"})
+_FAILURES = frozenset({"bridge-lost", "file-access", "no-cluster", "not-writable", "worker-failed"})
 """Codes of errors that are not about the input: the same command may succeed later."""
 _HANDLED_BY_TYPER = (typer.Exit, typer.Abort, typer.BadParameter)
 

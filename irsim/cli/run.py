@@ -45,6 +45,16 @@ def run(
     ] = None,
     behavior: Annotated[str | None, typer.Option(metavar="NAME", help="Another name of --policy.", hidden=True)] = None,
     perturb: Perturb = None,
+    bridge: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--bridge",
+            metavar="NAME",
+            help="Connect to another program, besides those of the key bridges: a name such as json_lines, or '{name: "
+            'json_lines, address: "127.0.0.1:9100"}\'. Repeatable; irsim bridge doctor lists them.',
+            show_default=False,
+        ),
+    ] = None,
     imports: Imports = None,
     require_success: Annotated[
         bool, typer.Option("--require-success", help="Exit with code 1 unless every robot reaches its goal.")
@@ -59,6 +69,15 @@ def run(
     record_to: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Record the run in this new folder instead, permanently.", show_default=False),
+    ] = None,
+    export: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="Also write the run for another program; the suffix selects the format, as in `irsim export`. "
+            "Repeatable.",
+            show_default=False,
+        ),
     ] = None,
     max_objects: MaxObjects = None,
 ) -> None:
@@ -87,10 +106,12 @@ def run(
             policy=policy,
             behavior=behavior,
             perturb=perturb,
+            bridges=bridge or (),
             imports=imports or (),
             save=save_gif,
             show=show,
             record=record if record_to is None else record_to,
+            export=export or (),
             limits=limits_for(max_objects),
             progress=report,
         )

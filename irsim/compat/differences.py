@@ -216,6 +216,7 @@ KEY_DIFFERENCES: dict[str, str] = {
 
 FEATURES: dict[str, tuple[str, ...]] = {
     "behavior": ("dash", "orca", "rvo", "sfm"),
+    "bridge": (),
     "distribution": ("circle", "manual", "random"),
     "kinematics": ("acker", "diff", "omni", "omni_angular", "static"),
     "map": ("image", "perlin"),
@@ -226,6 +227,7 @@ FEATURES: dict[str, tuple[str, ...]] = {
 """Kind -> features that IR-SIM 2.12 has, too; all others are additions."""
 
 EXTENSIONS: dict[str, str] = {
+    "bridges": "connections to other programs",
     "world.boundary": "walls at the edge of the world",
     "world.seed": "default seed",
     "world.time_limit": "time horizon of a run",

@@ -57,6 +57,7 @@ def run_result(
     behavior: str | None = None,
     policy: Policy | None = None,
     perturb: Sequence[str] = (),
+    bridges: Sequence[str] = (),
     lost: str | None = None,
 ) -> RunResult:
     """Make the result of an episode.
@@ -73,7 +74,8 @@ def run_result(
         behavior: Behavior that every robot had instead of its own.
         policy: Policy in Python that drove the robots.
         perturb: Perturbations of the scenario, as on the command line.
-        lost: Why the policy could not go on, which ended the run.
+        bridges: Bridges besides those of the scenario, as on the command line.
+        lost: Why the policy or a bridge could not go on, which ended the run.
     """
     events = env.events
     hits, counts = _collisions(env, events)
@@ -94,6 +96,8 @@ def run_result(
         extra += ["--policy", policy.text or policy.name]
     for perturbation in perturb:
         extra += ["--perturb", perturbation]
+    for bridge in bridges:
+        extra += ["--bridge", bridge]
     because: str | None = None
     if outcome != "success":
         ended = None if lost is None else f"{lost}; the run ended"

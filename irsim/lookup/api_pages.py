@@ -13,6 +13,7 @@ from pydantic import BaseModel
 
 from irsim.common import data_files as resources
 from irsim.common.public_names import PUBLIC_HOMES
+from irsim.lookup.pages import components
 from irsim.lookup.tables import plain_table
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.options.base import field_docs
@@ -47,7 +48,7 @@ def runner() -> Pages:
     from irsim.objects.view import ObjectView
 
     functions = (
-        *("make", "run", "render", "validate", "benchmark", "batch", "export_run", "diff_runs"),
+        *("make", "run", "render", "validate", "benchmark", "batch", "export_run", "diff_runs", "connect"),
         *("register_behavior", "irsim.lib.register_behavior_class"),
         *("irsim.lib.register_group_behavior", "irsim.lib.register_group_behavior_class"),
     )
@@ -72,6 +73,12 @@ def runner() -> Pages:
             "Formats of recorded runs",
             "What `irsim export` and `irsim.export_run` write.",
             *map(_format, format_names()),
+        ),
+        "bridges": make_page(
+            "Bridges",
+            "`bridges: [{name: …}, …]` in a scenario, or `irsim run SCENARIO --bridge NAME`. `irsim bridge doctor` "
+            "says which of them work on this machine.",
+            components("bridge"),
         ),
         "batch": make_page("Batches", "`irsim.batch` returns a batch of worlds.", _attributes(Batch), _members(Batch)),
     }

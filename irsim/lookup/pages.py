@@ -16,7 +16,7 @@ from irsim.options.registry import KINEMATICS, REGISTRIES
 from irsim.scenario.model.json_schema import json_schema
 from irsim.scenario.model.zones import Zone
 
-__all__ = ["PAGES", "pages"]
+__all__ = ["PAGES", "components", "pages"]
 
 _STAR = "A key with \\* also takes a list with one value for each object of the entry."
 _NOT_SIMULATED = " (not simulated by this version)"
@@ -204,6 +204,11 @@ def _components(source: _Source, kind: str, level: str = "##") -> str:
         ]
         parts.append(f"{level} {feature.name}{mark}\n\n" + "\n\n".join(part.strip() for part in body if part))
     return "\n\n".join(part.strip() for part in parts)
+
+
+def components(kind: str) -> str:
+    """Return sections for the components of a kind, for pages of other skills."""
+    return _components(_Source(json_schema()), kind)
 
 
 def _all_keys(answer: Answer) -> list[Key]:

@@ -198,7 +198,7 @@ class RunResult(Result):
     artifacts: dict[str, str] = Field(default_factory=dict)
     """Files of the record by name."""
     notes: list[str] = Field(default_factory=list)
-    """What the record leaves out because there was too much of it."""
+    """What the record leaves out because there was too much of it, and what bridges tell."""
 
 
 class RunTable(Result):

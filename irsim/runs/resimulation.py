@@ -81,11 +81,11 @@ def resimulate(
 
 
 def has_modules(run: Run) -> bool:
-    """Whether modules of the user or a policy in Python took part, which reading a run neither imports nor opens.
+    """Whether modules of the user, a policy in Python or another program took part.
 
-    Such a run is not simulated again.
+    Reading a run neither imports nor opens these, so such a run is not simulated again.
     """
-    return bool(run.options.get("imports") or run.options.get("policy"))
+    return any(run.options.get(part) for part in ("imports", "policy", "bridges"))
 
 
 def _move_as_recorded(run: Run, env: Env, step: int) -> None:

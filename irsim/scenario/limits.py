@@ -25,6 +25,7 @@ class Limits:
         work: Steps times objects of one run; None for no limit.
         cells: Cells of a map.
         map_bytes: Size of a map file.
+        bridges: Whether bridges to other programs may be opened.
     """
 
     bytes: int = 16 * 1024 * 1024
@@ -40,6 +41,7 @@ class Limits:
     work: int | None = None
     cells: int = 64_000_000
     map_bytes: int = 256 * 1024 * 1024
+    bridges: bool = True
 
 
 DEFAULT_LIMITS = Limits()

@@ -29,6 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if not workspace.is_dir():
         _parser().error(f"--workspace: there is no folder {workspace}")
     limits = replace(ServerLimits(), robots=options.max_robots, objects=options.max_objects, work=options.max_work)
+    limits = replace(limits, bridges=options.enable_bridges)
 
     from irsim_mcp.call_log import CallLog, CallLogRefused
     from irsim_mcp.http import HttpRefused, serve, token_from
@@ -71,6 +72,11 @@ def _parser() -> argparse.ArgumentParser:
         "--enable-write",
         action="store_true",
         help="offer the tool write_scenario, which saves valid scenarios in the workspace",
+    )
+    parser.add_argument(
+        "--enable-bridges",
+        action="store_true",
+        help="let run_episode open the bridges of a scenario, which connect to other programs, also over the network",
     )
     parser.add_argument(
         "--log-calls",

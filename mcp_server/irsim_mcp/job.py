@@ -215,6 +215,24 @@ def _inspect(job: dict[str, Any], progress: _Progress) -> str:
     return table.model_dump_json()
 
 
+def _export(job: dict[str, Any], progress: _Progress) -> str:
+    from pathlib import Path
+
+    from irsim.bridges.export.export import export_run
+    from irsim.bridges.export.registry import find_format
+
+    arguments = job["arguments"]
+    run_id, objects, form = arguments["run_id"], arguments["objects"], find_format(arguments["to"], None)
+    target = Path(arguments["out"]) / f"{run_id}{form.suffix}"
+    if form.folder and target.exists():
+        import shutil
+
+        shutil.rmtree(target)  # an earlier export of the same run
+    names = objects if objects in ("movers", "robots", "all") else [name.strip() for name in objects.split(",")]
+    options: dict[str, Any] = {"limits": _limits(job), "workspace": job["workspace"], "progress": progress}
+    return export_run(run_id, target, to=form.name, objects=names, **options).model_dump_json()
+
+
 def _artifact(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.runs import open_run
     from irsim.runs.artifacts import artifact
@@ -308,6 +326,7 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "snapshot": _snapshot,
     "run_snapshot": _run_snapshot,
     "inspect": _inspect,
+    "export": _export,
     "artifact": _artifact,
     "suite_plan": _suite_plan,
     "suite_policy": _suite_policy,

@@ -59,6 +59,7 @@ class ServerLimits:
         written: Size of a file that a worker writes [bytes]; only libraries write such files, as caches.
         jobs: Number of jobs that run at the same time in a workspace.
         job_seconds: Wall-clock time of a job [s]; each of its processes may compute this long on every core.
+        bridges: Whether runs may open bridges to other programs.
         text: Number of characters of text in one result, about four per token.
     """
 
@@ -80,6 +81,7 @@ class ServerLimits:
     jobs: int = 2
     job_seconds: int = 3600
     text: int = 24_000
+    bridges: bool = False
 
 
 def scenario_limits(limits: ServerLimits, workspace: Path) -> Limits:
@@ -97,4 +99,5 @@ def scenario_limits(limits: ServerLimits, workspace: Path) -> Limits:
         work=limits.work,
         cells=limits.cells,
         map_bytes=limits.map_bytes,
+        bridges=limits.bridges,
     )

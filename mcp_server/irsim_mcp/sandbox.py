@@ -21,6 +21,8 @@ _MAX_NAMED = 3
 """Number of files that a message suggests."""
 _MAX_NAME_BYTES = 200
 """Length of the longest name of a file."""
+_EXPORTS = "exports"
+"""Folder of the workspace for exports of runs."""
 
 
 class Workspace:
@@ -86,6 +88,19 @@ class Workspace:
         if on_the_way[-1].is_dir():
             raise failure("not-a-file", f"{clean(name)!r} is a folder", where="path", fix="name a file in it")
         return path.as_posix()
+
+    def folder_for_exports(self) -> str:
+        """The folder that exports of runs are written to, relative to the workspace; it is made if need be.
+
+        Raises:
+            ToolError: A link, or a file, has the name of the folder.
+        """
+        folder = self.root / _EXPORTS
+        if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
+            what = f"'{_EXPORTS}' of the workspace is not a folder"
+            raise failure("not-a-file", what, where="to", fix="rename it, so that exports have a folder")
+        folder.mkdir(exist_ok=True)
+        return _EXPORTS
 
     def check_run(self, run_id: str) -> None:
         """Check that a run is recorded in the workspace.

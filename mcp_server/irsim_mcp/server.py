@@ -33,6 +33,7 @@ from irsim_mcp.services import Services
 from irsim_mcp.skills import Skills
 from irsim_mcp.tools import (
     benchmark,
+    export_run,
     get_job,
     inspect_run,
     lookup,
@@ -58,7 +59,7 @@ writes no files except recorded runs and jobs below .irsim; {saving}. The same s
 give the same result."""
 _SAVING = {
     False: "save YAML that must be kept yourself",
-    True: "write_scenario saves a scenario that must be kept",
+    True: "write_scenario saves a scenario that must be kept, export_run writes a run for another program",
 }
 _HOUR_MS = 3_600_000
 _MINUTE_MS = 60_000
@@ -151,7 +152,7 @@ def build_server(
     modules = [lookup, validate_scenario, render_snapshot, run_episode, inspect_run, benchmark, get_job]
     tools = [module.tool(services) for module in modules]
     if writing:
-        tools.append(write_scenario.tool(services))
+        tools += [write_scenario.tool(services), export_run.tool(services)]
     lists = ("tools/list", "prompts/list", "resources/list", "resources/templates/list")
     caching: dict[Any, CacheHint] = {method: CacheHint(ttl_ms=_HOUR_MS, scope="public") for method in lists}
     caching["resources/read"] = CacheHint(

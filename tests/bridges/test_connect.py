@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 import time
 from typing import Any
 
@@ -13,6 +14,7 @@ import irsim
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.connect import connect
 from irsim.bridges.state import Feedback, Motion, WorldState
+from irsim.scenario.limits import Limits
 from irsim.scenario.yaml.document import load_text
 from tests.bridges.peer import Peer
 
@@ -279,3 +281,48 @@ def test_keys_are_checked() -> None:
     assert [(finding.code, finding.path) for finding in report.findings if finding.severity == "error"] == [
         ("invalid-value", "bridges[0]")
     ]
+
+
+def test_run_opens_the_bridges_of_a_scenario_and_others() -> None:
+    text = SCENE.format(drive="diff", world="")
+    with Peer(lambda message: None) as one, Peer(lambda message: None) as two:
+        result = irsim.run(
+            text=text + lines(one.address), seed=0, steps=4, bridges=[{"name": "json_lines", "address": two.address}]
+        )
+    assert one.kinds() == two.kinds() == ["scene", *["state"] * 4, "end"]
+    words = shlex.split(result.reproduce.partition("#")[0])
+    assert words[words.index("--bridge") + 1] == f"{{name: json_lines, address: '{two.address}'}}"
+
+
+def test_a_program_that_leaves_ends_the_run_with_the_reason() -> None:
+    def answer(message: dict[str, Any]) -> Any:
+        return b"" if message["kind"] == "state" and message["step"] == 3 else {}
+
+    with Peer(answer) as peer:
+        text = SCENE.format(drive="diff", world="") + lines(peer.address, ", answers: true, timeout: 0.5")
+        result = irsim.run(text=text, seed=0)
+    assert result.steps == 3
+    assert result.lost is not None
+    assert "did not answer within 0.5 s" in result.lost
+    assert "the program of a bridge was lost" in result.summary
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("json_line", "did you mean json_lines"),
+        ("{name: json_lines, adress: x}", "adress"),
+        ("{name: json_lines, timeout: 0}", "timeout"),
+        ("{", "is not a bridge"),
+        ({"address": "127.0.0.1:1"}, "'name' is missing"),
+    ],
+)
+def test_a_bridge_that_is_given_wrongly(given: Any, message: str) -> None:
+    with pytest.raises(BridgeError, match=message):
+        irsim.run(text=SCENE.format(drive="diff", world=""), bridges=[given])
+
+
+def test_bridges_can_be_forbidden() -> None:
+    text = SCENE.format(drive="diff", world="") + lines("127.0.0.1:1")
+    with pytest.raises(BridgeError, match="bridges-disabled"):
+        irsim.run(text=text, limits=Limits(bridges=False))

@@ -45,6 +45,7 @@ async def called(workspace: Path) -> set[str]:
         await call("render_snapshot", scenario_path="room.yaml", size_px=200)
         run = await call("run_episode", scenario_path="room.yaml")
         await call("inspect_run", run_id=run["run_id"], view="closest")
+        await call("export_run", run_id=run["run_id"], to="csv")
         job = await call("benchmark", scenarios=["room.yaml", ROOM], behaviors=["dash", long], seeds=2)
         await call("get_job", job_id=job["job_id"])
         await call("inspect_run", run_id=job["job_id"])

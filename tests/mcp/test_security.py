@@ -141,6 +141,7 @@ async def test_every_argument_that_is_a_path_is_confined(workspace: Path) -> Non
         "benchmark": {"scenarios": ["../secret.yaml"], "behaviors": ["dash"], "seeds": 1},
         "write_scenario": {"path": "../secret.yaml", "yaml": ROOM, "overwrite": True},
         "inspect_run": {"run_id": "../../secret"},
+        "export_run": {"run_id": "../../secret", "to": "csv"},
         "get_job": {"job_id": "../../secret"},
     }
     async with Client(build_server(workspace, writing=True), raise_exceptions=True) as client:

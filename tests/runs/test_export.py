@@ -219,3 +219,16 @@ def test_the_command_exports(traffic: Run, room: Path) -> None:
     assert Path(told["file"]).stat().st_size == told["bytes"]
     for arguments in (["export", "nothing-000000", "--to", "csv"], ["export", "--to", "exe"], ["export"]):
         assert console.invoke(app, arguments).exit_code == 2
+
+
+def test_a_run_is_written_when_it_is_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    scene = "world: {width: 5, height: 5}\nrobot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [2, 1, 0]}\n"
+    result = irsim.run(text=scene, seed=0, steps=7, export=[tmp_path / "run.npz", tmp_path / "run.csv"])
+    assert result.files == [str(tmp_path / "run.npz"), str(tmp_path / "run.csv")]
+    with np.load(tmp_path / "run.npz") as arrays:
+        assert len(arrays["step"]) == 8
+    assert result.run_id is None
+    assert not (tmp_path / ".irsim").exists()
+    with pytest.raises(RunError, match="unknown-format"):
+        irsim.run(text=scene, seed=0, export="run.pdf")

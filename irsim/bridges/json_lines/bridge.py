@@ -94,12 +94,20 @@ class JsonLinesBridge(Bridge):
             return
         try:
             self._send("end", {})
-        except BridgeLostError:
+            self._socket.shutdown(socket.SHUT_WR)
+            self._drain()
+        except (BridgeLostError, OSError):
             pass  # the program has left already
         finally:
             if self._socket is not None:
                 self._socket.close()
             self._socket = None
+
+    def _drain(self) -> None:
+        """Wait until the program has read everything and left: what stays unread would break its connection."""
+        deadline = time.monotonic() + min(1.0, self.options.timeout)
+        while (left := deadline - time.monotonic()) > 0 and self._receive(left):
+            self._text = b""
 
     def _send(self, kind: str, content: dict[str, Any]) -> None:
         assert self._socket is not None

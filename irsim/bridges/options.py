@@ -1,0 +1,66 @@
+"""Bridges as a command line or a program names them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import ValidationError
+
+from irsim.bridges.base import BridgeError
+from irsim.common.arguments import as_given
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.options.registry import BRIDGES
+from irsim.options.selection import Select
+from irsim.scenario.behavior_override import BenchmarkError, parse_behavior
+from irsim.scenario.yaml.rewrite import yaml_flow
+
+__all__ = ["bridge_text", "read_bridge", "read_bridges"]
+
+
+def read_bridges(given: Sequence[str | Mapping[str, Any]]) -> list[Any]:
+    """Options models of bridges; see :func:`read_bridge`."""
+    if isinstance(given, (str, Mapping)):
+        given = [given]
+    return [read_bridge(one) for one in given]
+
+
+def read_bridge(given: str | Mapping[str, Any]) -> Any:
+    """The options model of a bridge.
+
+    Args:
+        given: A mapping, or text: a name such as ``ros2``, or ``{name: ros2, backend: dds}``.
+
+    Raises:
+        BridgeError: There is no such bridge, or its options are not valid; the message has all problems.
+    """
+    fix = "give a name, or {name: json_lines, address: '127.0.0.1:9100'}; irsim describe bridges lists them"
+    if isinstance(given, str):
+        try:
+            data: Any = parse_behavior(given)
+        except BenchmarkError:
+            raise _wrong(f"{given!r} is not a bridge", fix) from None
+    else:
+        data = given
+    if not isinstance(data, Mapping):
+        raise _wrong(f"{as_given(given)} is not a bridge", fix)
+    name = data.get("name")
+    if isinstance(name, str) and BRIDGES.get(name) is None:
+        raise _wrong(
+            f"{name!r} is not a bridge", suggestion(name, BRIDGES.names(), f"they are {', '.join(BRIDGES.names())}")
+        )
+    try:
+        return Select(BRIDGES).validate(dict(data))
+    except ValidationError as error:
+        found = [f"{'.'.join(str(part) for part in item['loc'])}: {item['msg']}" for item in error.errors()]
+        raise _wrong("; ".join(found).removeprefix(": "), f"irsim describe bridge.{name} lists the keys") from None
+
+
+def bridge_text(options: Any) -> str:
+    """A bridge as text, as it is written on a command line: what differs from the defaults."""
+    written = options.model_dump(exclude_unset=True)
+    return yaml_flow({"name": options.name, **written}) if len(written) > 1 else str(options.name)
+
+
+def _wrong(message: str, fix: str) -> BridgeError:
+    return BridgeError("bad-argument", message, fix, where="bridges")

@@ -1,0 +1,148 @@
+"""Scenes and states as files, live and of recorded runs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.api import read_scenario
+from irsim.bridges.base import BridgeError
+from irsim.bridges.describe import agent_rows, describe_scene, world_state
+from irsim.bridges.recorded import recorded_scene, recorded_states
+from irsim.bridges.scene import Circle, Line, Polygon, SceneDescription
+from irsim.bridges.scene_files import (
+    feedback_of,
+    load_scene,
+    load_states,
+    save_scene,
+    save_states,
+    scene_as_json,
+    scene_of,
+)
+from irsim.runs import open_run
+
+SCENE = """
+world: {width: 12, height: 8, offset: [-2, 1], boundary: walls, collision_mode: unobstructed,
+  obstacle_map: {name: perlin, resolution: 0.5, fill: 0.1}}
+robot:
+  - {kinematics: {name: acker, wheelbase: 1.2}, shape: {name: rectangle, length: 2, width: 1}, state: [0, 3, 0, 0],
+     goal: [8, 3], vel_max: [1, 0.5], behavior: {name: dash}, color: red, sensors: [{name: lidar2d, number: 7}]}
+  - {kinematics: {name: omni}, state: [0, 6, 1], goal: [8, 6], shape: {name: circle, radius: 0.3}}
+obstacle:
+  - {shape: {name: linestring, vertices: [[0, 0], [1, 1], [2, 0]]}, state: [3, 7, 0]}
+  - {state: [4, 7, 0], shape: {name: compound, parts: [{name: circle, radius: 0.2},
+      {name: rectangle, length: 1, width: 0.1}]}}
+"""
+
+
+def simulation() -> Any:
+    scenario, _ = read_scenario(text=SCENE, strict=True)
+    return irsim.Env(scenario, seed=3, headless=True, log_level="ERROR").simulation
+
+
+@pytest.fixture(scope="module")
+def scene() -> SceneDescription:
+    return describe_scene(simulation())
+
+
+def test_a_scene_has_bodies_map_and_walls(scene: SceneDescription) -> None:
+    assert [agent.name for agent in scene.agents] == ["robot_0", "robot_1", "obstacle_2", "obstacle_3", "boundary"]
+    car, disk, line, pair, walls = scene.agents
+    assert car.parts[0].corners.shape == (4, 2)  # type: ignore[union-attr]
+    assert car.wheelbase == 1.2
+    assert car.color == (1, 0, 0)
+    assert disk.parts == (Circle((0, 0), 0.3),)
+    assert isinstance(line.parts[0], Line)
+    assert [type(part) for part in pair.parts] == [Circle, Polygon]
+    assert isinstance(walls.parts[0], Line)
+    assert walls.parts[0].closed
+    assert (scene.low, scene.high) == ((-2, 1), (10, 9))
+    assert scene.grid is not None
+    assert scene.grid.occupied.shape == (24, 16)
+    assert 0 < scene.grid.occupied.sum() < 24 * 16
+
+
+def test_a_scene_crosses_json(scene: SceneDescription, tmp_path: Path) -> None:
+    save_scene(scene, tmp_path / "scene.json")
+    again = load_scene(tmp_path / "scene.json")
+    assert scene_as_json(again) == scene_as_json(scene)
+    assert again.agents[1] == scene.agents[1]
+    assert np.array_equal(again.grid.occupied, scene.grid.occupied)  # type: ignore[union-attr]
+
+
+def test_states_cross_npz(tmp_path: Path) -> None:
+    running = simulation()
+    rows, states = agent_rows(running), []
+    for _ in range(5):
+        states.append(world_state(running, rows))
+        running.step()
+    save_states(states, tmp_path / "states.npz")
+    again = load_states(tmp_path / "states.npz")
+    assert [state.step for state in again] == [0, 1, 2, 3, 4]
+    for one, two in zip(states, again, strict=True):
+        assert np.array_equal(one.pose, two.pose)
+        assert np.array_equal(one.ranges["robot_0/0"], two.ranges["robot_0/0"])
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"version": 99},
+        {"agents": None},
+        {"agents": [{}]},
+        {"grid": {"size": [2, 2], "cell": [1, 1], "origin": [0, 0], "runs": [10**12]}},
+        {"grid": {"size": [10**7, 10**7], "cell": [1, 1], "origin": [0, 0], "runs": [3]}},
+        {"low": [float("nan"), 0]},
+        {"unknown": 1},
+    ],
+)
+def test_a_wrong_scene_is_refused(scene: SceneDescription, change: dict[str, Any]) -> None:
+    with pytest.raises(BridgeError, match="bridge-file"):
+        scene_of({**scene_as_json(scene), **change})
+
+
+@pytest.mark.parametrize("content", ["", "[", "[]", "{}", '"text"', "[" * 100_000])
+def test_a_file_that_is_no_scene(tmp_path: Path, content: str) -> None:
+    (tmp_path / "scene.json").write_text(content)
+    with pytest.raises(BridgeError, match="bridge-file"):
+        load_scene(tmp_path / "scene.json")
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        [],
+        {"poses": {"a": [1, 2]}},
+        {"poses": {"a": [1, 2, float("inf")]}},
+        {"goals": 3},
+        {"jump": {}},
+        {"ranges": {"a": ["x"]}},
+    ],
+)
+def test_wrong_feedback(data: Any) -> None:
+    with pytest.raises(BridgeError, match="bridge-failed"):
+        feedback_of(data)
+
+
+def test_a_recorded_run_is_the_live_one(tmp_path: Path) -> None:
+    file = tmp_path / "scene.yaml"
+    file.write_text(SCENE)
+    irsim.run(file, seed=3, steps=20, record=tmp_path / "run")
+    run = open_run(tmp_path / "run")
+    live = simulation()
+    plain = scene_as_json(describe_scene(live))
+    recorded = scene_as_json(recorded_scene(run))
+    for one in (plain, recorded):
+        one.pop("about")
+        one.pop("name")
+    assert json.dumps(recorded) == json.dumps(plain)
+    rows = agent_rows(live)
+    for state in recorded_states(run):
+        assert np.array_equal(state.pose, world_state(live, rows).pose)
+        live.step()
+    assert [state.step for state in recorded_states(run, every=8)] == [0, 8, 16, 20]

@@ -1,0 +1,27 @@
+"""``irsim bridge``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tests.cli.conftest import Run
+
+
+def test_doctor_lists_every_bridge(irsim: Run) -> None:
+    done = irsim("bridge", "doctor", "--json")
+    found = {one["bridge"]: one for one in json.loads(done.stdout)}
+    assert found["json_lines"]["state"] == "ready"
+    assert "crossed" in found["json_lines"]["text"]
+
+
+def test_doctor_of_one_that_does_not_exist(irsim: Run) -> None:
+    done = irsim("bridge", "doctor", "telepathy")
+    assert "no such bridge" in done.stdout
+    assert "json_lines" in done.stdout
+
+
+def test_a_program_that_is_not_there(irsim: Run, room: Path) -> None:
+    done = irsim("run", str(room), "--bridge", "{name: json_lines, address: '127.0.0.1:1'}")
+    assert done.exit_code == 1
+    assert "no program listens at 127.0.0.1:1" in done.stderr
