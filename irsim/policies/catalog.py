@@ -22,7 +22,7 @@ from irsim.policies.observations import Observations
 from irsim.policies.policy import Policy
 from irsim.policies.registry import POLICIES, RANDOM
 from irsim.policies.trained import COMMON_NAMES, trained_policies, trained_policy
-from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text, parse_behavior
+from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text, parse_behavior, split_behaviors
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.yaml.rewrite import yaml_flow
 
@@ -175,7 +175,13 @@ def with_file(text: str, path: Path) -> str:
 def _parsed(text: str) -> tuple[str, dict[str, Any]]:
     """Name and options of a policy that is given as text."""
     plain = text.endswith(SUFFIXES) and not text.startswith("{")
-    options = {"name": text} if plain else parse_behavior(text)
+    try:
+        options = {"name": text} if plain else parse_behavior(text)
+    except BenchmarkError:
+        fix = "give a name such as orca, a file (.npz, .onnx), or {name: orca, timeHorizon: 5}"
+        if len(split_behaviors(text)) > 1:
+            fix = "give one policy; irsim benchmark --policies A,B compares several"
+        raise BenchmarkError(f"{clean(text)!r} is not a policy", fix) from None
     name = AS_WRITTEN if options is None else str(options["name"])
     return name, {key: value for key, value in (options or {}).items() if key != "name"}
 

@@ -101,7 +101,7 @@ def test_files_have_a_digest_and_are_found_from_their_folder(tmp_path: Path) -> 
         ("stil", "there is no policy 'stil'. Fix: did you mean still"),
         ("xyzzy", r"Fix: choose one of as-written, .*dash, .*random.* or a file"),
         ("nett.npz", "there is no file 'nett.npz'. Fix: did you mean net.npz"),
-        ("orca dash", "'orca dash' is not a valid behavior"),
+        ("orca dash", "'orca dash' is not a policy"),
         (7, "a policy cannot be 7"),
         ("{name: net.npz, sped: 1}", "'sped' is no option of a file"),
         ("{name: net.npz, decision_dt: -1}", "decision_dt must be a time"),
