@@ -107,8 +107,8 @@ class PolicyError(CodedError, ValueError):
 class PolicyLostError(PolicyError):
     """A policy in another process did not answer as it should; the episode cannot go on."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__("policy-lost", message, "look at what its process prints; a slow one needs a longer timeout")
+    def __init__(self, message: str, fix: str = "look at what its process prints") -> None:
+        super().__init__("policy-lost", message, fix)
 
 
 class NotSimulatedError(ScenarioError):
