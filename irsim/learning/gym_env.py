@@ -11,9 +11,10 @@ from irsim.common.arguments import as_given
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.pictures import Camera
+from irsim.learning.result import Result
 from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskError, TaskSource
-from irsim.learning.worlds import Result, Worlds
+from irsim.learning.worlds import Worlds
 
 require("gym", "gymnasium")
 import gymnasium

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.learning.result import Result
 from irsim.learning.tasks.curriculum import Curriculum
-from irsim.learning.worlds import Result, Worlds
+from irsim.learning.worlds import Worlds
 
 __all__ = ["Ladder"]
 

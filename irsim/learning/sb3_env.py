@@ -81,7 +81,9 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     def step_wait(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
         """Advance all worlds by one period; worlds that are over start their next episode at once."""
         worlds = self.worlds
-        result = worlds.step(self._actions)
+        watch = None if self.ladder is None else self.ladder.watch
+        step = worlds.advance(worlds.read(self._actions), "over", watch=watch)
+        result = step.result
         reward, active = result.reward.reshape(-1), result.active.reshape(-1)
         terminated, truncated = result.terminated.reshape(-1), result.truncated.reshape(-1)
         over = np.repeat(result.over, worlds.learners)
@@ -89,22 +91,15 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
         self.active = active
         self._length += active
         self._return += reward
-        seen = worlds.observe()
         infos = _blank(active)
         for slot in np.flatnonzero(terminated | truncated).tolist():
             episode = {"r": float(self._return[slot]), "l": int(self._length[slot])}
             success = bool(result.arrived.reshape(-1)[slot])
             infos[slot] |= {"episode": episode, "is_success": success, "TimeLimit.truncated": bool(truncated[slot])}
         for slot in np.flatnonzero(done).tolist():
-            infos[slot]["terminal_observation"] = seen[slot].copy()
+            infos[slot]["terminal_observation"] = (step.last if over[slot] else step.seen)[slot].copy()
         self._length[done], self._return[done] = 0, 0.0
-        if self.ladder is not None:
-            self.ladder.watch(result)
-        if over.any():
-            worlds.reset(result.over)
-            slots = np.flatnonzero(over)
-            seen[slots] = worlds.eyes.observe(worlds.rows[slots])
-        return seen, reward.astype(np.float32), done, infos
+        return step.seen, reward.astype(np.float32), done, infos
 
     def set_level(self, level: int) -> None:
         """Set the level of the curriculum of the episodes that start from now on, as the ladder does when it moves."""

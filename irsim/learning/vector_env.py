@@ -13,9 +13,10 @@ from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.gym_env import RENDER_MODES, check_render_mode, frames_per_second
 from irsim.learning.pictures import Camera
+from irsim.learning.result import Result
 from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskSource
-from irsim.learning.worlds import Result, Worlds
+from irsim.learning.worlds import Autoreset, Worlds
 
 require("gym", "gymnasium")
 from gymnasium.vector import AutoresetMode
@@ -25,6 +26,11 @@ from gymnasium.vector.utils import batch_space
 __all__ = ["VectorEnv"]
 
 Flags = NDArray[np.bool_]
+_RESETS: dict[AutoresetMode, Autoreset | None] = {
+    AutoresetMode.NEXT_STEP: "before",
+    AutoresetMode.SAME_STEP: "over",
+    AutoresetMode.DISABLED: None,
+}
 
 
 class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # type: ignore[misc] # as in gym_env
@@ -132,7 +138,8 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         worlds, before = self.worlds, self._over
         if self._mode is AutoresetMode.DISABLED and before.any():
             raise ArgumentError("a world is over", 'start its next episode: reset(options={"reset_mask": mask})')
-        result = worlds.step(actions)
+        step = worlds.advance(worlds.read(actions), _RESETS[self._mode], out=self._observed)
+        result, seen = step.result, step.seen
         reward, terminated, truncated = (
             result.reward.reshape(-1),
             result.terminated.reshape(-1),
@@ -142,16 +149,10 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         over: Flags = result.over & ~before
         waiting = ~info["active"] & np.repeat(over, worlds.learners)
         truncated = truncated | waiting
-        if self._mode is AutoresetMode.NEXT_STEP and before.any():
-            worlds.reset(before)  # these worlds were over before the step, which did not count
-            begun = np.repeat(before, worlds.learners)
-            info["active"] |= begun & worlds.present.reshape(-1)
-        seen = worlds.observe(self._observed)
+        if self._mode is AutoresetMode.NEXT_STEP and before.any():  # for these worlds, the step did not count
+            info["active"] |= np.repeat(before, worlds.learners) & worlds.present.reshape(-1)
         if self._mode is AutoresetMode.SAME_STEP and over.any():
-            slots = np.flatnonzero(np.repeat(over, worlds.learners))
-            info |= _final(seen, slots)
-            worlds.reset(over)
-            seen[slots] = worlds.eyes.observe(worlds.rows[slots])
+            info |= _final(step.last, np.flatnonzero(np.repeat(over, worlds.learners)))
             over[:] = False
         self._over = over
         info |= self._drawn()

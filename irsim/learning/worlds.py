@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +12,13 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError, PlacementError
 from irsim.env.batch import Batch
+from irsim.learning.actions import read_actions
 from irsim.learning.draws import Draws, check_observed
 from irsim.learning.features import REWARDS
 from irsim.learning.latency import Latency
 from irsim.learning.moment import Moment
 from irsim.learning.observing import Eyes
+from irsim.learning.result import Result, Step
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
@@ -27,35 +28,12 @@ from irsim.policies.networks.output import Present, decide
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.simulation import Simulation
 
-__all__ = ["Result", "Worlds"]
+__all__ = ["Autoreset", "Worlds"]
 
+Autoreset = Literal["over", "before"]
+"""Worlds that start their next episode in a step: those that are over after it, or those that were before it."""
 _TRIES = 100
 """Number of scenes that are drawn for a world before it is an error that none has room for all objects."""
-
-
-@dataclass(frozen=True)
-class Result:
-    """What a step of n worlds with A learners each has led to.
-
-    Attributes:
-        reward: (n, A) sum of the terms; 0 for learners whose episode was over before.
-        terminated: (n, A) whether the episode of a learner ended in this step: it arrived, or it collided.
-        truncated: (n, A) whether it was cut off in this step without such an end: at the horizon, or because the world
-            starts its next episode.
-        active: (n, A) whether the episode of the learner was going on before the step.
-        over: (n,) whether the world is over, so that it has to be reset.
-        arrived, collided: (n, A) whether the learner arrived or began to collide in this step.
-        terms: (T, n, A) terms of the reward times their weights, in the order of the task.
-    """
-
-    reward: Floats
-    terminated: NDArray[np.bool_]
-    truncated: NDArray[np.bool_]
-    active: NDArray[np.bool_]
-    over: NDArray[np.bool_]
-    arrived: NDArray[np.bool_]
-    collided: NDArray[np.bool_]
-    terms: Floats
 
 
 class Worlds:
@@ -127,6 +105,7 @@ class Worlds:
         self.present = np.ones(self._shape, dtype=bool)
         self.level = np.zeros(n, dtype=np.int64)
         self.drawn: dict[str, NDArray[Any]] = {}
+        self._last: NDArray[np.float32] | None = None
         self._latency = None if self._draws.latency == 0 else Latency(self._draws.latency, n, self.learners)
         self.set_level((self.task.curriculum.start if self.task.curriculum else 0) if level is None else level)
         self.reset(seeds=seeds if self.varies else None)
@@ -229,11 +208,64 @@ class Worlds:
         Raises:
             ArgumentError: The actions have another shape, or are not finite.
         """
+        return self._step(self.read(actions))
+
+    def advance(
+        self,
+        numbers: Floats | None,
+        reset: Autoreset | None = None,
+        *,
+        out: NDArray[np.float32] | None = None,
+        last: NDArray[np.float32] | None = None,
+        watch: Callable[[Result], None] | None = None,
+    ) -> Step:
+        """Advance all worlds by one period, observe, and start the next episodes of worlds that are over.
+
+        Args:
+            numbers: (n * A, F) what :meth:`read` made of actions; None leaves the learners to their behaviors.
+            reset: Which worlds start their next episode: those that are ``over`` after the step, or those that were
+                over ``before`` it; None: none.
+            out: (n * A, D) array for observations; None: a new one.
+            last: (n * A, D) array for the last observations of episodes; None: one that the next call overwrites.
+            watch: Called with the result before worlds that are over after the step start their next episode.
+
+        Returns:
+            What has happened, and what the learners observe then.
+        """
+        before = self._over
+        result = self._step(numbers)
+        if reset == "before" and before.any():
+            self.reset(before)
+        seen = self.observe(out)
+        if watch is not None:
+            watch(result)
+        if last is None:
+            last = self._last = np.empty(seen.shape, dtype=np.float32) if self._last is None else self._last
+        if reset == "over":
+            self.renew(result.over, seen, last)
+        return Step(result, seen, last)
+
+    def renew(self, over: NDArray[np.bool_], seen: NDArray[np.float32], last: NDArray[np.float32]) -> None:
+        """Start the next episode of worlds, keep what their learners observed, and observe again.
+
+        Args:
+            over: (n,) worlds.
+            seen: (n * A, D) what all learners observe; changed in these worlds.
+            last: (n * A, D) receives what it was in these worlds.
+        """
+        if not over.any():
+            return
+        slots = np.flatnonzero(np.repeat(over, self.learners))
+        last[slots] = seen[slots]
+        self.reset(over)
+        seen[slots] = self.eyes.observe(self.rows[slots])
+
+    def _step(self, numbers: Floats | None) -> Result:
         simulation, rows, shape = self._simulation, self.rows, self._shape
         goal, before = simulation.goal.take(rows, axis=0), simulation.pose.take(rows, axis=0)
         control_before = simulation.control.take(rows, axis=0)
-        if actions is not None:
-            self._impose(self._read(actions), before, goal, control_before)
+        if numbers is not None:
+            self._impose(numbers, before, goal, control_before)
         commanded = simulation.state.commanded.take(rows, axis=0)
         threat = None if self._threats is None else self._threats.urgency(rows)
         simulation.step()
@@ -287,7 +319,7 @@ class Worlds:
             over |= hit.any(axis=1)
         truncated = active & ~terminated & over[:, None]
         self._ended |= truncated
-        self._over = over
+        self._over = over.copy()
         return Result(terms.sum(axis=0), terminated, truncated, active, over, came, hit, terms)
 
     def _value(self, feature: Any, options: Any, moment: Moment) -> Floats:
@@ -308,25 +340,13 @@ class Worlds:
         return gaps
 
     # actions ----------------------------------------------------------------------------------------------------------
-    def _read(self, actions: Any) -> Floats:
-        """(n * A, F) numbers that :func:`decide` reads."""
-        choices = self._meaning.choices
-        if choices is None:
-            numbers = np.asarray(actions, dtype=np.float64)
-            if numbers.shape != (len(self.rows), self.width):
-                what = f"actions have the shape {numbers.shape}, not {(len(self.rows), self.width)}"
-                raise ArgumentError(what, "give one row of numbers for each learner of each world")
-            if not np.isfinite(numbers).all():
-                raise ArgumentError("an action is not finite", "give numbers from -1 to 1")
-            return numbers
-        number = np.asarray(actions)
-        if number.shape != (len(self.rows),) or number.dtype.kind not in "iu":
-            raise ArgumentError("actions are numbers of choices, one whole number for each learner", "give integers")
-        if ((number < 0) | (number >= len(choices))).any():
-            raise ArgumentError(f"an action is not the number of a choice, 0 to {len(choices) - 1}", "give one of them")
-        numbers = np.zeros((len(number), len(choices)))
-        numbers[np.arange(len(number)), number] = 1.0
-        return numbers
+    def read(self, actions: Any) -> Floats | None:
+        """(n * A, F) numbers that :meth:`advance` takes, from actions as :meth:`step` takes them.
+
+        Raises:
+            ArgumentError: The actions have another shape, or are not finite.
+        """
+        return None if actions is None else read_actions(actions, self._meaning.choices, len(self.rows), self.width)
 
     def _impose(self, numbers: Floats, pose: Floats, goal: Floats, control: Floats) -> None:
         """Command the learners whose episodes go on; the others stand still."""
