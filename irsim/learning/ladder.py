@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from irsim.learning.result import Result
 from irsim.learning.tasks.curriculum import Curriculum
-from irsim.learning.worlds import Worlds
+from irsim.learning.workers.divided import AnyWorlds
 
 __all__ = ["Ladder"]
 
@@ -28,7 +28,7 @@ class Ladder:
         level: The present level.
     """
 
-    def __init__(self, worlds: Worlds, curriculum: Curriculum) -> None:
+    def __init__(self, worlds: AnyWorlds, curriculum: Curriculum) -> None:
         self._worlds, self._curriculum = worlds, curriculum
         self.level = curriculum.start
         self._recent: NDArray[np.bool_] = np.zeros(0, dtype=bool)

@@ -14,7 +14,7 @@ from irsim.learning.ladder import Ladder
 from irsim.learning.pictures import Camera
 from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskSource
-from irsim.learning.worlds import Worlds
+from irsim.learning.workers.divided import open_worlds
 
 require("learn", "stable_baselines3")
 from stable_baselines3.common.vec_env import VecEnv
@@ -33,7 +33,9 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
         task: The task: its file, its data, or a task that was read.
         worlds: Number of worlds.
         seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
-        threads: Number of threads; results do not depend on it.
+        threads: Number of threads of all processes together; results do not depend on it.
+        workers: Number of processes that the worlds are divided among, this one included; results do not depend on it.
+            Reward functions in Python get the worlds of their process.
 
     Attributes:
         worlds: The worlds behind it.
@@ -43,10 +45,13 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     Raises:
         TaskError: The task is not valid, or does not fit its scenario.
         ScenarioError: The scenario cannot be used.
+        ArgumentError: There is no such number of workers.
     """
 
-    def __init__(self, task: TaskSource, worlds: int = 1, *, seed: int | None = None, threads: int = 1) -> None:
-        self.worlds = Worlds(task, worlds, seed=seed, threads=threads)
+    def __init__(
+        self, task: TaskSource, worlds: int = 1, *, seed: int | None = None, threads: int = 1, workers: int = 1
+    ) -> None:
+        self.worlds = open_worlds(task, worlds, seed=seed, threads=threads, workers=workers)
         slots = self.worlds.n * self.worlds.learners
         self.render_mode = "rgb_array"
         self._camera = Camera(self.worlds)
@@ -108,7 +113,8 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
             self.ladder.restore({"level": level, "recent": ""})
 
     def close(self) -> None:
-        """Close the window."""
+        """Close the window, and end the worker processes."""
+        self.worlds.close()
         self._camera.close()
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:

@@ -193,6 +193,13 @@ class Worlds:
                 these = these & (self._simulation.state.failed_placement >= 0)
                 next_scene = True
 
+    def buffer(self) -> NDArray[np.float32]:
+        """(n * A, D) an array that observations can be written to."""
+        return np.zeros((len(self.rows), self.eyes.size), dtype=np.float32)
+
+    def close(self) -> None:
+        """Do nothing: worlds of one process need no end."""
+
     def observe(self, out: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
         """(n * A, D) what the learners observe now, written to ``out`` if it is given."""
         return self.eyes.observe(self.rows, out)

@@ -81,12 +81,12 @@ CASES = {
 }
 
 
-def rates(case: Case, threads: int, seconds: float, repeats: int = 5) -> tuple[float, float]:
+def rates(case: Case, threads: int, workers: int, seconds: float, repeats: int = 5) -> tuple[float, float]:
     """Slots per second of wall time and of processor time, each the median of the repeats.
 
     Actions are uniform draws; observations, rewards and resets of episodes that end are part of a step.
     """
-    env = VectorEnv(case.task(), case.slots, threads=threads, copy=False, autoreset_mode="SameStep")
+    env = VectorEnv(case.task(), case.slots, threads=threads, workers=workers, copy=False, autoreset_mode="SameStep")
     env.reset(seed=1_000_000)
     low, high = env.action_space.low, env.action_space.high
     actions = np.random.default_rng(0).uniform(low, high, (16, *low.shape)).astype(np.float32)
