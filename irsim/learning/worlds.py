@@ -24,7 +24,7 @@ from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
 from irsim.learning.threats import Threats
 from irsim.metrics.roles import kinds_of
-from irsim.policies.networks.output import Present, decide
+from irsim.policies.networks.output import Present, are_finite, decide
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.simulation import Simulation
 
@@ -91,7 +91,7 @@ class Worlds:
         step_time = self.scenario.world.step_time
         horizons = [max(1, round(self.task.horizon_of(k) / step_time)) for k in range(len(self.task.levels))]
         self._horizons = np.array(horizons, dtype=np.int64)
-        self._terms = [(REWARDS.get(term.name), term) for term in self.task.reward]
+        self._terms: list[tuple[Any, Any]] = [(REWARDS.get(term.name), term) for term in self.task.reward]
         wary = any(term.name == "rvo" for term in self.task.reward)
         self._threats = Threats(simulation, team.indices, threads) if wary else None
         self._shape = (n, self.learners)
@@ -138,6 +138,7 @@ class Worlds:
             self._read_draws(chosen)
         self._ended[chosen] = ~self.present[chosen]
         self._low, self._high = state.vel_min.take(self.rows, axis=0), state.vel_max.take(self.rows, axis=0)
+        self._bounded = are_finite(self._low, self._high, self.width)
         flags = self._simulation
         self._arrived[chosen] = flags.arrived.take(self.rows).reshape(self._shape)[chosen] != 0
         self._collided[chosen] = flags.collided.take(self.rows).reshape(self._shape)[chosen] != 0
@@ -286,8 +287,9 @@ class Worlds:
         self._collided = collided
         moment = Moment(
             step_time=float(self.scenario.world.step_time),
-            distance_before=_distance(before, goal).reshape(shape),
-            distance=_distance(after, goal).reshape(shape),
+            pose_before=before.reshape(*shape, 3),
+            pose=after.reshape(*shape, 3),
+            goal=goal.reshape(*shape, 3),
             reached=(reached.reshape(shape) & active) | came,
             arrived=came,
             collided=hit,
@@ -298,11 +300,12 @@ class Worlds:
             velocity=twist[:, :2].reshape(*shape, 2),
             yaw_rate=twist[:, 2].reshape(shape),
             gaps=self._gaps(),
-            direction_before=_direction(before, goal).reshape(*shape, 2),
             commanded=commanded.reshape(*shape, 2),
             urgency=lambda: np.zeros(shape) if threat is None else threat.reshape(shape),
         )
-        terms = np.stack([self._value(feature, options, moment) for feature, options in self._terms])
+        terms = np.empty((len(self._terms), *shape))
+        for term, (feature, options) in zip(terms, self._terms, strict=True):
+            np.multiply(options.weight, feature.function(moment, options), out=term)
         terms *= active
         if not self.present.all():
             terms[:, ~self.present] = 0.0  # their places are not numbers
@@ -319,19 +322,15 @@ class Worlds:
         done = self._simulation.done()
         terminated = active & (terminated | done[:, None])
         self._ended |= terminated
-        over = self._over | self._ended.all(axis=1) | done | (self._simulation.count >= self._horizons[self.level])
+        over = self._over | _all(self._ended) | done | (self._simulation.count >= self._horizons[self.level])
         if ends.world == "any":
-            over |= terminated.any(axis=1)
+            over |= _any(terminated)
         elif ends.world == "collision":
-            over |= hit.any(axis=1)
+            over |= _any(hit)
         truncated = active & ~terminated & over[:, None]
         self._ended |= truncated
         self._over = over.copy()
         return Result(terms.sum(axis=0), terminated, truncated, active, over, came, hit, terms)
-
-    def _value(self, feature: Any, options: Any, moment: Moment) -> Floats:
-        value: Floats = options.weight * feature.function(moment, options)
-        return value
 
     def _gaps(self) -> Callable[[float], Floats]:
         """The distances to others now, measured once for each reach."""
@@ -362,33 +361,33 @@ class Worlds:
         if self._latency is not None:
             numbers, held = self._latency.pass_on(numbers, simulation.count)
         velocity = simulation.twist.take(rows, axis=0)[:, :2]
-        present = Present(pose, goal, velocity, control, self._low, self._high)
+        present = Present(pose, goal, velocity, control, self._low, self._high, self._bounded)
         wanted = decide(self._meaning, numbers, present)
-        wanted[self._ended.reshape(-1)] = 0.0
+        if self._ended.any():
+            wanted[self._ended.reshape(-1)] = 0.0
         if held is not None:
             wanted[held] = 0.0
         simulation.given[rows] = 1
         if self._meaning.returns == "velocity":
             core.follow_rows(simulation.world, simulation.state, rows, wanted)
         else:
-            simulation.command[rows, : self._controls] = wanted[:, : self._controls]
+            for k in range(self._controls):
+                simulation.command[:, k][rows] = wanted[:, k]
 
 
-def _distance(pose: Floats, goal: Floats) -> Floats:
-    away = goal[:, :2] - pose[:, :2]
-    result: Floats = np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1])
-    return result
+def _all(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(n,) whether all flags of a world are set."""
+    return flags[:, 0] if flags.shape[1] == 1 else np.asarray(np.logical_and.reduce(flags, axis=1))
 
 
-def _direction(pose: Floats, goal: Floats) -> Floats:
-    """(B, 2) unit vectors to goals; 0 without one, and at it."""
-    away, distance = goal[:, :2] - pose[:, :2], _distance(pose, goal)
-    far = distance > 0  # not for NaN either
-    result: Floats = np.where(far[:, None], away / np.where(far, distance, 1.0)[:, None], 0.0)
-    return result
+def _any(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(n,) whether any flag of a world is set."""
+    return flags[:, 0] if flags.shape[1] == 1 else np.asarray(np.logical_or.reduce(flags, axis=1))
 
 
 def _same(a: Floats, b: Floats) -> NDArray[np.bool_]:
     """Whether goals are equal, (B,)."""
+    if a.tobytes() == b.tobytes():
+        return np.ones(len(a), dtype=bool)
     equal: NDArray[np.bool_] = ((a == b) | (np.isnan(a) & np.isnan(b))).all(axis=1)
     return equal
