@@ -35,13 +35,15 @@ def main() -> None:
 
 def _serve(answers: int) -> None:
     from irsim.learning.workers.memory import SharedMemory  # while the parent makes its own worlds
-    from irsim.learning.workers.part import Part
+    from irsim.learning.workers.part import Part, python_parts
     from irsim.learning.worlds import Worlds
 
     setup: dict[str, Any] = read_message(0)
     try:
         sys.argv = setup["argv"]  # files of scenarios are looked for beside the script, too
         worlds = Worlds(setup["task"], setup["n"], seed=setup["seed"], threads=setup["threads"], level=setup["level"])
+        if python_parts(worlds) != setup["python"]:
+            raise RuntimeError("the program that made the environment has registered behaviors, sensors or drives")
     except BaseException as error:
         read_message(0)
         write_message(answers, packed_error(error), b"\1")

@@ -18,7 +18,7 @@ from irsim.learning.actions import read_actions
 from irsim.learning.result import Result, Step
 from irsim.learning.tasks.files import TaskSource
 from irsim.learning.workers.memory import SharedMemory
-from irsim.learning.workers.part import DRAWN, RESULTS, Part, layout_of
+from irsim.learning.workers.part import DRAWN, RESULTS, Part, layout_of, python_parts
 from irsim.learning.workers.process import Worker, stop
 from irsim.learning.worlds import Autoreset, Worlds
 from irsim.simulation.simulation import Simulation
@@ -87,7 +87,9 @@ class DividedWorlds:
             first = bounds[number]
             count = bounds[number + 1] - first
             seed = own.seeds[0] + first
-            worker.send(_setup(task, self._memory.key, number, first, count, seed, max(1, threads // parts), level))
+            made = {"task": task, "n": count, "seed": seed, "threads": max(1, threads // parts), "level": level}
+            place = {"memory": self._memory.key, "number": number, "first": first}
+            worker.send({**made, **place, "argv": sys.argv, "python": python_parts(own)})
             worker.send(layout)
         self._arrays = self._memory.arrays(layout)
         self._own = own
@@ -269,13 +271,3 @@ def open_worlds(
     if min(workers, n) < 2:
         return Worlds(task, n, seed=seed, threads=threads, level=level)
     return DividedWorlds(task, n, workers, seed=seed, threads=threads, level=level)
-
-
-def _setup(
-    task: TaskSource, memory: int | str, number: int, first: int, n: int, seed: int, threads: int, level: int | None
-) -> dict[str, Any]:
-    """What a worker process needs to make its worlds."""
-    return {
-        "task": task, "argv": sys.argv, "memory": memory, "number": number, "first": first, "n": n, "seed": seed,
-        "threads": threads, "level": level,
-    }  # fmt: skip

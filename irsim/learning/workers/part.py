@@ -12,7 +12,7 @@ from irsim.learning.result import Result
 from irsim.learning.workers.memory import ArrayLayout
 from irsim.learning.worlds import Worlds
 
-__all__ = ["RESULTS", "Part", "layout_of"]
+__all__ = ["DRAWN", "RESULTS", "Part", "layout_of", "python_parts"]
 
 RESULTS = tuple(field.name for field in fields(Result))
 """Arrays of a result."""
@@ -44,6 +44,13 @@ def layout_of(worlds: Worlds, n: int, parts: int) -> list[ArrayLayout]:
         ArrayLayout(DRAWN + name, (n, *values.shape[1:]), values.dtype.str) for name, values in worlds.drawn.items()
     ]
     return made
+
+
+def python_parts(worlds: Worlds) -> list[int]:
+    """Numbers of Python behaviors, sensors, drives and hooks, by which worlds are told from those of other code."""
+    simulation = worlds.simulation
+    drives, hooks = int(simulation.drives is not None), int(simulation.hooks is not None)
+    return [len(simulation.decisions), len(simulation.measurements), drives, hooks]
 
 
 class Part:
