@@ -185,7 +185,8 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
 
     def close_extras(self, **kwargs: Any) -> None:
         """Close the window, and end the worker processes."""
-        self.worlds.close()
+        if hasattr(self, "worlds"):  # not if the arguments were refused
+            self.worlds.close()
         if self._camera is not None:
             self._camera.close()
 

@@ -356,7 +356,7 @@ class Simulation:
         """
         self._reseeded = False
         chosen = self._all if mask is None else np.asarray(mask, dtype=np.uint8)
-        self.state.reset(chosen, next_scene)
+        self.state.reset(chosen, next_scene, self.threads)
         self._check_placement()
         if self.drives is not None:
             self.drives.reset(np.flatnonzero(chosen).tolist())
