@@ -32,7 +32,8 @@ void in_parts(std::size_t count, int threads, std::size_t least, const Work& wor
 }
 
 /// Call `work(k, thread)` for each k below `count`, on threads that each take the next one when they are free, because
-/// turns take unequal times. The first thread, 0, is this one. An error of a turn is thrown after all threads have ended.
+/// turns take unequal times. The first thread, 0, is this one. An error of a turn is thrown after all threads have
+/// ended.
 template <class Work>
 void one_by_one(std::size_t count, int threads, const Work& work) {
   std::atomic<std::size_t> next{0};
