@@ -20,6 +20,7 @@ __all__ = [
     "PolicyLostError",
     "ScenarioError",
     "ScenarioNotFoundError",
+    "WorkerError",
 ]
 
 
@@ -109,6 +110,13 @@ class PolicyLostError(PolicyError):
 
     def __init__(self, message: str, fix: str = "look at what its process prints") -> None:
         super().__init__("policy-lost", message, fix)
+
+
+class WorkerError(CodedError, RuntimeError):
+    """A process of irsim that does a part of the work has died."""
+
+    def __init__(self, message: str, fix: str) -> None:
+        super().__init__("worker-failed", message, fix)
 
 
 class NotSimulatedError(ScenarioError):
