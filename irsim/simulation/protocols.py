@@ -20,8 +20,8 @@ decides for. Its method ``claim(simulation)``, if it has one, marks rows as ``gi
 then skip them."""
 
 PythonMeasurement = Callable[[Any, "NDArray[np.bool_] | None"], None]
-"""Is called with the simulation and a mask of worlds (None: all) after the native sensors, and updates the sensors that it
-computes in these worlds."""
+"""Is called with the simulation and a mask of worlds (None: all) after the native sensors, and updates the sensors that
+it computes in these worlds."""
 
 
 class WideControls(Protocol):
