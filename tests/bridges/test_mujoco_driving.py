@@ -86,3 +86,12 @@ def test_comparison_of_lidars_counts_what_only_one_has_hit() -> None:
     assert comparison.largest == pytest.approx(0.004, rel=1e-3)
     assert comparison.quantile(0.5) == 0.0
     assert comparison.quantile(1.0) == pytest.approx(0.004, rel=1e-3)
+
+
+def test_without_mujoco_the_error_names_the_command(monkeypatch: pytest.MonkeyPatch) -> None:
+    from irsim.bridges.mujoco.bridge import make
+    from irsim.common import extras
+
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
+    with pytest.raises(extras.ExtraError, match=r"pip install 'irsim-mcp\[mujoco\]'"):
+        make(Mujoco())

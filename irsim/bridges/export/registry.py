@@ -74,11 +74,15 @@ def find_format(name: str | None, out: Path | None) -> Format:
             raise RunError("bad-argument", "no format was given", f"name one with --to; {listed}", where="to")
         known = map(_load, format_names())
         fitting = [one for one in known if out.suffix.lower() in (one.suffix, *one.more_suffixes)]
+        if len(fitting) > 1:  # x.mjcf.xml says which
+            fitting = [one for one in fitting if Path(out.stem).suffix.lower() == f".{one.name}"] or fitting
         if len(fitting) == 1:
             return fitting[0]
         if fitting:
             what = f"files of {' and '.join(one.name for one in fitting)} end with {out.suffix.lower()}"
-            raise RunError("unknown-format", what, f"name the format: --to {fitting[0].name}", where="to")
+            named = f"{clean(out.stem, 200)}.{fitting[0].name}{out.suffix}"
+            fix = f"name the file {named}, or the format with --to {fitting[0].name}"
+            raise RunError("unknown-format", what, fix, where="to")
         what = f"the suffix of '{clean(out, 200)}' does not select a format"
         raise RunError("unknown-format", what, f"name one with --to; {listed}", where="to")
     if name not in format_names():
