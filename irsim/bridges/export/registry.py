@@ -39,7 +39,7 @@ class Format:
         ranges: Whether it has the ranges of lidars unless the caller decides.
         objects: Word that chooses the objects unless the caller does.
         options: Model of its options, which writers find in :attr:`Episode.options`; None without any.
-        more_suffixes: Other suffixes of its files, which select how it writes them.
+        more_suffixes: Other suffixes of its files; they select it where they are the suffix of no other format.
     """
 
     name: str
@@ -72,15 +72,21 @@ def find_format(name: str | None, out: Path | None) -> Format:
     if name is None:
         if out is None:
             raise RunError("bad-argument", "no format was given", f"name one with --to; {listed}", where="to")
-        for known in map(_load, format_names()):
-            if out.suffix.lower() in (known.suffix, *known.more_suffixes):
-                return known
+        known = list(map(_load, format_names()))
+        for suffixes in ([(form.suffix, form) for form in known], _further_suffixes(known)):
+            found = [(len(end), form) for end, form in suffixes if out.name.lower().endswith(end)]
+            if found:
+                return max(found, key=lambda pair: pair[0])[1]
         what = f"the suffix of '{clean(out, 200)}' does not select a format"
         raise RunError("unknown-format", what, f"name one with --to; {listed}", where="to")
     if name not in format_names():
         fix = suggestion(name, format_names(), listed)
         raise RunError("unknown-format", f"{clean(name)!r} is not a format of runs", fix, where="to")
     return _load(name)
+
+
+def _further_suffixes(known: Sequence[Format]) -> list[tuple[str, Format]]:
+    return [(suffix, form) for form in known for suffix in form.more_suffixes]
 
 
 def _load(name: str) -> Format:

@@ -183,4 +183,12 @@ def _problem(agent: Agent, last_step: int, number: int) -> Any:
     return PlanningProblem(number, start, GoalRegion([goal]))
 
 
-FORMAT = Format("commonroad", ".xml", _write, libraries=("commonroad",), ranges=False, extra="scenarios")
+FORMAT = Format(
+    "commonroad",
+    ".cr.xml",
+    _write,
+    libraries=("commonroad",),
+    ranges=False,
+    extra="scenarios",
+    more_suffixes=(".xml",),
+)
