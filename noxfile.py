@@ -48,7 +48,8 @@ INTEROP = "3.11"
 """The Python of bridges: that of Debian 12, whose packages of ROS it imports; CARLA has a client for it, too."""
 DEBIAN_PEERS = (
     "chromium", "fastddsgen", "g++", "libfastrtps-dev", "libnav-msgs-dev", "libosmesa6", "librecast-dev",
-    "libsdformat-dev", "python3-rospy", "ros-base", "ros-nav-msgs",
+    "libsdformat-dev", "python3-geometry-msgs", "python3-nav-msgs", "python3-rospy", "python3-sensor-msgs",
+    "python3-tf2-msgs", "python3-visualization-msgs", "ros-base", "ros-nav-msgs",
 )  # fmt: skip
 """Packages of Debian 12 that bridges meet in tests."""
 PYTHON_PEERS = ("mcap-ros2-support>=0.5", "msgpack>=1", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from irsim.cli import bridge_splats
+from irsim.cli.bridge_bag import import_bag
 from irsim.cli.bridge_pedestrians import import_pedestrians
 from irsim.cli.bridge_scene import export_scene
 from irsim.cli.guard import FAILED, handle_errors
@@ -60,5 +61,6 @@ def doctor(
 bridge_app.command("doctor")(handle_errors(doctor))
 bridge_app.command("preview")(handle_errors(bridge_splats.preview))
 bridge_app.command("page")(handle_errors(bridge_splats.page))
+bridge_app.command("import-bag")(handle_errors(import_bag))
 bridge_app.command("import-pedestrians")(handle_errors(import_pedestrians))
 bridge_app.command("export-scene")(handle_errors(export_scene))

@@ -23,9 +23,8 @@ def run(tmp_path_factory):
 def test_commonroad_reads_what_was_simulated(run, tmp_path) -> None:
     from commonroad.common.file_reader import CommonRoadFileReader
 
-    target = tmp_path / "run.cr.xml"
-    result = export_run(run, target)
-    assert result.format == "commonroad"
+    target = tmp_path / "run.xml"
+    result = export_run(run, target, to="commonroad")
     assert "the map was left out" in " ".join(result.notes)
     scenario, problems = CommonRoadFileReader(str(target)).open()
     assert scenario.dt == 0.1

@@ -39,7 +39,7 @@ class Format:
         ranges: Whether it has the ranges of lidars unless the caller decides.
         objects: Word that chooses the objects unless the caller does.
         options: Model of its options, which writers find in :attr:`Episode.options`; None without any.
-        more_suffixes: Other suffixes of its files; they select it where they are the suffix of no other format.
+        more_suffixes: Other suffixes of its files, which select how it writes them.
     """
 
     name: str
@@ -72,21 +72,19 @@ def find_format(name: str | None, out: Path | None) -> Format:
     if name is None:
         if out is None:
             raise RunError("bad-argument", "no format was given", f"name one with --to; {listed}", where="to")
-        known = list(map(_load, format_names()))
-        for suffixes in ([(form.suffix, form) for form in known], _further_suffixes(known)):
-            found = [(len(end), form) for end, form in suffixes if out.name.lower().endswith(end)]
-            if found:
-                return max(found, key=lambda pair: pair[0])[1]
+        known = map(_load, format_names())
+        fitting = [one for one in known if out.suffix.lower() in (one.suffix, *one.more_suffixes)]
+        if len(fitting) == 1:
+            return fitting[0]
+        if fitting:
+            what = f"files of {' and '.join(one.name for one in fitting)} end with {out.suffix.lower()}"
+            raise RunError("unknown-format", what, f"name the format: --to {fitting[0].name}", where="to")
         what = f"the suffix of '{clean(out, 200)}' does not select a format"
         raise RunError("unknown-format", what, f"name one with --to; {listed}", where="to")
     if name not in format_names():
         fix = suggestion(name, format_names(), listed)
         raise RunError("unknown-format", f"{clean(name)!r} is not a format of runs", fix, where="to")
     return _load(name)
-
-
-def _further_suffixes(known: Sequence[Format]) -> list[tuple[str, Format]]:
-    return [(suffix, form) for form in known for suffix in form.more_suffixes]
 
 
 def _load(name: str) -> Format:

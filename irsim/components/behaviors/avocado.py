@@ -77,5 +77,9 @@ class Avocado(BehaviorOptions):
     """Largest noise on the velocity of another object, along and across the line of sight, while it gets no attention:
     it ends deadlocks. `eta` of the paper."""
 
+    def draws(self) -> bool:
+        """Whether there is noise."""
+        return self.noise > 0
+
 
 BEHAVIORS.register(Avocado, kernel=core.AvocadoOptions)

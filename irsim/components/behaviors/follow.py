@@ -74,5 +74,9 @@ class Follow(BehaviorOptions):
     """Names of zones of `world.zones` that are solid for this object alone: its path leads around them, and its body
     does not enter them, not even to give way. One that starts in a zone or is pushed into it leaves it."""
 
+    def draws(self) -> bool:
+        """Whether its local behavior draws random numbers."""
+        return isinstance(self.local, BehaviorOptions) and self.local.draws()
+
 
 BEHAVIORS.register(Follow, kernel=core.RouteOptions)

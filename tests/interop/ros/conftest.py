@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import signal
@@ -92,14 +93,24 @@ def fastdds_program(tmp_path_factory: pytest.TempPathFactory) -> str:
     for tool in ("fastddsgen", "g++"):
         if shutil.which(tool) is None:
             pytest.skip(f"{tool} is missing")
-    folder = tmp_path_factory.mktemp("fastdds")
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    with (shared / "fastdds.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # one process of the tests builds it, the others wait
+        folder = shared / "fastdds"
+        if not (folder / "peer").exists():
+            folder.mkdir(exist_ok=True)
+            _build(folder)
+    return str(folder / "peer")
+
+
+def _build(folder: Path) -> None:
     (folder / "messages.idl").write_text(idl_of(Messages().store, KINDS))
     subprocess.run(["fastddsgen", "-replace", "messages.idl"], cwd=folder, check=True, capture_output=True)
     sources = [str(HERE / "fastdds_peer.cpp"), "messages.cxx", "messagesPubSubTypes.cxx"]
     libraries = ["-lfastrtps", "-lfastcdr", "-lpthread"]
     command = ["g++", "-std=c++17", "-O0", "-I.", "-o", "peer", *sources, *libraries]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
-    return str(folder / "peer")
 
 
 @pytest.fixture

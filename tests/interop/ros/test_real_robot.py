@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import signal
 import time
@@ -70,7 +71,7 @@ def test_the_robot_is_driven_within_its_limits(drive: Callable[..., tuple[Robot,
     until(lambda: max(robot.speeds(), default=0) > 0.39, START_S, "not driven")
     speeds = robot.speeds()
     assert max(speeds) == pytest.approx(0.4)
-    steps = [after - before for before, after in zip(speeds, speeds[1:], strict=False)]
+    steps = [after - before for before, after in itertools.pairwise(speeds)]
     assert max(steps, default=0) < 2 * 2 * 0.05 + 1e-9  # acceleration times at most two periods of the commands
     until(lambda: len(irsim.on("step")) > 100, START_S, "not stepped")
     x, y = (float(value) for value in irsim.on("step")[-1].split()[2:4])
@@ -110,7 +111,7 @@ def test_the_robot_stops_when_we_crash_or_hang(drive: Callable[..., tuple[Robot,
         assert irsim.process.wait(10) == 1
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_the_robot_stops_when_we_are_killed(drive: Callable[..., tuple[Robot, Peer]], number: int) -> None:
     robot, irsim = drive()
     until(lambda: max(robot.speeds(), default=0) > 0.3, START_S, "not driven")

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
 import socket
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,7 @@ def free_port() -> int:
 
 
 @pytest.fixture
-def master(start: Callable[..., Peer], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+def master(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """Address of a running roscore, which all processes of the test use."""
     if not Path("/usr/bin/roscore").exists():
         pytest.skip("roscore is missing")
@@ -37,14 +38,19 @@ def master(start: Callable[..., Peer], tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setenv("ROS_MASTER_URI", address)
     monkeypatch.setenv("ROS_IP", "127.0.0.1")
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
-    start("/usr/bin/roscore", "-p", str(port), stderr=subprocess.DEVNULL)
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    core = subprocess.Popen(["/usr/bin/roscore", "-p", str(port)], **quiet)  # type: ignore[call-overload]
 
     def runs() -> bool:
         listed = subprocess.run(["/usr/bin/rostopic", "list"], capture_output=True, text=True, check=False)
         return "/rosout" in listed.stdout
 
-    until(runs, 60, "roscore does not start")
-    return address
+    try:
+        until(runs, 60, "roscore does not start")
+        yield address
+    finally:
+        core.send_signal(signal.SIGINT)  # on which it ends the processes that it has started
+        core.wait(30)
 
 
 def test_both_ways_with_a_node_of_ros_1(

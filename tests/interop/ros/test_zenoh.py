@@ -51,7 +51,8 @@ def test_both_ways_with_a_node_that_others_list(
                 break
         velocity = env.robot.velocity[:2, 0].tolist()
         listed = subprocess.run(
-            [str(Path(sys.executable).parent / "zenoh-ros2"), "--domain-id", str(domain), "--router", f"127.0.0.1:{port}", "--no-daemon",
+            [str(Path(sys.executable).parent / "zenoh-ros2"), "--domain-id", str(domain), "--router",
+             f"127.0.0.1:{port}", "--no-daemon",
              "topic", "info", "/robot_0/scan", "-v"],
             capture_output=True, text=True, check=False, timeout=60,
         )  # fmt: skip

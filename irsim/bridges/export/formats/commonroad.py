@@ -183,12 +183,4 @@ def _problem(agent: Agent, last_step: int, number: int) -> Any:
     return PlanningProblem(number, start, GoalRegion([goal]))
 
 
-FORMAT = Format(
-    "commonroad",
-    ".cr.xml",
-    _write,
-    libraries=("commonroad",),
-    ranges=False,
-    extra="scenarios",
-    more_suffixes=(".xml",),
-)
+FORMAT = Format("commonroad", ".xml", _write, libraries=("commonroad",), ranges=False, extra="scenarios")

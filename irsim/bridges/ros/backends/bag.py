@@ -28,17 +28,19 @@ class BagFolder:
     """A folder of rosbag2 that is written message by message.
 
     Args:
-        target: The folder, which must not exist.
+        target: The folder, which is made if it does not exist.
         messages: Makes messages, and their CDR.
         storage: How messages are stored.
+        name: Name that the folder will have, after which the file in it is named.
     """
 
-    def __init__(self, target: Path, messages: Messages, storage: Storage = "sqlite3") -> None:
+    def __init__(self, target: Path, messages: Messages, storage: Storage, name: str) -> None:
         require("bag", "rosbags")
         from rosbags.rosbag2 import StoragePlugin, Writer
 
         plugin = StoragePlugin.SQLITE3 if storage == "sqlite3" else StoragePlugin.MCAP
-        self._writer = Writer(target, version=_NEWEST, storage_plugin=plugin)
+        self._target, self._inner = target, target / name  # rosbags names the file after its folder
+        self._writer = Writer(self._inner, version=_NEWEST, storage_plugin=plugin)
         self._writer.open()
         self._messages = messages
 
@@ -46,21 +48,21 @@ class BagFolder:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
-        if kind is None:
-            self._writer.close()
-        else:
+        if kind is not None:
             self._writer.abort()
+            return
+        self._writer.close()
+        for file in self._inner.iterdir():
+            file.rename(self._target / file.name)
+        self._inner.rmdir()
 
-    def topic(
-        self, name: str, kind: str, *, latched: bool = False, qos: Qos | None = None, **about: str
-    ) -> tuple[Any, str]:
+    def topic(self, name: str, kind: str, *, latched: bool = False, **about: str) -> tuple[Any, str]:
         """Add a topic.
 
         Args:
             name: Its name.
             kind: Type of its messages.
             latched: Whether new subscribers get its last message.
-            qos: Its quality of service; default: by ``latched``.
             **about: Further facts, which go into the custom data of the bag.
 
         Returns:
@@ -68,9 +70,12 @@ class BagFolder:
         """
         for key, value in about.items():
             self._writer.set_custom_data(f"{name} {key}", value)
-        quality = qos or (LATCHED if latched else STATE)
+        return self.topic_of(name, kind, LATCHED if latched else STATE)
+
+    def topic_of(self, name: str, kind: str, qos: Qos) -> tuple[Any, str]:
+        """Add a topic with a quality of service."""
         added = self._writer.add_connection(
-            name, kind, typestore=self._messages.store, offered_qos_profiles=[_stored(quality)]
+            name, kind, typestore=self._messages.store, offered_qos_profiles=[_stored(qos)]
         )
         return added, kind
 
@@ -107,8 +112,8 @@ class BagBackend(Backend):
             raise BridgeError("file-exists", f"'{folder}' exists", "name another folder, or remove it")
         self._target = folder
         self._temporary = folder.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
-        self._bag: BagFolder | None = BagFolder(self._temporary, messages, storage)
-        self._added = {topic: self._bag.topic(topic.name, topic.kind, qos=topic.qos) for topic in self.topics}
+        self._bag: BagFolder | None = BagFolder(self._temporary, messages, storage, folder.name)
+        self._added = {topic: self._bag.topic_of(topic.name, topic.kind, topic.qos) for topic in self.topics}
         self.stamp = 0
         """Time of the messages that are published next [ns]."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from types import SimpleNamespace
 from typing import Any
@@ -16,6 +17,9 @@ from irsim.bridges.ros.topics import Topic
 from irsim.common.extras import require
 
 __all__ = ["RosbridgeBackend", "namespaces", "plain"]
+
+_CLOSE_S = 2.0
+"""Time for which to wait for the server when the connection is closed."""
 
 
 class RosbridgeBackend(Backend):
@@ -39,10 +43,9 @@ class RosbridgeBackend(Backend):
         require("rosbridge", "roslibpy", "rosbags")
         super().__init__(node, topics, inbox, messages)
         import roslibpy
-        from rosbags.typesys import Stores, get_typestore
 
         self._address, self._timeout, self._ros_version = f"{host}:{port}", timeout, ros
-        self._store = messages.store if ros == 2 else get_typestore(Stores.ROS1_NOETIC)
+        self._store = messages.store if ros == 2 else _definitions_of_ros1()
         self._gone: float | None = None
         self._publishers: dict[Topic, Any] = {}
         self._subscribers: list[Any] = []
@@ -102,7 +105,23 @@ class RosbridgeBackend(Backend):
 
     def _end(self) -> None:
         client, self._client = self._client, None
+        with suppress(Exception):  # the connection may be gone already, in whatever way
+            client.close(timeout=_CLOSE_S)
+        until = time.monotonic() + _CLOSE_S
+        while client.is_connected and time.monotonic() < until:  # so that the last messages go out
+            time.sleep(0.01)
+        time.sleep(0.05)
         client.terminate()
+
+
+def _definitions_of_ros1() -> Any:
+    """Type store with the definitions of Noetic."""
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.ROS1_NOETIC)
+    kind = "tf2_msgs/msg/TFMessage"  # which rosbags leaves out
+    store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", kind))
+    return store
 
 
 def plain(message: Any, kind: str, store: Any, ros: int) -> dict[str, Any]:

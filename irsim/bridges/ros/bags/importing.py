@@ -1,0 +1,215 @@
+"""``irsim bridge import-bag``: a bag becomes a scenario."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.maps.writing import write_all_or_none
+from irsim.bridges.ros.bags.mapping import BagMap, map_of_scans
+from irsim.bridges.ros.bags.reading import Recorded, read_bag
+from irsim.bridges.ros.incoming import Scan
+from irsim.bridges.ros.real import composed
+from irsim.common.arrays import Floats
+from irsim.diagnostics.errors import ArgumentError
+from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.scenario.yaml.modeline import with_modeline
+
+__all__ = ["BagOptions", "ImportedBag", "import_bag"]
+
+_MAX_MAPPED = 3000
+"""Scans of which the map is made; of more, some at equal distances."""
+_EVENTS_PER_ROW = 6
+"""Events of YAML of one recorded pose."""
+_GREY = {100: 0, 0: 254, -1: 205}
+"""Grey values of a map of the ROS map server; 205 is unknown."""
+
+
+@dataclass(frozen=True)
+class BagOptions:
+    """How a bag is read.
+
+    Attributes:
+        odom, scan: Topics; None for the only ones.
+        mount: x, y [m], yaw [rad] of the lidar on the robot; None for what the bag says.
+        resolution: Side of a cell of the map [m].
+        radius: Radius of the robot [m].
+        step_time: [s].
+        start, end: Window of time [s], from the first odometry.
+    """
+
+    odom: str | None = None
+    scan: str | None = None
+    mount: tuple[float, float, float] | None = None
+    resolution: float = 0.05
+    radius: float = 0.2
+    step_time: float = 0.1
+    start: float = 0.0
+    end: float = math.inf
+
+
+@dataclass(frozen=True)
+class ImportedBag:
+    """What was written.
+
+    Attributes:
+        file: The scenario.
+        map: Its map; None without scans.
+        poses: Number of replayed poses.
+        scans: Number of scans of which the map was made.
+        duration: [s].
+        notes: What else is worth knowing.
+    """
+
+    file: str
+    map: str | None
+    poses: int
+    scans: int
+    duration: float
+    notes: list[str] = field(default_factory=list)
+
+
+def import_bag(
+    path: str | Path, out: str | Path, options: BagOptions | None = None, *, overwrite: bool = False
+) -> ImportedBag:
+    """Write a scenario with the map that the scans of a bag saw, and a robot that drives as its odometry says.
+
+    Args:
+        path: A ``.bag`` file of ROS 1, or a folder of rosbag2.
+        out: The scenario; the map is the picture beside it.
+        options: How the bag is read.
+        overwrite: Replace files that exist.
+
+    Raises:
+        BridgeError: The bag cannot be used. Nothing is written then.
+        ArgumentError: An option is no positive number.
+        TargetError: A file exists.
+        ExtraError: rosbags is missing.
+    """
+    options, path, out = options or BagOptions(), Path(path), Path(out)
+    for name in ("resolution", "radius", "step_time"):
+        value = getattr(options, name)
+        if not (math.isfinite(value) and value > 0):
+            raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} above 0")
+    found = read_bag(path, options.odom, options.scan)
+    rows = _rows(found, options)
+    times, poses = found.times[rows] - found.times[rows[0]], found.poses[rows]
+    if len(times) * _EVENTS_PER_ROW > DEFAULT_LIMITS.events:
+        raise BridgeError("bridge-file", f"{len(times)} poses are more than a scenario may hold", "--from and --to")
+    notes = [f"{found.ignored} messages were not usable and left out"] if found.ignored else []
+    mount = options.mount or found.mount
+    if mount is None and found.scans:
+        notes.append("the bag does not say where the lidar is on the robot; --mount X,Y,YAW says it, 0,0,0 is assumed")
+    mount = mount or (0.0, 0.0, 0.0)
+    chosen = _chosen_scans(found, found.times[rows])
+    scans = [found.scans[index] for index in chosen]
+    grid: BagMap | None = None
+    if scans:
+        at = np.array([composed(_pose_at(found, found.scan_times[index]), mount) for index in chosen])
+        grid = map_of_scans(at, scans, poses[:, :2], options.resolution, options.radius, 1.0)
+    elif found.scan_topic is None:
+        notes.append("the bag has no scans, so there is no map")
+    text = _text(found, grid, times, poses, scans[0] if scans else None, mount, path.name, out, options)
+    contents = [(out, with_modeline(text, out).encode())]
+    picture = out.with_suffix(".png")
+    if grid is not None:
+        contents.append((picture, _picture(grid)))
+    write_all_or_none(contents, overwrite=overwrite)
+    shown = str(picture) if grid is not None else None
+    return ImportedBag(str(out), shown, len(times), len(scans), float(times[-1]), notes)
+
+
+def _rows(found: Recorded, options: BagOptions) -> list[int]:
+    """Rows in the window, at least one step apart; the last one is among them."""
+    inside = np.flatnonzero((found.times >= options.start) & (found.times <= options.end))
+    if len(inside) < 2:
+        what = f"the window of time has {len(inside)} poses; the odometry lasts {found.times[-1]:.1f} s"
+        raise BridgeError("bridge-file", what, "--from 0")
+    kept = [int(inside[0])]
+    for row in inside.tolist():
+        if found.times[row] - found.times[kept[-1]] >= options.step_time * (1 - 1e-6):
+            kept.append(row)
+    return kept if len(kept) > 1 else [int(inside[0]), int(inside[-1])]
+
+
+def _chosen_scans(found: Recorded, times: Floats) -> list[int]:
+    inside = np.flatnonzero((found.scan_times >= times[0]) & (found.scan_times <= times[-1]))
+    if len(inside) <= _MAX_MAPPED:
+        return [int(index) for index in inside]
+    return [int(index) for index in inside[np.linspace(0, len(inside) - 1, _MAX_MAPPED).astype(np.int64)]]
+
+
+def _pose_at(found: Recorded, time: float) -> tuple[float, float, float]:
+    """The pose at a time, between two recorded ones."""
+    after = int(np.clip(np.searchsorted(found.times, time), 1, len(found.times) - 1))
+    before = found.poses[after - 1]
+    share = (time - found.times[after - 1]) / (found.times[after] - found.times[after - 1])
+    step = found.poses[after] - before
+    step[2] = math.remainder(step[2], 2 * math.pi)
+    x, y, yaw = (before + float(np.clip(share, 0, 1)) * step).tolist()
+    return x, y, yaw
+
+
+def _text(
+    found: Recorded, grid: BagMap | None, times: Floats, poses: Floats, scan: Scan | None,
+    mount: tuple[float, float, float], name: str, out: Path, options: BagOptions,
+) -> str:  # fmt: skip
+    if grid is not None:
+        low, size = grid.origin, [count * grid.resolution for count in grid.levels.shape]
+    else:
+        corner = np.floor(poses[:, :2].min(axis=0) - 1)
+        low, size = (float(corner[0]), float(corner[1])), (np.ceil(poses[:, :2].max(axis=0) + 1) - corner).tolist()
+    lines = [
+        f"# The robot of {json.dumps(name)} drives as {json.dumps(found.odom_topic)} says, for {times[-1]:.1f} s.",
+        "# Written by `irsim bridge import-bag`.",
+        "world:",
+        f"  width: {size[0]:.6g}",
+        f"  height: {size[1]:.6g}",
+        f"  offset: [{low[0]:.6g}, {low[1]:.6g}]",
+        f"  step_time: {options.step_time!r}",
+        f"  time_limit: {times[-1] + options.step_time:.6g}",
+        "  collision_mode: unobstructed  # the recording goes on, whatever the map says",
+    ]
+    if grid is not None:
+        lines.append(f"  obstacle_map: {{name: image, path: {json.dumps(out.with_suffix('.png').name)}}}")
+    rows = ", ".join(f"[{x:.4f}, {y:.4f}, {yaw:.4f}]" for x, y, yaw in poses.tolist())
+    lines += [
+        "robot:",
+        "  - name: robot",
+        "    kinematics: {name: omni_angular}",
+        f"    shape: {{name: circle, radius: {options.radius!r}}}",
+        "    behavior:",
+        "      name: replay",
+        f"      times: [{', '.join(f'{time:.4f}' for time in times.tolist())}]",
+        f"      poses: [{rows}]",
+    ]
+    if scan is not None:
+        lines.append(_lidar(scan, mount))
+    return "\n".join(lines) + "\n"
+
+
+def _lidar(scan: Scan, mount: tuple[float, float, float]) -> str:
+    """The lidar of the scans, which irsim has symmetric about its own x axis."""
+    spread = abs(scan.increment) * (len(scan.ranges) - 1)
+    middle = scan.angle_min + scan.increment * (len(scan.ranges) - 1) / 2
+    offset = ", ".join(f"{value:.6g}" for value in (mount[0], mount[1], math.remainder(mount[2] + middle, 2 * math.pi)))
+    return (
+        f"    sensors:\n      - {{name: lidar2d, number: {len(scan.ranges)}, angle_range: {min(spread, 6.28318):.6g}, "
+        f"range_min: {max(0.0, scan.low):.6g}, range_max: {scan.high:.6g}, offset: [{offset}]}}"
+    )
+
+
+def _picture(grid: BagMap) -> bytes:
+    grey = np.zeros(grid.levels.shape, dtype=np.uint8)
+    for level, value in _GREY.items():
+        grey[grid.levels == level] = value
+    target = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(grey[:, ::-1].T)).save(target, format="PNG", optimize=True)
+    return target.getvalue()

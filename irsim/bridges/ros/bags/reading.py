@@ -1,0 +1,168 @@
+"""Odometry and scans of a bag as arrays."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.ros.incoming import MessageError, Scan, read_odometry, read_scan
+from irsim.bridges.ros.messages import MAX_SEQUENCE
+from irsim.common.arrays import Floats
+from irsim.common.extras import require
+from irsim.common.text import clean
+
+__all__ = ["Recorded", "read_bag"]
+
+_ODOMETRY, _SCAN = "nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan"
+_TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
+MAX_POSES = 1_000_000
+MAX_SCANS = 200_000
+
+
+@dataclass
+class Recorded:
+    """What a bag says of one robot.
+
+    Attributes:
+        times: (T,) [s] since the first odometry, increasing.
+        poses: (T, 3) x, y [m], yaw [rad], frame of the odometry.
+        scan_times: Times of the scans [s].
+        scans: The scans, in their order.
+        mount: x, y [m], yaw [rad] of the lidar on the robot; None if the bag does not say.
+        odom_topic, scan_topic: Where they come from; no scans without a topic.
+        ignored: How many messages were not usable.
+    """
+
+    times: Floats
+    poses: Floats
+    scan_times: Floats
+    scans: list[Scan]
+    mount: tuple[float, float, float] | None
+    odom_topic: str
+    scan_topic: str | None
+    ignored: int
+
+
+def read_bag(path: Path, odom: str | None, scan: str | None) -> Recorded:
+    """Read a bag of ROS 1 (``.bag``) or ROS 2 (a folder).
+
+    Args:
+        path: The bag.
+        odom: Topic of the odometry; default: the only one.
+        scan: Topic of the scans; default: the only one, if there is one.
+
+    Raises:
+        BridgeError: The bag is damaged, or has no such topic.
+        ExtraError: rosbags is missing.
+    """
+    require("bag", "rosbags")
+    if not path.exists():
+        raise BridgeError("bridge-file", f"'{clean(path, 200)}' does not exist", "name a .bag file or a rosbag2 folder")
+    with _opened(path) as reader:
+        odom_topic = _chosen(reader, _ODOMETRY, odom, "--odom")
+        scan_topic = _chosen(reader, _SCAN, scan, "--scan", needed=scan is not None)
+        assert odom_topic is not None
+        rows: list[tuple[float, float, float, float]] = []
+        scans: list[tuple[float, Scan]] = []
+        mounts: dict[tuple[str, str], tuple[float, float, float]] = {}
+        frames, ignored = ["", ""], 0
+        wanted = [one for one in reader.connections if one.topic in (odom_topic, scan_topic, "/tf_static")]
+        for connection, stamp, raw in reader.messages(connections=wanted):
+            try:
+                message = reader.deserialize(raw, connection.msgtype)
+                if connection.topic == odom_topic:
+                    frames[0] = str(message.child_frame_id)
+                    rows.append((_time(message, stamp), *read_odometry(message).pose))
+                elif connection.topic == scan_topic:
+                    frames[1] = str(message.header.frame_id)
+                    scans.append((_time(message, stamp), read_scan(message)))
+                elif connection.msgtype in _TRANSFORMS:
+                    _add_mounts(mounts, message)
+            except MessageError:
+                ignored += 1
+            if len(rows) > MAX_POSES or len(scans) > MAX_SCANS:
+                raise BridgeError("bridge-file", f"the bag has more than {MAX_POSES} poses or {MAX_SCANS} scans",
+                                  "cut it: ros2 bag convert")  # fmt: skip
+    return _recorded(rows, scans, mounts.get((frames[0], frames[1])), odom_topic, scan_topic, ignored)
+
+
+def _recorded(
+    rows: list[tuple[float, float, float, float]], scans: list[tuple[float, Scan]],
+    mount: tuple[float, float, float] | None, odom_topic: str, scan_topic: str | None, ignored: int,
+) -> Recorded:  # fmt: skip
+    if len(rows) < 2:
+        what = f"{odom_topic} has {len(rows)} usable message(s)"
+        raise BridgeError("bridge-file", what, "name another topic with --odom")
+    table = np.array(sorted(rows))
+    table = table[np.concatenate([[True], np.diff(table[:, 0]) > 1e-6])]
+    start = table[0, 0]
+    scans.sort(key=lambda one: one[0])
+    return Recorded(
+        table[:, 0] - start,
+        table[:, 1:],
+        np.array([when for when, _ in scans]) - start,
+        [one for _, one in scans],
+        mount,
+        odom_topic,
+        scan_topic,
+        ignored,
+    )
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """A reader of a bag; whatever rosbags raises about its content becomes one error."""
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    try:
+        with AnyReader([path], default_typestore=store) as reader:
+            reader.typestore.max_sequence_length = MAX_SEQUENCE
+            yield reader
+    except BridgeError:
+        raise
+    except Exception as error:  # damaged files raise errors of many kinds
+        what = f"'{clean(path, 200)}' is not a bag that can be read: {clean(error, 200)}"
+        raise BridgeError("bridge-file", what, "name a .bag file, or a folder with metadata.yaml") from None
+
+
+def _chosen(reader: Any, kind: str, name: str | None, option: str, *, needed: bool = True) -> str | None:
+    """The topic of a type: the one that is named, or the only one."""
+    names = sorted({one.topic for one in reader.connections if one.msgtype == kind})
+    short = kind.replace("/msg/", "/")
+    listed = ", ".join(clean(one, 60) for one in names[:10]) or "none"
+    if name is not None:
+        if name not in names:
+            what = f"no topic {clean(name, 60)!r} with messages {short}; there are: {listed}"
+            raise BridgeError("bridge-file", what, f"name another one with {option}")
+        return name
+    if not names and not needed:
+        return None
+    if len(names) != 1:
+        what = f"the bag has {len(names)} topics with messages {short}: {listed}"
+        raise BridgeError("bridge-file", what, f"name one with {option}" if names else "record the topic, too")
+    return str(names[0])
+
+
+def _time(message: Any, stamp: int) -> float:
+    """Time of a message [s]: that of its header, or of the recording if the header has none."""
+    time = message.header.stamp
+    seconds = float(time.sec) + float(time.nanosec) / 1e9
+    return seconds if seconds > 0 else stamp / 1e9
+
+
+def _add_mounts(mounts: dict[tuple[str, str], tuple[float, float, float]], message: Any) -> None:
+    for one in message.transforms:
+        place, turn = one.transform.translation, one.transform.rotation
+        yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y**2 + turn.z**2))
+        values = (float(place.x), float(place.y), yaw)
+        if len(mounts) < 10_000 and all(map(math.isfinite, values)):
+            mounts[str(one.header.frame_id), str(one.child_frame_id)] = values

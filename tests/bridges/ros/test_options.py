@@ -1,0 +1,59 @@
+"""What users write."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import irsim
+from irsim.bridges.ros.topics import TABLE
+from irsim.common.extras import ExtraError
+from irsim.diagnostics.errors import ScenarioError
+
+PAGE = Path(__file__).parents[3] / "skills" / "irsim-runner" / "bridges" / "ros2.md"
+WORLD = "world: {width: 5, height: 5}\nrobot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}}\n"
+
+
+def test_the_scenario_of_the_page_is_valid_and_all_topics_are_in_its_table(tmp_path: Path) -> None:
+    text = PAGE.read_text()
+    [scenario] = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "lab.yaml").write_text(scenario)
+    report = irsim.validate(tmp_path / "lab.yaml")
+    assert report.valid, report
+    assert report.summary.startswith("valid: 1 robot")
+    assert [key for key in TABLE if f"`{key}`" not in text] == []
+
+
+@pytest.mark.parametrize(
+    ("bridge", "words"),
+    [
+        ("{name: ros2, mode: real, clock: irsim}", "real robots move in real time"),
+        ("{name: ros2, clock: external}", "ROS does not decide"),
+        ("{name: ros2, mode: real, odom_timeout: 2, lost_timeout: 1}", "lost_timeout is below"),
+        ("{name: ros2, domain: 500}", "101"),
+        ("{name: ros2, max_speed: -1}", "0"),
+        ("{name: rosbag, folder: ../../etc/bag}", "folder"),
+        ("{name: rosbridge, host: 'a b'}", "host"),
+        ("{name: ros2, backend: rospy}", "rclpy"),
+    ],
+)
+def test_wrong_options_are_named(bridge: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").write_text(f"{WORLD}bridges: [{bridge}]\n")
+    with pytest.raises(ScenarioError, match=words):
+        irsim.make(tmp_path / "a.yaml", display=False)
+
+
+@pytest.mark.parametrize(
+    ("bridge", "extra"),
+    [("ros2, backend: dds", "ros2"), ("ros2, backend: zenoh", "zenoh"), ("rosbridge", "rosbridge"), ("rosbag", "bag")],
+)
+def test_a_missing_library_is_an_error_that_names_the_command(
+    bridge: str, extra: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("irsim.common.extras.find_spec", lambda name: None)
+    (tmp_path / "a.yaml").write_text(f"{WORLD}bridges: [{{name: {bridge}}}]\n")
+    env = irsim.make(tmp_path / "a.yaml", display=False)
+    with pytest.raises(ExtraError, match=re.escape(f"pip install 'irsim-mcp[{extra}]'")):
+        irsim.connect(env)

@@ -1,0 +1,65 @@
+"""The table of topics, and the names in it."""
+
+from __future__ import annotations
+
+import pytest
+
+from irsim.bridges.base import BridgeError
+from irsim.bridges.ros.qos import Qos
+from irsim.bridges.ros.topics import TABLE, check_keys, scene_topics
+from irsim.bridges.scene import Agent, Lidar, SceneDescription
+
+
+def agent(index: int, name: str, role: str = "robot", lidars: int = 0) -> Agent:
+    mounted = tuple(Lidar(f"{name}/{k}", k, (0.1, 0, 0), -1, 1, 5, 0, 3, 0.1) for k in range(lidars))
+    return Agent(index, name, role, "diff", True, (1.0, 2.0, 0.0), (), (), 0.2, (-1, -1), (1, 1), (9, 9), None, 1.0,
+                 (0, 0, 0), mounted)  # type: ignore[arg-type]  # fmt: skip
+
+
+SCENE = SceneDescription(
+    "lab", 0.1, (0, 0), (9, 9), (agent(0, "robot 0", lidars=2), agent(1, "7", lidars=1), agent(2, "ann", "obstacle"))
+)
+
+
+def names(mode: str = "sim", **more: object) -> dict[str, str]:
+    topics = scene_topics(SCENE, SCENE.robots, mode, **{"names": {}, "qos": {}, **more})  # type: ignore[arg-type]
+    return {topic.name: f"{'out' if topic.outgoing else 'in'} {topic.kind.split('/')[-1]}" for topic in topics}
+
+
+def test_each_robot_and_each_lidar_has_its_topics() -> None:
+    found = names()
+    assert found["/robot_0/scan"] == found["/robot_0/scan_1"] == found["/object_7/scan"] == "out LaserScan"
+    assert found["/robot_0/cmd_vel"] == "in Twist"
+    assert found["/clock"] == "out Clock"
+    assert "/ann/odom" not in found
+
+
+def test_real_robots_turn_odometry_scans_and_commands_around() -> None:
+    found = names("real", stamped=True)
+    assert found["/robot_0/odom"] == "in Odometry"
+    assert found["/robot_0/scan"] == "in LaserScan"
+    assert found["/robot_0/cmd_vel"] == "out TwistStamped"
+    assert not {"/clock", "/tf_static"} & found.keys()  # the robots' own
+
+
+def test_names_and_qualities_can_be_others() -> None:
+    topics = scene_topics(
+        SCENE, SCENE.robots[:1], "sim", names={"cmd_vel": "/cmd_vel", "tf": None, "scan": "/{robot}/front{n}"},
+        qos={"scan": Qos(reliable=True)},
+    )  # fmt: skip
+    by_name = {topic.name: topic for topic in topics}
+    assert "/cmd_vel" in by_name
+    assert "/tf" not in by_name
+    assert by_name["/robot_0/front_1"].qos.reliable
+    assert not TABLE["scan"].qos.reliable
+
+
+@pytest.mark.parametrize(("name", "words"), [("cmd vel", "cannot be the name"), ("/cmd_vel", "two topics are called")])
+def test_names_that_cannot_be_are_refused(name: str, words: str) -> None:
+    with pytest.raises(BridgeError, match=words):
+        names(names={"cmd_vel": name})
+
+
+def test_unknown_keys_are_told_with_the_right_one() -> None:
+    assert "cmd_vel" in str(check_keys(["cmd_val"]))
+    assert check_keys(["scan"]) is None

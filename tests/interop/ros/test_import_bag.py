@@ -1,0 +1,129 @@
+"""Bags become scenarios that drive as recorded; what is no bag is an error, and nothing is written."""
+
+from __future__ import annotations
+
+import json
+import math
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+import irsim
+from irsim.bridges.base import BridgeError
+from irsim.bridges.ros.bags.importing import BagOptions, import_bag
+from irsim.cli.app import app
+from irsim.runs import open_run
+
+pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("ros_others")]
+ROOM = """\
+world: {width: 12, height: 8, step_time: 0.1}
+robot:
+  - name: rover
+    kinematics: {name: diff}
+    shape: {name: circle, radius: 0.2}
+    state: [1, 1, 0.5]
+    goal: [10, 6, 0]
+    behavior: {name: dash}
+    sensors: [{name: lidar2d, number: 180, range_max: 6, angle_range: 4, offset: [0.1, 0, 0.2]}]
+obstacle:
+  - {name: box, shape: {name: rectangle, length: 1, width: 2}, state: [7, 2, 0.3]}
+  - {name: post, shape: {name: circle, radius: 0.4}, state: [3, 5, 0.3]}
+"""
+
+
+@pytest.fixture
+def bag(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    run = open_run(str(irsim.run(text=ROOM, seed=1, record=True).run_id))
+    irsim.export_run(run, "lab-rosbag2", to="rosbag2")
+    return tmp_path / "lab-rosbag2"
+
+
+def test_the_robot_drives_as_recorded_in_what_its_scans_saw(bag: Path) -> None:
+    done = CliRunner().invoke(app, ["bridge", "import-bag", str(bag), "-o", "again.yaml", "--json"])
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert found["notes"] == []  # the mount of the lidar came from /tf_static
+    [recorded] = [one for one in Path(".irsim/runs").iterdir() if one.is_dir()]
+    before = open_run(str(recorded)).trace()
+    again = open_run(str(irsim.run("again.yaml", seed=1, record=True).run_id)).trace()
+    count = min(len(again.pose), len(before.pose))
+    assert np.hypot(*(again.pose[:count, 0, :2] - before.pose[:count, 0, :2]).T).max() < 0.01
+    # the scans of the map are those of the recording, as far as a grid of 5 cm can say
+    now, then = again.ranges["robot/0"][:count], before.ranges["rover/0"][:count]
+    both = np.isfinite(now) & np.isfinite(then)
+    assert both.sum() > 2000
+    assert np.median(np.abs(now[both] - then[both])) < 0.05
+    grey = np.asarray(Image.open("again.png"))
+    assert set(np.unique(grey)) == {0, 205, 254}  # solid, unknown, free
+
+
+def test_windows_and_options(bag: Path) -> None:
+    found = import_bag(bag, "part.yaml", BagOptions(start=2.0, end=4.0, resolution=0.1, mount=(0.0, 0.0, 0.0)))
+    assert found.duration == pytest.approx(2.0)
+    assert found.poses == 21
+    assert irsim.validate("part.yaml").valid
+    with pytest.raises(BridgeError, match="the window of time has 0 poses"):
+        import_bag(bag, "none.yaml", BagOptions(start=100.0))
+    with pytest.raises(BridgeError, match=r"cells.*--resolution"):
+        import_bag(bag, "none.yaml", BagOptions(resolution=0.0005))
+    with pytest.raises(BridgeError, match=r"no topic '/odom'.*there are: /rover/odom"):
+        import_bag(bag, "none.yaml", BagOptions(odom="/odom"))
+    assert not Path("none.yaml").exists()
+
+
+@pytest.mark.parametrize("damage", ["truncated", "garbage", "empty", "no metadata"])
+def test_what_is_no_bag_is_an_error_with_nothing_written(bag: Path, damage: str) -> None:
+    [file] = bag.glob("*.db3")
+    if damage == "no metadata":
+        (bag / "metadata.yaml").unlink()
+    elif damage == "truncated":
+        file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    else:
+        file.write_bytes(b"" if damage == "empty" else b"x" * 5000)
+    with pytest.raises(BridgeError, match="bag"):
+        import_bag(bag, "none.yaml")
+    assert not Path("none.yaml").exists()
+    assert not Path("none.png").exists()
+
+
+def test_odometry_that_is_not_finite_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from irsim.bridges.ros.backends.bag import BagFolder
+    from irsim.bridges.ros.messages import Messages
+
+    monkeypatch.chdir(tmp_path)
+    messages = Messages()
+    with BagFolder(tmp_path / "b", messages, "mcap", "b") as bag:
+        topic = bag.topic("/odom", "nav_msgs/msg/Odometry")
+        for step in range(30):
+            x = math.nan if step == 7 else 0.1 * step
+            stamp = 100_000_000 * (step + 1)
+            bag.add(topic, stamp, messages.odometry(stamp, "odom", "base_link", (x, 0.0, 0.0), (1.0, 0.0, 0.0)))
+    found = import_bag("b", "s.yaml")
+    assert found.poses == 29
+    assert found.notes == ["1 messages were not usable and left out", "the bag has no scans, so there is no map"]
+    assert irsim.run("s.yaml").outcome == "success"
+
+
+def test_the_commands_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("hall.yaml").write_text(ROOM)
+    page = Path(__file__).parents[3] / "skills" / "irsim-runner" / "bridges" / "ros2.md"
+    block = page.read_text().split("## Bags")[1].split("```bash\n")[1].split("```")[0]
+    for line in block.strip().splitlines():
+        done = CliRunner().invoke(app, shlex.split(line, comments=True)[1:])
+        assert done.exit_code == 0, (line, done.output)
+    assert Path("again.png").exists()
+
+
+def test_the_doctor_is_content() -> None:
+    done = CliRunner().invoke(app, ["bridge", "doctor", "ros2", "ros1", "rosbridge", "rosbag", "--json"])
+    states = {one["part"]: one["state"] for one in json.loads(done.stdout)}
+    assert states == {
+        "rclpy": "missing", "cyclonedds": "ready", "zenoh": "ready", "rospy": "there", "roslibpy": "there",
+        "rosbags": "ready",
+    }, done.stdout  # fmt: skip

@@ -1,0 +1,109 @@
+"""Our rosbridge client (roslibpy) against a stand-in of the server in its own process."""
+
+from __future__ import annotations
+
+import json
+import socket
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import irsim
+from irsim.bridges.base import BridgeLostError
+from tests.interop.ros.conftest import HERE, PYTHON, SCENE, Peer, until
+
+pytestmark = [
+    pytest.mark.interop,
+    pytest.mark.xdist_group("ros_others"),
+    # roslibpy leaves a socket to the collector of garbage if the server is gone
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+
+
+REAL = """\
+world: {width: 10, height: 6, step_time: 0.05}
+robot:
+  - name: robot_0
+    kinematics: {name: diff}
+    shape: {name: circle, radius: 0.2}
+    state: [1, 2, 0]
+    goal: [9, 2, 0]
+    behavior: {name: dash}
+"""
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return int(server.getsockname()[1])
+
+
+@pytest.mark.parametrize("ros", [1, 2])
+def test_both_ways_over_one_port(start: Callable[..., Peer], make_env: Callable[[str], Any], ros: int) -> None:
+    port = free_port()
+    server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), str(ros))
+    until(lambda: server.on("ready"), 30, "the stand-in does not start")
+    env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, ros: {ros}, clock: wall}}]\n")
+    with irsim.connect(env) as connection:
+        for _ in range(600):
+            env.step()
+            if len(server.on("/robot_0/odom")) >= 50 and float(env.robot.state[0, 0]) > 1.2:
+                break
+        velocity = env.robot.velocity[:2, 0].tolist()
+        notes = connection.notes()
+    assert velocity == pytest.approx([0.4, 0.5])
+    kind = "nav_msgs/msg/Odometry" if ros == 2 else "nav_msgs/Odometry"
+    assert f"/robot_0/odom {kind} False" in server.on("advertise")
+    assert any(one.startswith("/map ") and one.endswith("True") for one in server.on("advertise"))
+    said = json.loads(server.on("/robot_0/pose")[-1].split(" ", 1)[1])
+    assert said["header"]["frame_id"] == "map"
+    assert set(said["header"]["stamp"]) == ({"sec", "nanosec"} if ros == 2 else {"secs", "nsecs"})
+    assert len(server.on("/map")) == len(server.on("/irsim/markers")) == 1
+    assert any("the velocity is no number" in note or "is missing" in note for note in notes)  # the bad ones
+
+
+@pytest.mark.parametrize("ros", [1, 2])
+def test_a_real_robot_behind_the_server_stops_when_we_are_killed(
+    start: Callable[..., Peer], tmp_path: Path, ros: int
+) -> None:
+    port = free_port()
+    server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), str(ros), "robot")
+    until(lambda: server.on("ready"), 30, "the stand-in does not start")
+    scene = tmp_path / "real.yaml"
+    scene.write_text(f"{REAL}bridges: [{{name: rosbridge, port: {port}, ros: {ros}, mode: real, dry_run: false}}]\n")
+    driver = start(PYTHON, str(HERE / "real_driver.py"), str(scene), "600")
+
+    def speeds() -> list[float]:
+        said = [json.loads(one.split(" ", 1)[1]) for one in server.on("/robot_0/cmd_vel")]
+        return [one["linear"]["x"] for one in said]
+
+    until(lambda: max(speeds(), default=0) > 0.3, 60, "not driven")
+    driver.process.kill()
+    began = time.monotonic()
+    until(lambda: speeds()[-1] == 0, 10, "not stopped")
+    assert time.monotonic() - began < 0.9  # command_timeout, and time for busy processes
+
+
+def test_a_server_that_dies_ends_the_run(start: Callable[..., Peer], make_env: Callable[[str], Any]) -> None:
+    port = free_port()
+    server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), "2", "silent")
+    until(lambda: server.on("ready"), 30, "the stand-in does not start")
+    env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, timeout: 1, clock: wall}}]\n")
+
+    def step_until_lost() -> None:
+        with irsim.connect(env):
+            env.step()
+            server.process.kill()
+            for _ in range(200):
+                env.step()
+
+    with pytest.raises(BridgeLostError, match=f"rosbridge server at 127.0.0.1:{port} is lost"):
+        step_until_lost()
+
+
+def test_without_a_server_the_error_says_so(make_env: Callable[[str], Any]) -> None:
+    env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {free_port()}, timeout: 1}}]\n")
+    with pytest.raises(BridgeLostError, match="no rosbridge server answers"):
+        irsim.connect(env)
