@@ -39,8 +39,8 @@ def appearances_message(env: Env) -> str | None:
     late, missing = [], []
     for view in env.objects:
         due, appeared = view.record.appear_time, int(env.simulation.appeared[view.row])
-        if not due or appeared < -1:
-            continue
+        if not due or view.record.recorded:
+            continue  # a recording waits for no room
         if appeared < 0:
             missing.append(f"{quoted(view.name)} did not appear ({absence(env, view)})")
         elif appeared > math.ceil(due / env.step_time - _ROUNDING):

@@ -73,9 +73,10 @@ def test_it_appears_is_seen_and_vanishes(scene) -> None:
     np.testing.assert_allclose(past[[4, 12, 40], 1], [1, 3, 9])
 
 
-def test_the_report_does_not_miss_what_has_left(scene, tmp_path) -> None:
+@pytest.mark.parametrize("steps", [2, 60])
+def test_the_report_misses_nobody(tmp_path, steps: int) -> None:
     (tmp_path / "a.yaml").write_text(TEXT)
-    assert "did not appear" not in irsim.run(str(tmp_path / "a.yaml")).summary
+    assert "did not appear" not in irsim.run(str(tmp_path / "a.yaml"), steps=steps).summary
 
 
 def test_a_robot_stays_at_its_last_pose(scene) -> None:
