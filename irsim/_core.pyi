@@ -757,12 +757,12 @@ class State:
     seed: NDArray[np.uint64]  # (W,)
     event_count: int  # number of events since the state was made, a cheap check for new ones
     failed_placement: NDArray[np.int32]  # (W,) first object that could not be placed, -1 if all were placed
-    def reset(self, mask: NDArray[np.uint8], next_scene: bool) -> None:
+    def reset(self, mask: NDArray[np.uint8], next_scene: bool, threads: int = 1) -> None:
         """Reset the worlds where mask is 1.
 
         Without `next_scene`, objects return to their initial poses and `noise` increases by 1. With it, `scene`
         increases by 1, `noise` becomes 0, and shapes, placements and goals are drawn again. Then collisions, arrival
-        and sensors are evaluated.
+        and sensors are evaluated. Worlds are distributed over the threads; results do not depend on their number.
         """
     def reseed(self, seeds: NDArray[np.uint64], mask: NDArray[np.uint8]) -> None:
         """Set new seeds; the next reset of these worlds, of either kind, draws scene 0 with noise 0."""

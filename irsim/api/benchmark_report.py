@@ -90,7 +90,7 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
         limits=tuple(vars(DEFAULT_LIMITS).items()), perturb=tuple(plan.perturb), **job_keys(policy),
     )  # fmt: skip
     env = environment_of(job, one.seed)
-    png = draw_strip(env, moments_of(max(one.steps, 1), _MOMENTS), size=_WIDTH_PX)
+    png = draw_strip(env, moments_of(max(one.steps, 1), _MOMENTS), size=_WIDTH_PX, may_be_lost=True)
     env.end(ending_time=0.0)
     label = policy_labels(result)[one.behavior]
     words = re.sub(r"[^\w.-]+", "-", f"{one.scenario}-{label}").strip("-.")  # a policy may be the path of a file

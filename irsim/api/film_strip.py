@@ -46,6 +46,7 @@ def draw_strip(
     overlays: Collection[Overlay] | None = None,
     region: Sequence[float] | None = None,
     progress: Progress | None = None,
+    may_be_lost: bool = False,
 ) -> bytes:
     """Draw moments of an episode as one PNG, and advance the environment to the last of them.
 
@@ -56,14 +57,29 @@ def draw_strip(
         overlays: What to show besides bodies.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         progress: Callback ``(steps_done, steps_total)``.
+        may_be_lost: Whether the strip ends early where the policy of another process is lost, instead of an error.
+
+    Raises:
+        PolicyLostError: The policy is lost.
     """
+    from irsim.diagnostics.errors import PolicyLostError
     from irsim.episodes.episode import advance
     from irsim.rendering.strip import Strip
 
     sheet = Strip(len(moments), size, region=region, overrides=plot_keys(overlays))
     for moment in moments:
-        advance(env, moment - int(env.simulation.count[0]), None, until_done=False)
+        before, lost = int(env.simulation.count[0]), False
+        try:
+            advance(env, moment - before, None, until_done=False)
+        except PolicyLostError:
+            if not may_be_lost:
+                raise
+            lost = True
+        if lost and int(env.simulation.count[0]) == before:
+            break  # this moment has its picture
         sheet.add(env.simulation, additions(env, overlays, requested_plans(env, overlays)))
         if progress is not None:
             progress(moment, moments[-1])
+        if lost:
+            break
     return sheet.png()

@@ -308,7 +308,7 @@ def render(
             policy=driver,
             driven=driven,
         )
-        return _write_sheet(sheet, target, scene_table(scenario, sheet.seed))
+        return _write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
     animated = target.suffix.lower() in MOVING_SUFFIXES
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
     if region is not None:
@@ -335,7 +335,7 @@ def render(
         ended=None if animated else ended_before(env),
         view=None if region is not None else moved_view(env),
         extent=extent_of(env),
-        table=scene_table(scenario, env.seed),
+        table=scene_table(scenario, env.seed, driven if driver is not None else None),
         reproduce=reproduce_command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
     env.end(ending_time=0.0)

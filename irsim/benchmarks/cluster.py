@@ -113,9 +113,7 @@ def _take_in(
     except ray.exceptions.RayError as error:
         if (dead := queue.died(chunk)) is not None:
             failure = dead_workers(tasks[dead])
-            raise type(failure)(
-                failure.code, f"{failure.message} ({clean(_first_line(error), 200)})", failure.fix
-            ) from None
+            raise type(failure)(f"{failure.message} ({clean(_first_line(error), 200)})", failure.fix or "") from None
         return
     _raise_if_unfit(answer)
     data = json.loads(answer["chunk"])

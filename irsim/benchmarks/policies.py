@@ -10,7 +10,7 @@ from typing import Any
 
 from irsim.diagnostics.errors import ArgumentError, PolicyError
 from irsim.policies.behavior import BehaviorPolicy
-from irsim.policies.catalog import is_network, open_policy
+from irsim.policies.catalog import UnknownPolicyError, is_network, open_policy
 from irsim.policies.policy import Policy
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -54,11 +54,21 @@ def opened_policies(given: Sequence[Any], where: str, root: str | None = None) -
 
     Raises:
         BenchmarkError: One of them is not a policy; the error names its place.
+        UnknownPolicyError: There are no such policies; the error names all of them.
     """
-    found = []
+    found: list[Policy] = []
+    unknown: list[UnknownPolicyError] = []
     for number, policy in enumerate(given):
-        with naming(where, number):
-            found.append(open_policy(policy, root=root))
+        try:
+            with naming(where, number):
+                found.append(open_policy(policy, root=root))
+        except UnknownPolicyError as error:
+            unknown.append(error)
+    if len(unknown) == 1:
+        raise unknown[0]
+    if unknown:
+        fixes = dict.fromkeys(error.fix or "" for error in unknown)
+        raise UnknownPolicyError("; ".join(error.message for error in unknown), "; ".join(fixes), where=where)
     return found
 
 

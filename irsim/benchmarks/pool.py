@@ -17,7 +17,7 @@ from typing import Any
 from irsim.benchmarks.episode import Job, Task
 from irsim.benchmarks.together import run_together
 from irsim.benchmarks.worker import READY
-from irsim.diagnostics.errors import CodedError
+from irsim.diagnostics.errors import WorkerError
 
 __all__ = ["MAX_DEATHS", "WorkerError", "cores", "dead_workers", "run_tasks"]
 
@@ -27,10 +27,6 @@ MAX_DEATHS = 3
 """Number of processes that may die while they run the same episode."""
 MAX_GROUP = 25
 """Number of episodes of one job that a process takes at once."""
-
-
-class WorkerError(CodedError, RuntimeError):
-    """Processes that run episodes have died."""
 
 
 def cores() -> int:
@@ -240,7 +236,6 @@ class _Shared:
 def dead_workers(task: Task) -> WorkerError:
     """The error for an episode in which several processes have died."""
     return WorkerError(
-        "worker-failed",
         f"{MAX_DEATHS} processes died while they ran {task.job.name}, seed {task.seed}, with {task.job.behavior}",
         "check the memory and your own modules, then go on with --resume",
     )

@@ -35,6 +35,7 @@ __all__ = [
     "default_folder",
     "last_folder",
     "measure_plan",
+    "result_of_plan",
     "resume_benchmark",
     "run_plan",
 ]
@@ -141,7 +142,7 @@ def measure_plan(plan: Plan, **options: Any) -> BenchmarkResult:
         until=plan.until,
         **options,
     )
-    return _result(plan, found)
+    return result_of_plan(plan, found)
 
 
 def resume_benchmark(
@@ -250,7 +251,7 @@ def _write(path: Path, text: str) -> None:
         ) from None
 
 
-def _result(plan: Plan, found: BenchmarkResult) -> BenchmarkResult:
+def result_of_plan(plan: Plan, found: BenchmarkResult) -> BenchmarkResult:
     """The result of a plan, with what its suite says."""
     fields: dict[str, Any] = {name: getattr(found, name) for name in BenchmarkResult.model_fields}
     fields["reproduce"] = plan.reproduce or found.reproduce

@@ -151,7 +151,8 @@ def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]]
         count = sum(bool(episode.unreachable) for episode in episodes)
         missing = f"in {count} episodes no path to a goal was found; spl is left out there"
         notes.append(f"{listed(lost, _MAX_NAMED)}: {missing}")
-    cut = sorted({e.scenario for e in episodes if e.outcome == "timeout" and e.sim_time < e.time_limit - 1e-9})
+    early = [e for e in episodes if e.outcome == "timeout" and e.sim_time < e.time_limit - 1e-9 and e.lost is None]
+    cut = sorted({e.scenario for e in early})
     if cut:
         notes.append(f"{listed(cut, _MAX_NAMED)}: episodes ended early with robots that stopped without arriving")
     return notes

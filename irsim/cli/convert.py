@@ -12,7 +12,8 @@ __all__ = ["convert"]
 
 def convert(
     kind: Annotated[
-        str, typer.Argument(metavar="KIND", help="Kind of weights, such as rl_rvo; irsim describe policies lists all.")
+        str,
+        typer.Argument(metavar="KIND", help="Kind of weights, such as rl_rvo; irsim describe convert explains all."),
     ],
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="What torch.save wrote: a state dictionary, or a whole module.")
@@ -23,7 +24,7 @@ def convert(
         typer.Option(
             "--set",
             metavar="KEY=VALUE",
-            help="An option of the kind, such as license=MIT; may be repeated.",
+            help="An option of the kind, such as license=MIT (irsim describe convert). Repeatable.",
             show_default=False,
         ),
     ] = None,

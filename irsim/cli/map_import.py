@@ -45,8 +45,9 @@ def import_(
     file: Annotated[
         str,
         typer.Argument(
-            help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat (.navmesh), a USD stage (.usd, "
-            ".usda, .usdc, .usdz), roads (.xodr), or the YAML file of a map of the ROS map server.",
+            help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat "
+            "(.navmesh), a USD stage (.usd, .usda, .usdc, .usdz), roads (.xodr), or the YAML file of a map of the "
+            "ROS map server.",
             show_default=False,
         ),
     ],
@@ -69,13 +70,13 @@ def import_(
         ),
     ] = None,
     height: Annotated[
-        float | None, typer.Option(help="Height of the floor [m]: the nearest level is taken.", show_default=False)
+        float | None, typer.Option(help="Height of the floor (m): the nearest level is taken.", show_default=False)
     ] = None,
     seed_point: Annotated[
         str | None,
         typer.Option(
             metavar="X,Y",
-            help="A free place [m]: what is connected to it is free. Default: the largest connected part.",
+            help="A free place (m): what is connected to it is free. Default: the largest connected part.",
             show_default=False,
         ),
     ] = None,
@@ -86,22 +87,22 @@ def import_(
             show_default=False,
         ),
     ] = None,
-    resolution: Annotated[float, typer.Option(help="Side of a cell [m].")] = 0.05,
-    headroom: Annotated[float, typer.Option(help="Free height above a floor [m].")] = 1.5,
-    slope: Annotated[float, typer.Option(help="Steepest floor [deg].")] = 45.0,
-    climb: Annotated[float, typer.Option(help="Highest step that is climbed [m].")] = 0.2,
+    resolution: Annotated[float, typer.Option(help="Side of a cell (m).")] = 0.05,
+    headroom: Annotated[float, typer.Option(help="Free height above a floor (m).")] = 1.5,
+    slope: Annotated[float, typer.Option(help="Steepest floor (deg).")] = 45.0,
+    climb: Annotated[float, typer.Option(help="Highest step that is climbed (m).")] = 0.2,
     radius: Annotated[
-        float, typer.Option(help="Distance from obstacles that becomes occupied [m]; robots have their own shape.")
+        float, typer.Option(help="Distance from obstacles that becomes occupied (m); robots have their own shape.")
     ] = 0.0,
     up: Annotated[
         Up, typer.Option(help="Axis that points up (-y: y points down); auto: y for glTF and OBJ, z for PLY and STL.")
     ] = Up.auto,
-    meters_per_unit: Annotated[float, typer.Option(help="Length of a unit of a scene of splats [m].")] = 1.0,
+    meters_per_unit: Annotated[float, typer.Option(help="Length of a unit of a scene of splats (m).")] = 1.0,
     opacity: Annotated[float, typer.Option(help="Splats with less opacity are left out.")] = 0.05,
     bounds: Annotated[
         str | None,
         typer.Option(
-            metavar="X,Y,X,Y", help="Lower left and upper right corner of a map of splats [m].", show_default=False
+            metavar="X,Y,X,Y", help="Lower left and upper right corner of a map of splats (m).", show_default=False
         ),
     ] = None,
     lanes: Annotated[Lanes, typer.Option(help="Lanes of roads that are free.")] = Lanes.drive,

@@ -51,15 +51,22 @@ def policies(
     period = "every step" if one.decision_dt is None else f"every {one.decision_dt:g} s"
     facts = {
         "kind": one.kind, "returns": one.output, "needs": ", ".join(one.needs) or "nothing else",
-        "drives": ", ".join(one.drives), "decides": period, "sha256": one.digest or "",
-        "options": "; ".join(f"{key}: {value}" for key, value in one.options.items()),
+        "does not see": one.unseen, "drives": ", ".join(one.drives), "decides": period, "sha256": one.digest or "",
+        "not installed": one.install or "",
+        "options": "" if one.meanings else "; ".join(f"{key}: {value}" for key, value in one.options.items()),
     }  # fmt: skip
     facts |= _network(one.facts)
     out.print(Text.assemble((clean(one.name, 200), "bold cyan"), ": ", clean(one.about, 1000)))
     for key, value in facts.items():
         if value:
             table.add_row(key, clean(value, 1000))
+    for key, text in one.meanings.items():
+        table.add_row(key, clean(f"{_default(one.options[key])}. {text}", 1000))
     out.print(table)
+
+
+def _default(value: str) -> str:
+    return value if value == "required" else f"default {value}"
 
 
 def _network(facts: dict[str, Any]) -> dict[str, str]:

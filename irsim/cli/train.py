@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -66,6 +67,12 @@ def train(
         ),
     ] = None,
     threads: Annotated[int, typer.Option("--threads", min=1, help="Threads of simulation and torch.")] = 1,
+    workers: Annotated[
+        int,
+        typer.Option(
+            "--workers", min=1, max=256, help="Processes that ppo divides the simulation among; results stay the same."
+        ),
+    ] = 1,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the training in the folder.")] = False,
 ) -> None:
     """Train a policy for a task; needs the extra `learn`. Success is measured on seeds that are not trained on."""
@@ -85,12 +92,18 @@ def train(
         typer.echo("a resumed training keeps its settings, except --steps: leave out the others", err=True)
         raise typer.Exit(INVALID)
     settings = RunFolder(out).settings() if resume else read_settings(given, options or [])
+    if settings.algo == "sarl" and workers > 1:
+        typer.echo("--workers is for --algo ppo, and this training uses sarl: leave it out", err=True)
+        raise typer.Exit(INVALID)
+    _let_threads_sleep()
     run: Any
+    more: dict[str, Any] = {}
     if settings.algo == "sarl":
         from irsim.learning.training.sarl.train import train_sarl as run
     else:
         from irsim.learning.training.train import train as run
 
+        more = {"workers": workers}
     if task is not None:
         print_findings(
             [one for one in task_report(str(task)).findings if one.severity == "warning"], str(task), stderr=True
@@ -99,9 +112,17 @@ def train(
     show: Any = _Progress(out_console)
     best = run(
         task or out / "task.yaml", out, settings, resume=resume, steps=wanted if resume else None, max_time=max_time,
-        threads=threads, on_round=show,
+        threads=threads, on_round=show, **more,
     )  # fmt: skip
     out_console.print(f"best model: {best}; irsim export-policy {out} policy.npz makes a file that needs no torch")
+
+
+def _let_threads_sleep() -> None:
+    """Have threads of torch sleep while they wait, unless the user decides otherwise; torch reads it when imported.
+
+    Otherwise they keep cores busy for which the simulation waits.
+    """
+    os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
 
 class _Progress:

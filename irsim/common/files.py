@@ -97,7 +97,11 @@ def replace_bytes(target: str | Path, *parts: Buffer, mode: int | None = 0o600) 
     """
     head, separator, _ = os.fspath(target).rpartition(os.sep)
     temporary = f"{head}{separator}{TEMPORARY}{os.urandom(4).hex()}"
-    create_bytes(temporary, *parts, mode=0o666 if mode is None else 0o600)
+    try:
+        create_bytes(temporary, *parts, mode=0o666 if mode is None else 0o600)
+    except OSError as error:
+        error.filename = os.fspath(target)  # a user knows no other name
+        raise
     try:
         if mode not in (None, 0o600):
             os.chmod(temporary, mode)

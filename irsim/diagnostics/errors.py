@@ -20,6 +20,7 @@ __all__ = [
     "PolicyLostError",
     "ScenarioError",
     "ScenarioNotFoundError",
+    "WorkerError",
 ]
 
 
@@ -107,8 +108,15 @@ class PolicyError(CodedError, ValueError):
 class PolicyLostError(PolicyError):
     """A policy in another process did not answer as it should; the episode cannot go on."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__("policy-lost", message, "look at what its process prints; a slow one needs a longer timeout")
+    def __init__(self, message: str, fix: str = "look at what its process prints") -> None:
+        super().__init__("policy-lost", message, fix)
+
+
+class WorkerError(CodedError, RuntimeError):
+    """A process of irsim that does a part of the work has died."""
+
+    def __init__(self, message: str, fix: str) -> None:
+        super().__init__("worker-failed", message, fix)
 
 
 class NotSimulatedError(ScenarioError):

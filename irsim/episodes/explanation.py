@@ -241,7 +241,8 @@ def reason_message(
     if late:
         shown = late[:_MAX_NAMED]
         states = [f"{quoted(robot.name)} {_state(env, views[robot.name], robot, events, held)}" for robot in shown]
-        more = f" and {len(late) - _MAX_NAMED} more robots" if len(late) > _MAX_NAMED else ""
+        rest = len(late) - _MAX_NAMED
+        more = f" and {rest} more robot{'s' * (rest != 1)}" if rest > 0 else ""
         reasons.append(f"at {seconds(env.sim_time)} ({_LIMIT_SOURCES[source]}) {', '.join(states)}{more}")
     if still := [robot for robot in robots if robot.outcome == "timeout" and robot.name in parked]:
         names = listed([quoted(robot.name) for robot in still], _MAX_NAMED)

@@ -15,12 +15,13 @@ if TYPE_CHECKING:
     from irsim.learning.gym_env import Env
     from irsim.learning.moment import Moment
     from irsim.learning.parallel_env import ParallelEnv
+    from irsim.learning.result import Result
     from irsim.learning.sb3_env import SB3VecEnv
     from irsim.learning.tasks.files import TaskError, open_task
     from irsim.learning.tasks.task import Task
     from irsim.learning.torchrl_env import TorchRLEnv
     from irsim.learning.vector_env import VectorEnv
-    from irsim.learning.worlds import Result, Worlds
+from irsim.learning.worlds import Worlds
 
 __all__ = [
     "Env", "Moment", "ParallelEnv", "Result", "SB3VecEnv", "Task", "TaskError", "TorchRLEnv", "VectorEnv", "Worlds",
@@ -33,7 +34,7 @@ __getattr__, __dir__ = lazy_names(
         "Env": "irsim.learning.gym_env",
         "Moment": "irsim.learning.moment",
         "ParallelEnv": "irsim.learning.parallel_env",
-        "Result": "irsim.learning.worlds",
+        "Result": "irsim.learning.result",
         "SB3VecEnv": "irsim.learning.sb3_env",
         "Task": "irsim.learning.tasks.task",
         "TaskError": "irsim.learning.tasks.files",

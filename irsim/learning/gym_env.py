@@ -11,9 +11,11 @@ from irsim.common.arguments import as_given
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.pictures import Camera
+from irsim.learning.result import Result
 from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskError, TaskSource
-from irsim.learning.worlds import Result, Worlds
+from irsim.learning.workers.divided import AnyWorlds
+from irsim.learning.worlds import Worlds
 
 require("gym", "gymnasium")
 import gymnasium
@@ -146,7 +148,7 @@ def check_render_mode(mode: str | None) -> None:
         raise ArgumentError(f"render_mode is {as_given(mode)}", f"choose from {', '.join(RENDER_MODES)}, or None")
 
 
-def frames_per_second(worlds: Worlds) -> int:
+def frames_per_second(worlds: AnyWorlds) -> int:
     """Frames of a video in which time passes as it does in the simulation."""
     return max(1, round(1.0 / worlds.scenario.world.step_time))
 

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.learning.result import Result
 from irsim.learning.tasks.curriculum import Curriculum
-from irsim.learning.worlds import Result, Worlds
+from irsim.learning.workers.divided import AnyWorlds
 
 __all__ = ["Ladder"]
 
@@ -27,7 +28,7 @@ class Ladder:
         level: The present level.
     """
 
-    def __init__(self, worlds: Worlds, curriculum: Curriculum) -> None:
+    def __init__(self, worlds: AnyWorlds, curriculum: Curriculum) -> None:
         self._worlds, self._curriculum = worlds, curriculum
         self.level = curriculum.start
         self._recent: NDArray[np.bool_] = np.zeros(0, dtype=bool)

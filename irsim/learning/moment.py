@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,8 @@ class Moment:
 
     Attributes:
         step_time: Period of the simulation [s].
-        distance_before: (n, A) distance to the goal at the start of the step [m]; NaN without a goal.
-        distance: (n, A) distance to the same goal at the end of the step [m].
+        pose_before, pose: (n, A, 3) x, y [m], heading [rad] at the start and at the end of the step, world frame.
+        goal: (n, A, 3) goal at the start of the step, in the same form; NaN without one.
         reached: (n, A) whether the learner reached a goal in this step: the last one, or one of several.
         arrived: (n, A) whether it arrived in this step: it reached its last goal, and had not before.
         collided: (n, A) whether it began to collide in this step.
@@ -32,15 +33,15 @@ class Moment:
         gaps: Function that measures, for each learner, the distance [m] between its footprint and the nearest one of
             the robots, the obstacles that move and the static objects, (n, A, 3). Larger ones than its argument [m] are
             infinite; negative ones are overlaps.
-        direction_before: (n, A, 2) unit vector to the goal at the start of the step, world frame; 0 without one.
         commanded: (n, A, 2) velocity that the action asked for [m/s], world frame; 0 for actions that are controls.
         urgency: Function that returns (n, A) 1 / (t + 0.2 s), with the time t after which this velocity would have
             touched another one, as at the start of the step; 0 if it would not within 5 s.
     """
 
     step_time: float
-    distance_before: Floats
-    distance: Floats
+    pose_before: Floats
+    pose: Floats
+    goal: Floats
     reached: NDArray[np.bool_]
     arrived: NDArray[np.bool_]
     collided: NDArray[np.bool_]
@@ -51,6 +52,32 @@ class Moment:
     velocity: Floats
     yaw_rate: Floats
     gaps: Callable[[float], Floats]
-    direction_before: Floats
     commanded: Floats
     urgency: Callable[[], Floats]
+
+    @cached_property
+    def distance_before(self) -> Floats:
+        """(n, A) distance to the goal at the start of the step [m]; NaN without a goal."""
+        return _distance(self.pose_before, self.goal)
+
+    @cached_property
+    def distance(self) -> Floats:
+        """(n, A) distance to the same goal at the end of the step [m]."""
+        return _distance(self.pose, self.goal)
+
+    @cached_property
+    def direction_before(self) -> Floats:
+        """(n, A, 2) unit vector to the goal at the start of the step, world frame; 0 without one, and at it."""
+        distance = self.distance_before
+        far = distance > 0  # not for NaN either
+        length = np.where(far, distance, 1.0)
+        found = np.empty((*far.shape, 2))
+        for k in range(2):
+            found[..., k] = np.where(far, (self.goal[..., k] - self.pose_before[..., k]) / length, 0.0)
+        return found
+
+
+def _distance(pose: Floats, goal: Floats) -> Floats:
+    x, y = goal[..., 0] - pose[..., 0], goal[..., 1] - pose[..., 1]  # arrays of one number each are faster than pairs
+    result: Floats = np.sqrt(x * x + y * y)
+    return result

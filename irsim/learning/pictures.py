@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from irsim.learning.worlds import Worlds
+    from irsim.learning.workers.divided import AnyWorlds
 
 __all__ = ["Camera"]
 
@@ -27,7 +27,7 @@ class Camera:
         human: Whether pictures are shown.
     """
 
-    def __init__(self, worlds: Worlds, world: int = 0, *, human: bool = False) -> None:
+    def __init__(self, worlds: AnyWorlds, world: int = 0, *, human: bool = False) -> None:
         self._worlds, self._world, self._human = worlds, world, human
         self._figure: Any = None
         self._window: Any = None

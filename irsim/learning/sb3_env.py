@@ -14,7 +14,7 @@ from irsim.learning.ladder import Ladder
 from irsim.learning.pictures import Camera
 from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskSource
-from irsim.learning.worlds import Worlds
+from irsim.learning.workers.divided import open_worlds
 
 require("learn", "stable_baselines3")
 from stable_baselines3.common.vec_env import VecEnv
@@ -33,7 +33,9 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
         task: The task: its file, its data, or a task that was read.
         worlds: Number of worlds.
         seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
-        threads: Number of threads; results do not depend on it.
+        threads: Number of threads of all processes together; results do not depend on it.
+        workers: Number of processes that the worlds are divided among, this one included; results do not depend on it.
+            Reward functions in Python get the worlds of their process.
 
     Attributes:
         worlds: The worlds behind it.
@@ -43,10 +45,13 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     Raises:
         TaskError: The task is not valid, or does not fit its scenario.
         ScenarioError: The scenario cannot be used.
+        ArgumentError: There is no such number of workers.
     """
 
-    def __init__(self, task: TaskSource, worlds: int = 1, *, seed: int | None = None, threads: int = 1) -> None:
-        self.worlds = Worlds(task, worlds, seed=seed, threads=threads)
+    def __init__(
+        self, task: TaskSource, worlds: int = 1, *, seed: int | None = None, threads: int = 1, workers: int = 1
+    ) -> None:
+        self.worlds = open_worlds(task, worlds, seed=seed, threads=threads, workers=workers)
         slots = self.worlds.n * self.worlds.learners
         self.render_mode = "rgb_array"
         self._camera = Camera(self.worlds)
@@ -81,7 +86,9 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     def step_wait(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
         """Advance all worlds by one period; worlds that are over start their next episode at once."""
         worlds = self.worlds
-        result = worlds.step(self._actions)
+        watch = None if self.ladder is None else self.ladder.watch
+        step = worlds.advance(worlds.read(self._actions), "over", watch=watch)
+        result = step.result
         reward, active = result.reward.reshape(-1), result.active.reshape(-1)
         terminated, truncated = result.terminated.reshape(-1), result.truncated.reshape(-1)
         over = np.repeat(result.over, worlds.learners)
@@ -89,22 +96,15 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
         self.active = active
         self._length += active
         self._return += reward
-        seen = worlds.observe()
         infos = _blank(active)
         for slot in np.flatnonzero(terminated | truncated).tolist():
             episode = {"r": float(self._return[slot]), "l": int(self._length[slot])}
             success = bool(result.arrived.reshape(-1)[slot])
             infos[slot] |= {"episode": episode, "is_success": success, "TimeLimit.truncated": bool(truncated[slot])}
         for slot in np.flatnonzero(done).tolist():
-            infos[slot]["terminal_observation"] = seen[slot].copy()
+            infos[slot]["terminal_observation"] = (step.last if over[slot] else step.seen)[slot].copy()
         self._length[done], self._return[done] = 0, 0.0
-        if self.ladder is not None:
-            self.ladder.watch(result)
-        if over.any():
-            worlds.reset(result.over)
-            slots = np.flatnonzero(over)
-            seen[slots] = worlds.eyes.observe(worlds.rows[slots])
-        return seen, reward.astype(np.float32), done, infos
+        return step.seen, reward.astype(np.float32), done, infos
 
     def set_level(self, level: int) -> None:
         """Set the level of the curriculum of the episodes that start from now on, as the ladder does when it moves."""
@@ -113,7 +113,8 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
             self.ladder.restore({"level": level, "recent": ""})
 
     def close(self) -> None:
-        """Close the window."""
+        """Close the window, and end the worker processes."""
+        self.worlds.close()
         self._camera.close()
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:

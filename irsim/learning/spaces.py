@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from irsim.common.extras import require
-from irsim.learning.worlds import Worlds
+from irsim.learning.workers.divided import AnyWorlds
 
 require("gym", "gymnasium")
 from gymnasium import spaces
@@ -15,12 +15,12 @@ from gymnasium import spaces
 __all__ = ["action_space", "observation_space"]
 
 
-def observation_space(worlds: Worlds) -> spaces.Box:
+def observation_space(worlds: AnyWorlds) -> spaces.Box:
     """The box of the observations of one learner."""
     return spaces.Box(worlds.eyes.low, worlds.eyes.high, dtype=np.float32)
 
 
-def action_space(worlds: Worlds) -> spaces.Space[Any]:
+def action_space(worlds: AnyWorlds) -> spaces.Space[Any]:
     """The box of numbers from -1 to 1 of an action, or the numbers of the choices."""
     choices = worlds.task.action.choices
     if choices is not None:

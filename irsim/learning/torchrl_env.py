@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irsim.common.extras import require
 from irsim.learning.tasks.files import TaskSource
-from irsim.learning.worlds import Worlds
+from irsim.learning.workers.divided import open_worlds
 
 require("learn", "torch", "torchrl", "tensordict")
 import torch
@@ -29,7 +30,9 @@ class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not rea
         task: The task: its file, its data, or a task that was read.
         worlds: Number of worlds.
         seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
-        threads: Number of threads; results do not depend on it.
+        threads: Number of threads of all processes together; results do not depend on it.
+        workers: Number of processes that the worlds are divided among, this one included; results do not depend on it.
+            Reward functions in Python get the worlds of their process.
         device: Device of the tensors; the simulation runs on the CPU.
 
     Attributes:
@@ -38,14 +41,22 @@ class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not rea
     Raises:
         TaskError: The task is not valid, or does not fit its scenario.
         ScenarioError: The scenario cannot be used.
+        ArgumentError: There is no such number of workers.
     """
 
     batch_locked = True
 
     def __init__(
-        self, task: TaskSource, worlds: int = 1, *, seed: int | None = None, threads: int = 1, device: Any = "cpu"
+        self,
+        task: TaskSource,
+        worlds: int = 1,
+        *,
+        seed: int | None = None,
+        threads: int = 1,
+        workers: int = 1,
+        device: Any = "cpu",
     ) -> None:
-        made = Worlds(task, worlds, seed=seed, threads=threads)
+        made = open_worlds(task, worlds, seed=seed, threads=threads, workers=workers)
         size = torch.Size([made.n * made.learners])
         super().__init__(device=device, batch_size=size)
         self.worlds = made
@@ -71,14 +82,17 @@ class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not rea
             self.worlds.reset(mask)
         self._fresh = False
         active = self.worlds.present.reshape(-1)
-        return self._dict(active=active)
+        return self._dict(self.worlds.observe(), active=active)
 
     def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
-        result = self.worlds.step(tensordict["action"].detach().cpu().numpy())
+        actions = self.worlds.read(tensordict["action"].detach().cpu().numpy())
+        step = self.worlds.advance(actions)
+        result = step.result
         over = np.repeat(result.over, self.worlds.learners)
         terminated, truncated = result.terminated.reshape(-1), result.truncated.reshape(-1)
         waiting = over & ~result.active.reshape(-1)
         out = self._dict(
+            step.seen,
             active=result.active.reshape(-1),
             terminated=terminated,
             truncated=truncated | waiting,
@@ -87,8 +101,8 @@ class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not rea
         out["reward"] = torch.as_tensor(result.reward.reshape(-1, 1), dtype=torch.float32, device=self.device)
         return out
 
-    def _dict(self, **flags: Any) -> TensorDictBase:
-        seen = torch.from_numpy(self.worlds.observe())  # shares the memory of the array
+    def _dict(self, observed: NDArray[np.float32], **flags: Any) -> TensorDictBase:
+        seen = torch.from_numpy(observed)  # shares the memory of the array
         columns = {name: torch.as_tensor(flag).reshape(-1, 1) for name, flag in flags.items()}
         made = {"observation": seen, **columns}
         return TensorDict(made, batch_size=self.batch_size).to(self.device)
@@ -96,6 +110,11 @@ class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not rea
     def set_level(self, level: int) -> None:
         """Set the level of the curriculum of the episodes that start from now on."""
         self.worlds.set_level(level)
+
+    def close(self, **kwargs: Any) -> None:
+        """End the worker processes."""
+        super().close(**kwargs)
+        self.worlds.close()
 
     def _set_seed(self, seed: int | None) -> None:
         first = 0 if seed is None else seed

@@ -13,9 +13,11 @@ from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.gym_env import RENDER_MODES, check_render_mode, frames_per_second
 from irsim.learning.pictures import Camera
+from irsim.learning.result import Result
 from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskSource
-from irsim.learning.worlds import Result, Worlds
+from irsim.learning.workers.divided import AnyWorlds, open_worlds
+from irsim.learning.worlds import Autoreset, Worlds
 
 require("gym", "gymnasium")
 from gymnasium.vector import AutoresetMode
@@ -25,6 +27,11 @@ from gymnasium.vector.utils import batch_space
 __all__ = ["VectorEnv"]
 
 Flags = NDArray[np.bool_]
+_RESETS: dict[AutoresetMode, Autoreset | None] = {
+    AutoresetMode.NEXT_STEP: "before",
+    AutoresetMode.SAME_STEP: "over",
+    AutoresetMode.DISABLED: None,
+}
 
 
 class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # type: ignore[misc] # as in gym_env
@@ -41,7 +48,9 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
             ``SameStep``: the last step does, and ``info["final_obs"]`` has what was observed before; ``Disabled``: call
             ``reset(options={"reset_mask": mask})``.
         seed: Seed of the first world, the next one has the next number; None: ``seeds.train`` of the task.
-        threads: Number of threads; results do not depend on it.
+        threads: Number of threads of all processes together; results do not depend on it.
+        workers: Number of processes that the worlds are divided among, this one included; results do not depend on it.
+            Reward functions in Python get the worlds of their process.
         copy: Whether each step returns new arrays of observations, instead of one that the next step overwrites.
         render_mode: ``rgb_array``: :meth:`render` returns pictures of the first worlds; ``human`` shows the first one.
 
@@ -51,7 +60,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
     Raises:
         TaskError: The task is not valid, or does not fit its scenario.
         ScenarioError: The scenario cannot be used.
-        ArgumentError: ``num_envs`` is not a multiple of the number of learners.
+        ArgumentError: ``num_envs`` is not a multiple of the number of learners, or there is no such number of workers.
     """
 
     metadata = {"render_modes": list(RENDER_MODES), "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}
@@ -66,11 +75,12 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         seed: int | None = None,
         threads: int = 1,
+        workers: int = 1,
         copy: bool = True,
         render_mode: str | None = None,
     ) -> None:
         check_render_mode(render_mode)
-        self.worlds = _worlds(task, num_envs, seed, threads)
+        self.worlds = _worlds(task, num_envs, seed, threads, workers)
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._mode = _mode(autoreset_mode)
@@ -80,7 +90,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         self.single_action_space = action_space(self.worlds)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._observed = np.zeros((num_envs, self.worlds.eyes.size), dtype=np.float32)
+        self._observed = self.worlds.buffer()
         self._copy = copy
         self._over = np.zeros(self.worlds.n, dtype=bool)
         self._fresh = True
@@ -132,7 +142,8 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         worlds, before = self.worlds, self._over
         if self._mode is AutoresetMode.DISABLED and before.any():
             raise ArgumentError("a world is over", 'start its next episode: reset(options={"reset_mask": mask})')
-        result = worlds.step(actions)
+        step = worlds.advance(worlds.read(actions), _RESETS[self._mode], out=self._observed)
+        result, seen = step.result, step.seen
         reward, terminated, truncated = (
             result.reward.reshape(-1),
             result.terminated.reshape(-1),
@@ -142,16 +153,10 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         over: Flags = result.over & ~before
         waiting = ~info["active"] & np.repeat(over, worlds.learners)
         truncated = truncated | waiting
-        if self._mode is AutoresetMode.NEXT_STEP and before.any():
-            worlds.reset(before)  # these worlds were over before the step, which did not count
-            begun = np.repeat(before, worlds.learners)
-            info["active"] |= begun & worlds.present.reshape(-1)
-        seen = worlds.observe(self._observed)
+        if self._mode is AutoresetMode.NEXT_STEP and before.any():  # for these worlds, the step did not count
+            info["active"] |= np.repeat(before, worlds.learners) & worlds.present.reshape(-1)
         if self._mode is AutoresetMode.SAME_STEP and over.any():
-            slots = np.flatnonzero(np.repeat(over, worlds.learners))
-            info |= _final(seen, slots)
-            worlds.reset(over)
-            seen[slots] = worlds.eyes.observe(worlds.rows[slots])
+            info |= _final(step.last, np.flatnonzero(np.repeat(over, worlds.learners)))
             over[:] = False
         self._over = over
         info |= self._drawn()
@@ -179,7 +184,9 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         return (self._camera.picture(),)
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Close the window."""
+        """Close the window, and end the worker processes."""
+        if hasattr(self, "worlds"):  # not if the arguments were refused
+            self.worlds.close()
         if self._camera is not None:
             self._camera.close()
 
@@ -194,12 +201,14 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         return np.asarray(found.reshape(self.worlds.n, self.worlds.learners).any(axis=1))
 
 
-def _worlds(task: TaskSource, slots: int, seed: int | None, threads: int) -> Worlds:
+def _worlds(task: TaskSource, slots: int, seed: int | None, threads: int, workers: int) -> AnyWorlds:
     one = Worlds(task, 1, seed=seed)
     if slots < 1 or slots % one.learners:
         what = f"num_envs is {slots}, and each world has {one.learners} learners"
         raise ArgumentError(what, f"give a multiple of {one.learners}")
-    return one if slots == one.learners else Worlds(task, slots // one.learners, seed=seed, threads=threads)
+    if slots == one.learners:
+        return one
+    return open_worlds(task, slots // one.learners, seed=seed, threads=threads, workers=workers)
 
 
 def _mode(given: str | AutoresetMode) -> AutoresetMode:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,49 +12,28 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError, PlacementError
 from irsim.env.batch import Batch
+from irsim.learning.actions import read_actions
 from irsim.learning.draws import Draws, check_observed
 from irsim.learning.features import REWARDS
 from irsim.learning.latency import Latency
 from irsim.learning.moment import Moment
 from irsim.learning.observing import Eyes
+from irsim.learning.result import Result, Step
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
 from irsim.learning.threats import Threats
 from irsim.metrics.roles import kinds_of
-from irsim.policies.networks.output import Present, decide
+from irsim.policies.networks.output import Present, are_finite, decide
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.simulation import Simulation
 
-__all__ = ["Result", "Worlds"]
+__all__ = ["Autoreset", "Worlds"]
 
+Autoreset = Literal["over", "before"]
+"""Worlds that start their next episode in a step: those that are over after it, or those that were before it."""
 _TRIES = 100
 """Number of scenes that are drawn for a world before it is an error that none has room for all objects."""
-
-
-@dataclass(frozen=True)
-class Result:
-    """What a step of n worlds with A learners each has led to.
-
-    Attributes:
-        reward: (n, A) sum of the terms; 0 for learners whose episode was over before.
-        terminated: (n, A) whether the episode of a learner ended in this step: it arrived, or it collided.
-        truncated: (n, A) whether it was cut off in this step without such an end: at the horizon, or because the world
-            starts its next episode.
-        active: (n, A) whether the episode of the learner was going on before the step.
-        over: (n,) whether the world is over, so that it has to be reset.
-        arrived, collided: (n, A) whether the learner arrived or began to collide in this step.
-        terms: (T, n, A) terms of the reward times their weights, in the order of the task.
-    """
-
-    reward: Floats
-    terminated: NDArray[np.bool_]
-    truncated: NDArray[np.bool_]
-    active: NDArray[np.bool_]
-    over: NDArray[np.bool_]
-    arrived: NDArray[np.bool_]
-    collided: NDArray[np.bool_]
-    terms: Floats
 
 
 class Worlds:
@@ -113,7 +91,7 @@ class Worlds:
         step_time = self.scenario.world.step_time
         horizons = [max(1, round(self.task.horizon_of(k) / step_time)) for k in range(len(self.task.levels))]
         self._horizons = np.array(horizons, dtype=np.int64)
-        self._terms = [(REWARDS.get(term.name), term) for term in self.task.reward]
+        self._terms: list[tuple[Any, Any]] = [(REWARDS.get(term.name), term) for term in self.task.reward]
         wary = any(term.name == "rvo" for term in self.task.reward)
         self._threats = Threats(simulation, team.indices, threads) if wary else None
         self._shape = (n, self.learners)
@@ -127,6 +105,7 @@ class Worlds:
         self.present = np.ones(self._shape, dtype=bool)
         self.level = np.zeros(n, dtype=np.int64)
         self.drawn: dict[str, NDArray[Any]] = {}
+        self._last: NDArray[np.float32] | None = None
         self._latency = None if self._draws.latency == 0 else Latency(self._draws.latency, n, self.learners)
         self.set_level((self.task.curriculum.start if self.task.curriculum else 0) if level is None else level)
         self.reset(seeds=seeds if self.varies else None)
@@ -159,6 +138,7 @@ class Worlds:
             self._read_draws(chosen)
         self._ended[chosen] = ~self.present[chosen]
         self._low, self._high = state.vel_min.take(self.rows, axis=0), state.vel_max.take(self.rows, axis=0)
+        self._bounded = are_finite(self._low, self._high, self.width)
         flags = self._simulation
         self._arrived[chosen] = flags.arrived.take(self.rows).reshape(self._shape)[chosen] != 0
         self._collided[chosen] = flags.collided.take(self.rows).reshape(self._shape)[chosen] != 0
@@ -214,6 +194,13 @@ class Worlds:
                 these = these & (self._simulation.state.failed_placement >= 0)
                 next_scene = True
 
+    def buffer(self) -> NDArray[np.float32]:
+        """(n * A, D) an array that observations can be written to."""
+        return np.zeros((len(self.rows), self.eyes.size), dtype=np.float32)
+
+    def close(self) -> None:
+        """Do nothing: worlds of one process need no end."""
+
     def observe(self, out: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
         """(n * A, D) what the learners observe now, written to ``out`` if it is given."""
         return self.eyes.observe(self.rows, out)
@@ -229,11 +216,64 @@ class Worlds:
         Raises:
             ArgumentError: The actions have another shape, or are not finite.
         """
+        return self._step(self.read(actions))
+
+    def advance(
+        self,
+        numbers: Floats | None,
+        reset: Autoreset | None = None,
+        *,
+        out: NDArray[np.float32] | None = None,
+        last: NDArray[np.float32] | None = None,
+        watch: Callable[[Result], None] | None = None,
+    ) -> Step:
+        """Advance all worlds by one period, observe, and start the next episodes of worlds that are over.
+
+        Args:
+            numbers: (n * A, F) what :meth:`read` made of actions; None leaves the learners to their behaviors.
+            reset: Which worlds start their next episode: those that are ``over`` after the step, or those that were
+                over ``before`` it; None: none.
+            out: (n * A, D) array for observations; None: a new one.
+            last: (n * A, D) array for the last observations of episodes; None: one that the next call overwrites.
+            watch: Called with the result before worlds that are over after the step start their next episode.
+
+        Returns:
+            What has happened, and what the learners observe then.
+        """
+        before = self._over
+        result = self._step(numbers)
+        if reset == "before" and before.any():
+            self.reset(before)
+        seen = self.observe(out)
+        if watch is not None:
+            watch(result)
+        if last is None:
+            last = self._last = np.empty(seen.shape, dtype=np.float32) if self._last is None else self._last
+        if reset == "over":
+            self.renew(result.over, seen, last)
+        return Step(result, seen, last)
+
+    def renew(self, over: NDArray[np.bool_], seen: NDArray[np.float32], last: NDArray[np.float32]) -> None:
+        """Start the next episode of worlds, keep what their learners observed, and observe again.
+
+        Args:
+            over: (n,) worlds.
+            seen: (n * A, D) what all learners observe; changed in these worlds.
+            last: (n * A, D) receives what it was in these worlds.
+        """
+        if not over.any():
+            return
+        slots = np.flatnonzero(np.repeat(over, self.learners))
+        last[slots] = seen[slots]
+        self.reset(over)
+        seen[slots] = self.eyes.observe(self.rows[slots])
+
+    def _step(self, numbers: Floats | None) -> Result:
         simulation, rows, shape = self._simulation, self.rows, self._shape
         goal, before = simulation.goal.take(rows, axis=0), simulation.pose.take(rows, axis=0)
         control_before = simulation.control.take(rows, axis=0)
-        if actions is not None:
-            self._impose(self._read(actions), before, goal, control_before)
+        if numbers is not None:
+            self._impose(numbers, before, goal, control_before)
         commanded = simulation.state.commanded.take(rows, axis=0)
         threat = None if self._threats is None else self._threats.urgency(rows)
         simulation.step()
@@ -247,8 +287,9 @@ class Worlds:
         self._collided = collided
         moment = Moment(
             step_time=float(self.scenario.world.step_time),
-            distance_before=_distance(before, goal).reshape(shape),
-            distance=_distance(after, goal).reshape(shape),
+            pose_before=before.reshape(*shape, 3),
+            pose=after.reshape(*shape, 3),
+            goal=goal.reshape(*shape, 3),
             reached=(reached.reshape(shape) & active) | came,
             arrived=came,
             collided=hit,
@@ -259,11 +300,12 @@ class Worlds:
             velocity=twist[:, :2].reshape(*shape, 2),
             yaw_rate=twist[:, 2].reshape(shape),
             gaps=self._gaps(),
-            direction_before=_direction(before, goal).reshape(*shape, 2),
             commanded=commanded.reshape(*shape, 2),
             urgency=lambda: np.zeros(shape) if threat is None else threat.reshape(shape),
         )
-        terms = np.stack([self._value(feature, options, moment) for feature, options in self._terms])
+        terms = np.empty((len(self._terms), *shape))
+        for term, (feature, options) in zip(terms, self._terms, strict=True):
+            np.multiply(options.weight, feature.function(moment, options), out=term)
         terms *= active
         if not self.present.all():
             terms[:, ~self.present] = 0.0  # their places are not numbers
@@ -280,19 +322,15 @@ class Worlds:
         done = self._simulation.done()
         terminated = active & (terminated | done[:, None])
         self._ended |= terminated
-        over = self._over | self._ended.all(axis=1) | done | (self._simulation.count >= self._horizons[self.level])
+        over = self._over | _all(self._ended) | done | (self._simulation.count >= self._horizons[self.level])
         if ends.world == "any":
-            over |= terminated.any(axis=1)
+            over |= _any(terminated)
         elif ends.world == "collision":
-            over |= hit.any(axis=1)
+            over |= _any(hit)
         truncated = active & ~terminated & over[:, None]
         self._ended |= truncated
-        self._over = over
+        self._over = over.copy()
         return Result(terms.sum(axis=0), terminated, truncated, active, over, came, hit, terms)
-
-    def _value(self, feature: Any, options: Any, moment: Moment) -> Floats:
-        value: Floats = options.weight * feature.function(moment, options)
-        return value
 
     def _gaps(self) -> Callable[[float], Floats]:
         """The distances to others now, measured once for each reach."""
@@ -308,25 +346,13 @@ class Worlds:
         return gaps
 
     # actions ----------------------------------------------------------------------------------------------------------
-    def _read(self, actions: Any) -> Floats:
-        """(n * A, F) numbers that :func:`decide` reads."""
-        choices = self._meaning.choices
-        if choices is None:
-            numbers = np.asarray(actions, dtype=np.float64)
-            if numbers.shape != (len(self.rows), self.width):
-                what = f"actions have the shape {numbers.shape}, not {(len(self.rows), self.width)}"
-                raise ArgumentError(what, "give one row of numbers for each learner of each world")
-            if not np.isfinite(numbers).all():
-                raise ArgumentError("an action is not finite", "give numbers from -1 to 1")
-            return numbers
-        number = np.asarray(actions)
-        if number.shape != (len(self.rows),) or number.dtype.kind not in "iu":
-            raise ArgumentError("actions are numbers of choices, one whole number for each learner", "give integers")
-        if ((number < 0) | (number >= len(choices))).any():
-            raise ArgumentError(f"an action is not the number of a choice, 0 to {len(choices) - 1}", "give one of them")
-        numbers = np.zeros((len(number), len(choices)))
-        numbers[np.arange(len(number)), number] = 1.0
-        return numbers
+    def read(self, actions: Any) -> Floats | None:
+        """(n * A, F) numbers that :meth:`advance` takes, from actions as :meth:`step` takes them.
+
+        Raises:
+            ArgumentError: The actions have another shape, or are not finite.
+        """
+        return None if actions is None else read_actions(actions, self._meaning.choices, len(self.rows), self.width)
 
     def _impose(self, numbers: Floats, pose: Floats, goal: Floats, control: Floats) -> None:
         """Command the learners whose episodes go on; the others stand still."""
@@ -335,33 +361,33 @@ class Worlds:
         if self._latency is not None:
             numbers, held = self._latency.pass_on(numbers, simulation.count)
         velocity = simulation.twist.take(rows, axis=0)[:, :2]
-        present = Present(pose, goal, velocity, control, self._low, self._high)
+        present = Present(pose, goal, velocity, control, self._low, self._high, self._bounded)
         wanted = decide(self._meaning, numbers, present)
-        wanted[self._ended.reshape(-1)] = 0.0
+        if self._ended.any():
+            wanted[self._ended.reshape(-1)] = 0.0
         if held is not None:
             wanted[held] = 0.0
         simulation.given[rows] = 1
         if self._meaning.returns == "velocity":
             core.follow_rows(simulation.world, simulation.state, rows, wanted)
         else:
-            simulation.command[rows, : self._controls] = wanted[:, : self._controls]
+            for k in range(self._controls):
+                simulation.command[:, k][rows] = wanted[:, k]
 
 
-def _distance(pose: Floats, goal: Floats) -> Floats:
-    away = goal[:, :2] - pose[:, :2]
-    result: Floats = np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1])
-    return result
+def _all(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(n,) whether all flags of a world are set."""
+    return flags[:, 0] if flags.shape[1] == 1 else np.asarray(np.logical_and.reduce(flags, axis=1))
 
 
-def _direction(pose: Floats, goal: Floats) -> Floats:
-    """(B, 2) unit vectors to goals; 0 without one, and at it."""
-    away, distance = goal[:, :2] - pose[:, :2], _distance(pose, goal)
-    far = distance > 0  # not for NaN either
-    result: Floats = np.where(far[:, None], away / np.where(far, distance, 1.0)[:, None], 0.0)
-    return result
+def _any(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(n,) whether any flag of a world is set."""
+    return flags[:, 0] if flags.shape[1] == 1 else np.asarray(np.logical_or.reduce(flags, axis=1))
 
 
 def _same(a: Floats, b: Floats) -> NDArray[np.bool_]:
     """Whether goals are equal, (B,)."""
+    if a.tobytes() == b.tobytes():
+        return np.ones(len(a), dtype=bool)
     equal: NDArray[np.bool_] = ((a == b) | (np.isnan(a) & np.isnan(b))).all(axis=1)
     return equal

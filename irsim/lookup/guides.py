@@ -48,17 +48,48 @@ GUIDES: dict[str, Guide] = {
         "applies only to `irsim run` and run_episode.",
         "import irsim\n\nenv = irsim.make('scenario.yaml', seed=1)\nfor _ in range(300):\n    env.step([1.0, 0.2], 0)\n"
         "    if env.done():\n        env.reset(random=True)\nenv.end()",
-        ("reset", "env", "env.reset", "env.step", "step", "python", "action", "actions", "policy", "loop", "episode"),
+        ("reset", "env", "env.reset", "env.step", "step", "python", "action", "actions", "loop", "episode"),
     ),
     "seeds": Guide(
         "what is random, and how to repeat it",
         "These are random: the distributions random, circle_crossing and square_crossing, shapes with random_shape, "
-        "wander goals, maps without their own seed, "
-        "noise. The same file, seed and version give the same run, bit by bit. The argument seed overrides world.seed; "
+        "wander goals, maps without their own seed, noise, the decisions of avocado, of footprint_orca without "
+        "progress and of policies that draw numbers. The same file, seed and version give the same run, bit by bit. "
+        "The argument seed overrides world.seed; "
         "without either, a seed is drawn and reported. A scenario without any of these runs the same with every seed; "
         "perturb lets the seed change its starts.",
         None,
         ("random", "randomness", "reproducible", "reproduce"),
+    ),
+    "which-policy": Guide(
+        "which policy avoids collisions best, and what it costs",
+        "Compare them in your own scene: success, collision and time-out have 95 % intervals, differences are those "
+        "with the same seeds, and times of decisions come with the result. The MCP tool is benchmark, with "
+        "scenarios and policies. For robots with a differential drive that cross a free square, take the suite "
+        "random_polygons_v1, or one of its scenarios, such as random_polygons_v1/robots-10/freeze. Its tables with 5 "
+        "to 25 robots, beside those of the IR-SIM paper, and what a decision costs: "
+        "skills/irsim-benchmark/results/policies_of_the_paper.md (for MCP hosts: "
+        "skill://irsim-benchmark/results/policies_of_the_paper.md). No policy there does better than footprint_orca, "
+        "which takes 3 to 5 times as long as orca to decide and touches no other robot. Where arrived robots "
+        "stay where they are (freeze) multi_robot_freeze and multi_robot come next, and orca and avocado block "
+        "themselves; where they make room (yield) orca and avocado come next. Networks take 20 to 3,000 times as long "
+        "as orca. A policy is as good as its training: sarl knows five people on a circle, sarl_multi_robot and rl_rvo "
+        "up to ten robots, and of the trained ones only those with a lidar see static obstacles. Among walls take "
+        "follow with a local behavior.",
+        "irsim benchmark random_polygons_v1 --scenario robots-10 "
+        "--policies orca,avocado,sarl_multi_robot,rl_rvo,ppo,footprint_orca --seeds 50",
+        (
+            *(
+                "which policy",
+                "best policy",
+                "compare policies",
+                "comparison of policies",
+                "results",
+                "table 2",
+                "table",
+            ),
+            *("policies of the paper", "policies_of_the_paper", "table_2", "leaderboard", "cost of a decision"),
+        ),
     ),
     "process": Guide(
         "a policy in another process",

@@ -136,12 +136,14 @@ def _plot(source: _Source) -> str:
 def _templates(source: _Source) -> str:
     intro = (
         "Scenarios to start from; each runs without changes. `irsim new NAME --set KEY=VALUE` writes one to a file. "
-        "The outcome is that with default parameters. Each parameter is followed by its values and its default."
+        "With default parameters the outcome is success, unless an entry gives another. Each parameter is followed by "
+        "its values and its default."
     )
     parts = [intro]
     for template in templates.load_all():
         answer = source.about(template.name)
-        about = f"{template.purpose} Outcome: {' or '.join(template.outcomes)}."
+        usual = list(template.outcomes) == ["success"]
+        about = template.purpose if usual else f"{template.purpose} Outcome: {' or '.join(template.outcomes)}."
         words = f"Tags: {', '.join(template.tags)}."
         parts.append(f"## {template.name}\n\n{about}\n{words}\n\n{key_list(_all_keys(answer))}")
     return "\n\n".join(parts)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from irsim.benchmarks.suite_files import load_suite, suite_names
 from irsim.lookup.answer import Answer, Key
+from irsim.lookup.suites import model_keys
 from irsim.policies.converters.features import CONVERTERS
-from irsim.policies.description import describe_policy, list_policies
+from irsim.policies.description import PolicyInfo, describe_policy, list_policies
 from irsim.policies.registry import POLICIES
 from irsim.policies.trained import trained_policies
 
-__all__ = ["policies_answer", "policy_answer"]
+__all__ = ["convert_answer", "policies_answer", "policy_answer"]
 
 
 def policy_answer(topic: str) -> Answer | None:
@@ -38,25 +39,64 @@ def _policy(name: str, notes: list[str]) -> Answer:
         "needs": ", ".join(info.needs) or "only the robot and its goal",
         "drives": ", ".join(info.drives),
         "returns": info.output,
+        "does not see": info.unseen,
         "decides": period,
         "trained on": card.get("task", "").partition(",")[0],
         "protocol": card.get("protocol", ""),
         "scenes of the training": f"seeds from {card['seeds'][-1]}" if card.get("seeds") else "",
         "decisions of the training": f"{card['steps']:,}" if card.get("steps") else "",
         "license": card.get("license", ""),
+        "not installed": info.install or "",
     }
     groups = {"facts": [Key(name=key, text=text) for key, text in facts.items() if text]}
     if info.options:
-        groups["options"] = [Key(name=key, text=f"default {text}") for key, text in info.options.items()]
+        groups["options"] = [
+            Key(name=key, text=_option(text, info.meanings.get(key, ""))) for key, text in info.options.items()
+        ]
     return Answer(
         topic=name,
         kind="policy",
         title=f"{info.kind} policy {name}",
         text=" ".join([f"{info.about.rstrip('.')}.", *notes]),
         groups=groups,
-        example=f"irsim benchmark scenario.yaml --policies orca,{name}",
+        example=f"irsim benchmark scenario.yaml --policies {_in_list(info)}",
+        see=["policies", "which-policy"],
+    )
+
+
+def convert_answer(kind: str = "") -> Answer | None:
+    """Describe ``irsim convert``, or one kind of weights that it takes; None: there is no such kind."""
+    features = {feature.name: feature for feature in CONVERTERS.features()}
+    if kind and kind not in features:
+        return None
+    chosen = [features[kind]] if kind else list(features.values())
+    about = [f"{one.name}: {' '.join((one.options.__doc__ or '').split())}" for one in chosen]
+    return Answer(
+        topic=f"convert {kind}".strip(),
+        kind="index",
+        title="irsim convert: policy files of weights that others trained with PyTorch",
+        text="The file is what torch.save wrote: a state dictionary, or a whole module; nothing in it is run. Tensors "
+        f"are found by their names and shapes. {' '.join(about)}",
+        groups={
+            f"options of {one.name} (--set KEY=VALUE)": [key for key in model_keys(one.options) if key.name != "name"]
+            for one in chosen
+        },
+        example=f"irsim convert {chosen[0].name} weights.pth -o model.npz --set license=MIT",
         see=["policies"],
     )
+
+
+def _option(default: str, meaning: str) -> str:
+    said = default if default == "required" else f"default {default}"
+    return f"{said}. {meaning}" if meaning else said
+
+
+def _in_list(info: PolicyInfo) -> str:
+    """The policy beside `orca`, as it is written in a command."""
+    required = [key for key, default in info.options.items() if default == "required"]
+    if not required:
+        return f"orca,{info.name}"
+    return f"'orca,{{name: {info.name}, {', '.join(f'{key}: …' for key in required)}}}'"
 
 
 def policies_answer() -> Answer:
@@ -83,10 +123,13 @@ def policies_answer() -> Answer:
                 Key(name="irsim benchmark FILE --policies A,B", text="a comparison; also irsim.benchmark"),
                 Key(name="irsim.make(file, policy=…)", text="a loop; env.set_policy changes it while it runs"),
                 Key(name="irsim.batch(file, n, policy=…)", text="many worlds at once"),
+                Key(
+                    name="run_episode, benchmark", text="the MCP tools, with policy and policies; they run no plug-ins"
+                ),
             ],
         },
         example=_EXAMPLE,
-        see=["behaviors", "suites", "metrics"],
+        see=["which-policy", "convert", "behaviors", "suites", "metrics"],
     )
 
 

@@ -14,7 +14,7 @@ from irsim.lookup.answer import Answer, Key
 from irsim.scenario.behavior_override import behavior_text
 from irsim.scenario.perturbation import Perturbation
 
-__all__ = ["suite_answer", "suite_key_answer", "suite_names", "suites_answer"]
+__all__ = ["model_keys", "suite_answer", "suite_key_answer", "suite_names", "suites_answer"]
 
 _PARTS: dict[str, type[BaseModel]] = {"": Suite, "scenarios": SuiteScenario, "seeds": Seeds, "perturb": Perturbation}
 """Key of a suite file whose value has keys → these; the empty text stands for the file."""
@@ -30,10 +30,10 @@ def suites_answer() -> Answer:
         text="`irsim benchmark NAME` runs one. A file with these keys is a suite of your own: `irsim benchmark FILE`.",
         groups={
             "suites": listed,
-            "keys of a suite file": _keys(Suite),
-            "keys of each of its scenarios": _keys(SuiteScenario),
-            "keys of seeds": _keys(Seeds),
-            "keys of each of perturb": _keys(Perturbation),
+            "keys of a suite file": model_keys(Suite),
+            "keys of each of its scenarios": model_keys(SuiteScenario),
+            "keys of seeds": model_keys(Seeds),
+            "keys of each of perturb": model_keys(Perturbation),
         },
         example=_EXAMPLE,
         see=["metrics", "templates", "suites.vary"],
@@ -52,8 +52,8 @@ def suite_key_answer(words: Sequence[str]) -> Answer | None:
     for place in places:
         if len(place) == 2 and place[0] in _PARTS and place[1] in _PARTS[place[0]].model_fields:
             part, name = place
-            about = next(key for key in _keys(_PARTS[part]) if key.name == name)
-            below = {f"keys of {name}": _keys(_PARTS[name])} if not part and name in _PARTS else {}
+            about = next(key for key in model_keys(_PARTS[part]) if key.name == name)
+            below = {f"keys of {name}": model_keys(_PARTS[name])} if not part and name in _PARTS else {}
             topic = ".".join(["suites", *([part] if part else []), name])
             return Answer(
                 topic=topic,
@@ -88,16 +88,16 @@ def suite_answer(name: str) -> Answer:
             "sources": [Key(name=source) for source in suite.sources],
         },
         example=f"irsim benchmark {name} --seeds 5",
-        see=["suites"],
+        see=["suites", *(["which-policy"] if suite.others else [])],
     )
 
 
-def _keys(model: type[BaseModel]) -> list[Key]:
-    """The keys of a part of a suite file."""
+def model_keys(model: type[BaseModel]) -> list[Key]:
+    """The keys of a model of options, such as a part of a suite file."""
     keys, described = [], model.model_json_schema()["properties"]
     for name, field in model.model_fields.items():
         plain = None if field.is_required() or field.default is None else field.get_default(call_default_factory=True)
-        default = None if plain is None or isinstance(plain, BaseModel) else str(plain)
+        default = None if plain in (None, "") or isinstance(plain, BaseModel) else str(plain)
         text, words = " ".join(described[name].get("description", "").split()), _choices(field.annotation)
         allowed = ", ".join(words) or None
         keys.append(Key(name=name, required=field.is_required(), default=default, allowed=allowed, text=text))

@@ -22,7 +22,7 @@ from irsim.lookup.index import (
     templates_answer,
 )
 from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_topic
-from irsim.lookup.policies import policies_answer, policy_answer
+from irsim.lookup.policies import convert_answer, policies_answer, policy_answer
 from irsim.lookup.schema_walk import (
     COLOR,
     Node,
@@ -78,6 +78,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         "metric": all_metrics,
         "metrics": all_metrics,
         "policies": policies_answer,
+        "policy": policies_answer,
         "suites": suites_answer,
         "templates": templates_answer,
     }
@@ -95,6 +96,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return suite_answer(topic.strip())
     if words[:1] == ["suites"] and (found_key := suite_key_answer(words[1:])) is not None:
         return found_key
+    if words[:1] == ["convert"] and (found_kind := convert_answer(" ".join(words[1:]))) is not None:
+        return found_kind
     if words[:1] == ["policy"] and (found_policy := policy_answer(" ".join(words[1:]))) is not None:
         return found_policy
     if words[:1] in (["task"], ["tasks"]) and (found_task := task_answer(words[1:])) is not None:

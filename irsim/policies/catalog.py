@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import inspect
+import math
 import os
 from collections.abc import Callable, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +21,8 @@ from irsim.policies.function import FunctionPolicy
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Policy
 from irsim.policies.registry import POLICIES, RANDOM
-from irsim.policies.trained import trained_policies, trained_policy
-from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text, parse_behavior
+from irsim.policies.trained import COMMON_NAMES, trained_policies, trained_policy
+from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text, parse_behavior, split_behaviors
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.yaml.rewrite import yaml_flow
 
@@ -31,6 +33,7 @@ __all__ = [
     "behavior_names",
     "file_of",
     "files_beside",
+    "is_installed",
     "is_network",
     "names_file",
     "names_trained",
@@ -43,6 +46,8 @@ PolicySource = Policy | Callable[[Observations], Any] | str | os.PathLike[str] |
 """What :func:`open_policy` takes."""
 SUFFIXES = (".npz", ".onnx")
 """Suffixes of files that hold policies."""
+_TORCH_SUFFIXES = (".pt", ".pth", ".pkl")
+"""Suffixes of files of PyTorch."""
 MAX_FILE_BYTES = 500_000_000
 """Largest file of a policy."""
 
@@ -170,17 +175,25 @@ def with_file(text: str, path: Path) -> str:
 def _parsed(text: str) -> tuple[str, dict[str, Any]]:
     """Name and options of a policy that is given as text."""
     plain = text.endswith(SUFFIXES) and not text.startswith("{")
-    options = {"name": text} if plain else parse_behavior(text)
+    try:
+        options = {"name": text} if plain else parse_behavior(text)
+    except BenchmarkError:
+        fix = "give a name such as orca, a file (.npz, .onnx), or {name: orca, timeHorizon: 5}"
+        if len(split_behaviors(text)) > 1:
+            fix = "give one policy; irsim benchmark --policies A,B compares several"
+        raise BenchmarkError(f"{clean(text)!r} is not a policy", fix) from None
     name = AS_WRITTEN if options is None else str(options["name"])
     return name, {key: value for key, value in (options or {}).items() if key != "name"}
 
 
 def _unknown(name: str, root: str | Path | None) -> UnknownPolicyError:
     known = policy_names() if root is None else sorted({*behavior_names(), RANDOM, *trained_policies()})
-    near = nearest(name, known)
+    near = COMMON_NAMES.get(name.lower()) or nearest(name, known)
     fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}, or a file (.npz, .onnx)"
     if root is not None and name in POLICIES.names():
         fix = "plug-ins are not run here; choose a behavior or a file of the workspace"
+    if name.endswith(_TORCH_SUFFIXES):
+        fix = "irsim convert makes a policy file (.npz) of weights of PyTorch"
     return UnknownPolicyError(f"there is no policy {clean(name)!r}", fix)
 
 
@@ -188,11 +201,16 @@ def _made(name: str, maker: Callable[..., Any], options: Mapping[str, Any]) -> P
     """What a maker makes of options."""
     if (unknown := _unknown_option(name, maker, options)) is not None:
         raise unknown
+    package = getattr(maker, "package", None)
+    if package is not None and not is_installed(package[0]):
+        raise PolicyError("missing-extra", f"the policy {clean(name)!r} needs the package {package[0]}", package[1])
     try:
         made = maker(**options)
     except CodedError:
         raise
     except Exception as error:
+        if (missing := _missing_option(name, maker, options)) is not None:
+            raise missing from error
         what = f"policy {clean(name)!r} cannot be made: {clean(str(error), 300)}"
         raise PolicyError("policy-failed", what, f"irsim policies {clean(name)} lists its options") from error
     if not isinstance(made, Policy):
@@ -215,6 +233,30 @@ def _unknown_option(name: str, maker: Callable[..., Any], options: Mapping[str, 
         return None
     fix = suggestion(key, known, f"its options are {', '.join(known)}" if known else "leave it out")
     return PolicyError("policy-failed", f"policy {clean(name)!r} has no option {clean(key)!r}", fix)
+
+
+def _missing_option(name: str, maker: Callable[..., Any], options: Mapping[str, Any]) -> PolicyError | None:
+    """The error for the first option that a policy requires and that is not given; None if all are."""
+    try:
+        parameters = inspect.signature(maker).parameters.values()
+    except (TypeError, ValueError):
+        return None
+    named = [one for one in parameters if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)]
+    key = next((one.name for one in named if one.default is one.empty and one.name not in options), None)
+    if key is None:
+        return None
+    what = f"policy {clean(name)!r} needs the option {key}"
+    return PolicyError(
+        "policy-failed", what, f"write {{name: {clean(name)}, {key}: …}}; irsim policies {name} explains"
+    )
+
+
+def is_installed(package: str) -> bool:
+    """Whether a Python package can be imported."""
+    try:
+        return find_spec(package) is not None
+    except (ImportError, ValueError):
+        return False
 
 
 def _named(policy: Policy, text: str) -> Policy:
@@ -264,9 +306,11 @@ def _network(path: Path, text: str, name: str, options: Mapping[str, Any]) -> Po
 
     period = options.get("decision_dt")
     unknown = [key for key in options if key != "decision_dt"]
-    if unknown or (period is not None and not (_is_number(period) and period > 0)):
-        what = f"{clean(unknown[0])!r} is no option of a file" if unknown else "decision_dt must be a time [s] above 0"
-        raise PolicyError("policy-failed", f"{clean(name)!r}: {what}", "the only option is decision_dt", where="policy")
+    if unknown or (period is not None and not (_is_number(period) and 0 < period < math.inf)):
+        what = f"decision_dt must be a time [s] above 0, got {as_given(period)}"
+        what = f"{clean(unknown[0])!r} is no option of a file" if unknown else what
+        fix = "the only option is decision_dt" if unknown else "write a number of seconds such as 0.25"
+        raise PolicyError("policy-failed", f"{clean(name)!r}: {what}", fix, where="policy")
     policy = open_network(path)
     if period is not None:
         policy.decision_dt = float(period)

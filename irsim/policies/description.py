@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import inspect
 import math
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS
 from irsim.policies.behavior import BehaviorPolicy
-from irsim.policies.catalog import behavior_names, names_file, names_trained, open_policy
+from irsim.policies.catalog import behavior_names, is_installed, names_file, names_trained, open_policy
 from irsim.policies.networks.network_policy import NetworkPolicy
 from irsim.policies.policy import Needs, Policy
 from irsim.policies.random import RandomPolicy
@@ -36,6 +37,9 @@ class PolicyInfo:
         drives: Names of the drives that it controls; ``any``.
         decision_dt: Time between two decisions [s]; None: every step.
         options: Option → its default in words; ``required`` without one.
+        meanings: Option → what it means.
+        unseen: What it does not see; empty if that is not known.
+        install: How the package is installed that it needs; None if it is, or needs none.
         digest: SHA-256 of its file; None without one.
         facts: What a network says of itself: parts that it observes, what it returns, layers, sizes, card.
     """
@@ -48,6 +52,9 @@ class PolicyInfo:
     drives: list[str]
     decision_dt: float | None = None
     options: dict[str, str] = field(default_factory=dict)
+    meanings: dict[str, str] = field(default_factory=dict)
+    unseen: str = ""
+    install: str | None = None
     digest: str | None = None
     facts: dict[str, Any] = field(default_factory=dict)
 
@@ -111,16 +118,21 @@ def _info(name: str, kind: str, policy: Any, about: str, options: dict[str, str]
     """Describe a policy, or the class or function that makes it."""
     known = isinstance(policy, Policy) or (isinstance(policy, type) and issubclass(policy, Policy))
     needs = policy.needs if known and isinstance(policy.needs, Needs) else Needs()
+    package = policy.package if known else None
+    wanted = [] if package is None else [f"the package {package[0]}"]
     drives = sorted(policy.drives) if known and policy.drives is not None else ["any"]
     return PolicyInfo(
         name=name,
         kind=kind,
         about=about,
         output=policy.output if known else "known once it is made",
-        needs=_words(needs),
+        needs=[*_words(needs), *wanted],
         drives=["any"] if known and policy.output == "velocity" else drives,
         decision_dt=policy.decision_dt if known else None,
         options=options,
+        meanings={key: text for key, text in _arguments(policy).items() if key in options},
+        install=None if package is None or is_installed(package[0]) else package[1],
+        unseen=_unseen(needs) if isinstance(policy, NetworkPolicy) else "",
         digest=policy.digest if known else None,
         facts=policy.describe() if isinstance(policy, NetworkPolicy) else {},
     )
@@ -139,6 +151,15 @@ def _words(needs: Needs) -> list[str]:
     return found
 
 
+def _unseen(needs: Needs) -> str:
+    """What a network does not see that observes this."""
+    if needs.scan or needs.map:
+        return ""
+    if not needs.neighbors:
+        return "anything but itself and its goal"
+    return "walls and maps" if needs.static_neighbors else "static obstacles, walls and maps"
+
+
 def _about(thing: Any) -> str:
     """The first sentence of a docstring, or what a network says about itself."""
     own = getattr(thing, "about", None)
@@ -155,3 +176,17 @@ def _options(maker: Any) -> dict[str, str]:
         return {}
     named = [one for one in parameters if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)]
     return {one.name: "required" if one.default is one.empty else repr(one.default) for one in named}
+
+
+def _arguments(maker: Any) -> dict[str, str]:
+    """Argument → its description in a Google docstring."""
+    _, _, section = (inspect.getdoc(maker) or "").partition("\nArgs:\n")
+    found: dict[str, str] = {}
+    for line in section.splitlines():
+        if not line.startswith(" "):
+            break
+        if named := re.match(r" {4}(\w+)(?: \([^)]*\))?: (.+)", line):
+            found[named[1]] = named[2].strip()
+        elif found:
+            found[[*found][-1]] += f" {line.strip()}"
+    return {name: text.replace("``", "`") for name, text in found.items()}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -51,10 +50,11 @@ class NeuPanPolicy(Policy):
 
     name = "neupan"
     stochastic = False
+    needs = Needs(scan=True, footprints=True)
+    drives: frozenset[str] | None = frozenset(_DRIVES)
+    package = ("neupan", _INSTALL)
 
     def __init__(self, config: str, velocities: bool = False, speed: float | None = None) -> None:
-        if find_spec("neupan") is None:
-            raise PolicyError("missing-extra", "the policy 'neupan' needs the package neupan", _INSTALL)
         if not isinstance(velocities, bool):
             raise ArgumentError(f"velocities must be true or false, got {as_given(velocities)}", "write true")
         if speed is not None and not _is_speed(speed):

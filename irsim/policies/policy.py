@@ -107,6 +107,7 @@ class Policy(ABC):
         batch_invariant: Whether its decision for a robot has the same bits whatever other robots a call decides for.
             Benchmarks then step many worlds at once; else one after another.
         may_be_lost: Whether it lives in another process, so that ``act`` may raise :class:`PolicyLostError`.
+        package: Python package that it needs and that irsim does not depend on, and how to install it.
         text: How it is written in commands, such as ``orca`` or ``model.npz``; None: only this program has it.
         source: What opens it again in another folder, with the full path of its file; None as for ``text``.
         digest: SHA-256 of the file that it was read from; None without one.
@@ -120,6 +121,7 @@ class Policy(ABC):
     stochastic: bool = True
     batch_invariant: bool = False
     may_be_lost: bool = False
+    package: tuple[str, str] | None = None
     text: str | None = None
     source: str | None = None
     digest: str | None = None

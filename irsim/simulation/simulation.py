@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import range_of
 from irsim.common.log import Logger
 from irsim.diagnostics.errors import PlacementError
 from irsim.simulation.build import COLLISION_MODES, Built, build_world, speed_controls
@@ -121,9 +122,8 @@ class Simulation:
         self.arrived, self.collided, self.stopped = state.arrived, state.collided, state.stopped
         self.goal, self.radius = state.goal, state.radius
         self.pace, self.start_step, self.appeared = state.pace, state.start_step, state.appeared
-        self.infeasible = state.infeasible
+        self.infeasible, self.count = state.infeasible, state.count
         self.ranges, self.hits, self.valid = state.ranges, state.hits, state.valid
-        self.count = state.count
         self.scans, self.velocity_slices = world.scans(), world.velocity_slices()
         self._first_scan: dict[int, int] = {}
         for number, (owner, _, _) in enumerate(self.scans):
@@ -131,6 +131,7 @@ class Simulation:
         self._all = np.ones(self.copies, dtype=np.uint8)
         records = self.scenario.objects
         self.robots = np.array([record.role == "robot" for record in records], dtype=bool)
+        self._robot_columns = range_of(self.robots)
         self.ids = np.array([*(record.id for record in records), -1], dtype=np.int32)
         self.names.update((record.id, record.name) for record in records)
         self.passable -= {record.id for record in records}
@@ -303,9 +304,7 @@ class Simulation:
                 return np.asarray(decide.control(view), dtype=np.float64).reshape(-1)  # type: ignore[attr-defined]
         core.decide_row(self.world, self.state, view.row)
         wanted = self.command[view.row, : view.vel_dim].copy()
-        if self.drives is None:
-            return wanted
-        return self.drives.control_alone(view.row, wanted)
+        return wanted if self.drives is None else self.drives.control_alone(view.row, wanted)
 
     def move_alone(self, row: int) -> None:
         """Move one object by one period with its command."""
@@ -339,8 +338,8 @@ class Simulation:
 
     def done(self) -> NDArray[np.bool_]:
         """(W,) whether every robot of a world has arrived or stopped; False without robots."""
-        flags = self.arrived | self.stopped | (self.state.takes_part ^ 1)
-        ended = flags.astype(bool).reshape(self.copies, self.objects)[:, self.robots]
+        flags = (self.arrived | self.stopped | (self.state.takes_part ^ 1)).reshape(self.copies, self.objects)
+        ended = flags[:, self._robot_columns]
         return np.asarray(ended.all(axis=1) & (ended.shape[1] > 0))
 
     def reset(self, mask: NDArray[np.bool_] | None = None, *, next_scene: bool = False) -> None:
@@ -355,7 +354,7 @@ class Simulation:
         """
         self._reseeded = False
         chosen = self._all if mask is None else np.asarray(mask, dtype=np.uint8)
-        self.state.reset(chosen, next_scene)
+        self.state.reset(chosen, next_scene, self.threads)
         self._check_placement()
         if self.drives is not None:
             self.drives.reset(np.flatnonzero(chosen).tolist())

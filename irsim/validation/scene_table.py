@@ -32,12 +32,13 @@ MAX_SHOWN = 6
 """Number of objects of an entry that are described one by one."""
 
 
-def scene_table(scenario: ResolvedScenario, seed: int | None = None) -> SceneTable:
+def scene_table(scenario: ResolvedScenario, seed: int | None = None, driven: str | None = None) -> SceneTable:
     """Describe the objects of a scenario at its start.
 
     Args:
         scenario: The scenario.
         seed: Seed of the places that are described one by one; default: the scenario's own, else 0.
+        driven: The policy that drives every robot that can move; None: their behaviors.
     """
     own = scenario.world.seed if seed is None else seed
     placed = bool(scenario.placements)
@@ -61,6 +62,11 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None) -> SceneTab
         )
     ]
     rows = [_row(scenario, entry, state, built.objects, shown, good if drawn & set(entry) else []) for entry in entries]
+    if driven is not None:
+        rows = [
+            row.model_copy(update={"behavior": f"policy {driven}"}) if row.role == "robot" and row.drive else row
+            for row in rows
+        ]
     return SceneTable(
         rows=rows,
         random=random_parts(scenario),

@@ -249,30 +249,39 @@ def _artifact(job: dict[str, Any], progress: _Progress) -> str:
 
 def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.benchmarks import benchmark
+    from irsim.benchmarks.stored import PLAN, TIMING, measure_plan
+    from irsim.runs.files import replace_file
 
     arguments = job["arguments"]
+    folder = os.path.dirname(arguments["log"])
     timing: dict[str, Any] = {}
     options: dict[str, Any] = {"limits": _limits(job), "progress": progress, "timing": timing}
     if "plan" in arguments:
         from irsim.benchmarks.plan import Plan
-        from irsim.benchmarks.stored import measure_plan
 
-        found = measure_plan(Plan.model_validate(arguments["plan"]), log=arguments["log"], **options)
+        plan = Plan.model_validate(arguments["plan"])
+        replace_file(os.path.join(folder, PLAN), plan.model_dump_json().encode())
+        found = measure_plan(plan, log=arguments["log"], **options)
     else:
         found = benchmark(**arguments, strict=True, **options)
-    from irsim.benchmarks.stored import TIMING
-    from irsim.runs.files import replace_file
-
-    replace_file(os.path.join(os.path.dirname(arguments["log"]), TIMING), json.dumps(timing).encode())
+    replace_file(os.path.join(folder, TIMING), json.dumps(timing).encode())
     return found.model_dump_json()
 
 
 def _logged(job: dict[str, Any], progress: _Progress) -> str:
     """Write the result of the episodes that a stopped benchmark had completed, beside its log."""
+    from pathlib import Path
+
     from irsim.benchmarks import logged
+    from irsim.benchmarks.plan import Plan
+    from irsim.benchmarks.stored import PLAN, result_of_plan
     from irsim.runs.files import replace_file
 
-    replace_file(job["arguments"]["to"], logged(job["arguments"]["log"]).model_dump_json().encode())
+    log = Path(job["arguments"]["log"])
+    found = logged(log)
+    if (plan := log.with_name(PLAN)).is_file():  # of a suite, which names scenarios and policies
+        found = result_of_plan(Plan.model_validate_json(plan.read_bytes()), found)
+    replace_file(job["arguments"]["to"], found.model_dump_json().encode())
     return "null"
 
 
@@ -282,6 +291,12 @@ def _suite_plan(job: dict[str, Any], progress: _Progress) -> str:
     from irsim_mcp.suites import plan_of
 
     return plan_of(**job["arguments"], root=Path(job["workspace"])).model_dump_json()
+
+
+def _suite_policy(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim.benchmarks.suite_scene import suite_policy
+
+    return json.dumps({"text": suite_policy(**job["arguments"])})
 
 
 def _suite_scene(job: dict[str, Any], progress: _Progress) -> str:
@@ -314,6 +329,7 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "export": _export,
     "artifact": _artifact,
     "suite_plan": _suite_plan,
+    "suite_policy": _suite_policy,
     "suite_scene": _suite_scene,
     "lookup": _lookup,
     "schema": _schema,

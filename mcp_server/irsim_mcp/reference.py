@@ -16,6 +16,8 @@ from irsim.scenario.yaml.modeline import without_modeline
 __all__ = ["explanation", "schema_text"]
 
 _INDEX_TITLE = "Topics that lookup explains"
+_MAX_LIST = 3500
+"""Number of characters up to which a list of topics is answered in full."""
 _INDEX_HELP = (
     "Look up any of these, or a path such as robot.sensors.lidar2d or world.plot. Templates are whole scenarios; "
     "empty-room is the smallest. Units: m, s, rad; heading 0 looks along +x and grows counter-clockwise."
@@ -43,9 +45,20 @@ def explanation(topic: str, parameters: dict[str, Any] | None) -> str:
         answer = _with_usable_best(answer)
         return as_text(answer) + (f"\n\nFor example:\n{answer.example}" if answer.example else "")
     if answer.topic:
-        return as_text(answer)
+        return _list(answer)
     groups = {**answer.groups, **look_up("templates").groups}  # with the purpose of each template
     return f"{as_text(answer.model_copy(update={'title': _INDEX_TITLE, 'groups': groups}))}\n\n{_INDEX_HELP}"
+
+
+def _list(answer: Answer) -> str:
+    """A list of topics; of a long one only the first group is described, and the others are named."""
+    if len(text := as_text(answer)) <= _MAX_LIST or len(answer.groups) < 2:
+        return text
+    (first, keys), *others = answer.groups.items()
+    text = as_text(answer.model_copy(update={"groups": {first: keys}, "see": []}))
+    before = f"{answer.topic}." if answer.topic == "suites" else ""
+    named = [f"{heading}: {', '.join(key.name for key in group)}" for heading, group in others if group]
+    return "\n\n".join([text, *named, f"lookup explains each, such as {before}{others[0][1][0].name}"])
 
 
 def _several(topics: list[str]) -> str:

@@ -211,6 +211,14 @@ class Services:
         answer = await self.workers.read("suite_scene", arguments, seconds=self.limits.check_seconds)
         return str(_result(answer, argument)["text"])
 
+    async def suite_policy(self, given: str | None, policy: str | None) -> str | None:
+        """The text of a policy, which may be one that the suite knows if ``given`` is a scenario of a suite."""
+        if policy is None or given is None or suite_of(given) is None:
+            return policy
+        arguments = {"name": given, "policy": policy}
+        answer = await self.workers.read("suite_policy", arguments, seconds=self.limits.check_seconds)
+        return str(_result(answer, "policy")["text"])
+
     async def suite_plan(self, **arguments: Any) -> dict[str, Any]:
         """The plan of a benchmark of a suite, as data; arguments as of :func:`irsim_mcp.suites.plan_of`.
 

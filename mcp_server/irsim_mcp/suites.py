@@ -55,7 +55,9 @@ def scenario_of_suite(given: str, argument: str) -> str:
     return scene.text
 
 
-def plan_of(scenarios: Sequence[str], policies: Sequence[str] | None, seeds: int, root: Path) -> Plan:
+def plan_of(
+    scenarios: Sequence[str], policies: Sequence[str] | None, seeds: int, root: Path, first: int | None = None
+) -> Plan:
     """The plan of a benchmark of a suite, or of some of its scenarios.
 
     Args:
@@ -63,11 +65,13 @@ def plan_of(scenarios: Sequence[str], policies: Sequence[str] | None, seeds: int
         policies: Names of its policies, other behaviors, or files; default: its policies.
         seeds: Number of seeds.
         root: The workspace, in which files must lie.
+        first: First seed; default: that of the suite.
 
     Raises:
         ArgumentError: A scenario is not of the suite.
         BenchmarkError, PolicyError: A policy is not valid.
     """
+    from irsim.benchmarks.policies import opened_policies
     from irsim.benchmarks.suite_plan import suite_plan
 
     suites = [suite_of(given) for given in scenarios]
@@ -81,15 +85,13 @@ def plan_of(scenarios: Sequence[str], policies: Sequence[str] | None, seeds: int
         if not any(name in (one, one.rsplit("/", 1)[0], one.split("/", 1)[0]) for one in known):
             raise _unknown(suite, known, name, "scenarios")
     own = _known_policies(suite)
-    chosen = [text if text in own else _inside(text, root) for text in policies] if policies else None
-    return suite_plan(suite, policies=chosen, seeds=seeds, scenarios=names or None)
-
-
-def _inside(text: str, root: Path) -> str:
-    """A policy that is not one of the suite, as text that opens it from any folder."""
-    from irsim.policies.catalog import open_policy
-
-    return open_policy(text, root=root).source or text
+    opened_policies([text for text in policies or [] if text not in own], "policies", str(root))
+    return suite_plan(
+        suite,
+        policies=policies or None,
+        seeds=seeds if first is None else list(range(first, first + seeds)),
+        scenarios=names or None,
+    )
 
 
 @lru_cache(maxsize=8)

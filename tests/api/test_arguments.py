@@ -34,7 +34,7 @@ def test_the_same_behavior_twice_is_found_out_whichever_way_it_is_written() -> N
         irsim.benchmark(TEXT, ["{name: orca, timeHorizon: 5}", {"name": "orca", "timeHorizon": 5}], 1)
 
 
-_NOT_A_BEHAVIOR = r"(is not a valid behavior|a policy cannot be .+)"
+_NOT_A_BEHAVIOR = r"(is not a valid behavior|is not a policy|a policy cannot be .+)"
 
 
 @pytest.mark.parametrize("behaviors", [3, [None], [["orca"]], {"nam": "orca"}, [{}]])

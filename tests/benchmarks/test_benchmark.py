@@ -160,6 +160,11 @@ def test_noise_that_no_policy_reads_is_not_chance(tmp_path: Path) -> None:
     assert len(irsim.benchmark(file, ["dash"], seeds=5).episodes) == 5  # the fog is lifted by what the lidar has seen
 
 
+def test_a_behavior_that_draws_random_numbers_runs_with_every_seed(files) -> None:
+    found = irsim.benchmark(files[1], ["dash", "avocado"], seeds=3)
+    assert [len(found.episodes), found.notes] == [6, []]
+
+
 def test_what_is_not_random_is_run_once_and_said(files) -> None:
     found = irsim.benchmark(files[1], seeds=20)
     assert len(found.episodes) == 1

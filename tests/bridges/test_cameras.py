@@ -126,6 +126,19 @@ def test_wrong_options_are_refused_and_nothing_is_written(run: Run) -> None:
     assert sorted(path.name for path in Path().iterdir() if path.name[0] != ".") == ["hall.bridge.json", "hall.yaml"]
 
 
+def test_cameras_are_left_out_while_their_object_is_not_in_the_world(run: Run) -> None:
+    passer = "{name: replay, times: [1, 2], poses: [[5, 5], [4, 5]]}"
+    Path("passer.yaml").write_text(
+        HALL + f"  - {{name: passer, kinematics: {{name: omni}}, behavior: {passer}}}\n", encoding="utf-8"
+    )
+    record = str(irsim.run("passer.yaml", seed=1, steps=30, record=True).run_id)
+    irsim.export_run(record, "passer.jsonl", to="poses", objects=["passer"])
+    assert [line["frame"] for line in lines("passer.jsonl")] == list(range(10, 21))
+    with pytest.raises(RunError, match="none of the chosen objects is in the world"):
+        irsim.export_run(record, "never", to="colmap", objects=["passer"], options={"every": 30})
+    assert not Path("never").exists()
+
+
 def test_the_command_writes_a_folder_named_after_the_run(run: Run) -> None:
     done = CliRunner().invoke(app, ["export", "--to", "colmap", "--objects", "walker", "--set", "every=4"])
     assert done.exit_code == 0, done.output

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 import shutil
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -116,3 +118,14 @@ def test_a_prism_stands_between_its_heights() -> None:
     heights = {line.split()[3] for line in text.splitlines() if line.startswith("v")}
     assert heights == {"0.25", "1.5"}
     assert text.count("\nf ") == 2 + 6
+
+
+def test_what_the_page_says_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = Path(__file__).resolve().parents[2] / "skills/irsim-runner/bridges/gazebo.md"
+    [block] = re.findall(r"```bash\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    Path("hall.yaml").write_text(TRAFFIC, encoding="utf-8")
+    for command in block.splitlines():
+        done = CliRunner().invoke(app, shlex.split(command)[1:])
+        assert done.exit_code == 0, (command, done.output)
+    assert Path("hall-gazebo/world.sdf").stat().st_size > 5000

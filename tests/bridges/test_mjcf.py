@@ -94,10 +94,15 @@ def test_map_and_walls_are_boxes(model: ET.Element) -> None:
 
 def test_names_are_written_as_they_are_and_numbers_as_numbers() -> None:
     scene = gallery()
-    odd = tuple(replace(one, name=name) for one, name in zip(scene.agents, ("world", 'a<b"&', "ü"), strict=False))
-    scene = replace(scene, agents=(*odd, *scene.agents[3:]))
+    odd = tuple(
+        replace(one, name=name)
+        for one, name in zip(scene.agents, ("world", 'a<b"&', "ü", "rover/left", "a\nb\x00"), strict=False)
+    )
+    scene = replace(scene, agents=(*odd, *scene.agents[5:]))
     model = ET.fromstring(write_mjcf(scene, choose_agents(scene, None), Mujoco()))
-    assert {"irsim/world", 'a<b"&', "ü"} <= {one.get("name") for one in model.iter("body")}
+    assert {"irsim/object_0", 'a<b"&', "ü", "irsim/object_3", "irsim/object_4"} <= {
+        one.get("name") for one in model.iter("body")
+    }
     for geom in model.iter("geom"):
         for key in ("pos", "size", "euler"):
             assert np.isfinite([float(word) for word in (geom.get(key) or "0").split()]).all()

@@ -59,6 +59,15 @@ def test_rectangles_become_boxes_whatever_their_heading() -> None:
     assert solids_of(Circle((1.0, 2.0), 0.5), 0.1) == [Disk((1.0, 2.0), 0.5)]
 
 
+def test_polygons_without_area_or_that_cross_themselves_are_no_error() -> None:
+    assert convex_pieces(np.array([[0, 0], [1, 0], [2, 0]], dtype=float)) == []
+    assert convex_pieces(np.zeros((4, 2))) == []
+    star = sum(shapely.Polygon(piece).area for piece in convex_pieces(PENTAGRAM))
+    assert 0.5 < star < 3
+    bow = np.array([[0, 0], [2, 2], [2, 0], [0, 2]], dtype=float)
+    assert sum(shapely.Polygon(piece).area for piece in convex_pieces(bow)) > 0.9
+
+
 def test_a_line_has_its_thickness_on_both_sides_and_a_room_outside() -> None:
     points = np.array([[0, 0], [4, 0], [4, 0], [4, 3]], dtype=float)
     boxes = solids_of(Line(points), 0.2)

@@ -182,3 +182,19 @@ def test_deciding_twice_in_a_step_changes_nothing() -> None:
     core.decide_row(simulation.world, simulation.state, 2)
     core.decide(simulation.world, simulation.state)
     assert_identical(everything(simulation.state), once)
+
+
+def wall(low: float, high: float) -> str:
+    return f"obstacle:\n  - {{shape: {{name: linestring, vertices: [[6, {low}], [6, {high}]]}}}}\n"
+
+
+def test_a_body_of_parts_is_known_as_a_whole() -> None:
+    body = f"{{name: compound, parts: [{LONG}, {{name: circle, radius: 0.3, pose: [0.4, 0, 0]}}]}}"
+    simulation = run(world(entry([2, 6, 0], [10, 6], shape=body), obstacles=wall(0, 12)), [0], 100)
+    assert outcome(simulation) == (False, False), "its nose is seen, so it stops before the wall"
+
+
+@pytest.mark.parametrize("shape", [LONG, "{name: circle, radius: 0.3}"])
+def test_a_single_long_wall_is_gone_round(shape: str) -> None:
+    simulation = run(world(entry([2, 6, 0], [10, 6], shape=shape), obstacles=wall(4, 8)), [0], 150)
+    assert outcome(simulation) == (True, False)

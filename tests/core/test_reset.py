@@ -106,6 +106,21 @@ def test_only_masked_worlds_are_reset() -> None:
     assert state.seed.tolist() == [1, 2, 9]
 
 
+@pytest.mark.parametrize("next_scene", [False, True])
+def test_resets_do_not_depend_on_the_number_of_threads(next_scene: bool) -> None:
+    seeds = list(range(20))
+    mask = np.array([k % 3 != 0 for k in seeds], np.uint8)
+    found = []
+    for threads in (1, 3, 50):
+        world, state = crowd(seeds)
+        core.advance(world, state, 5)
+        state.reset(mask, next_scene, threads)
+        core.advance(world, state, 3)
+        found.append(everything(state))
+    assert_identical(found[0], found[1])
+    assert_identical(found[0], found[2])
+
+
 def test_set_initial() -> None:
     world, state = scene(robot(pose=[1, 1, 0], extra=[0.5, 0.25]), obstacle(pose=[5, 5, 0], extra=[2.0]))
     state.pose[:] = [[2, 2, 1], [6, 6, 1]]

@@ -18,3 +18,12 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
     if REQUIRED and report.skipped and not hasattr(report, "wasxfail"):
         report.outcome = "failed"
         report.longrepr = f"skipped, although its peer is required: {report.longrepr}"
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_make_collect_report(collector: pytest.Collector) -> Iterator[None]:
+    outcome: Any = yield
+    report = outcome.get_result()
+    if REQUIRED and report.skipped:  # a whole file, whose library is missing
+        report.outcome = "failed"
+        report.longrepr = f"skipped, although its peer is required: {report.longrepr}"

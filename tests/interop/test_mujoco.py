@@ -153,7 +153,7 @@ def test_slip_slows_a_robot_down_and_latency_delays_it() -> None:
     assert travelled[0] == pytest.approx(1.93, abs=0.05)  # 2 s at 1 m/s, less the time in which it speeds up
     assert travelled[1] == pytest.approx(0.75 * travelled[0], abs=0.1)
     assert travelled[2] == pytest.approx(travelled[0] - 0.5, abs=0.02)
-    assert travelled[3] == pytest.approx(0.02 * 0.9 * 9.81 * 2**2 / 2, abs=0.06)
+    assert 0.2 < travelled[3] < 0.4  # motors use 90 % of the grip: 0.02 * 0.9 * 9.81 * 2**2 / 2 = 0.35 m
     assert (late[:6, 0, 0] < 1.001).all()
 
 
@@ -220,6 +220,24 @@ def test_objects_that_are_not_in_the_world_touch_nothing_and_come_back() -> None
     assert bridge.report.contacts == 0
 
 
+def test_another_episode_starts_at_rest_and_without_old_commands() -> None:
+    from irsim.api import read_scenario
+
+    scenario, _ = read_scenario(text=POCKET.format(drive="diff", shape=SHAPES["circle"], goal=5.5), strict=True)
+    env = irsim.Env(scenario, headless=True, log_level="ERROR", seed=1)
+    runs = []
+    with irsim.connect(env, [make(Mujoco(latency=0.3))]):
+        for _ in range(2):
+            env.reset()
+            runs.append([])
+            for _ in range(12):
+                env.step()
+                runs[-1].append(env.simulation.pose[0].copy())
+    env.end(ending_time=0.0)
+    np.testing.assert_allclose(runs[0], runs[1], atol=1e-3)
+    assert runs[1][2] == pytest.approx((1, 4, 0), abs=1e-3)
+
+
 def test_a_hundred_robots() -> None:
     text = """
 world: {width: 40, height: 40, step_time: 0.1}
@@ -282,7 +300,8 @@ def test_errors_say_what_to_write(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_physics_that_become_unstable_are_an_error() -> None:
+def test_physics_that_become_unstable_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     scene, start = gallery(), state_of(gallery())
     bridge = make(Mujoco())
     bridge.open(scene, start)
@@ -292,6 +311,7 @@ def test_physics_that_become_unstable_are_an_error() -> None:
         bridge.exchange(motion_of(scene, start))
     bridge.close()
     bridge.close()
+    assert not list(tmp_path.iterdir())  # MuJoCo would write a log
 
 
 def test_the_doctor_lets_a_ball_fall() -> None:
@@ -336,3 +356,31 @@ def test_bridge_is_what_the_registry_makes() -> None:
     [bridge] = open_bridges([Mujoco(latency=0.1)])
     assert isinstance(bridge, MujocoBridge)
     assert bridge.options.latency == 0.1
+
+
+def test_what_the_page_says_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import re
+    import shlex
+
+    from typer.testing import CliRunner
+
+    from irsim.cli.app import app
+
+    page = (TEMPLATES.parent / "skills/irsim-runner/bridges/mujoco.md").read_text(encoding="utf-8")
+    blocks = {lang: re.findall(rf"```{lang}\n(.*?)```", page, re.DOTALL) for lang in ("bash", "yaml", "python")}
+    monkeypatch.chdir(tmp_path)
+    Path("hall.yaml").write_text(SQUARE, encoding="utf-8")
+    commands = [line for block in blocks["bash"] for line in block.splitlines() if line.startswith("irsim")]
+    assert len(commands) == 3
+    for command in commands:
+        done = CliRunner().invoke(app, shlex.split(command)[1:])
+        assert done.exit_code == 0, (command, done.output)
+    assert Path("hall.xml").stat().st_size > 5000
+    seen: dict[str, Any] = {}
+    exec(blocks["python"][0], seen)
+    assert seen["mujoco"].report.steps > 50
+    [options] = blocks["yaml"]
+    Path("hall.yaml").write_text(SQUARE + options, encoding="utf-8")
+    done = CliRunner().invoke(app, ["run", "hall.yaml", "--steps", "20"])
+    assert done.exit_code in (0, 1), done.output
+    assert json.loads(Path("report.json").read_text(encoding="utf-8"))["steps"] == 20

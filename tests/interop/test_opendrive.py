@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +23,9 @@ east="0" west="0"/><road name="" length="90" id="1" junction="-1"><link/><planVi
 cV="0.004" dV="0.00005" pRange="arcLength"/></geometry></planView>
 <elevationProfile><elevation s="0" a="0" b="0" c="0" d="0"/></elevationProfile><lateralProfile/>
 <lanes><laneOffset s="0" a="0.8" b="0.01" c="0" d="0"/>
-<laneSection s="0"><left><lane id="1" type="driving" level="false"><link/><width sOffset="0" a="3" b="0.02" c="0" d="0"/>
-</lane><lane id="2" type="sidewalk" level="false"><link/><width sOffset="0" a="2" b="0" c="0" d="0"/></lane></left>
+<laneSection s="0"><left><lane id="1" type="driving" level="false"><link/>
+<width sOffset="0" a="3" b="0.02" c="0" d="0"/></lane>
+<lane id="2" type="sidewalk" level="false"><link/><width sOffset="0" a="2" b="0" c="0" d="0"/></lane></left>
 <center><lane id="0" type="none" level="false"/></center>
 <right><lane id="-1" type="driving" level="false"><link/><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>
 <lane id="-2" type="shoulder" level="false"><link/><width sOffset="0" a="1" b="0" c="0" d="0"/></lane></right>
@@ -47,7 +49,7 @@ def generated(folder: Path) -> Path:
         xodr.create_road(shape, id=k, left_lanes=2, right_lanes=1, lane_width=3.5) for k, shape in enumerate(shapes, 1)
     ]
     network = xodr.OpenDrive("town")
-    for one, other in zip(roads, roads[1:], strict=False):
+    for one, other in pairwise(roads):
         one.add_successor(xodr.ElementType.road, other.id, xodr.ContactPoint.start)
         other.add_predecessor(xodr.ElementType.road, one.id, xodr.ContactPoint.end)
     for road in roads:

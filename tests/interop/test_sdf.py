@@ -20,8 +20,8 @@ Parser = Callable[..., subprocess.CompletedProcess[str]]
 RUN = """
 world: {width: 12, height: 8, boundary: walls, obstacle_map: {name: perlin, resolution: 0.5, fill: 0.1, seed: 9}}
 robot:
-  - {name: rover, shape: {name: circle, radius: 0.2}, state: [1, 1, 0], goal: [11, 7, 0], kinematics: {name: diff}, behavior: {name: dash},
-     sensors: [{name: lidar2d, number: 31, range_max: 5}]}
+  - {name: rover, shape: {name: circle, radius: 0.2}, state: [1, 1, 0], goal: [11, 7, 0], kinematics: {name: diff},
+     behavior: {name: dash}, sensors: [{name: lidar2d, number: 31, range_max: 5}]}
 obstacle:
   - {number: 3, distribution: {name: manual}, shape: {name: circle, radius: 0.2}, kinematics: {name: omni},
      state: [[4, 2, 0], [5, 5, 0], [8, 3, 0]],

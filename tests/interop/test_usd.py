@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import shlex
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -208,3 +210,75 @@ def test_prims_of_a_stage_of_ones_own() -> None:
     assert size.GetLength() == pytest.approx(2)
     with pytest.raises(ValueError, match="/Nobody"):
         Follower(stage, {"walker": "/Nobody"})
+
+
+def test_the_script_for_isaac_sim_follows_and_stops(run, monkeypatch) -> None:
+    """With stand-ins for rclpy and Kit: this says nothing about them, but the script is sound."""
+    from irsim.bridges.usd import follow, isaac
+
+    stage = make_stage(recorded_scene(run))
+    subscribed, called, destroyed = {}, [], []
+    node = SimpleNamespace(
+        create_subscription=lambda kind, topic, call, depth: subscribed.__setitem__(topic, call),
+        destroy_node=lambda: destroyed.append(True),
+    )
+    waiting = [transform("walker/base_link", 1.0, 2.0, 0.5)]
+
+    def spin_once(node, timeout_sec):
+        if waiting:
+            subscribed["/tf"](SimpleNamespace(transforms=[waiting.pop()]))
+
+    made = SimpleNamespace(ok=lambda: True, create_node=lambda name: node, spin_once=spin_once)
+    kinds = {"geometry_msgs.msg": SimpleNamespace(PoseArray=object), "tf2_msgs.msg": SimpleNamespace(TFMessage=object)}
+    app = SimpleNamespace(get_update_event_stream=lambda: SimpleNamespace(create_subscription_to_pop=subscribe))
+    kit = SimpleNamespace(get_app=lambda: app)
+    usd = SimpleNamespace(get_context=lambda: SimpleNamespace(get_stage=lambda: stage))
+
+    def subscribe(call, name):
+        called.append(call)
+        return object()
+
+    others = {"rclpy": made, "follow": follow, **kinds, "geometry_msgs": object(), "tf2_msgs": object()}
+    omni = SimpleNamespace(kit=SimpleNamespace(app=kit), usd=usd)
+    for name, module in {**others, "omni": omni, "omni.kit": omni.kit, "omni.kit.app": kit, "omni.usd": usd}.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    isaac.main()
+    called[0](None)
+    assert place_of(stage, "/World/Pedestrians/walker") == pytest.approx((1, 2, 0, 0.5))
+    isaac.main()
+    assert destroyed == [True]
+    assert place_of(stage, "/World/Pedestrians/walker")[:2] == (5, 1)
+
+
+def test_follow_stands_alone() -> None:
+    import irsim.bridges.usd
+
+    text = Path(irsim.bridges.usd.__path__[0], "follow.py").read_text()
+    imports = [
+        line.split()[1].split(".")[0] for line in text.splitlines() if line.lstrip().startswith(("import", "from"))
+    ]
+    assert set(imports) <= {"__future__", "collections", "math", "re", "typing", "pxr"}
+
+
+def test_commands_of_the_page(tmp_path: Path, monkeypatch) -> None:
+    from typer.testing import CliRunner
+
+    from irsim.cli.app import app
+    from tests.skills.test_bridges import blocks
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.yaml").write_text(TEXT)
+    for command in (line for block in blocks("usd.md", "bash") for line in block.splitlines()):
+        if command.startswith("irsim "):
+            done = CliRunner().invoke(app, shlex.split(command)[1:])
+            assert done.exit_code == 0, (command, done.output)
+    assert {path.name for path in tmp_path.glob("*.usd?")} == {"run.usdc", "start.usda"}
+    [layer] = blocks("usd.md", "usda")
+    (tmp_path / "mine.usda").write_text(layer.replace("person.usd@", "person.usda@"))
+    (tmp_path / "person.usda").write_text('#usda 1.0\n(\n defaultPrim = "P"\n)\ndef Sphere "P" {}\n')
+    stage = Usd.Stage.Open(str(tmp_path / "mine.usda"))
+    person = stage.GetPrimAtPath("/World/Pedestrians/walker/body/person")
+    place = UsdGeom.XformCache(12).GetLocalToWorldTransform(person).ExtractTranslation()
+    assert (person.GetTypeName(), tuple(place)) == ("Sphere", pytest.approx((5, 3, 0)))
+    assert not stage.GetPrimAtPath("/World/Pedestrians/walker/body/part_0").IsActive()

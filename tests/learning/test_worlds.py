@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.result import Result
 from irsim.learning.tasks.files import TaskError
-from irsim.learning.worlds import Result, Worlds
+from irsim.learning.worlds import Worlds
 from irsim.policies.networks.layout import Layout, layout_needs, observe
 from irsim.policies.observe import Observer
 from tests.learning.tasks import LIDAR, RANDOM, crowd, lidar_among_boxes, task

@@ -184,7 +184,7 @@ async def test_limits(workspace: Path) -> None:
         ("{name: orca, timeHorizon: -5}", "'timeHorizon' must be > 0 [s], got -5 {}. Fix: allowed is > 0 [s]."),
         ("{name: follow, planner: {name: astr}}", "planner.name: 'astr' is not a planner {}. Fix: name: astar."),
         ("orcaa", "there is no policy 'orcaa' {}. Fix: did you mean orca?"),
-        ("{orca", "'{{orca' is not a valid behavior {}. Fix: give a name such as orca, or "),
+        ("{orca", "'{{orca' is not a policy {}. Fix: give a name such as orca, a file"),
     ],
 )
 async def test_a_wrong_behavior_is_told_by_its_argument_and_leaves_nothing(

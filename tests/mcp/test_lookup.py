@@ -197,3 +197,13 @@ async def test_too_many_topics_are_refused(empty: Path) -> None:
     async with connected(empty) as client:
         result = await client.call_tool("lookup", {"topic": ", ".join(f"robot.k{n}" for n in range(13))})
     assert "bad-argument" in error_of(result)
+
+
+@pytest.mark.parametrize("topic", ["suites", "metrics", "policies"])
+async def test_lists_are_short(empty: Path, topic: str) -> None:
+    text = await looked_up(empty, topic)
+    assert len(text) <= 3600
+    if topic != "policies":
+        last = text.rsplit("such as ", 1)[1]
+        assert len(await looked_up(empty, last)) > 50
+    assert ("random_polygons_v1" if topic == "suites" else "success" if topic == "metrics" else "sarl") in text

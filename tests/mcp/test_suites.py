@@ -55,15 +55,48 @@ async def test_a_suite_runs_files_of_the_workspace(workspace: Path) -> None:
         assert "workspace" in text_of(await client.call_tool("benchmark", outside))
 
 
+async def test_a_suite_runs_other_seeds(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        arguments = {"scenarios": ["random_polygons_v1/robots-5/yield"], "policies": ["dash"], "seeds": 2}
+        found = data_of(await client.call_tool("benchmark", arguments | {"first_seed": 7}))
+        assert found["reproduce"].endswith("--scenario robots-5/yield --seeds 7-8")
+        assert data_of(await client.call_tool("benchmark", arguments))["reproduce"].endswith("--seeds 2")
+
+
+async def test_an_episode_of_a_suite_knows_the_policies_of_the_suite(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        arguments = {"scenario_path": "random_polygons_v1/robots-5/yield", "seed": 100, "max_steps": 3}
+        found = data_of(await client.call_tool("run_episode", arguments | {"policy": "ppo"}))
+        assert found["behavior"] == "multi_robot"
+        found = data_of(await client.call_tool("run_episode", arguments | {"policy": "orca"}))
+        assert found["behavior"].startswith("{name: orca, neighborDist: 5")
+
+
+async def test_a_stopped_suite_is_named_like_a_finished_one(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        arguments = {"scenarios": ["random_polygons_v1"], "policies": ["orca", "sarl_multi_robot"], "seeds": 30}
+        job = data_of(await client.call_tool("benchmark", arguments | {"wait_s": 2}))["job_id"]
+        found = data_of(await client.call_tool("get_job", {"job_id": job, "cancel": True}))
+        while not found["done"]:  # the machine is slow
+            job = data_of(await client.call_tool("benchmark", arguments | {"wait_s": 20}))["job_id"]
+            found = data_of(await client.call_tool("get_job", {"job_id": job, "cancel": True}))
+        assert found["status"] == "cancelled"
+        assert found["rows"][0]["behavior"] == "orca"
+        assert found["reproduce"] == "irsim benchmark random_polygons_v1 --policies orca,sarl_multi_robot --seeds 30"
+        listed = data_of(await client.call_tool("inspect_run", {"run_id": job}))
+        assert "scenario_path='random_polygons_v1/robots-5/freeze'" in listed["next"]
+
+
 @pytest.mark.parametrize(
     ("changes", "problem"),
     [
         ({"scenarios": ["random_polygons_v1/robot-5"]}, "did you mean random_polygons_v1/robots-5"),
         ({"scenarios": ["random_polygons_v1", "circle_swap_v1"]}, "benchmarked without others"),
         ({"scenarios": ["random_polygons_v1", "room.yaml"]}, "benchmarked without others"),
-        ({"first_seed": 5}, "a suite has its own seeds"),
+        ({"first_seed": 2**53 - 1}, "exceed"),
         ({"max_steps": 5}, "a suite has its own horizon"),
         ({"policies": ["orcas"]}, "there is no policy 'orcas'"),
+        ({"policies": ["orca", "orcas", "sarll"]}, "there is no policy 'orcas'; there is no policy 'sarll'"),
         ({"seeds": 100}, "at most"),
     ],
 )

@@ -17,6 +17,7 @@ import yaml
 import irsim
 from irsim.diagnostics.errors import ArgumentError, PolicyError
 from irsim.policies import open_policy
+from irsim.policies.description import describe_policy
 
 ROBOT = {"name": "rectangle", "length": 0.6, "width": 0.4}
 SCENE: dict[str, Any] = {
@@ -204,3 +205,15 @@ def test_without_the_package_the_command_that_installs_it_is_told(tmp_path: Path
         open_policy({"name": "neupan", "config": config(tmp_path)})
     assert "git clone https://github.com/hanruihua/NeuPAN" in str(raised.value.fix)
     assert "neupan" in irsim.policies.registry.POLICIES.names()
+    with pytest.raises(PolicyError, match="needs the package neupan"):
+        open_policy("neupan")
+    info = describe_policy("neupan")
+    assert info.needs == ["a lidar", "the package neupan"]
+    assert "git clone" in str(info.install)
+    assert info.meanings["config"].startswith("The YAML file of NeuPAN")
+
+
+def test_a_missing_option_is_named(package: list[StandIn]) -> None:
+    with pytest.raises(PolicyError, match="policy 'neupan' needs the option config") as raised:
+        open_policy("neupan")
+    assert str(raised.value.fix).startswith("write {name: neupan, config: …}")

@@ -14,8 +14,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import irsim
+from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError, PolicyError, PolicyLostError
 from irsim.lookup.topics import lookup
 from irsim.policies import open_policy
@@ -63,13 +65,13 @@ def test_the_program_of_the_guide_drives_as_the_same_function_here(tmp_path: Pat
     ("before", "why"),
     [
         (f"import time; time.sleep(60 * ({ACT}))", "gave no answer within 1 s"),
-        (f"if {ACT}: sys.exit()", "has closed the connection"),
+        (f"if {ACT}: sys.exit(3)", "has ended with exit code 3"),
         (f"if {ACT}: answer = 5", "answered '5' where an object with type 'decision' is expected"),
         (f"if {ACT}: print('hello')", "answered 'hello', which is no line of JSON"),
         (f"if {ACT}: answer['decision'] = 'fast'", "decided something that is no table of numbers"),
         (f"if {ACT}: answer['decision'] = [[1, 2]] * 99", "decided an array of shape (99, 2) where 2 rows"),
-        (f"if {ACT}: answer['decision'][0][0] = float('nan')", "finite numbers are expected"),
-        (f"if {ACT}: answer['decision'] = None", "finite numbers are expected"),
+        (f"if {ACT}: answer['decision'][0][0] = float('nan')", "decided numbers that are not finite"),
+        (f"if {ACT}: answer['decision'] = None", "decided an array of shape () where 2 rows"),
     ],
 )
 def test_a_process_that_fails_ends_the_run_with_a_reason(before: str, why: str, tmp_path: Path) -> None:
@@ -92,7 +94,8 @@ def test_a_process_that_fails_ends_the_run_with_a_reason(before: str, why: str, 
         ('{"type": "policy", "drives": "diff"}', "drives that are no list"),
         ('{"type": "policy", "needs": {"lidar": 7}}', "needs other than neighbors"),
         ('{"type": "policy", "needs": {"scan": 7}}', "'scan' is neither true nor false"),
-        ("", "has closed the connection"),
+        ('{"type": "policy", "drives": ["plane"]}', "declares the drive 'plane'; drives are acker, diff"),
+        ("", "has ended with exit code 0"),
         ("[" * 100_000, "no line of JSON"),
     ],
 )
@@ -126,7 +129,7 @@ def test_lost_episodes_of_a_benchmark_are_counted_and_the_others_go_on(tmp_path:
     lost = [episode for episode in mine if episode.lost]
     assert 0 < len(lost) < 8
     assert {episode.steps for episode in lost} == {11}
-    assert all("has closed the connection" in episode.lost for episode in lost)
+    assert all("has ended with exit code 0" in episode.lost for episode in lost)
     assert {episode.outcome for episode in mine if not episode.lost} == {"success"}
     assert found.rows[1].incidents["policy-lost"] == len(lost)
     assert any(f"the policy was lost in {len(lost)} of 16 episodes" in text for text in found.incidents)
@@ -214,14 +217,43 @@ def _serve(server: socket.socket, asked: list[dict[str, Any]]) -> None:
         ({"command": ["python"], "timeout": 0}, ArgumentError, "timeout must be a time"),
         ({"command": ["no-such-program-here"]}, PolicyLostError, "cannot be started"),
         ({"address": "example.com:80"}, PolicyLostError, "is not on this machine"),
-        ({"address": "127.0.0.1:9"}, PolicyLostError, "does not listen at"),
-        ({"address": "127.0.0.1:99999"}, PolicyLostError, "does not listen at"),
-        ({"address": "/no/such/socket"}, PolicyLostError, "does not listen at"),
+        ({"address": "127.0.0.1:9"}, PolicyLostError, "does not listen there"),
+        ({"address": "127.0.0.1:99999"}, PolicyLostError, "does not listen there"),
+        ({"address": "/no/such/socket"}, PolicyLostError, "does not listen there"),
     ],
 )
 def test_options_that_cannot_be_used(options: dict[str, Any], error: type[Exception], why: str) -> None:
     with pytest.raises(error, match=why):
         open_policy({"name": "process", **options})
+
+
+@pytest.mark.parametrize(
+    ("options", "fix"),
+    [
+        ({"command": ["no-such-program-here"]}, "correct its command"),
+        ({"address": "example.com:80"}, "start it on this machine and write 127.0.0.1:80"),
+        ({"address": "127.0.0.1"}, "write HOST:PORT such as 127.0.0.1:9000, or the path of its socket"),
+        ({"command": [sys.executable, "-c", "import time; time.sleep(9)"], "start_timeout": 0.2}, "start_timeout"),
+        ({"command": [sys.executable, "-c", "print('hello')"]}, "irsim describe process says what it must answer"),
+    ],
+)
+def test_each_cause_has_its_own_fix(options: dict[str, Any], fix: str) -> None:
+    with pytest.raises(PolicyLostError) as raised:
+        open_policy({"name": "process", **options})
+    assert fix in str(raised.value.fix)
+
+
+def test_the_report_of_a_benchmark_shows_lost_episodes_as_far_as_they_went(tmp_path: Path) -> None:
+    file, script = tmp_path / "scene.yaml", tmp_path / "sometimes.py"
+    file.write_text(FREE)
+    before = f'if {ACT} and asked["time"][0] > 1: sys.exit()'
+    script.write_text(PROGRAM.replace("    print(json", f"    {before}\n    print(json"))
+    policy = f"{{name: process, command: [{sys.executable}, {script}]}}"
+    result = CliRunner().invoke(app, ["benchmark", str(file), "--policies", policy, "-o", str(tmp_path / "out")])
+    assert result.exit_code == 0
+    assert "has ended with exit code 0" in result.output
+    page = (tmp_path / "out" / "results.html").read_text()
+    assert page.count('<figure class="episode">') == 1
 
 
 def test_no_program_is_started_where_only_files_of_a_folder_may_be_used(tmp_path: Path) -> None:

@@ -168,11 +168,12 @@ def test_formats_are_found_by_module_and_suffix() -> None:
     for name in format_names():
         found = find_format(name, None)
         assert found.name == name
-        assert found.folder or find_format(None, Path(f"x{found.suffix}")) is found
+        assert found.folder or found.suffix == ".xml" or find_format(None, Path(f"x{found.suffix}")) is found
     assert {"parquet", "csv", "npz", "mcap", "minari"} <= set(format_names())
     for name, out, message in (
         ("parqet", None, "unknown-format: 'parqet' is not a format of runs. Fix: did you mean parquet"),
         (None, Path("x.txt"), "unknown-format: the suffix of 'x.txt' does not select a format"),
+        (None, Path("x.xml"), "files of commonroad and mjcf end with .xml. Fix: name the format: --to commonroad"),
         (None, None, "no format was given"),
     ):
         with pytest.raises(RunError, match=message):

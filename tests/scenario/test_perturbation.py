@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from irsim.episodes.episode import read_scenario
 from irsim.scenario.behavior_override import BenchmarkError
+from irsim.scenario.open import or_raise
 from irsim.scenario.perturbation import (
     Perturbation,
     perturbation_text,
@@ -17,6 +18,7 @@ from irsim.scenario.perturbation import (
     perturbed_message,
     read_perturbations,
 )
+from irsim.scenario.read import read
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario, Spreads
 
@@ -189,3 +191,19 @@ def test_its_schema_has_units_and_descriptions() -> None:
     assert all(item["description"] for item in schema.values())
     assert '"x-unit": "m"' in str(schema["position"]).replace("'", '"')
     assert "string" in str(schema["heading"])
+
+
+@pytest.mark.parametrize(
+    ("behavior", "random"),
+    [
+        ("{name: avocado}", True),
+        ("{name: avocado, noise: 0}", False),
+        ("{name: footprint_orca}", True),
+        ("{name: orca}", False),
+        ("{name: follow, local: avocado}", True),
+        ("{name: follow, local: orca}", False),
+    ],
+)
+def test_behaviors_that_draw_random_numbers_make_a_run_random(behavior: str, random: bool) -> None:
+    text = f"robot:\n  - {{kinematics: {{name: diff}}, goal: [5, 5, 0], behavior: {behavior}}}\n"
+    assert random_parts(or_raise(read(text, strict=True))[0]) == (["decisions"] if random else [])

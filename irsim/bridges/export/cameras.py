@@ -15,11 +15,13 @@ from irsim.bridges.export.episode import Episode
 from irsim.bridges.frames import FrameName, camera_pose
 from irsim.bridges.maps.sidecar import MapSidecar, read_sidecar, scene_transform, sidecar_path
 from irsim.common.arrays import Floats
+from irsim.common.text import clean
 from irsim.options.base import Options
 from irsim.options.units import Count, Degrees, Meters
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run
 from irsim.scenario.limits import Limits
+from irsim.scenario.path_confinement import why_outside
 
 __all__ = [
     "CameraOptions",
@@ -112,7 +114,7 @@ def scene_of(run: Run, options: PoseOptions, limits: Limits | None, default: str
         default: Convention of the axes without a sidecar.
 
     Raises:
-        RunError: Both a frame and a sidecar are given.
+        RunError: Both a frame and a sidecar are given, or the sidecar lies outside the folder of the limits.
         BridgeError: The sidecar cannot be used.
     """
     if options.frame is not None:
@@ -120,7 +122,17 @@ def scene_of(run: Run, options: PoseOptions, limits: Limits | None, default: str
             what = "both frame and sidecar are given"
             raise RunError("bad-argument", what, "give one of them: the sidecar says the frame", where="options")
         return Scene(scene_transform(options.frame), options.frame)
-    found = read_sidecar(options.sidecar) if options.sidecar is not None else run_sidecar(run, limits)
+    if options.sidecar is not None:
+        if limits is not None and limits.root is not None:
+            wrong = why_outside(options.sidecar, Path(limits.root))
+            if wrong is not None:
+                what = f"the sidecar '{clean(options.sidecar, 200)}' {wrong}"
+                raise RunError("path-outside-workspace", what, "give a file inside the workspace", where="options")
+            found: MapSidecar | None = read_sidecar(Path(limits.root) / options.sidecar)
+        else:
+            found = read_sidecar(options.sidecar)
+    else:
+        found = run_sidecar(run, limits)
     if found is None:
         note = f"the map of the run has no sidecar: cameras are in the frame {default}, whose floor is at height 0"
         return Scene(scene_transform(default), default, (note,))
@@ -154,10 +166,10 @@ def run_sidecar(run: Run, limits: Limits | None = None) -> MapSidecar | None:
 
 
 def camera_paths(episode: Episode, every: int) -> list[CameraPath]:
-    """The chosen objects of a run as carriers of cameras.
+    """The chosen objects of a run as carriers of cameras, each in the steps in which it is in the world.
 
     Raises:
-        RunError: There would be too many cameras.
+        RunError: There would be too many cameras, or none.
     """
     count = (episode.last_step // every + 1) * len(episode.actors)
     if count > _MAX_CAMERAS:
@@ -170,7 +182,15 @@ def camera_paths(episode: Episode, every: int) -> list[CameraPath]:
         times.append(trace.time[chosen])
         poses.append(trace.pose[chosen])
     step, time, pose = np.concatenate(steps), np.concatenate(times), np.concatenate(poses)
-    return [CameraPath(actor.name, step, time, pose[:, row]) for row, actor in enumerate(episode.actors)]
+    found = []
+    for row, actor in enumerate(episode.actors):
+        there = np.isfinite(pose[:, row]).all(axis=1)
+        if there.any():
+            found.append(CameraPath(actor.name, step[there], time[there], pose[there, row]))
+    if not found:
+        what = "none of the chosen objects is in the world in any of the chosen steps"
+        raise RunError("bad-argument", what, "choose other objects, or a smaller every", where="objects")
+    return found
 
 
 def camera_to_world(path: CameraPath, axes: str, height: float, scene: Scene) -> Floats:

@@ -72,9 +72,13 @@ def find_format(name: str | None, out: Path | None) -> Format:
     if name is None:
         if out is None:
             raise RunError("bad-argument", "no format was given", f"name one with --to; {listed}", where="to")
-        for known in map(_load, format_names()):
-            if out.suffix.lower() in (known.suffix, *known.more_suffixes):
-                return known
+        known = map(_load, format_names())
+        fitting = [one for one in known if out.suffix.lower() in (one.suffix, *one.more_suffixes)]
+        if len(fitting) == 1:
+            return fitting[0]
+        if fitting:
+            what = f"files of {' and '.join(one.name for one in fitting)} end with {out.suffix.lower()}"
+            raise RunError("unknown-format", what, f"name the format: --to {fitting[0].name}", where="to")
         what = f"the suffix of '{clean(out, 200)}' does not select a format"
         raise RunError("unknown-format", what, f"name one with --to; {listed}", where="to")
     if name not in format_names():

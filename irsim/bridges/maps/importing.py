@@ -83,8 +83,8 @@ def import_map(
         (found.grid.nx, found.grid.ny),
         source,
         {
-            "headroom": chosen.headroom,
-            "climb": chosen.climb,
+            "headroom": chosen.headroom if found.headroom is None else found.headroom,
+            "climb": chosen.climb if found.climb is None else found.climb,
             "slope": chosen.slope,
             "radius": max(chosen.radius, found.radius),
         },

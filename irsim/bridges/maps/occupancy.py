@@ -43,7 +43,7 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
     if not levels:
         what = f"it has no connected floor of 0.5 m² with {headroom:g} m of free height"
         raise _empty(what, "check which axis points up (--up y or z), and that it is in meters; or try less --headroom")
-    number = _chosen(levels, options)
+    number = _chosen(levels, _at_seed(levels, surfaces, grid, options), options)
     level = levels[number]
     region = _region(level, surfaces, grid, options)
     values = _values(level.regions, region, surfaces, spans, grid, climb, headroom)
@@ -54,13 +54,23 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
     listed = [(one.height, one.areas[0], one.roof) for one in levels]
     found = Occupancy(values, grid, scene.frame, level.height, scene.meters_per_unit, number, listed, level.areas)
     found.kept, found.radius, found.notes = region, scene.radius, list(scene.notes)
+    found.headroom, found.climb = scene.headroom, scene.climb
     if spans is not None and len(levels) > 1 and options.level is None and options.height is None:
         found.notes.append(f"level {number} of {len(levels)} was taken; --list-levels lists them, --level picks one")
     return cropped(found)
 
 
-def _chosen(levels: list[Level], options: ImportOptions) -> int:
-    """Number of the level that is asked for, or of the largest that is no roof."""
+def _at_seed(levels: list[Level], surfaces: Surfaces, grid: Grid, options: ImportOptions) -> list[int]:
+    """Numbers of the levels that have a floor at the seed point; all without one."""
+    if options.seed_point is None:
+        return list(range(len(levels)))
+    here = surfaces.column == grid.column_at(*options.seed_point)
+    found = [k for k, level in enumerate(levels) if (level.regions[here] >= 0).any()]
+    return found or list(range(len(levels)))
+
+
+def _chosen(levels: list[Level], candidates: list[int], options: ImportOptions) -> int:
+    """Number of the level that is asked for, or of the largest candidate that is no roof."""
     if options.level is not None and options.height is not None:
         raise BridgeError("bridge-file", "level and height both pick a level", "give one of --level and --height")
     if options.level is not None:
@@ -73,9 +83,7 @@ def _chosen(levels: list[Level], options: ImportOptions) -> int:
     if options.height is not None:
         wanted = options.height
         return min(range(len(levels)), key=lambda k: abs(levels[k].height - wanted))
-    if options.seed_point is not None and len(levels) == 1:
-        return 0
-    return max(range(len(levels)), key=lambda k: (not levels[k].roof, levels[k].areas[0]))
+    return max(candidates, key=lambda k: (not levels[k].roof, levels[k].areas[0]))
 
 
 def _region(level: Level, surfaces: Surfaces, grid: Grid, options: ImportOptions) -> int:

@@ -43,7 +43,7 @@ class ImportOptions(Options):
     opacity: Annotated[Fraction, Field(gt=0)] = 0.05
     """Splats with less opacity are left out."""
     bounds: tuple[Meters, Meters, Meters, Meters] | None = None
-    """Left, lower, right and upper bound of a map of splats. Default: what stands in the way, but for a few far splats."""
+    """Left, lower, right and upper bound of a map of splats. Default: around obstacles, without far splats."""
     lanes: Literal["drive", "walk", "all"] = "drive"
     """Lanes of roads that are free: those for vehicles, those for pedestrians, or both."""
 
@@ -62,6 +62,6 @@ class ImportLimits:
 
     root: str | None = None
     bytes: int = 2 * 1024**3
-    cells: int = 25_000_000
+    cells: int = 8_000_000
     triangles: int = 20_000_000
     seconds: float = 300.0

@@ -53,6 +53,19 @@ def connected(count: int, a: Ints, b: Ints) -> Ints:
     References:
         Shiloach, Vishkin: An O(log n) parallel connectivity algorithm (1982).
     """
+    joined = np.zeros(count, bool)
+    joined[b[b == a + 1]] = True
+    first_node = np.flatnonzero(~joined)  # of each run of nodes one after the other, of which grids have few
+    run = np.cumsum(~joined) - 1
+    found: Ints = first_node[_roots(len(first_node), run[a], run[b])[run]]
+    return found
+
+
+def _roots(count: int, a: Ints, b: Ints) -> Ints:
+    """First node of the connected part of each node."""
+    new = a != b
+    new[1:] &= (a[1:] != a[:-1]) | (b[1:] != b[:-1])
+    a, b = a[new], b[new]
     root = np.arange(count)
     while len(a):
         first, second = root[a], root[b]

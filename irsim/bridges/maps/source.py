@@ -66,6 +66,7 @@ class Occupancy:
         regions: Areas of the connected parts of the level [m²], the largest first.
         kept: Number of the part that is free in the map; None if all are.
         radius: Distance from walls that free cells keep already [m].
+        headroom, climb: What the file was made for [m]; None if the options decide.
         notes: Remarks for the user.
     """
 
@@ -79,6 +80,8 @@ class Occupancy:
     regions: list[float] = field(default_factory=list)
     kept: int | None = None
     radius: float = 0.0
+    headroom: float | None = None
+    climb: float | None = None
     notes: list[str] = field(default_factory=list)
 
 
@@ -121,6 +124,8 @@ def find_kind(path: Path) -> Kind:
     Raises:
         BridgeError: The file does not exist, or is of no known kind.
     """
+    if path.exists() and not path.is_file():
+        raise unusable(path, "it is a folder or a device, no file", "give a file")
     try:
         with path.open("rb") as file:
             head = file.read(_HEAD)

@@ -25,6 +25,8 @@ _BITS = 18
 """Bits of a height in the key of a piece: column, lower and upper height, walkable."""
 _MAX_PIECES = 120_000_000
 """Pieces of triangles in columns, 8 bytes each."""
+_LEVEL = 1.0
+"""Steps of height within which a triangle is level."""
 _AT_ONCE = 1 << 15
 """Triangles worked on at once."""
 
@@ -103,7 +105,12 @@ def _pieces(corners: Floats, grid: Grid, bottom: float, step: float, cosine: flo
     small = (first == np.floor(high[:, :2])).all(axis=1)
     where = first[small, 0] * grid.ny + first[small, 1]
     found = [_packed(where, low[small, 2], high[small, 2], flat[small])]
-    large, flat = scaled[~small], flat[~small]
+    level = ~small & (high[:, 2] - low[:, 2] <= _LEVEL)  # such as floors, whose many cells all have one height
+    for triangle, i, j, _ in rows_of(scaled[level][..., :2], at_centers=False):
+        heights = low[level, 2][triangle], high[level, 2][triangle]
+        found.append(_packed(i * grid.ny + j, *heights, flat[level][triangle]))
+    tilted = ~small & ~level
+    large, flat = scaled[tilted], flat[tilted]
     for triangle, i, j, _ in rows_of(large[..., :2], at_centers=False):
         found.append(_packed(i * grid.ny + j, *_heights(large[triangle], i, j), flat[triangle]))
     return np.concatenate(found)

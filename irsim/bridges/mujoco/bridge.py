@@ -65,8 +65,7 @@ class MujocoBridge(Bridge):
         self._noisy = {lidar.key for agent in scene.agents for lidar in agent.lidars if lidar.noise}
         self._slip: list[float] = []
         self._begun = time.perf_counter()
-        self._steps = 0
-        self._before = start.pose.copy()
+        self._steps, self._last = 0, start.step
         if self.options.video is not None:
             self._film = Film(self.physics, self.options, scene.step_time)
             self._film.take()
@@ -109,7 +108,11 @@ class MujocoBridge(Bridge):
         """Place what irsim has moved, and compare the lidars of both simulators."""
         physics = self.physics
         assert physics is not None
-        physics.place(state.pose)
+        if state.step < self._last:
+            physics.start(state.pose)  # another episode
+        else:
+            physics.place(state.pose)
+        self._last = state.step
         if self._rays is not None and self.options.lidar == "compare":
             ours = {key: beams for key, beams in state.ranges.items() if key not in self._noisy}
             with physics.upright():

@@ -73,8 +73,14 @@ def is_mocap(agent: Agent, moved: frozenset[str]) -> bool:
 
 
 def body_name(agent: Agent) -> str:
-    """Name of the body of an object; ``world`` is MuJoCo's own."""
-    return agent.name if agent.name != "world" else "irsim/world"
+    """Name of the body of an object, which is its own unless XML, MuJoCo or a part of another object has it."""
+    name = agent.name
+    return name if name != "world" and _plain(name) else f"irsim/object_{agent.index}"
+
+
+def _plain(name: str) -> bool:
+    """Whether a name can be written as it is; parts of objects have a slash in their names."""
+    return bool(name) and name.isprintable() and "/" not in name
 
 
 def write_mjcf(scene: SceneDescription, moved: frozenset[str], options: Mujoco) -> str:
@@ -95,7 +101,7 @@ class _Writer:
     def __init__(self, scene: SceneDescription, moved: frozenset[str], options: Mujoco) -> None:
         self.scene, self.moved, self.options = scene, moved, options
         self.rigs = rigs_of(scene, moved, options)
-        self.root = ET.Element("mujoco", model=scene.name or "irsim")
+        self.root = ET.Element("mujoco", model=scene.name if _plain(scene.name) else "irsim")
         self._head()
         self.asset = self._assets()
         self.world = ET.SubElement(self.root, "worldbody")
@@ -140,8 +146,7 @@ class _Writer:
         visual = ET.SubElement(self.root, "visual")
         ET.SubElement(visual, "global", offwidth=str(options.size[0]), offheight=str(options.size[1]))
         ET.SubElement(visual, "headlight", ambient="0.35 0.35 0.35", diffuse="0.3 0.3 0.3", specular="0 0 0")
-        ET.SubElement(visual, "map", znear="0.002", zfar="20", shadowclip="0.8")
-        ET.SubElement(visual, "quality", shadowsize="2048")
+        ET.SubElement(visual, "map", znear="0.005", zfar="6")
         default = ET.SubElement(self.root, "default")
         classes = {
             "robot": {"contype": "2", "conaffinity": "6", "group": "0", "friction": "0.3"},
@@ -167,15 +172,16 @@ class _Writer:
         """Ground, light, cameras, and walls unless an object of the scene is the walls."""
         (x0, y0), (x1, y1) = self.scene.low, self.scene.high
         x, y, wide = (x0 + x1) / 2, (y0 + y1) / 2, max(x1 - x0, y1 - y0)
-        ET.SubElement(self.world, "geom", name="irsim/ground", type="plane", size=numbers(wide, wide, 0.1), group="1",
-                      pos=numbers(x, y, 0), material="ground", contype="1", conaffinity="0")  # fmt: skip
-        ET.SubElement(self.world, "light", type="directional", pos=numbers(x, y, wide), dir="0.3 0.2 -1",
-                      diffuse="0.6 0.6 0.6", castshadow="true")  # fmt: skip
+        ET.SubElement(self.world, "geom", name="irsim/ground", type="plane", group="1", pos=numbers(x, y, 0),
+                      size=numbers(0.75 * wide, 0.75 * wide, 0.1), material="ground",
+                      contype="1", conaffinity="0")  # fmt: skip
+        ET.SubElement(self.world, "light", directional="true", pos=numbers(x, y, 0.7 * wide), dir="0.15 0.1 -1",
+                      diffuse="0.6 0.6 0.6", castshadow="false")  # fmt: skip
         width, height = self.options.size
         high = max(y1 - y0, (x1 - x0) * height / width) * 0.55 / math.tan(math.radians(22.5)) + self.options.height
         ET.SubElement(self.world, "camera", name="top", pos=numbers(x, y, high), fovy="45")
-        ET.SubElement(self.world, "camera", name="corner", pos=numbers(x, y - 0.95 * wide, 0.9 * wide), fovy="45",
-                      xyaxes=numbers(1, 0, 0, 0, 0.9, 0.95))  # fmt: skip
+        ET.SubElement(self.world, "camera", name="corner", pos=numbers(x, y - 0.9 * wide, 0.85 * wide), fovy="45",
+                      xyaxes=numbers(1, 0, 0, 0, 0.85, 0.9))  # fmt: skip
         room = room_of(self.scene)
         if room is not None:
             body = ET.SubElement(self.world, "body", name="irsim/walls")

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Physics"]
 
+
 _SETTLING_S = 0.2
 """Time in which robots come to rest on their wheels before the start [s]."""
 _MOVED = 1e-6
@@ -95,8 +96,9 @@ class Physics:
         self.place(pose)
         if self.rigs:
             self.data.ctrl[:] = 0.0
-            for _ in range(int(np.ceil(_SETTLING_S / self.model.opt.timestep))):
-                self._step(self.model, self.data)
+            with _without_log():
+                for _ in range(int(np.ceil(_SETTLING_S / self.model.opt.timestep))):
+                    self._step(self.model, self.data)
         self.data.time = 0.0
         self.place(pose)
 
@@ -222,17 +224,18 @@ class Physics:
         change[:, 2] = wrap(change[:, 2])
         period = float(self.model.opt.timestep)
         targets: Floats | None = None
-        for k in range(self.count):
-            latest = self.driver.targets(motion.time + k * period)
-            if latest is not targets:
-                targets = latest
-                self.data.ctrl[self._actuator] = targets
-            if len(self._planar_first):
-                self._turn_to_world(latest)
-            if len(self._mocap_rows):
-                self._show_mocaps(begin + change * ((k + 1) / self.count))
-            self._step(self.model, self.data)
-            watch(self.model, self.data, motion.time + (k + 1) * period)
+        with _without_log():
+            for k in range(self.count):
+                latest = self.driver.targets(motion.time + k * period)
+                if latest is not targets:
+                    targets = latest
+                    self.data.ctrl[self._actuator] = targets
+                if len(self._planar_first):
+                    self._turn_to_world(latest)
+                if len(self._mocap_rows):
+                    self._show_mocaps(begin + change * ((k + 1) / self.count))
+                self._step(self.model, self.data)
+                watch(self.model, self.data, motion.time + (k + 1) * period)
         self._mocap_pose = end.copy()
         if not (np.isfinite(self.data.qpos).all() and np.isfinite(self.data.qvel).all()):
             raise BridgeError("bridge-failed", "the physics of MuJoCo became unstable", "use a smaller timestep")
@@ -244,3 +247,16 @@ class Physics:
         world = np.einsum("kij,kj->ki", turn, along)
         self.data.ctrl[self._actuator[self._planar_first]] = world[:, 0]
         self.data.ctrl[self._actuator[self._planar_first + 1]] = world[:, 1]
+
+
+@contextmanager
+def _without_log() -> Iterator[None]:
+    """Context in which MuJoCo only counts its warnings, instead of writing a file into the current directory, too."""
+    import mujoco
+
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda text: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)

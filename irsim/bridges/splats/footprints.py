@@ -96,12 +96,14 @@ def _levels(cover: Floats, finest: float) -> NDArray[np.int64]:
     thin = np.sqrt(np.maximum((cover[:, 0] + cover[:, 2]) / 2 - apart, 0.0)) / finest
     for_few = _power(reach / _MAX_REACH)
     for_shape = np.maximum(_power(thin / _FINE), np.where(reach <= _MAX_LONG_REACH, 0, 1))
-    return np.minimum(np.minimum(for_few, for_shape), _LEVELS)
+    found: NDArray[np.int64] = np.minimum(np.minimum(for_few, for_shape), _LEVELS)
+    return found
 
 
 def _power(ratio: Floats) -> NDArray[np.int64]:
     """Smallest power of the ratio of grids that is not below a ratio; 0 for ratios below 1."""
-    return np.ceil(np.log(np.maximum(ratio, 1.0)) / np.log(_FINE) - 1e-9).astype(np.int64)
+    found: NDArray[np.int64] = np.ceil(np.log(np.maximum(ratio, 1.0)) / np.log(_FINE) - 1e-9).astype(np.int64)
+    return found
 
 
 def _sums(

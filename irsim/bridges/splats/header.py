@@ -13,7 +13,7 @@ from typing import Literal, NoReturn
 from irsim.bridges.base import BridgeError
 from irsim.common.text import clean
 
-__all__ = ["Element", "Header", "Property", "is_splat_file", "read_header"]
+__all__ = ["Element", "Header", "Property", "read_header"]
 
 _MAX_HEADER_BYTES = 64 * 1024
 _MAX_DIGITS = 15
@@ -92,16 +92,6 @@ class Header:
     def element(self, name: str) -> Element | None:
         """The element with a name, if there is one."""
         return next((item for item in self.elements if item.name == name), None)
-
-
-def is_splat_file(path: Path) -> bool:
-    """Whether a file is a PLY file with splats, rather than a mesh or a cloud of points; never raises BridgeError."""
-    try:
-        vertex = read_header(path).element("vertex")
-    except BridgeError:
-        return False
-    names = set() if vertex is None else {item.name for item in vertex.properties}
-    return "f_dc_0" in names or {"opacity", "scale_0"} <= names or "packed_position" in names
 
 
 def read_header(path: Path) -> Header:

@@ -32,7 +32,7 @@ from irsim.scenario.limits import Limits
 __all__ = ["MAX_PAGE_SPLATS", "PageFile", "write_page"]
 
 MAX_PAGE_SPLATS = 1_000_000
-"""Splats of a page unless the caller decides; they take 20 to 25 MB of the page."""
+"""Splats of a page unless the caller decides; they take 15 to 25 MB of the page."""
 _MAX_ROWS = 4000
 """Steps of a page."""
 _SOURCES = Path(__file__).with_name("web")
@@ -166,7 +166,7 @@ def _content(
         "top": max(0.5, float(np.percentile(splats.center[:, 2], 99.5)) + 0.1),
         "camera_height": options.height,
         "fov": math.radians(_FOV_DEG),
-        "eye": {"target": [*middle.tolist(), 0.0], "distance": 1.1 * size, "azimuth": math.pi / 2, "elevation": 0.95},
+        "eye": {"target": [*middle.tolist(), 0.0], "distance": 1.1 * size, "azimuth": math.pi / 2, "elevation": 1.1},
     }
     return head, columns
 

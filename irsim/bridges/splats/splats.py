@@ -115,10 +115,8 @@ def join_splats(parts: Sequence[Splats]) -> Splats:
             if part.harmonics is not None:
                 harmonics[at : at + len(part), : part.harmonics.shape[1]] = part.harmonics
             at += len(part)
-    return Splats(
-        *(
-            np.concatenate([getattr(part, name) for part in parts])
-            for name in ("center", "scale", "rotation", "opacity", "color")
-        ),
-        harmonics,
+    names = ("center", "scale", "rotation", "opacity", "color")
+    center, scale, rotation, opacity, color = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in names
     )
+    return Splats(center, scale, rotation, opacity, color, harmonics)

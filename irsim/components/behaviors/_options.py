@@ -37,6 +37,10 @@ class BehaviorOptions(Options):
     """Role of the other objects that the behavior reacts to: with `robot` it does not avoid people who are obstacles,
     with `obstacle` no other robots."""
 
+    def draws(self) -> bool:
+        """Whether its decisions draw random numbers, so that they depend on the seed."""
+        return False
+
 
 class CustomOptions(BehaviorOptions):
     """A behavior registered by user code: its own keys reach the registered function as they are."""

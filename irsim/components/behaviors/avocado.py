@@ -40,23 +40,21 @@ class Avocado(BehaviorOptions):
 
     name: Literal["avocado"] = "avocado"
     neighborDist: Annotated[Meters, Field(gt=0)] = 2.5
-    """Moving objects farther away than this are ignored, and opinions of them forgotten."""
+    """Moving objects farther away are ignored, and opinions of them forgotten."""
     maxNeighbors: Count = 15
-    """Number of moving objects considered, nearest first; walls and static circles do not count."""
+    """Number of moving objects considered, nearest first."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 2.5
-    """Time horizon within which collisions with moving objects are avoided."""
+    """Time horizon for collisions with moving objects."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 2.5
-    """Time horizon within which collisions with walls and static circles are avoided."""
+    """The same for walls and static circles."""
     safe_radius: Annotated[Meters, Field(ge=0)] | None = None
     """Margin added to the radius of the object itself; null is a tenth of that radius."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Largest speed; null is the speed that the object can reach in every direction, which is also the upper limit."""
+    """Largest speed; null is what the object can reach in every direction."""
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
-    """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
-    speed."""
+    """As in `orca`; null is full speed."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
-    """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
-    turns by this angle to the right, to the left if negative. 0 is off."""
+    """As in `orca`, but no further for slow objects; 0 is off."""
     forgetting: Annotated[Hertz, Field(gt=0)] = 2.0
     """Rate at which an opinion goes to what attention and evidence say, and to neutral without attention: `d` of the
     paper."""
@@ -78,6 +76,10 @@ class Avocado(BehaviorOptions):
     noise: Annotated[MetersPerSecond, Field(ge=0)] = 1e-4
     """Largest noise on the velocity of another object, along and across the line of sight, while it gets no attention:
     it ends deadlocks. `eta` of the paper."""
+
+    def draws(self) -> bool:
+        """Whether there is noise."""
+        return self.noise > 0
 
 
 BEHAVIORS.register(Avocado, kernel=core.AvocadoOptions)

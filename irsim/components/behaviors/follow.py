@@ -59,7 +59,7 @@ class Follow(BehaviorOptions):
     planner: Annotated[Any, Select(PLANNERS, short=(None, "name")), Field(validate_default=True)] = "astar"
     """Path planner: its name, or a mapping with its name and options."""
     local: Annotated[
-        Any, Select(BEHAVIORS, exclude=("follow",), short=(None, "name")), Field(validate_default=True)
+        Any, Select(BEHAVIORS, exclude=("follow", "replay"), short=(None, "name")), Field(validate_default=True)
     ] = "dash"
     """Behavior that drives from one corner to the next: its name, or a mapping with its name and options, as in
     `local: {name: orca}`."""
@@ -73,6 +73,10 @@ class Follow(BehaviorOptions):
     avoid: list[Annotated[str, Field(strict=True, min_length=1)]] = []
     """Names of zones of `world.zones` that are solid for this object alone: its path leads around them, and its body
     does not enter them, not even to give way. One that starts in a zone or is pushed into it leaves it."""
+
+    def draws(self) -> bool:
+        """Whether its local behavior draws random numbers."""
+        return isinstance(self.local, BehaviorOptions) and self.local.draws()
 
 
 BEHAVIORS.register(Follow, kernel=core.RouteOptions)

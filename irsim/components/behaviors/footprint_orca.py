@@ -40,5 +40,9 @@ class FootprintOrca(BehaviorOptions):
     backward: Bool = True
     """Whether drives that cannot move sideways also drive backward, if `vel_min` allows it."""
 
+    def draws(self) -> bool:
+        """True: the directions that it tries without progress are random."""
+        return True
+
 
 BEHAVIORS.register(FootprintOrca, kernel=core.FootprintOrcaOptions)

@@ -26,13 +26,11 @@ _SLOWEST = 0.01
 
 
 class Replay(BehaviorOptions):
-    """Be at recorded places at recorded times, whoever is in the way: pedestrians of a data set, a robot from a bag.
+    """Be at recorded places at recorded times: people of a data set, a robot from a bag.
 
-    Objects with the drives `omni` and `omni_angular` are exactly there, others follow as well as they can; `omni` keeps
-    its heading. An obstacle comes into the world at its first time and leaves it after its last one, without waiting
-    for room, and goes on where a collision would stop it; what collides with it stops. `state`, `goal`, `vel_max` and
-    `vel_min` need not be given: they follow from the recording. `irsim bridge import-pedestrians` writes scenarios with
-    this behavior.
+    The drives `omni` and `omni_angular` are exactly there, others follow as well as they can. An obstacle is in the
+    world from its first to its last time. It waits for no room, and collisions do not stop it. `state`,
+    `goal` and limits of speed follow from the recording. `irsim bridge import-pedestrians` writes such scenarios.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -50,15 +48,13 @@ class Replay(BehaviorOptions):
     times: Annotated[
         list[Annotated[Component, Field(ge=0)]], Field(max_length=1_000_000, json_schema_extra={"x-unit": "s"})
     ] = []
-    """Recorded times, increasing, on the clock of the scenario."""
+    """Recorded times, increasing."""
     poses: Annotated[list[Pose], Field(max_length=1_000_000)] = []
-    """Where the object is at each of the times: [x, y] or [x, y, heading]. Without headings it looks where it goes."""
+    """Places [x, y] or [x, y, heading]; without headings it looks where it goes."""
     interpolation: Literal["linear", "cubic"] = "linear"
-    """How it moves between two recorded times: straight at constant speed, or along a smooth curve through the places,
-    whose speed has no jumps."""
+    """Between two times: straight at constant speed, or along a smooth curve without jumps of speed."""
     vanish: Bool = True
-    """An obstacle is in the world only from the first to the last time. With false, and if it is a robot, it stays at
-    its first and last pose."""
+    """With false, and if it is a robot, it is always in the world: at its first and last pose."""
 
     @model_validator(mode="after")
     def _check_times(self) -> Replay:

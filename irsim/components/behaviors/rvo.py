@@ -36,12 +36,9 @@ class Rvo(BehaviorOptions):
     mode: Literal["rvo", "hrvo", "vo"] = "rvo"
     """Share of the avoidance taken: half (`rvo`), all (`vo`), or half on one side and all on the other (`hrvo`)."""
     neighbor_threshold: Annotated[Meters, Field(gt=0)] = 3.0
-    """Objects and walls farther away than this are ignored; linestrings are never ignored."""
+    """Objects and walls farther away are ignored; linestrings are never ignored."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
-    """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
-    turns by this angle to the right, to the left if negative, and further, up to 90 degrees, the slower the object
-    drives. 10 breaks exact symmetry: trailing a slower one, stopping when two meet head-on, a ring that locks up. 0 is
-    off."""
+    """As in `orca`: 10 breaks exact symmetry, 0 is off."""
 
 
 BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

@@ -28,7 +28,7 @@ class Sfm(BehaviorOptions):
     vmax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5
     """Largest speed."""
     neighbor_threshold: Annotated[Meters, Field(gt=0)] = 10.0
-    """Other objects farther away than this are ignored."""
+    """Objects farther away are ignored."""
     relaxation_time: Annotated[Seconds, Field(gt=0)] = 0.5
     """Time in which the desired velocity is reached."""
     force_factor_desired: Number = 1.0
@@ -51,10 +51,7 @@ class Sfm(BehaviorOptions):
     safety_radius: Annotated[Meters, Field(ge=0)] = 0.0
     """Margin added to the radius of each object in the interaction."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
-    """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
-    turns by this angle to the right, to the left if negative, and further, up to 90 degrees, the slower the object
-    drives. 10 breaks exact symmetry: trailing a slower one, stopping when two meet head-on, a ring that locks up. 0 is
-    off."""
+    """As in `orca`: 10 breaks exact symmetry, 0 is off."""
     social_groups: list[list[Annotated[Integer, Field(ge=0)]]] | None = None
     """As group behavior: lists of the indices of members that walk together; each index at most once."""
     force_factor_coherence: Number = 2.0

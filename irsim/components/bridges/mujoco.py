@@ -32,7 +32,7 @@ class Mujoco(BridgeOptions):
     """Coefficient of friction between wheels and ground; 0.1 is ice. It also limits the acceleration of omnidirectional
     robots."""
     mass: Annotated[Kilograms, Field(gt=0)] | None = None
-    """Mass of each robot; null is that of the scenario, else 10 kg."""
+    """Mass of each robot; null is that of the scenario, which is 1 kg unless it says so."""
     lag: Annotated[Seconds, Field(gt=0, le=10)] = 0.02
     """Time constant of motors: how fast wheels take on the speed that is wanted."""
     slip: Fraction = 0.0

@@ -219,13 +219,13 @@ void bind_state(nb::module_& m) {
                    })
       .def(
           "reset",
-          [](S& self, const Mask& mask, bool next_scene) {
+          [](S& self, const Mask& mask, bool next_scene, int threads) {
             self.check_mask(mask);
             const Claim claim(self);
             nb::gil_scoped_release free;
-            reset(*self.world, self.state, mask.data(), next_scene);
+            reset(*self.world, self.state, mask.data(), next_scene, threads);
           },
-          nb::arg("mask"), nb::arg("next_scene"))
+          nb::arg("mask"), nb::arg("next_scene"), nb::arg("threads") = 1)
       .def(
           "reseed",
           [](S& self, const Seeds& seeds, const Mask& mask) {

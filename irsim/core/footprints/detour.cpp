@@ -11,6 +11,7 @@ namespace {
 constexpr double kFinestCell = 0.1;   // [m]
 constexpr int kMostCells = 120;       // per side of the grid
 constexpr double kAround = 1.5;       // free space round everything, through which a way may lead [m]
+constexpr double kSmall = 0.5;        // bodies up to this radius need no more space than that [m]
 constexpr double kAside = 4.0;        // no way leads farther aside of the straight line, or back, plus the space [m]
 constexpr double kComfort = 0.15;     // clearance that a way keeps if it is not much longer [m]
 constexpr double kTight = 0.06;       // overlap of the disc that is tried if there is no other way [m]
@@ -73,9 +74,18 @@ bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, const std::
   Box box;
   box.include(Vec2{});
   box.include(Vec2{distance, 0.0});
+  const auto include = [&](Vec2 p) {
+    box.include(Vec2{clip(p.x, -kAside, distance + kAside), clip(p.y, -kAside, kAside)});
+  };
   for (const Blocker& one : blockers) {
     const Vec2 at = local(one.centre);
-    box.include(Vec2{clip(at.x, -kAside, distance + kAside), clip(at.y, -kAside, kAside)});
+    include(at);
+    if (one.radius <= kSmall) continue;
+    const double extent = one.hull.round;
+    for (int k = 0; k < one.hull.count; ++k) {
+      const Vec2 corner = local(one.hull.corner[k]);
+      include({corner.x - extent, corner.y - extent}), include({corner.x + extent, corner.y + extent});
+    }
   }
   box = {box.x0 - kAround, box.y0 - kAround, box.x1 + kAround, box.y1 + kAround};
   const double cell = std::max(kFinestCell, std::max(box.x1 - box.x0, box.y1 - box.y0) / kMostCells);

@@ -7,15 +7,18 @@ namespace {
 
 constexpr int kCircleCorners = 12;  // corners of the polygon that stands for a circle of a compound
 
-/// Whether corners go round a convex polygon counter-clockwise.
+/// Whether corners go round a convex polygon counter-clockwise, once. Corners of several parts in a row can turn left
+/// everywhere and yet go round twice, which is no polygon.
 bool is_convex(const std::vector<Vec2>& points) {
   const std::size_t n = points.size();
   if (n < 3) return false;
+  int rounds = 0;  // edges after which the direction leaves the lower half of the plane
   for (std::size_t k = 0; k < n; ++k) {
-    const Vec2 a = points[k], b = points[(k + 1) % n], c = points[(k + 2) % n];
-    if (!(cross(b - a, c - b) > 0.0)) return false;
+    const Vec2 along = points[(k + 1) % n] - points[k], next = points[(k + 2) % n] - points[(k + 1) % n];
+    if (!(cross(along, next) > 0.0)) return false;
+    rounds += along.y < 0.0 && next.y >= 0.0;
   }
-  return true;
+  return rounds == 1;
 }
 
 /// Replace points by the corners of their hull, counter-clockwise (Andrew's monotone chain).

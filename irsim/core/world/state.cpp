@@ -2,12 +2,16 @@
 
 #include <algorithm>
 
+#include "parallel.hpp"
 #include "phases.hpp"
 #include "world/features.hpp"
 #include "world/spec.hpp"
 
 namespace irsim {
 namespace {
+
+/// Least number of worlds to reset for which a thread is worth starting.
+constexpr int kResetsPerThread = 4;
 
 Goal goal_of(const std::vector<double>& numbers) {
   return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : kNone};
@@ -20,8 +24,7 @@ bool runs(const World& world) {
                      [](const BehaviorGroup& group) { return std::holds_alternative<Options>(group.behavior); });
 }
 
-void evaluate(const World& world, State& state, int w, bool with_arrival) {
-  Workspace& work = state.workspaces.front();
+void evaluate(const World& world, State& state, int w, Workspace& work, bool with_arrival) {
   collide(world, state, w);
   if (with_arrival) arrive(world, state, w);
   sense(world, state, w, work);
@@ -126,7 +129,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       std::copy(scan.mount.angle.begin(), scan.mount.angle.end(),
                 beam_angles.data + static_cast<std::size_t>(w) * world.beams_per_world + scan.mount.first);
     }
-    if (drawn) draw_scene(world, *this, w);
+    if (drawn) draw_scene(world, *this, w, workspaces.front());
   }
 }
 
@@ -191,7 +194,7 @@ void restart_row(const World& world, State& state, int row) {
   }
 }
 
-void restart(const World& world, State& state, int w) {
+void restart(const World& world, State& state, int w, Workspace& work) {
   Scene& scene = state.scenes[w];
   state.count[w] = 0;
   scene.events.clear();
@@ -200,12 +203,12 @@ void restart(const World& world, State& state, int w) {
   scene.contacts.clear();
   for (int i = 0; i < world.objects; ++i) restart_row(world, state, w * world.objects + i);
   place_fixed(world, state, w);
-  evaluate(world, state, w, true);
+  evaluate(world, state, w, work, true);
   scene.watched = {};
-  watch(world, state, w, state.workspaces.front());
+  watch(world, state, w, work);
 }
 
-void draw_scene(const World& world, State& state, int w) {
+void draw_scene(const World& world, State& state, int w, Workspace& work) {
   Scene& scene = state.scenes[w];
   vary(world, state, w);
   const World& from = variant_of(world, state, w);
@@ -222,22 +225,29 @@ void draw_scene(const World& world, State& state, int w) {
   if (!from.placements.empty()) place_randomly(from, state, w);
   if (!from.perturbations.empty() && state.failed_placement[w] < 0) perturb(from, state, w);
   for (int i = 0; i < world.objects; ++i) set_limits(world, state, w * world.objects + i);
-  restart(world, state, w);
+  restart(world, state, w, work);
 }
 
-void reset(const World& world, State& state, const std::uint8_t* mask, bool next_scene) {
+void reset(const World& world, State& state, const std::uint8_t* mask, bool next_scene, int threads) {
+  std::vector<int> chosen;
   for (int w = 0; w < state.worlds; ++w) {
-    if (!mask[w]) continue;
+    if (mask[w]) chosen.push_back(w);
+  }
+  threads = std::max(1, std::min(threads, static_cast<int>(chosen.size()) / kResetsPerThread));
+  while (static_cast<int>(state.workspaces.size()) < threads) state.workspaces.emplace_back();
+  one_by_one(chosen.size(), threads, [&](std::size_t k, int thread) {
+    const int w = chosen[k];
+    Workspace& work = state.workspaces[thread];
     if (state.fresh[w] || next_scene) {
       state.scene_index[w] = state.fresh[w] ? 0 : state.scene_index[w] + 1;
       state.noise[w] = 0;
       state.fresh[w] = 0;
-      draw_scene(world, state, w);
+      draw_scene(world, state, w, work);
     } else {
       ++state.noise[w];
-      restart(world, state, w);
+      restart(world, state, w, work);
     }
-  }
+  });
 }
 
 void reseed(State& state, const std::uint64_t* seeds, const std::uint8_t* mask) {
@@ -251,7 +261,7 @@ void reseed(State& state, const std::uint64_t* seeds, const std::uint8_t* mask) 
 void refresh(const World& world, State& state) {
   for (int w = 0; w < state.worlds; ++w) {
     place_fixed(world, state, w);
-    evaluate(world, state, w, false);
+    evaluate(world, state, w, state.workspaces.front(), false);
   }
 }
 

@@ -144,7 +144,7 @@ inline float returned_range(const State& state, std::size_t beam) {
 }
 
 /// Draw shapes, placements and goals of world w for its present seed and scene counter, then `restart` it.
-void draw_scene(const World& world, State& state, int w);
+void draw_scene(const World& world, State& state, int w, Workspace& work);
 /// Draw poses and goals of the random placements of world w. `failed_placement` becomes the first object that did not
 /// fit.
 void place_randomly(const World& world, State& state, int w);
@@ -156,9 +156,9 @@ void set_limits(const World& world, State& state, int row);
 /// Return one object to its initial values; collisions, arrival and sensors are not evaluated.
 void restart_row(const World& world, State& state, int row);
 /// Return world w to its initial values, then evaluate collisions, arrival and sensors.
-void restart(const World& world, State& state, int w);
-/// Reset the worlds where mask is set; see `State.reset` in _core.pyi.
-void reset(const World& world, State& state, const std::uint8_t* mask, bool next_scene);
+void restart(const World& world, State& state, int w, Workspace& work);
+/// Reset the worlds where mask is set, on several threads; see `State.reset` in _core.pyi.
+void reset(const World& world, State& state, const std::uint8_t* mask, bool next_scene, int threads);
 void reseed(State& state, const std::uint64_t* seeds, const std::uint8_t* mask);
 /// Update geometry, collisions and sensors after the caller has written poses.
 void refresh(const World& world, State& state);

@@ -10,6 +10,7 @@ import random
 import time
 import warnings
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.sb3_env import SB3VecEnv
 from irsim.learning.tasks.files import TaskSource, open_task
+from irsim.learning.tasks.task import Task
 from irsim.learning.training.extractor import READERS, columns_of
 from irsim.learning.training.masked_buffer import MaskedRolloutBuffer
 from irsim.learning.training.round import Round
@@ -65,6 +67,7 @@ def train(
     steps: int | None = None,
     max_time: float | None = None,
     threads: int = 1,
+    workers: int = 1,
     on_round: Callable[[Round], None] | None = None,
 ) -> Path:
     """Train a policy.
@@ -77,14 +80,17 @@ def train(
         steps: Decisions of all learners at most, instead of those of the settings: a finished training goes on with
             more. The learning rate then falls to its end over all of them.
         max_time: Wall-clock time after which no further round begins, over all parts of the training [s].
-        threads: Number of threads of the simulation and of torch. Rounds are the same with the same number.
+        threads: Number of threads of torch, and of the simulation. Rounds are the same with the same number.
+        workers: Number of processes that the simulation is divided among, this one included, with that many threads
+            together; rounds do not depend on it.
         on_round: Called after each round.
 
     Returns:
         The best model.
 
     Raises:
-        ArgumentError: The folder holds a training that is not to be resumed, or none that is.
+        ArgumentError: The folder holds a training that is not to be resumed, or none that is; or there is no such
+            number of workers.
         TaskError: The task is not valid, or does not fit its scenario.
         ScenarioError: The scenario cannot be used.
     """
@@ -101,11 +107,27 @@ def train(
             run.keep(settings)
     opened, where = open_task(task)
     one = Worlds(task, 1)
-    if not resume:
-        run.begin(opened, where, one.scenario.map_files, settings)
     torch.set_num_threads(threads)
     worlds = max(1, -(-settings.slots // one.learners))
-    env = SB3VecEnv(task, worlds, threads=threads)
+    with closing(SB3VecEnv(task, worlds, threads=threads, workers=workers)) as env:
+        if not resume:
+            run.begin(opened, where, one.scenario.map_files, settings)
+        _run_rounds(run, env, task, opened, settings, max_time=max_time, threads=threads, on_round=on_round)
+    return run.best
+
+
+def _run_rounds(
+    run: RunFolder,
+    env: SB3VecEnv,
+    task: TaskSource,
+    opened: Task,
+    settings: TrainingSettings,
+    *,
+    max_time: float | None,
+    threads: int,
+    on_round: Callable[[Round], None] | None,
+) -> None:
+    """Train from the first round that is not done."""
     done = run.rounds()
     with warnings.catch_warnings():  # minibatches are of nearly equal sizes, whatever their number
         warnings.filterwarnings("ignore", message=".*mini-batch size.*")
@@ -145,7 +167,6 @@ def train(
         model.logger.dump(steps)
         if on_round is not None:
             on_round(Round(number, steps, before, success, better, rounds))
-    return run.best
 
 
 def _begin_round(model: Any, env: SB3VecEnv, settings: TrainingSettings, number: int, rounds: int) -> _Active:

@@ -57,7 +57,7 @@ class Weights:
 
     def error(self, where: str, message: str, given: str = "", allowed: str = "") -> PolicyFileError:
         """The error about these weights."""
-        fix = "convert a file of the structure that irsim convert --help names, or another kind"
+        fix = "convert a file of the structure that irsim describe convert names, or another kind"
         return PolicyFileError(self.source, [Problem(where, message, given, allowed)], fix)
 
     def listed(self) -> str:

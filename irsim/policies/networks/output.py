@@ -13,7 +13,7 @@ from irsim.policies.networks.frames import turn_back, x_axis
 from irsim.policies.networks.values import Array, apply
 from irsim.policies.observations import Observations
 
-__all__ = ["Present", "decide"]
+__all__ = ["Present", "are_finite", "decide"]
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,7 @@ class Present:
         pose, goal: (B, 3) x, y [m], heading [rad], world frame.
         velocity: (B, 2) [m/s], world frame.
         control, low, high: (B, 3) control executed last, and limits of the controls.
+        bounded: Whether the limits are known to be finite.
     """
 
     pose: Floats
@@ -32,6 +33,7 @@ class Present:
     control: Floats
     low: Floats
     high: Floats
+    bounded: bool = False
 
     @classmethod
     def of(cls, observations: Observations) -> Present:
@@ -69,18 +71,28 @@ def decide(output: OutputOptions, numbers: Array, present: Present) -> Floats:
 def _squash(output: OutputOptions, value: Floats) -> Floats:
     if output.squash == "tanh":
         return apply("tanh", value)
-    return np.clip(value, -1.0, 1.0) if output.squash == "clip" else value
+    return np.minimum(np.maximum(value, -1.0), 1.0) if output.squash == "clip" else value
 
 
 def _scale(output: OutputOptions, value: Floats, present: Present) -> Floats:
     if output.limits:
-        low, high = (limit[:, : value.shape[1]] for limit in (present.low, present.high))
-        if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        low, high = present.low, present.high
+        if not (present.bounded or are_finite(low, high, value.shape[1])):
             message = "the network chooses between the limits of the controls, and a robot has infinite limits"
             raise PolicyInputError(message, "give the robot finite vel_min and vel_max")
     elif output.low is not None and output.high is not None:
         low, high = np.array([output.low], dtype=np.float64), np.array([output.high], dtype=np.float64)
     else:
         return value
-    result: Floats = low + (value + 1.0) / 2.0 * (high - low)
+    share = (value + 1.0) / 2.0
+    if low.shape[1] < share.shape[1]:
+        return np.asarray(low + share * (high - low))
+    result: Floats = np.empty_like(share)
+    for k in range(share.shape[1]):  # whole columns are faster than short rows
+        result[:, k] = low[:, k] + share[:, k] * (high[:, k] - low[:, k])
     return result
+
+
+def are_finite(low: Floats, high: Floats, width: int) -> bool:
+    """Whether the limits of the first controls of all robots are finite."""
+    return bool(np.isfinite(low[:, :width]).all() and np.isfinite(high[:, :width]).all())

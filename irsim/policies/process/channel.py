@@ -31,7 +31,16 @@ class Writer(Protocol):
 
 
 class PeerError(Exception):
-    """The other process did not answer as it should; the message completes the sentence ``the policy …``."""
+    """The other process did not answer as it should.
+
+    Args:
+        message: The end of the sentence ``the policy …``.
+        fix: What to do.
+    """
+
+    def __init__(self, message: str, fix: str = "look at what its process prints") -> None:
+        super().__init__(message)
+        self.fix = fix
 
 
 class Channel:
@@ -43,12 +52,19 @@ class Channel:
     Args:
         reader, writer: Streams from and to the process.
         close: Ends the connection.
+        ended: What has happened when no more lines come, in words.
     """
 
-    def __init__(self, reader: BinaryIO, writer: Writer, close: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        reader: BinaryIO,
+        writer: Writer,
+        close: Callable[[], None],
+        ended: Callable[[], str] = lambda: "has closed the connection",
+    ) -> None:
         self._asked: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
         self._answers: queue.SimpleQueue[bytes | Exception] = queue.SimpleQueue()
-        self._close, self._closed = close, False
+        self._close, self._ended, self._closed = close, ended, False
         talk = threading.Thread(target=_talk, args=(reader, writer, self._asked, self._answers), daemon=True)
         talk.start()
 
@@ -60,15 +76,16 @@ class Channel:
             seconds: Longest time to wait [s].
 
         Raises:
-            PeerError: No answer came in time, the process has ended, or its line is too long.
+            TimeoutError: No answer came in time.
+            PeerError: The process has ended, or its line is too long.
         """
         self._asked.put(line)
         try:
             answer = self._answers.get(timeout=seconds)
         except queue.Empty:
-            raise PeerError(f"gave no answer within {seconds:g} s") from None
+            raise TimeoutError from None
         if isinstance(answer, OSError) or answer == b"":
-            raise PeerError("has closed the connection")
+            raise PeerError(self._ended())
         if isinstance(answer, Exception):
             raise PeerError(str(answer))
         return answer
@@ -98,9 +115,9 @@ def start(command: Sequence[str], folder: str | None = None) -> Channel:
             start_new_session=True,
         )
     except (OSError, ValueError) as error:
-        raise PeerError(f"cannot be started: {error}") from error
+        raise PeerError(f"cannot be started: {error}", "correct its command") from error
     reader, writer = cast(io.FileIO, process.stdout), cast(io.FileIO, process.stdin)  # without a buffer they are these
-    return Channel(io.BufferedReader(reader), writer, lambda: _end(process))
+    return Channel(io.BufferedReader(reader), writer, lambda: _end(process), lambda: _ended(process))
 
 
 def connect(address: str, seconds: float) -> Channel:
@@ -117,12 +134,14 @@ def connect(address: str, seconds: float) -> Channel:
     try:
         if port.isdigit() and "/" not in address:
             if host.strip("[]") not in _LOCAL:
-                raise PeerError(f"is not on this machine: {host!r} is none of {', '.join(_LOCAL)}")
+                what = f"is not on this machine: {host!r} is none of {', '.join(_LOCAL)}"
+                raise PeerError(what, f"start it on this machine and write 127.0.0.1:{port}")
             made = socket.create_connection((host.strip("[]"), int(port)), timeout=seconds)
         else:
             made = _connect_file(address, seconds)
     except (OSError, OverflowError, AttributeError) as error:  # some systems have no sockets of the file system
-        raise PeerError(f"does not listen at {address!r}: {error}") from error
+        fix = "start it first, and write HOST:PORT such as 127.0.0.1:9000, or the path of its socket"
+        raise PeerError(f"does not listen there: {error}", fix) from error
     made.settimeout(None)
     reader, writer = made.makefile("rb"), made.makefile("wb", buffering=0)
 
@@ -184,6 +203,15 @@ def _end(process: subprocess.Popen[bytes]) -> None:
         os.killpg(process.pid, signal.SIGKILL)
     process.kill()
     process.wait()
+
+
+def _ended(process: subprocess.Popen[bytes]) -> str:
+    """How a process has ended whose output is closed, in words."""
+    try:
+        code = process.wait(_GRACE_S)
+    except subprocess.TimeoutExpired:
+        return "has closed its output"
+    return f"has ended with exit code {code}" if code >= 0 else f"was ended by signal {-code}"
 
 
 def _close_input(stream: BinaryIO) -> None:

@@ -21,14 +21,17 @@ import numpy as np
 
 from irsim.common.text import clean
 from irsim.common.version import version
+from irsim.options.registry import KINEMATICS
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Episode, Needs
 from irsim.policies.process.channel import PeerError
 
-__all__ = ["PROTOCOL", "act", "answer", "declaration", "hello", "reset"]
+__all__ = ["FIX", "PROTOCOL", "act", "answer", "declaration", "hello", "reset"]
 
 PROTOCOL = 1
 """Version of the messages."""
+FIX = "irsim describe process says what it must answer"
+"""What to do about an answer that is not understood."""
 _MAX_SHOWN = 80
 """Characters of an answer that an error shows."""
 _DECLARED = ("name", "output", "needs", "drives", "decision_dt", "stochastic")
@@ -61,9 +64,9 @@ def answer(line: bytes, kind: str) -> dict[str, Any]:
     try:
         data = json.loads(line, parse_constant=lambda name: math.nan)
     except (ValueError, RecursionError):
-        raise PeerError(f"answered {_shown(line)}, which is no line of JSON") from None
+        raise _misunderstood(f"answered {_shown(line)}, which is no line of JSON") from None
     if not isinstance(data, dict) or data.get("type") != kind:
-        raise PeerError(f"answered {_shown(line)} where an object with type {kind!r} is expected")
+        raise _misunderstood(f"answered {_shown(line)} where an object with type {kind!r} is expected")
     return data
 
 
@@ -74,29 +77,36 @@ def declaration(data: dict[str, Any]) -> dict[str, Any]:
         PeerError: It says something else, or another version of the messages.
     """
     if data.get("protocol", PROTOCOL) != PROTOCOL:
-        raise PeerError(f"speaks protocol {clean(str(data['protocol']), _MAX_SHOWN)}, and irsim speaks {PROTOCOL}")
+        raise _misunderstood(f"speaks protocol {clean(str(data['protocol']), _MAX_SHOWN)}, and irsim speaks {PROTOCOL}")
     unknown = sorted({*data} - {*_DECLARED, "type", "protocol"})
     if unknown:
-        raise PeerError(f"declares {clean(unknown[0], _MAX_SHOWN)!r}; it can declare {', '.join(_DECLARED)}")
+        raise _misunderstood(f"declares {clean(unknown[0], _MAX_SHOWN)!r}; it can declare {', '.join(_DECLARED)}")
     said = {key: data[key] for key in _DECLARED if data.get(key) is not None}
     if not isinstance(said.get("name", ""), str) or not isinstance(said.get("stochastic", True), bool):
-        raise PeerError("declares a name that is no text, or a stochastic that is neither true nor false")
+        raise _misunderstood("declares a name that is no text, or a stochastic that is neither true nor false")
     if "drives" in said:
         if not (isinstance(said["drives"], list) and all(isinstance(name, str) for name in said["drives"])):
-            raise PeerError("declares drives that are no list of names")
+            raise _misunderstood("declares drives that are no list of names")
+        if unknown := sorted({*said["drives"]} - {*KINEMATICS.names()}):
+            known = ", ".join(KINEMATICS.names())
+            raise _misunderstood(f"declares the drive {clean(unknown[0], _MAX_SHOWN)!r}; drives are {known}")
         said["drives"] = frozenset(said["drives"])
     if "needs" in said:
         said["needs"] = _needs(said["needs"])
     return said
 
 
+def _misunderstood(why: str) -> PeerError:
+    return PeerError(why, FIX)
+
+
 def _needs(given: Any) -> Needs:
     known = [field.name for field in fields(Needs)]
     if not isinstance(given, dict) or not {*given} <= {*known}:
-        raise PeerError(f"declares needs other than {', '.join(known)}")
+        raise _misunderstood(f"declares needs other than {', '.join(known)}")
     for key in ("static_neighbors", "neighbor_extents", "footprints", "scan", "map"):
         if not isinstance(given.get(key, False), bool):
-            raise PeerError(f"declares needs whose {key!r} is neither true nor false")
+            raise _misunderstood(f"declares needs whose {key!r} is neither true nor false")
     return Needs(**{key: value for key, value in given.items() if value is not None})
 
 

@@ -18,6 +18,8 @@ from irsim.policies.process.channel import Channel, PeerError, connect, start
 
 __all__ = ["ProcessPolicy"]
 
+_ANSWERS = messages.FIX
+
 
 class ProcessPolicy(Policy):
     """A policy in another process, which answers lines of JSON: its program is started, or listens on a local socket.
@@ -67,7 +69,7 @@ class ProcessPolicy(Policy):
         """Begin an episode, with a new process if the last one was lost."""
         if self._channel is None:
             self._open()
-        self._ask(messages.reset(episode, int(rng.integers(2**53))), "ready", self._start_timeout)
+        self._ask(messages.reset(episode, int(rng.integers(2**53))), "ready", "start_timeout")
 
     def act(self, observations: Observations) -> Floats:
         """What the other process decides.
@@ -75,14 +77,16 @@ class ProcessPolicy(Policy):
         Raises:
             PolicyLostError: It does not answer in time, has ended, or answers nonsense.
         """
-        data = self._ask(messages.act(observations), "decision", self._timeout)
+        data = self._ask(messages.act(observations), "decision", "timeout")
         try:
             found: Floats = np.asarray(data.get("decision"), dtype=np.float64)
         except (TypeError, ValueError):
-            raise self._lost("decided something that is no table of numbers") from None
-        if found.ndim != 2 or len(found) != len(observations) or not np.isfinite(found).all():
+            raise self._lost("decided something that is no table of numbers", _ANSWERS) from None
+        if found.ndim != 2 or len(found) != len(observations):
             rows = f"{len(observations)} row{'s' * (len(observations) != 1)}"
-            raise self._lost(f"decided an array of shape {found.shape} where {rows} of finite numbers are expected")
+            raise self._lost(f"decided an array of shape {found.shape} where {rows} of numbers are expected", _ANSWERS)
+        if not np.isfinite(found).all():
+            raise self._lost("decided numbers that are not finite, or null", _ANSWERS)
         return found
 
     def close(self) -> None:
@@ -98,31 +102,40 @@ class ProcessPolicy(Policy):
             else:
                 self._channel = connect(str(self._address), self._start_timeout)
         except PeerError as error:
-            raise self._lost(str(error)) from error
+            raise self._lost(str(error), error.fix) from error
         weakref.finalize(self, self._channel.close)
-        data = self._ask(messages.hello(), "policy", self._start_timeout)
+        data = self._ask(messages.hello(), "policy", "start_timeout")
         try:
             said = messages.declaration(data)
         except PeerError as error:
-            raise self._lost(str(error)) from error
+            raise self._lost(str(error), error.fix) from error
         if self._said is not None and said != self._said:
-            raise self._lost("declares something else than before")
+            raise self._lost("declares something else than before", _ANSWERS)
         self._said = said
         for key, value in said.items():
             setattr(self, key, value)
 
-    def _ask(self, line: bytes, kind: str, seconds: float) -> dict[str, Any]:
+    def _ask(self, line: bytes, kind: str, limit: str) -> dict[str, Any]:
+        """The answer to a line, within the time of the option ``limit``."""
         if self._channel is None:
-            raise self._lost("was lost before")
+            raise self._lost("was lost before", "begin a new episode")
+        seconds = self._timeout if limit == "timeout" else self._start_timeout
         try:
-            return messages.answer(self._channel.ask(line, seconds), kind)
+            answer = self._channel.ask(line, seconds)
+        except TimeoutError:
+            fix = f"look at what its process does; a slow one needs a longer {limit}"
+            raise self._lost(f"gave no answer within {seconds:g} s", fix) from None
         except PeerError as error:
-            raise self._lost(str(error)) from error
+            raise self._lost(str(error), error.fix) from error
+        try:
+            return messages.answer(answer, kind)
+        except PeerError as error:
+            raise self._lost(str(error), error.fix) from error
 
-    def _lost(self, why: str) -> PolicyLostError:
+    def _lost(self, why: str, fix: str) -> PolicyLostError:
         self.close()
         where = f"of the program {self._command[0]!r}" if self._command is not None else f"at {self._address!r}"
-        return PolicyLostError(f"the policy {where} {why}")
+        return PolicyLostError(f"the policy {where} {why}", fix)
 
 
 def _is_text(value: Any) -> bool:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-__all__ = ["trained_policies", "trained_policy"]
+__all__ = ["COMMON_NAMES", "trained_policies", "trained_policy"]
 
+COMMON_NAMES = {"ppo": "multi_robot", "ppo_freeze": "multi_robot_freeze"}
+"""What else people call a policy, and suites do → its name."""
 _FOLDER = Path(__file__).parent
 
 

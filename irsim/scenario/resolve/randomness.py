@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from irsim.components.behaviors._options import CustomOptions
+from irsim.components.behaviors._options import BehaviorOptions, CustomOptions
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 __all__ = ["random_parts"]
@@ -38,6 +38,8 @@ def _of_object(record: ObjectRecord) -> list[str]:
         "sensor noise": any(
             getattr(sensor, "noise", False) or getattr(sensor, "velocity_noise_std", 0.0) for sensor in record.sensors
         ),
+        "decisions": any(isinstance(behavior, BehaviorOptions) and behavior.draws() for behavior in behaviors)
+        and not record.static,
         "planners": any(getattr(planner, "name", planner) in _SAMPLING_PLANNERS for planner in planners),
         "user code": any(isinstance(behavior, CustomOptions) for behavior in behaviors),
     }

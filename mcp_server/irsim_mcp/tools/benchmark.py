@@ -37,7 +37,7 @@ __all__ = ["Benchmark", "answer", "tool"]
 _DESCRIPTION = """
     Compare policies: every scenario under every policy with the same seeds. Rows have shares of
     success, collision and timeout, the mean time as [value, low, high] (95 %), and seeds that failed; diff
-    is the difference from the first, seed by seed; a note: what deciding costs. Work over wait_s
+    is the difference from the first, seed by seed; note: what deciding costs. Work over wait_s
     becomes a job. Next: get_job (detailed: more metrics), inspect_run with the job_id, or run_episode with a
     seed that failed.
 """
@@ -91,12 +91,12 @@ def tool(services: Services) -> StrictTool:
         policies: Annotated[
             list[str] | None,
             Field(
-                description=f"1-{MAX_BEHAVIORS} for all robots: rvo, '{{name: orca, timeHorizon: 5}}', random or a "
-                "file (net.npz). Default: as-written."
+                description=f"1-{MAX_BEHAVIORS} for all robots: rvo, '{{name: orca, timeHorizon: 5}}', sarl (lookup "
+                "policies), net.npz. Default: as-written."
             ),
         ] = None,
         seeds: Annotated[int, Field(description=f"How many, 1-{MAX_SEEDS}.")] = 10,
-        first_seed: Annotated[int, Field(ge=0, description="Tune on others than you report.")] = 0,
+        first_seed: Annotated[int | None, Field(ge=0, description="Default: 0 or a suite's. Tune on others.")] = None,
         perturb: Annotated[
             str | None,
             Field(
@@ -111,12 +111,13 @@ def tool(services: Services) -> StrictTool:
         if any(suite_of(given) for given in scenarios):
             arguments, total = await _suite(services, scenarios, policies, seeds, first_seed, perturb, max_steps)
         else:
-            chosen = policies or ["as-written"]
-            _check(scenarios, chosen, seeds, first_seed)
+            chosen, first = policies or ["as-written"], first_seed or 0
+            _check(scenarios, chosen, seeds)
+            _check_last(first, seeds)
             arguments = {
                 "files": _named(services, scenarios),
                 "policies": chosen,
-                "seeds": list(range(first_seed, first_seed + seeds)),
+                "seeds": list(range(first, first + seeds)),
                 "perturb": perturb,
                 "steps": max_steps,
             }
@@ -159,31 +160,35 @@ async def _suite(
     scenarios: Sequence[str],
     policies: Sequence[str] | None,
     seeds: int,
-    first: int,
+    first: int | None,
     perturb: str | None,
     steps: int | None,
 ) -> tuple[dict[str, Any], int]:
     """The arguments of the job of a suite, and its number of episodes.
 
     Raises:
-        ToolError: The suite has its own seeds and horizon; or see :func:`irsim_mcp.suites.plan_of`.
+        ToolError: The suite has its own horizon; or see :func:`irsim_mcp.suites.plan_of`.
     """
-    for name, given, what in (("first_seed", first, "seeds"), ("max_steps", steps, "horizon")):
-        if given:
-            raise failure("bad-argument", f"a suite has its own {what}", where=name, fix=f"leave {name} out")
+    if steps:
+        fix = "leave max_steps out"
+        raise failure("bad-argument", "a suite has its own horizon", where="max_steps", fix=fix)
     if not 1 <= seeds <= MAX_SEEDS:
         raise failure("bad-argument", f"seeds must be 1 to {MAX_SEEDS}, got {seeds}", where="seeds", fix="give fewer")
-    plan = await services.suite_plan(scenarios=list(scenarios), policies=policies, seeds=seeds)
+    _check_last(first or 0, seeds)
+    plan = await services.suite_plan(scenarios=list(scenarios), policies=policies, seeds=seeds, first=first)
     counts = len(plan["scenarios"]), len(plan["policies"]), seeds
     _check_size(*counts)
     return {"plan": plan | ({"perturb": [perturb]} if perturb else {})}, math.prod(counts)
 
 
-def _check(scenarios: Sequence[str], policies: Sequence[str], seeds: int, first: int) -> None:
+def _check(scenarios: Sequence[str], policies: Sequence[str], seeds: int) -> None:
     if not scenarios or seeds < 1:
         what = "there must be at least one scenario" if not scenarios else f"seeds must be at least 1, got {seeds}"
         raise failure("bad-argument", what, where="scenarios" if not scenarios else "seeds", fix="give at least one")
     _check_size(len(scenarios), len(policies), seeds)
+
+
+def _check_last(first: int, seeds: int) -> None:
     if first + seeds - 1 > MAX_SEED:
         what = f"the seeds {first} to {first + seeds - 1} exceed {MAX_SEED}, the largest that run_episode takes"
         raise failure("bad-argument", what, where="first_seed", fix=f"give at most {MAX_SEED - seeds + 1}")

@@ -139,7 +139,7 @@ def tool(services: Services) -> StrictTool:
             progress=reporter(ctx, "steps"),
             seed=seed,
             steps=max_steps,
-            policy=policy,
+            policy=await services.suite_policy(scenario_path, policy),
             perturb=perturb,
         )
         given = services.given(scenario_path, scenario_yaml)

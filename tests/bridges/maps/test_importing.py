@@ -139,8 +139,13 @@ def test_kinds_are_found_by_name_and_content(scene, tmp_path) -> None:
         with pytest.raises(BridgeError, match=said) as caught:
             import_map(tmp_path / name, tmp_path / "x.yaml")
         assert caught.value.code == "bridge-file"
-    with pytest.raises(BridgeError, match="cannot be read"):
-        import_map(tmp_path, tmp_path / "x.yaml")
+    places = [tmp_path]
+    if hasattr(os, "mkfifo"):
+        places.append(tmp_path / "pipe.glb")
+        os.mkfifo(places[-1])
+    for place in places:
+        with pytest.raises(BridgeError, match="no file"):
+            import_map(place, tmp_path / "x.yaml")
 
 
 def test_a_server_sets_limits(scene, tmp_path) -> None:

@@ -88,6 +88,8 @@ def test_a_seed_point_picks_a_part() -> None:
     assert at(occupancy(rooms, seed_point=(x, y)), x, y) == FREE
     with pytest.raises(BridgeError, match="seed point"):
         occupancy(rooms, seed_point=(1e9, 0.0))
+    stacked = np.concatenate([box([0, 0, -0.1], [3, 2, 0]), box([2, 0, 2.9], [4, 2, 3.0])])
+    assert occupancy(stacked, seed_point=(3.5, 1.0)).height == pytest.approx(3.0, abs=0.01)
 
 
 def test_slopes_and_hills() -> None:

@@ -27,7 +27,7 @@ def write(folder: Path, content: bytes) -> Path:
 
 @pytest.mark.parametrize(("version", "size"), [(1, 0), (2, 80), (2, 96), (2, 0)])
 def test_a_map_of_it(tmp_path, version, size) -> None:
-    content = mesh_set(tile(TWO_ROOMS), tile(UPSTAIRS), version=version, settings=size)
+    content = mesh_set(tile(TWO_ROOMS, height=1.8), tile(UPSTAIRS), version=version, settings=size)
     result = import_map(write(tmp_path, content), tmp_path / "scene.yaml")
     assert result.free_area == pytest.approx(4 * 3 + 0.5 * 1 + 2.5 * 3, rel=0.01)
     assert [(round(one.height, 2), one.roof) for one in result.levels] == [(0.1, False), (3.0, True)]
@@ -35,6 +35,7 @@ def test_a_map_of_it(tmp_path, version, size) -> None:
     sidecar = read_sidecar(tmp_path / "scene.yaml")
     assert sidecar.to_scene([[1.0, 2.0]]) == pytest.approx(np.array([[1.0, 0.1, -2.0]]))
     assert sidecar.agent["radius"] == pytest.approx(0.1)
+    assert sidecar.agent["headroom"] == pytest.approx(1.8)
     scenario, _ = api.read_scenario(tmp_path / "scene.yaml", strict=True)
     free = scenario.grid.cells.occupied == 0
     assert free.sum() * 0.05**2 == pytest.approx(result.free_area)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from stable_baselines3 import PPO
@@ -11,6 +13,8 @@ from irsim.learning import SB3VecEnv, VectorEnv
 from tests.learning.tasks import crowd, lidar_among_boxes, task
 
 pytestmark = pytest.mark.learn
+CLIMB = {"levels": [{}, {"horizon": 2}], "up": 0.0, "episodes": 8}
+"""A curriculum that moves up whatever has been learnt."""
 
 
 def test_slots_equal_those_of_gymnasium() -> None:
@@ -32,6 +36,30 @@ def test_slots_equal_those_of_gymnasium() -> None:
             assert infos[slot]["TimeLimit.truncated"] == truncated[slot]
             assert infos[slot]["episode"]["l"] <= 10
     assert ended >= 6
+
+
+@pytest.mark.parametrize("curriculum", [None, CLIMB], ids=["plain", "curriculum"])
+def test_results_do_not_depend_on_the_number_of_workers(curriculum: Any) -> None:
+    made = lidar_among_boxes(horizon=1.0, curriculum=curriculum)
+    envs = [SB3VecEnv(made, 5, seed=5, workers=workers) for workers in (1, 3)]
+    assert np.array_equal(*[env.reset() for env in envs])
+    rng = np.random.default_rng(0)
+    levels = set()
+    for _ in range(60):
+        actions = rng.uniform(-1, 1, (5, 2)).astype(np.float32)
+        (seen, reward, done, infos), theirs = (env.step(actions) for env in envs)
+        assert np.array_equal(seen, theirs[0])
+        assert np.array_equal(reward, theirs[1])
+        assert np.array_equal(done, theirs[2])
+        for one, other in zip(infos, theirs[3], strict=True):
+            assert one.keys() == other.keys()
+            assert all(np.array_equal(one[key], other[key]) for key in one)
+        for env in envs:
+            assert env.worlds.level.tolist() == envs[0].worlds.level.tolist()
+            levels |= set(env.worlds.level.tolist())
+    assert levels == ({0} if curriculum is None else {0, 1})
+    for env in envs:
+        env.close()
 
 
 def test_robots_share_a_policy_and_waiting_ones_say_so() -> None:

@@ -24,9 +24,10 @@ def test_the_check_of_torchrl_passes(made: dict[str, Any]) -> None:
     check_env_specs(TorchRLEnv(made, 2))
 
 
-def test_worlds_equal_those_of_gymnasium() -> None:
+@pytest.mark.parametrize("workers", [1, 2])
+def test_worlds_equal_those_of_gymnasium(workers: int) -> None:
     made = lidar_among_boxes(horizon=1.0)
-    env, other = TorchRLEnv(made, 3, seed=5), VectorEnv(made, 3, seed=5, autoreset_mode="SameStep")
+    env, other = TorchRLEnv(made, 3, seed=5, workers=workers), VectorEnv(made, 3, seed=5, autoreset_mode="SameStep")
     data, (seen, _) = env.reset(), other.reset()
     assert np.array_equal(data["observation"].numpy(), seen)
     rng = np.random.default_rng(0)
@@ -39,3 +40,4 @@ def test_worlds_equal_those_of_gymnasium() -> None:
         assert np.allclose(stepped["next", "reward"].numpy()[:, 0], reward)
         assert np.array_equal(stepped["next", "terminated"].numpy()[:, 0], terminated)
         assert np.array_equal(stepped["next", "truncated"].numpy()[:, 0], truncated)
+    env.close()

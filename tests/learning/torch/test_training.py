@@ -61,6 +61,15 @@ def test_a_resumed_training_equals_one_that_was_never_interrupted(made: dict[str
     assert all(torch.equal(a[key], b[key]) for key in a)
 
 
+def test_workers_change_nothing(tmp_path: Path) -> None:
+    made = lidar_among_boxes(seeds=FEW)
+    for workers in (1, 2):
+        train(made, tmp_path / str(workers), SMALL.model_copy(update={"steps": 256}), workers=workers)
+    assert results(tmp_path / "1") == results(tmp_path / "2")
+    a, b = (weights(tmp_path / name / "latest.zip") for name in ("1", "2"))
+    assert all(torch.equal(a[key], b[key]) for key in a)
+
+
 def test_other_seeds_learn_otherwise(tmp_path: Path) -> None:
     made = lidar_among_boxes(seeds=FEW)
     for seed in (0, 1):

@@ -18,7 +18,7 @@ from irsim.scenario.path_confinement import why_outside
 
 __all__ = ["Beside", "check"]
 
-_MAX_JSON = 256 * 1024**2
+_MAX_JSON = 128 * 1024**2
 _SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
 _COUNTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_mesh_quantization")

@@ -21,7 +21,7 @@ def may_be_mesh(head: bytes) -> bool:
     if head.startswith((b"glTF", b"solid")):
         return True
     if head.startswith(b"ply"):
-        return b"element face" in head or b"f_dc_0" not in head
+        return b"element face" in head or not any(mark in head for mark in (b"f_dc_0", b"scale_0", b"packed_"))
     if head.lstrip().startswith(b"{"):
         return b"asset" in head or b"accessors" in head or b"nodes" in head
     if len(head) >= 84 and not head.startswith((b"TESM", b"PXR-USDC", b"#usda", b"PK", b"\x89PNG")):

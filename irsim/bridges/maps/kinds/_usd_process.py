@@ -47,7 +47,7 @@ def main() -> None:
 def _read(path: Path, out: Path, most: int) -> dict[str, Any]:
     from pxr import Usd, UsdGeom
 
-    _check_layers(path)
+    missing = _check_layers(path)
     stage = Usd.Stage.Open(str(path))
     if stage is None:
         raise _Refused("it is damaged: no stage can be opened from it")
@@ -76,6 +76,8 @@ def _read(path: Path, out: Path, most: int) -> dict[str, Any]:
         triangles = np.stack([triangles[..., 0], -triangles[..., 2], triangles[..., 1]], axis=-1)
     np.savez(out, triangles=triangles)
     notes = [f"prims of these types were left out: {', '.join(sorted(left_out))}"] if left_out else []
+    if missing:
+        notes.append(f"{len(missing)} of its layers were not found, such as '{missing[0][:150]}'")
     return {"meters_per_unit": scale, "frame": "usd_yup" if up == "Y" else "usd", "notes": notes}
 
 
@@ -131,12 +133,13 @@ def _corners(prim: Any, most: int) -> np.ndarray | None:
     return corners[:, ::-1] if left_handed else corners
 
 
-def _check_layers(path: Path) -> None:
-    """All layers that the stage is made of lie in the folder of the file, or inside of it."""
+def _check_layers(path: Path) -> list[str]:
+    """All layers that the stage is made of lie in the folder of the file, or inside of it; those that are missing."""
     from pxr import Sdf
 
     root = path.resolve().parent
-    waiting, met = [str(path)], set()
+    waiting, met = [str(path)], set[str]()
+    missing = []
     while waiting:
         name = waiting.pop()
         if name in met:
@@ -148,11 +151,13 @@ def _check_layers(path: Path) -> None:
         if layer is None:
             if name == str(path):
                 raise _Refused("it is damaged: it cannot be opened")
-            continue  # the stage is composed without it, and says so
+            missing.append(os.path.basename(name))
+            continue  # the stage is composed without it
         for asset in filter(None, layer.GetCompositionAssetDependencies()):  # no name stands for the layer itself
             target = layer.ComputeAbsolutePath(asset)
             _check_reference(asset, target, root, path)
             waiting.append(target)
+    return missing
 
 
 def _check_reference(asset: str, target: str, root: Path, path: Path) -> None:

@@ -19,6 +19,8 @@ __all__ = ["KIND"]
 
 _FRAMES = {"y": "habitat_yup", "z": "irsim", "-y": "colmap"}
 _Y_UP = (".glb", ".gltf", ".obj")
+_MAX_TEXT = 512 * 1024**2
+"""Size of an OBJ file [bytes], which needs many times as much memory."""
 _STEEP = 1.5
 """How much more area must face along another axis before a note says so."""
 
@@ -31,6 +33,8 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     """
     suffix = path.suffix.lower().lstrip(".")
     resolver = None
+    if suffix == "obj" and path.stat().st_size > _MAX_TEXT:
+        raise unusable(path, f"as text it may have at most {_MAX_TEXT:,} bytes", "convert it to .glb")
     if suffix in ("glb", "gltf"):
         resolver = _gltf.check(path, limits)
     elif suffix == "stl":

@@ -1,0 +1,43 @@
+"""Reads the actions that an environment receives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from irsim.common.arrays import Floats
+from irsim.diagnostics.errors import ArgumentError
+
+__all__ = ["read_actions"]
+
+
+def read_actions(actions: Any, choices: Sequence[Any] | None, slots: int, width: int) -> Floats:
+    """(slots, F) numbers that :func:`irsim.policies.networks.output.decide` reads.
+
+    Args:
+        actions: (slots, width) numbers from -1 to 1, or (slots,) numbers of choices.
+        choices: What can be chosen from; None: actions are numbers.
+        slots: Number of learners.
+        width: Number of numbers of an action.
+
+    Raises:
+        ArgumentError: The actions have another shape, or are not finite.
+    """
+    if choices is None:
+        numbers = np.asarray(actions, dtype=np.float64)
+        if numbers.shape != (slots, width):
+            what = f"actions have the shape {numbers.shape}, not {(slots, width)}"
+            raise ArgumentError(what, "give one row of numbers for each learner of each world")
+        if not np.isfinite(numbers).all():
+            raise ArgumentError("an action is not finite", "give numbers from -1 to 1")
+        return numbers
+    number = np.asarray(actions)
+    if number.shape != (slots,) or number.dtype.kind not in "iu":
+        raise ArgumentError("actions are numbers of choices, one whole number for each learner", "give integers")
+    if ((number < 0) | (number >= len(choices))).any():
+        raise ArgumentError(f"an action is not the number of a choice, 0 to {len(choices) - 1}", "give one of them")
+    numbers = np.zeros((slots, len(choices)))
+    numbers[np.arange(slots), number] = 1.0
+    return numbers

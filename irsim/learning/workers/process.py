@@ -1,0 +1,124 @@
+"""A worker process, as its parent sees it."""
+
+from __future__ import annotations
+
+import os
+import select
+import subprocess
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any
+
+from irsim.diagnostics.errors import WorkerError
+from irsim.learning.workers.messages import DONE, read_exactly, read_message, unpacked_error, write_message
+
+__all__ = ["Worker", "stop"]
+
+_GRACE_S = 2.0
+"""Time that a process has to end by itself [s]."""
+_LOOK_MS = 500
+"""Time between looks whether a process that does not answer still lives [ms]."""
+
+
+class Worker:
+    """A process that is started at once, and does not outlive this one.
+
+    Args:
+        files: Files that it inherits.
+
+    Raises:
+        WorkerError: It cannot be started.
+    """
+
+    def __init__(self, files: Sequence[int]) -> None:
+        isolated = ["-I"] if sys.flags.isolated else []
+        start = f"import sys; sys.path[:] = {sys.path!r}; from irsim.learning.workers.child import main; main()"
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, *isolated, "-X", "utf8", "-c", start],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                bufsize=0,
+                pass_fds=files,
+                start_new_session=True,  # Ctrl-C at a terminal reaches only the parent
+                env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+            )
+        except OSError as error:
+            raise WorkerError(f"a worker process cannot be started: {error}", "give fewer workers") from error
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._commands, self._answers = self._process.stdin.fileno(), self._process.stdout.fileno()
+        self._waiting: Any = None
+        if hasattr(select, "poll"):  # not on Windows
+            self._waiting = select.poll()
+            self._waiting.register(self._answers, select.POLLIN)
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
+    def send(self, message: Any) -> None:
+        """Send a command.
+
+        Raises:
+            WorkerError: The process has died.
+        """
+        try:
+            write_message(self._commands, message)
+        except OSError:
+            raise self._lost() from None
+
+    def receive(self) -> BaseException | None:
+        """Wait for the answer to a command: the error that it raised, or None.
+
+        Raises:
+            WorkerError: The process has died.
+        """
+        try:
+            while self._waiting is not None and not self._waiting.poll(_LOOK_MS):
+                if self._process.poll() is not None and not self._waiting.poll(0):
+                    raise EOFError  # it has died, and a process that it started holds the pipe open
+            if read_exactly(self._answers, 1) == DONE:
+                return None
+            return unpacked_error(read_message(self._answers))
+        except (EOFError, OSError):
+            raise self._lost() from None
+
+    def _lost(self) -> WorkerError:
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(_GRACE_S)
+        code = self._process.returncode
+        how = f"signal {-code}" if code is not None and code < 0 else f"exit status {code}"
+        what = f"a worker process of the environment has died ({how})"
+        return WorkerError(what, "check the memory and your own modules, then make a new environment")
+
+    def hang_up(self) -> None:
+        """Close the pipes, upon which the process ends by itself."""
+        for pipe in (self._process.stdin, self._process.stdout):
+            with suppress(OSError):
+                pipe.close()  # type: ignore[union-attr]
+
+    def end(self) -> None:
+        """Wait a little for the process to end, and end it if it does not."""
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(_GRACE_S)
+        self._process.kill()
+        self._process.wait()
+
+
+def stop(workers: list[Worker], owner: int) -> None:
+    """End processes; nothing in a process that was forked from that which started them.
+
+    Args:
+        workers: The processes; empty afterwards.
+        owner: The process that started them.
+    """
+    if os.getpid() != owner:
+        return
+    for worker in workers:
+        worker.hang_up()
+    for worker in workers:
+        worker.end()
+    workers.clear()
