@@ -40,6 +40,7 @@ class _Robot:
     origin: Pose | None
     odometry: Odometry | None = None
     when: float = -math.inf
+    scans: dict[str, float] = field(default_factory=dict)
     stops: int = 0
 
 
@@ -74,6 +75,10 @@ class RealRobots:
             robot.origin = composed(robot.agent.pose, inverted(odometry.pose))
         robot.odometry, robot.when = odometry, when
 
+    def take_scan(self, name: str, lidar: str, when: float) -> None:
+        """Note that a lidar of a robot has measured; from now on it must go on to do so."""
+        self._robots[name].scans[lidar] = when
+
     def relocate(self, name: str, pose: Pose) -> None:
         """Move the frame of the odometry so that the robot is at a pose of the scene."""
         robot = self._robots[name]
@@ -89,7 +94,7 @@ class RealRobots:
         }
 
     def twists(self, now: float) -> dict[str, Pose]:
-        """Their velocities [m/s, m/s, rad/s] in the world frame; zero of those whose odometry is old."""
+        """Their velocities [m/s, m/s, rad/s] in the world frame; zero of those that are stopped."""
         found = {}
         for name, pose in self.poses().items():
             robot = self._robots[name]
@@ -100,7 +105,7 @@ class RealRobots:
         return found
 
     def commands(self, motion: Motion, now: float) -> dict[str, Velocity]:
-        """What the robots are commanded in a step: what they want, or zero while their odometry is old.
+        """What the robots are commanded in a step: what they want, or zero while their odometry or scans are old.
 
         Raises:
             BridgeLostError: No odometry has come for so long that the robot counts as lost.
@@ -123,11 +128,11 @@ class RealRobots:
     def notes(self) -> list[str]:
         """How often robots had to stop because their odometry was old."""
         return [
-            f"'{name}' got zero commands in {robot.stops} steps because its odometry was older than "
+            f"'{name}' got zero commands in {robot.stops} steps because its odometry or a scan was older than "
             f"{self.options.odom_timeout:g} s"
             for name, robot in self._robots.items()
             if robot.stops
         ]
 
     def _is_old(self, robot: _Robot, now: float) -> bool:
-        return now - robot.when > self.options.odom_timeout
+        return now - min([robot.when, *robot.scans.values()]) > self.options.odom_timeout

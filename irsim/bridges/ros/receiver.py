@@ -91,6 +91,8 @@ class Receiver:
             self._real.take(robot, read_odometry(message), arrival.when)
         elif topic.key == "scan" and topic.lidar is not None:
             self._ranges[topic.lidar] = (fitted_ranges(read_scan(message), self._lidars[topic.lidar]), arrival.when)
+            if self._real is not None:
+                self._real.take_scan(robot, topic.lidar, arrival.when)
 
     def _fresh_commands(self) -> dict[str, Velocity]:
         """Commands of robots that have got some; zero if the last one is too old."""

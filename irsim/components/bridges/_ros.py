@@ -86,7 +86,8 @@ class RosOptions(ShownOptions):
     command_rate: Annotated[Hertz, Field(ge=2, le=200)] = 20.0
     """How often commands are sent to a real robot."""
     odom_timeout: Delay = 0.5
-    """Age of the last odometry of a real robot above which it gets zero commands."""
+    """Age of the last odometry of a real robot above which it gets zero commands; the same for each of its lidars from
+    their first scan on."""
     lost_timeout: Annotated[Seconds, Field(gt=0, le=3600)] = 10.0
     """Age of the last odometry of a real robot above which the run ends."""
     odom_origin: Literal["start", "world"] = "start"

@@ -88,8 +88,13 @@ def test_old_odometry_is_a_zero_command_and_then_the_end() -> None:
     assert found.commands(motion(), 10.6) == {"robot 0": ZERO}
     assert found.twists(10.6)["robot 0"] == ZERO
     assert "zero commands in 1 steps" in found.notes()[0]
+    found.take("robot 0", Odometry((0.0, 0.0, 0.0), (0.2, 0, 0)), 11.0)
+    found.take_scan("robot 0", "robot 0/0", 10.4)
+    assert found.commands(motion(), 11.0) == {"robot 0": ZERO}  # a lidar that measured once has to go on
+    found.take_scan("robot 0", "robot 0/0", 10.9)
+    assert found.commands(motion(), 11.0)["robot 0"] == pytest.approx((0.3, 0, 0))
     with pytest.raises(BridgeLostError, match=r"no odometry of 'robot 0' for 3\.1 s"):
-        found.commands(motion(), 13.1)
+        found.commands(motion(), 14.1)
 
 
 class Pipe(io.StringIO):

@@ -40,9 +40,5 @@ class Backend:
             BridgeLostError: The connection is gone.
         """
 
-    def peers(self, topic: Topic) -> int | None:
-        """Number of others on a topic; None if the backend cannot tell."""
-        return None
-
     def close(self) -> None:
         """Disconnect; a second call does nothing."""

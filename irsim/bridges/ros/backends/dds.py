@@ -93,12 +93,6 @@ class DdsBackend(Backend):
             for sample in samples:
                 self.inbox.put(topic, sample.cdr)
 
-    def peers(self, topic: Topic) -> int | None:
-        """Number of matched endpoints."""
-        if topic.outgoing:
-            return len(self._writers[topic].get_matched_subscriptions())
-        return len(self._readers[topic].get_matched_publications())
-
     def close(self) -> None:
         """Delete all entities, which also tells the others that the node is gone."""
         self._writers, self._readers = {}, {}

@@ -64,11 +64,6 @@ class RclpyBackend(Backend):
             if self.inbox.received == received:
                 break
 
-    def peers(self, topic: Topic) -> int | None:
-        """Number of subscriptions or publishers of a topic."""
-        count = self._node.count_subscribers if topic.outgoing else self._node.count_publishers
-        return int(count(topic.name))
-
     def close(self) -> None:
         """Destroy the node."""
         node, self._node = self._node, None

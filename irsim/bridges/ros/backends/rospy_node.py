@@ -78,10 +78,6 @@ class RospyBackend(Backend):
         publisher = self._publishers[topic]
         publisher.publish(_filled(publisher.data_class(), message))
 
-    def peers(self, topic: Topic) -> int | None:
-        """Number of subscribers of a topic."""
-        return int(self._publishers[topic].get_num_connections()) if topic.outgoing else None
-
     def close(self) -> None:
         """Leave all topics; the node itself ends with the process."""
         for one in (*self._publishers.values(), *self._subscribers):
