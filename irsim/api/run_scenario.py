@@ -13,7 +13,7 @@ from irsim.api.read_input import policy_of_suite, read_input
 from irsim.api.take_snapshot import snapshot, snapshot_of
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.connect import connect, open_bridges
-from irsim.bridges.options import bridge_text, read_bridges
+from irsim.bridges.options import bridge_text, check_files, read_bridges
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
 from irsim.diagnostics.errors import ArgumentError, PolicyLostError
@@ -210,6 +210,8 @@ def _bridges(scenario: ResolvedScenario, more: Sequence[Any], limits: Limits | N
         raise BridgeError(
             "bridges-disabled", what, "leave out the key bridges, or start irsim-mcp with --enable-bridges"
         )
+    if limits is not None and limits.root is not None:
+        check_files(options, Path(limits.root))
     return open_bridges(options)
 
 

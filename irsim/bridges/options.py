@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
@@ -15,7 +16,7 @@ from irsim.options.selection import Select
 from irsim.scenario.behavior_override import BenchmarkError, parse_behavior
 from irsim.scenario.yaml.rewrite import yaml_flow
 
-__all__ = ["bridge_text", "read_bridge", "read_bridges"]
+__all__ = ["bridge_text", "check_files", "read_bridge", "read_bridges"]
 
 
 def read_bridges(given: Sequence[str | Mapping[str, Any]]) -> list[Any]:
@@ -54,6 +55,24 @@ def read_bridge(given: str | Mapping[str, Any]) -> Any:
     except ValidationError as error:
         found = [f"{'.'.join(str(part) for part in item['loc'])}: {item['msg']}" for item in error.errors()]
         raise _wrong("; ".join(found).removeprefix(": "), f"irsim describe bridge.{name} lists the keys") from None
+
+
+def check_files(options: Sequence[Any], root: Path) -> None:
+    """Check that bridges write no files outside of a folder.
+
+    Raises:
+        BridgeError: A key names a file that is elsewhere.
+    """
+    for one in options:
+        for key in getattr(one, "files", ()):
+            given = getattr(one, key)
+            if given is None:
+                continue
+            target = (root / given).resolve()
+            hidden = any(part.startswith(".") for part in Path(given).parts)
+            if not target.is_relative_to(root.resolve()) or hidden:
+                what = f"{key} of the bridge {one.name} is outside of the folder that may be written: {given!r}"
+                raise BridgeError("bridge-mismatch", what, f"name a file in it, such as {key}: {target.name}")
 
 
 def bridge_text(options: Any) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 import time
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -326,3 +327,16 @@ def test_bridges_can_be_forbidden() -> None:
     text = SCENE.format(drive="diff", world="") + lines("127.0.0.1:1")
     with pytest.raises(BridgeError, match="bridges-disabled"):
         irsim.run(text=text, limits=Limits(bridges=False))
+
+
+@pytest.mark.parametrize("folder", ["../bag", "/tmp/bag", ".git/bag"])
+def test_bridges_of_a_server_write_only_into_its_folder(folder: str, tmp_path: Path) -> None:
+    from types import SimpleNamespace
+
+    from irsim.bridges.options import check_files
+
+    one = SimpleNamespace(name="rosbag", files=("folder",), folder=folder)
+    with pytest.raises(BridgeError, match="outside of the folder"):
+        check_files([one], tmp_path)
+    one.folder = "bags/first"
+    check_files([one], tmp_path)

@@ -44,6 +44,7 @@ class MujocoBridge(Bridge):
         self.physics: Physics | None = None
         self._film: Film | None = None
         self._report = MujocoReport()
+        self._noted = False
         if options.report is not None and Path(options.report).suffix != ".json":
             what = f"report: a report is a .json file, got {options.report!r}"
             raise BridgeError("bridge-mismatch", what, "report: report.json")
@@ -145,6 +146,11 @@ class MujocoBridge(Bridge):
             warnings=self.physics.warnings(),
         )
 
+    def notes(self) -> list[str]:
+        """The main numbers of the report."""
+        self._noted = self._steps > 0
+        return self.report.lines() if self._noted else []
+
     def close(self) -> None:
         """Finish the video and report; a second call does nothing."""
         film, self._film = self._film, None
@@ -161,7 +167,8 @@ class MujocoBridge(Bridge):
             if film is not None:
                 film.free()
             if self._report.steps:
-                log_report(self._report)
+                if not self._noted:
+                    log_report(self._report)
                 if self.options.report is not None:
                     write_report(self._report, Path(self.options.report))
 

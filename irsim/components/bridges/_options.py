@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib import import_module
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from irsim.options.base import Options
 
@@ -13,6 +13,9 @@ __all__ = ["BridgeOptions", "opened_by"]
 
 class BridgeOptions(Options):
     """A connection to another program."""
+
+    files: ClassVar[tuple[str, ...]] = ()
+    """Keys that name files or folders to write."""
 
     name: str
     """Name of the bridge."""

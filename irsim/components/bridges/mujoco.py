@@ -22,6 +22,8 @@ class Mujoco(BridgeOptions):
         "examples": [{"name": "mujoco"}, {"name": "mujoco", "slip": 0.2, "latency": 0.15, "video": "run.mp4"}]
     }
 
+    files: ClassVar[tuple[str, ...]] = ("video", "report")
+
     name: Literal["mujoco"] = "mujoco"
     agents: list[str] | None = None
     """Names of the objects that MuJoCo moves; null is all robots whose drive is diff, omni, omni_angular or acker, and

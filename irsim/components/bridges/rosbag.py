@@ -19,6 +19,8 @@ class Rosbag(ShownOptions):
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "rosbag", "folder": "crossing_bag"}]}
 
+    files: ClassVar[tuple[str, ...]] = ("folder",)
+
     name: Literal["rosbag"] = "rosbag"
     clock: Literal["irsim", "external", "wall"] = "irsim"
     """Who decides when a step is: `irsim` as fast as it can, `wall` in real time."""
