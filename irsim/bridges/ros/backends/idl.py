@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
-
-from cyclonedds.idl import make_idl_struct, types
 
 __all__ = ["CdrSample", "dds_type", "dds_type_name", "struct_type"]
 
-_BASE: dict[str, Any] = {
-    "bool": bool, "byte": types.byte, "char": types.uint8, "uint8": types.uint8, "int8": types.int8,
-    "uint16": types.uint16, "int16": types.int16, "uint32": types.uint32, "int32": types.int32,
-    "uint64": types.uint64, "int64": types.int64, "float32": types.float32, "float64": types.float64,
-    "octet": types.byte, "string": str,
-}  # fmt: skip
+
+@cache
+def _base() -> dict[str, Any]:
+    """Types of DDS for those that messages are made of."""
+    from cyclonedds.idl import types
+
+    return {
+        "bool": bool, "byte": types.byte, "char": types.uint8, "uint8": types.uint8, "int8": types.int8,
+        "uint16": types.uint16, "int16": types.int16, "uint32": types.uint32, "int32": types.int32,
+        "uint64": types.uint64, "int64": types.int64, "float32": types.float32, "float64": types.float64,
+        "octet": types.byte, "string": str,
+    }  # fmt: skip
 
 
 class CdrSample:
@@ -51,6 +56,8 @@ def struct_type(store: Any, kind: str, made: dict[str, Any] | None = None) -> An
         kind: Type of the message.
         made: Types that exist already.
     """
+    from cyclonedds.idl import make_idl_struct
+
     made = {} if made is None else made
     if kind not in made:
         _, fields = store.fielddefs[kind]
@@ -69,10 +76,12 @@ def dds_type(store: Any, kind: str) -> Any:
 
 def _member(store: Any, definition: Any, made: dict[str, Any]) -> Any:
     """Annotation of a member."""
+    from cyclonedds.idl import types
+
     form, detail = definition
     if form.name == "BASE":
         kind, bound = detail
-        return types.bounded_str[bound] if bound and kind == "string" else _BASE[kind]
+        return types.bounded_str[bound] if bound and kind == "string" else _base()[kind]
     if form.name == "NAME":
         return struct_type(store, detail, made)
     inner, length = detail
