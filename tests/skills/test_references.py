@@ -26,6 +26,10 @@ PAGE_OF = {
 }
 
 
+RUNNER_BRIDGES = REFERENCES.parents[1] / "irsim-runner" / "references" / "bridges.md"
+"""Bridges are no part of what happens in a scenario, and are in the skill that runs it."""
+
+
 def page(name: str) -> str:
     return (REFERENCES / f"{name}.md").read_text(encoding="utf-8")
 
@@ -56,7 +60,7 @@ def test_help_is_there(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_every_built_in_component_has_its_section() -> None:
     for kind, registry in REGISTRIES.items():
-        text = page(PAGE_OF[kind])
+        text = RUNNER_BRIDGES.read_text(encoding="utf-8") if kind == "bridge" else page(PAGE_OF[kind])
         for feature in registry.features():
             if feature.origin == "built-in":
                 mark = "" if feature.simulated else " \\(not simulated by this version\\)"
