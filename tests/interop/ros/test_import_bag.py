@@ -127,3 +127,46 @@ def test_the_doctor_is_content() -> None:
         "rclpy": "missing", "cyclonedds": "ready", "zenoh": "ready", "rospy": "there", "roslibpy": "there",
         "rosbags": "ready",
     }, done.stdout  # fmt: skip
+
+
+def test_a_robot_that_comes_back_drives_its_whole_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from irsim.bridges.ros.backends.bag import BagFolder
+    from irsim.bridges.ros.messages import Messages
+
+    monkeypatch.chdir(tmp_path)
+    messages = Messages()
+    with BagFolder(tmp_path / "b", messages, "sqlite3", "b") as bag:
+        topic = bag.topic("/odom", "nav_msgs/msg/Odometry")
+        for step in range(121):
+            turn, stamp = 2 * math.pi * step / 120, 50_000_000 * step + 7_000_000
+            pose = (math.cos(turn), math.sin(turn), 0.0)
+            bag.add(topic, stamp, messages.odometry(stamp, "odom", "base_link", pose, (0.0, 0.0, 0.0)))
+    import_bag("b", "s.yaml")
+    found = irsim.run("s.yaml")
+    assert found.outcome == "success"
+    assert found.robots[0].path_length == pytest.approx(2 * math.pi, rel=0.01)
+
+
+def test_a_bag_of_ros_1(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from rosbags.rosbag1 import Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    monkeypatch.chdir(tmp_path)
+    store = get_typestore(Stores.ROS1_NOETIC)
+    types = {name.split("/")[-1]: made for name, made in store.types.items() if name.startswith(("geometry_", "std_"))}
+    kind = "nav_msgs/msg/Odometry"
+    with Writer(tmp_path / "drive.bag") as bag:
+        topic = bag.add_connection("/odom", kind, typestore=store)
+        for step in range(20):
+            stamp = store.types["builtin_interfaces/msg/Time"](1, 50_000_000 * step)
+            pose = types["Pose"](types["Point"](0.05 * step, 1.0, 0.0), types["Quaternion"](0.0, 0.0, 0.0, 1.0))
+            zero = types["Vector3"](0.0, 0.0, 0.0)
+            message = store.types[kind](
+                types["Header"](step, stamp, "odom"), "base_link",
+                types["PoseWithCovariance"](pose, np.zeros(36)),
+                types["TwistWithCovariance"](types["Twist"](zero, zero), np.zeros(36)),
+            )  # fmt: skip
+            bag.write(topic, 10**9 + 50_000_000 * step, store.serialize_ros1(message, kind))
+    found = import_bag("drive.bag", "s.yaml", BagOptions(step_time=0.05))
+    assert (found.poses, found.duration) == (20, pytest.approx(0.95))
+    assert irsim.run("s.yaml").robots[0].path_length == pytest.approx(0.95, abs=0.06)

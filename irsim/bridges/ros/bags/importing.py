@@ -174,7 +174,7 @@ def _text(
         f"  height: {size[1]:.6g}",
         f"  offset: [{low[0]:.6g}, {low[1]:.6g}]",
         f"  step_time: {options.step_time!r}",
-        f"  time_limit: {times[-1] + options.step_time:.6g}",
+        f"  time_limit: {times[-1] + 2 * options.step_time:.6g}",
         "  collision_mode: unobstructed  # the recording goes on, whatever the map says",
     ]
     if grid is not None:
@@ -184,6 +184,8 @@ def _text(
         "robot:",
         "  - name: robot",
         "    kinematics: {name: omni_angular}",
+        f"    waypoints: {_goals(times, poses, options.step_time)}",
+        "    goal_threshold: 0.01",
         f"    shape: {{name: circle, radius: {options.radius!r}}}",
         "    behavior:",
         "      name: replay",
@@ -193,6 +195,15 @@ def _text(
     if scan is not None:
         lines.append(_lidar(scan, mount))
     return "\n".join(lines) + "\n"
+
+
+def _goals(times: Floats, poses: Floats, step_time: float) -> list[list[float]]:
+    """Where the robot is farthest from its end, then the end: one that comes back has not arrived at its start."""
+    ends = np.arange(0.0, times[-1], step_time)
+    places = np.column_stack([np.interp(ends, times, poses[:, axis]) for axis in (0, 1)])
+    last = poses[-1, :2]
+    farthest = places[np.hypot(*(places - last).T).argmax()]
+    return [[round(value, 4) for value in (*place.tolist(), 0.0)] for place in (farthest, last)]
 
 
 def _lidar(scan: Scan, mount: tuple[float, float, float]) -> str:
