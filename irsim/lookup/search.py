@@ -49,7 +49,7 @@ def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[
         TopicError: Nothing fits, or a name is so similar that the text is probably a misspelling of it.
     """
     wanted = " ".join(words).lower()
-    keys = [(_hit(path, node), node) for path, node in paths(schema) if path[0] != "obstacle"]  # robots have the same
+    keys = [(_hit(path, node), node) for path, node in paths(schema) if _is_searched(path)]
     keys.sort(key=lambda found: len(found[0].name))
     same = [hit for hit, _ in keys if _last(hit) == wanted]
     if same:
@@ -74,6 +74,11 @@ def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[
     hits = [lines[name] for name in dict.fromkeys([*first, *called[:_MAX_EVERYDAY], *found])][:MAX_HITS]
     title = f"{len(hits)} topics fit '{clean(wanted)}' best" if len(hits) > 1 else f"About '{clean(wanted)}'"
     return _hits_answer(wanted, hits, title, unknown).model_copy(update={"best": explain(hits[0].name)})
+
+
+def _is_searched(path: tuple[str, ...]) -> bool:
+    """Whether free text may mean a key: robots have those of obstacles, and few mean the keys of a single bridge."""
+    return path[0] != "obstacle" and (path[0] != "bridges" or len(path) == 2)
 
 
 def _is_named_whole(topic: str, called: Sequence[str]) -> bool:

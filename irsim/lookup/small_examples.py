@@ -151,6 +151,8 @@ def small_example(schema: Node, path: tuple[str, ...]) -> str | None:
         else:
             value = {word: [value] if word in _LISTS and isinstance(value, dict) else value, **together}
             together = {}
+    if path[0] in _LISTS:
+        return f"{path[0]}: {yaml_text([value])}"
     return ", ".join(f"{key}: {yaml_text(item)}" for key, item in value.items())
 
 

@@ -7,6 +7,14 @@ from irsim.lookup.full_text import words_of
 __all__ = ["EVERYDAY", "named"]
 
 EVERYDAY: dict[str, str] = {
+    "bridges": "real robot, real hardware, other program, other simulator, co-simulation, external simulator, socket",
+    "bridges.ros2": "ros, rviz, turtlebot hardware, dds, zenoh, nav2",
+    "bridges.rosbridge": "ros, rosbridge, websocket, real robot",
+    "bridges.ros1": "ros, ros 1, noetic, rospy",
+    "bridges.mujoco": "physics, wheel slip, co-simulation, inertia of wheels",
+    "bridges.carla": "town, autonomous driving simulator, unreal",
+    "robot.behavior.replay": "replay, recorded pedestrians, recorded trajectory, trajectory file, eth ucy, "
+    "data set of people",
     "robot.sensors.lidar2d": "lidar, laser, laser scanner, scanner, lidar scanner, range finder, rangefinder, ladar, "
     "720, 720 beams, 1080 beams, 360 beams, distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range",
     "robot.sensors.fmcw_lidar2d": "lidar, fmcw, fmcw lidar, doppler, radar, velocity lidar, radial velocity",

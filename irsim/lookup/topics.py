@@ -181,7 +181,7 @@ def _readings(schema: Node, words: tuple[str, ...]) -> list[tuple[str, ...]]:
         if words[0] in registry.names():
             found.append((*place, *words))
     if len(words) == 1:
-        same = [path for path, _ in paths(schema) if path[-1] == words[0]]
+        same = [path for path, _ in paths(schema) if path[-1] == words[0] and path[0] != "bridges"]
         if len({path[1:] for path in same}) == 1:  # robots and obstacles have the same keys
             found += same
     return found

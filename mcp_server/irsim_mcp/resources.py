@@ -15,7 +15,7 @@ __all__ = ["SCHEMA", "SECTIONS", "TEMPLATE", "add_resources"]
 
 SECTIONS = (
     "scenario", "world", "robot", "obstacle", "gui",
-    "behavior", "distribution", "kinematics", "map", "planner", "sensor", "shape",
+    "behavior", "bridge", "distribution", "kinematics", "map", "planner", "sensor", "shape",
 )  # fmt: skip
 SCHEMA, TEMPLATE = "irsim://schema/{section}", "irsim://templates/{name}"
 

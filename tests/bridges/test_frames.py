@@ -14,7 +14,7 @@ from irsim.diagnostics.errors import ArgumentError
 
 ANGLES = st.floats(-math.pi, math.pi)
 PLACES = st.floats(-1e4, 1e4)
-HANDED = {"irsim": 1, "ros": 1, "carla": -1, "usd": 1, "usd_yup": 1, "habitat_yup": 1, "gltf": 1}
+HANDED = {"irsim": 1, "ros": 1, "carla": -1, "usd": 1, "usd_yup": 1, "habitat_yup": 1, "gltf": 1, "colmap": 1}
 
 
 @pytest.mark.parametrize("frame", frames.FRAMES)

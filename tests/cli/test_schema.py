@@ -31,7 +31,7 @@ def test_check_fails_on_drift_and_writing_mends_it(irsim: Run, tmp_path: Path) -
 def test_prints_json_schema_2020_12(irsim: Run) -> None:
     data = json.loads(irsim("schema", "-o", "-").stdout)
     assert data["$schema"] == "https://json-schema.org/draft/2020-12/schema"
-    assert set(data["$defs"]["Scenario"]["properties"]) == {"world", "robot", "obstacle", "gui", "custom"}
+    assert set(data["$defs"]["Scenario"]["properties"]) == {"world", "robot", "obstacle", "gui", "bridges", "custom"}
 
 
 def test_connects_a_file_and_changes_nothing_else(irsim: Run, room: Path) -> None:

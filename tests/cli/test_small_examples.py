@@ -39,7 +39,9 @@ LESS_TELLING = ("name", "type", "_linewidth", "marker_size", "edge_width")
 def errors_of(path: tuple[str, ...], text: str) -> list[str]:
     given = yaml.safe_load(f"{{{text}}}")
     data: dict[str, Any] = {"world": {"width": 12, "height": 12}, "robot": [dict(ROBOT)]}
-    if path[0] == "robot":
+    if path[0] == "bridges":
+        data |= given
+    elif path[0] == "robot":
         data["robot"][0].update(given)
     else:
         data.setdefault(path[0], {}).update(given)

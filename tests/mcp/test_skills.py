@@ -57,7 +57,7 @@ async def test_list_names_every_file_with_its_digest(empty: Path) -> None:
                 )
                 assert len(data) == item["size"]
                 assert item["digest"] == f"sha256:{hashlib.sha256(data).hexdigest()}"
-                assert isinstance(content, BlobResourceContents) == item["uri"].endswith(".png")
+                assert isinstance(content, BlobResourceContents) == item["uri"].endswith((".png", ".jpg"))
 
 
 async def test_resources_tell_what_skills_are_for(empty: Path) -> None:

@@ -44,7 +44,8 @@ def test_a_report_reads_like_a_compiler() -> None:
         "crossing.yaml:5:22  error unknown-behavior  robot[0].behavior.name\n"
         "   5 |     behavior: {name: rov}\n"
         "     |                      ^^^ 'rov' is not a behavior\n"
-        "  allowed: avocado, dash, follow, footprint_orca, orca, rvo, sfm. Did you mean 'rvo'?   fix: name: rvo\n"
+        "  allowed: avocado, dash, follow, footprint_orca, orca, replay, rvo, sfm. Did you mean 'rvo'?   "
+        "fix: name: rvo\n"
         "1 error"
     )
 

@@ -9,7 +9,6 @@ from typing import Any, Literal
 from pydantic import BaseModel
 
 from irsim.components.behaviors._options import behavior_fields
-from irsim.components.behaviors.replay import Replay
 from irsim.components.kinematics._options import KinematicsOptions
 from irsim.components.maps._grid import MapCells, MapGrid, Walls
 from irsim.diagnostics.diagnostic import Path
@@ -256,7 +255,7 @@ class _Maker:
     def _follow_recording(self, value: dict[str, Any]) -> float | None:
         """Fill in what follows from a recording that the object replays; the time of its end, if it vanishes then."""
         options = value["behavior"]
-        if not isinstance(options, Replay) or not options.times:
+        if getattr(options, "name", None) != "replay" or not options.times:
             return None
         limits = options.limits(self.world.step_time)
         if value["kinematics"] is not None and value["kinematics"].speeds == 2:
