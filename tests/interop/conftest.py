@@ -27,3 +27,8 @@ def pytest_make_collect_report(collector: pytest.Collector) -> Iterator[None]:
     if REQUIRED and report.skipped:  # a whole file, whose library is missing
         report.outcome = "failed"
         report.longrepr = f"skipped, although its peer is required: {report.longrepr}"
+
+
+@pytest.fixture(autouse=True)
+def _can_be_interrupted(interruptible: None) -> None:
+    """Robots and servers of others are stopped with Ctrl-C, in the background as well."""
