@@ -58,7 +58,8 @@ struct State {
   Array<Vec3> acce;                // limits of their changes [per s]
   Array<double> pace;              // factor on the speeds of the object in this scene
   Array<std::int64_t> start_step;  // steps that the object stands still at its start
-  Array<std::int64_t> appeared;    // step in which the object came into the world; -1 before, -2 minus that step afterwards
+  Array<std::int64_t>
+      appeared;  // step in which the object came into the world; -1 before, -2 minus that step afterwards
   // what varies between scenes, see world/variation.hpp
   Array<std::uint8_t> takes_part;  // 0: the object is absent in this scene
   Array<double> size_scale, speed_scale, acceleration_scale, noise_scale;
