@@ -268,7 +268,7 @@ class _Maker:
         if not options.vanish or self.role == "robot":
             return None
         value["appear_time"] = value["appear_time"] or options.times[0]
-        return options.times[-1]
+        return float(options.times[-1])
 
     def _tau(self, kinematics: KinematicsOptions | None) -> float:
         if kinematics is None:
