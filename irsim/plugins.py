@@ -11,7 +11,11 @@ where they are when the rest of irsim is rearranged.
 
 from __future__ import annotations
 
+from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
+from irsim.bridges.scene import SceneDescription
+from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.components.behaviors._options import BehaviorOptions
+from irsim.components.bridges._options import BridgeOptions
 from irsim.components.distributions._options import DistributionOptions
 from irsim.components.kinematics._handler import KinematicsHandler, register_kinematics
 from irsim.components.kinematics._options import KinematicsOptions
@@ -26,7 +30,7 @@ from irsim.objects.handlers.registration import (
     register_group_behavior_class,
 )
 from irsim.options.base import Options
-from irsim.options.registry import BEHAVIORS, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES
+from irsim.options.registry import BEHAVIORS, BRIDGES, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES
 from irsim.options.units import (
     Bool,
     Count,
@@ -51,6 +55,7 @@ from irsim.policies import Episode, Map, Needs, Neighbors, Observations, Policy,
 
 __all__ = [
     "BEHAVIORS",
+    "BRIDGES",
     "DISTRIBUTIONS",
     "KINEMATICS",
     "MAPS",
@@ -59,10 +64,15 @@ __all__ = [
     "SHAPES",
     "BehaviorOptions",
     "Bool",
+    "Bridge",
+    "BridgeError",
+    "BridgeLostError",
+    "BridgeOptions",
     "Count",
     "Degrees",
     "DistributionOptions",
     "Episode",
+    "Feedback",
     "Fraction",
     "Hertz",
     "Integer",
@@ -74,6 +84,7 @@ __all__ = [
     "Meters",
     "MetersPerSecond",
     "MetersPerSecondSquared",
+    "Motion",
     "Needs",
     "Neighbors",
     "Number",
@@ -88,9 +99,11 @@ __all__ = [
     "Radians",
     "RadiansPerSecond",
     "Scan",
+    "SceneDescription",
     "Seconds",
     "SensorOptions",
     "ShapeOptions",
+    "WorldState",
     "register_behavior",
     "register_behavior_class",
     "register_group_behavior",
