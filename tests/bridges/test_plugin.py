@@ -11,7 +11,10 @@ from pydantic import Field
 import irsim
 from irsim.plugins import BRIDGES, Bridge, BridgeOptions, Feedback, Meters, SceneDescription, WorldState
 
-SCENE = "world: {width: 9, height: 9}\nrobot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [8, 1], behavior: {name: dash}}\n"
+SCENE = """
+world: {width: 9, height: 9}
+robot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [8, 1], behavior: {name: dash}}
+"""
 
 
 class Leash(BridgeOptions):
