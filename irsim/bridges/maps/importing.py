@@ -209,7 +209,5 @@ def _smaller_part(found: Occupancy) -> list[str]:
     if not found.kept:
         return []
     area, largest = found.regions[found.kept], found.regions[0]
-    return [
-        f"only what is connected to the seed point is free, {area:.1f} m²; the largest part has {largest:.1f} m² and "
-        "is taken without --seed-point: tops and insides of furniture are parts, too"
-    ]
+    what = f"only what is connected to the seed point is free, {area:.1f} m²; the largest part has {largest:.1f} m²"
+    return [f"{what} and is taken without --seed-point: tops and insides of furniture are parts, too"]
