@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from irsim.bridges.base import BridgeError
 from irsim.common.arguments import as_given
+from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.options.registry import BRIDGES
 from irsim.options.selection import Select
@@ -53,8 +54,16 @@ def read_bridge(given: str | Mapping[str, Any]) -> Any:
     try:
         return Select(BRIDGES).validate(dict(data))
     except ValidationError as error:
-        found = [f"{'.'.join(str(part) for part in item['loc'])}: {item['msg']}" for item in error.errors()]
-        raise _wrong("; ".join(found).removeprefix(": "), f"irsim describe bridge.{name} lists the keys") from None
+        found = "; ".join(_problem(item["type"], item["loc"], item["msg"]) for item in error.errors())
+        raise _wrong(found, f"irsim describe bridge.{name} lists the keys") from None
+
+
+def _problem(kind: str, place: Sequence[int | str], text: str) -> str:
+    """One problem of the options, in a few words."""
+    where = ".".join(map(str, place))
+    if kind == "extra_forbidden":
+        return f"there is no key {clean(where)!r}"
+    return f"{where}: {text}" if where else text
 
 
 def check_files(options: Sequence[Any], root: Path) -> None:

@@ -182,9 +182,9 @@ def _show(result: MapImportResult, out: Path | None, robot: bool) -> None:
         taken = "  <- this one" if one.level == result.level else ""
         line(f"level {one.level}: floor at {one.height:.2f} m, {one.area:.1f} m² connected{kind}", (taken, "bold"))
     free = f"free: {result.free_area:.1f} m²"
-    if len(result.components) > 1:
-        others = ", ".join(f"{area:.1f}" for area in result.components[1:6])
-        free += f"; other parts of this level [m²]: {others}"
+    others = [area for k, area in enumerate(result.components) if k != (result.kept or 0)]
+    if others:
+        free += f"; other parts of this level [m²]: {', '.join(f'{area:.1f}' for area in others[:5])}"
     line(free)
     if result.unknown:
         line(f"unknown: {result.unknown:,} cells, which count as {result.unknown_as}")

@@ -183,7 +183,8 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
         return folder
     recent = recent_ids(runs)
     fix = f"recent ones are {', '.join(recent)}" if recent else "there are no runs here"
-    raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"{fix}; {_EXPIRY}")
+    how = "; `irsim run FILE --record` records one" if not recent and workspace is None else ""
+    raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"{fix}; {_EXPIRY}{how}")
 
 
 def mark_used(folder: str | Path) -> None:

@@ -21,6 +21,13 @@ def test_doctor_of_one_that_does_not_exist(irsim: Run) -> None:
     assert "json_lines" in done.stdout
 
 
+def test_a_key_that_there_is_none_of(irsim: Run, room: Path) -> None:
+    done = irsim("run", str(room), "--bridge", "{name: rosbridge, address: x, mode: reel}")
+    assert done.exit_code == 2
+    assert "there is no key 'address'" in done.stderr
+    assert "mode: Input should be 'sim' or 'real'" in done.stderr
+
+
 def test_a_program_that_is_not_there(irsim: Run, room: Path) -> None:
     done = irsim("run", str(room), "--bridge", "{name: json_lines, address: '127.0.0.1:1'}")
     assert done.exit_code == 1

@@ -20,7 +20,7 @@ def spans(name: str) -> list[str]:
 @each
 def test_paths_exist(name: str) -> None:
     paths = [span for span in spans(name) if re.fullmatch(rf"{TOP}/[\w./-]+", span)]
-    written = [path for path in paths if not re.search(r"(^|[/_])x(\.\w+)?$", path)]  # x is a file of the reader
+    written = [path for path in paths if not re.search(r"(^|[/_])x([./]|$)", path)]  # x is made by the reader
     folders = (ROOT, (ROOT / name).parent)
     assert [path for path in written if not any((folder / path).exists() for folder in folders)] == []
 

@@ -172,7 +172,11 @@ def test_formats_are_found_by_module_and_suffix() -> None:
     assert {"parquet", "csv", "npz", "mcap", "minari"} <= set(format_names())
     for name, out, message in (
         ("parqet", None, "unknown-format: 'parqet' is not a format of runs. Fix: did you mean parquet"),
-        (None, Path("x.txt"), "unknown-format: the suffix of 'x.txt' does not select a format"),
+        (
+            None,
+            Path("x.txt"),
+            "unknown-format: the suffix of 'x.txt' does not select a format. Fix: end it with one of .csv",
+        ),
         (None, Path("x.xml"), "files of commonroad and mjcf end with .xml. Fix: name the file x.commonroad.xml, or"),
         (None, None, "no format was given"),
     ):

@@ -271,7 +271,7 @@ def test_what_only_leads_to_a_run_is_none(room: Path) -> None:
     path.rename(room.parent / "elsewhere.json")
     path.symlink_to(room.parent / "elsewhere.json")
     assert list_runs() == []
-    with pytest.raises(RunError, match="there are no runs here"):
+    with pytest.raises(RunError, match=r"there are no runs here.*`irsim run FILE --record`"):
         open_run(run_id)
 
 

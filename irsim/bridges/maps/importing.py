@@ -200,5 +200,14 @@ def _result(
         components=[round(area, 4) for area in found.regions[:_MAX_COMPONENTS]],
         kept=found.kept,
         trip=None if trip is None else MapTrip(start=trip.start, goal=trip.goal, clearance=trip.clearance),
-        notes=found.notes,
+        notes=[*found.notes, *_smaller_part(found)],
     )
+
+
+def _smaller_part(found: Occupancy) -> list[str]:
+    """A note if the part that is free is not the largest one, as the top of a table at the seed point."""
+    if not found.kept:
+        return []
+    area, largest = found.regions[found.kept], found.regions[0]
+    what = f"only what is connected to the seed point is free, {area:.1f} m²; the largest part has {largest:.1f} m²"
+    return [f"{what} and is taken without --seed-point: tops and insides of furniture are parts, too"]

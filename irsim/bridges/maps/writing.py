@@ -88,6 +88,7 @@ def _robot(trip: Trip) -> list[str]:
         f"    state: {pose}",
         f"    goal: {goal}",
         "    behavior: {name: follow}",
+        "    plot: {show_goal: true, show_trajectory: true}",
     ]
 
 
@@ -112,8 +113,11 @@ def write_all_or_none(contents: list[tuple[Path, bytes]], *, overwrite: bool) ->
     """Write files; if one cannot be written, those that are new are deleted.
 
     Raises:
-        TargetError: Two are the same file, or one exists and ``overwrite`` is not set.
+        TargetError: Two are the same file, a folder is missing, or one exists and ``overwrite`` is not set.
     """
+    for path, _ in contents:
+        if not path.parent.is_dir():
+            raise TargetError("file-access", f"there is no folder {path.parent}", "make it first, or name another file")
     if len({path.absolute() for path, _ in contents}) < len(contents):
         raise TargetError("bad-argument", "two of the files would have the same name", "give the map another name")
     if not overwrite:

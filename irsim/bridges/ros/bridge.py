@@ -65,7 +65,7 @@ class RosBridge(Bridge):
         options = self.options
         for keys in (options.topics, options.qos):
             if wrong := check_keys(list(keys)):
-                raise BridgeError("bridge-mismatch", wrong, "topics: {cmd_vel: /cmd_vel}")
+                raise BridgeError("bridge-mismatch", wrong, f"irsim describe bridge.{self.name} has an example")
         robots = _chosen(scene, options.robots)
         messages = make_messages(options)
         self.topics = self._topics(scene, robots)
@@ -123,6 +123,10 @@ class RosBridge(Bridge):
             found += self._real.notes()
             if self.options.dry_run:
                 found.append(f"{self.name}: dry run: no robot was commanded; dry_run: false sends commands")
+        elif isinstance(self.options, RosOptions):
+            given = [key for key in ("dry_run", "odom_origin", "max_speed") if key in self.options.model_fields_set]
+            if given:
+                found.append(f"{self.name}: {', '.join(given)} had no effect: no robot is real without mode: real")
         return found
 
     def close(self) -> None:

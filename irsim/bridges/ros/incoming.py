@@ -80,7 +80,7 @@ def read_twist(message: Any) -> tuple[float, float, float]:
     """
     twist = getattr(message, "twist", message)
     linear, angular = _field(twist, "linear"), _field(twist, "angular")
-    values = (_field(linear, "x"), _field(linear, "y"), _field(angular, "z"))
+    values = (_field(linear, "x", "linear."), _field(linear, "y", "linear."), _field(angular, "z", "angular."))
     return _numbers(values, MAX_SPEED, "the velocity")
 
 
@@ -164,11 +164,11 @@ def _pose(pose: Any) -> tuple[float, float, float]:
     return x, y, math.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
 
 
-def _field(message: Any, name: str) -> Any:
+def _field(message: Any, name: str, of: str = "") -> Any:
     try:
         return getattr(message, name)
     except AttributeError:
-        raise MessageError(f"the field {name} is missing") from None
+        raise MessageError(f"the field {of}{name} is missing") from None
 
 
 def _numbers(values: Sequence[Any], limit: float, what: str) -> tuple[float, float, float]:

@@ -152,7 +152,7 @@ def check_keys(keys: Sequence[str]) -> str | None:
     """What is wrong with keys of topics in options; None if nothing is."""
     for key in keys:
         if key not in TABLE:
-            return f"{key!r} is no topic of the table; {suggestion(key, TABLE, ', '.join(TABLE))}"
+            return f"{key!r} is no topic of the table; " + suggestion(key, TABLE, f"they are {', '.join(TABLE)}")
     return None
 
 

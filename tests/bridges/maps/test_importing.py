@@ -69,6 +69,8 @@ def test_a_seed_point_of_a_map_of_ros(scene, tmp_path) -> None:
     file = tmp_path / "rooms.navmesh"
     file.write_bytes(mesh_set(tile(((0, 0, 3, 3, 0), (4, 0, 6, 3, 0)))))
     import_map(file, tmp_path / "a.yaml", ros_map=tmp_path / "map.yaml", seed_point=(1.0, 1.0))
+    small = import_map(file, tmp_path / "small.yaml", seed_point=(5.0, 1.0))
+    assert "6.0 m²; the largest part has 9.0 m²" in small.notes[-1]
     one = import_map(tmp_path / "map.yaml", tmp_path / "b.yaml", unknown="occupied")
     assert one.free_area == pytest.approx(9, rel=0.02)
     with pytest.raises(BridgeError, match="not free") as caught:
@@ -216,6 +218,14 @@ def test_archives_that_would_grow_are_refused(tmp_path, monkeypatch) -> None:
         import_map(file, tmp_path / "x.yaml")
 
 
+def test_the_command_lists_the_parts_that_are_not_free(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("rooms.navmesh").write_bytes(mesh_set(tile(((0, 0, 3, 3, 0), (4, 0, 6, 3, 0)))))
+    assert "free: 9.0 m²; other parts of this level [m²]: 6.0\n" in call("rooms.navmesh", "-o", "a.yaml").output
+    small = call("rooms.navmesh", "-o", "b.yaml", "--seed-point", "5,1")
+    assert "free: 6.0 m²; other parts of this level [m²]: 9.0\n" in small.output
+
+
 def call(*words: str):
     return CliRunner().invoke(app, ["map", "import", *words])
 
@@ -249,6 +259,8 @@ def test_the_command(scene, tmp_path, monkeypatch) -> None:
         assert wrong.exit_code == 2, wrong.output
         assert said in wrong.output
     assert not Path("c.yaml").exists()
+    lost = call("flat.navmesh", "-o", "none/b.yaml")
+    assert (lost.exit_code, "there is no folder none" in lost.output) == (1, True)
 
 
 def test_the_map_is_where_the_scene_is(scene, tmp_path) -> None:

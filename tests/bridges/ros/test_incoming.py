@@ -61,6 +61,7 @@ def test_values_are_read() -> None:
         (lambda: read_twist(twist(True)), "no number"),
         (lambda: read_twist(twist(1e30)), "greater than"),
         (lambda: read_twist(N(linear=3)), "angular is missing"),
+        (lambda: read_twist(N(linear=N(x=0, y=0), angular="fast")), "field angular.z is missing"),
         (lambda: read_goal(pose(1.0, frame="odom"), "map"), "frame 'odom', not in the fixed frame 'map'"),
         (lambda: read_goal(pose(math.nan), "map"), "the position is nan"),
         (lambda: read_goal(pose(1.0, scale=0.5), "map"), "no unit quaternion"),

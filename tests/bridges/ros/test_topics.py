@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from irsim.bridges.base import BridgeError
+from irsim.bridges.options import read_bridge
+from irsim.bridges.ros.bridge import RosBridge
 from irsim.bridges.ros.qos import Qos
 from irsim.bridges.ros.topics import TABLE, check_keys, scene_topics
 from irsim.bridges.scene import Agent, Lidar, SceneDescription
@@ -61,5 +63,13 @@ def test_names_that_cannot_be_are_refused(name: str, words: str) -> None:
 
 
 def test_unknown_keys_are_told_with_the_right_one() -> None:
-    assert "cmd_vel" in str(check_keys(["cmd_val"]))
+    assert str(check_keys(["cmd_val"])).endswith("did you mean cmd_vel?")
+    assert "they are clock, tf, " in str(check_keys(["xyz"]))
     assert check_keys(["scan"]) is None
+
+
+def test_what_has_no_effect_on_simulated_robots_is_said() -> None:
+    given = read_bridge("{name: ros2, dry_run: false, max_speed: 1}")
+    assert RosBridge(given).notes() == ["ros2: dry_run, max_speed had no effect: no robot is real without mode: real"]
+    assert RosBridge(read_bridge("ros2")).notes() == []
+    assert RosBridge(read_bridge("{name: ros2, mode: real}")).notes() == []

@@ -55,9 +55,10 @@ class RosbridgeBackend(Backend):
         except roslibpy.core.RosTimeoutError:
             self._end()
             what = f"no rosbridge server answers at {self._address} within {timeout:g} s"
-            raise BridgeLostError(
-                what, "start it: ros2 launch rosbridge_server rosbridge_websocket_launch.xml"
-            ) from None
+            start = "ros2 launch rosbridge_server rosbridge_websocket_launch.xml"
+            if ros == 1:
+                start = "roslaunch rosbridge_server rosbridge_websocket.launch"
+            raise BridgeLostError(what, f"start it on the robot: {start}; or name another host and port") from None
         for topic in self.topics:
             kind = topic.kind if ros == 2 else topic.kind.replace("/msg/", "/")
             channel = roslibpy.Topic(
