@@ -27,7 +27,7 @@ from irsim.benchmarks import episode
 def fragile(scenario, env, *rest, plain=episode.horizon_of):
     mark = Path({folder!r}, f"{{scenario.objects[0].behavior.name}}-{{env.seed}}")
     if os.getpid() == {mine}:
-        time.sleep(0.25)  # leaves the work to the others
+        time.sleep(1.0)  # leaves the work to the others
     elif env.seed in {seeds} and ({always} or not mark.exists()):
         with mark.open("a") as file:
             file.write("x")

@@ -40,11 +40,12 @@ def test_the_table_compares_with_another_interpreter(capsys: pytest.CaptureFixtu
 @pytest.mark.parametrize("name", CASES)
 def test_the_table_of_learning_times_each_task(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("gymnasium")
-    assert learning([name, "--threads", "1", "--seconds", "0.01"]) == 0
-    *_, row = capsys.readouterr().out.splitlines()
-    cells = [cell.strip() for cell in row.strip("|").split("|")]
-    assert cells[:3] == [name, f"{CASES[name].slots:,}", "1"]
-    assert int(cells[3].replace(",", "")) > 0
+    assert learning([name, "--ways", "1/1", "1/2", "--repeats", "1", "--seconds", "0.01"]) == 0
+    *_, one, two = capsys.readouterr().out.splitlines()
+    for row, workers in ((one, "1"), (two, "2")):
+        cells = [cell.strip() for cell in row.strip("|").split("|")]
+        assert cells[:4] == [name, f"{CASES[name].slots:,}", "1", workers]
+        assert int(cells[4].replace(",", "")) > 0
 
 
 @pytest.mark.slow
