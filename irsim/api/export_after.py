@@ -8,8 +8,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from irsim.bridges.export.export import export_run
-from irsim.bridges.export.registry import find_format
 from irsim.common.extras import require
 
 __all__ = ["check_exports", "export_all", "kept_or_temporary"]
@@ -22,10 +20,14 @@ def check_exports(files: Sequence[str | Path]) -> list[Path]:
         RunError: A suffix selects no format.
         ExtraError: A library is missing.
     """
+    if not files:
+        return []  # as for most runs, which load no formats
+    from irsim.bridges.export.registry import find_format
+
     targets = [Path(file) for file in files]
     for target in targets:
         form = find_format(None, target)
-        require(getattr(form, "extra", "records"), *form.libraries)
+        require(form.extra, *form.libraries)
     return targets
 
 
@@ -44,5 +46,7 @@ def kept_or_temporary(record: bool | str | Path, exports: Sequence[Path]) -> Ite
 
 def export_all(run: Path, targets: Sequence[Path]) -> tuple[list[str], list[str]]:
     """Write the files; return their paths, and notes on what they leave out."""
+    from irsim.bridges.export.export import export_run
+
     written = [export_run(run, target) for target in targets]
     return [one.file for one in written], [note for one in written for note in one.notes]

@@ -38,7 +38,6 @@ from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
-from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.random_streams import fresh_seed
 from irsim.validation.scene_table import scene_table
 from irsim.validation.validate import diff, fix, validate
@@ -140,7 +139,8 @@ def run(
         (fresh_seed() for _ in range(MAX_TRIES)) if chosen is None else [chosen],
     )
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
-    connected = _bridges(scenario, bridges, limits)
+    others = read_bridges(bridges)
+    connected = _bridges([*scenario.bridges, *others], limits)
     options = {
         "strict": strict,
         "imports": list(imports),
@@ -178,7 +178,7 @@ def run(
             behavior=behavior_text,
             policy=driver,
             perturb=perturb_texts,
-            bridges=[bridge_text(one) for one in read_bridges(bridges)],
+            bridges=[bridge_text(one) for one in others],
             lost=lost,
         )
         if lost is not None:
@@ -198,13 +198,12 @@ def run(
     return result
 
 
-def _bridges(scenario: ResolvedScenario, more: Sequence[Any], limits: Limits | None) -> list[Bridge]:
-    """The bridges of a scenario and further ones, not opened yet.
+def _bridges(options: Sequence[Any], limits: Limits | None) -> list[Bridge]:
+    """The bridges of some options, not opened yet.
 
     Raises:
-        BridgeError: They may not be opened here, or a further one is not valid.
+        BridgeError: They may not be opened here.
     """
-    options = [*scenario.bridges, *read_bridges(more)]
     if options and not (limits or DEFAULT_LIMITS).bridges:
         what = f"the scenario has bridges ({', '.join(str(one.name) for one in options)}), which are not opened here"
         raise BridgeError(
