@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.bridges.scene import Circle, Grid, Line, Polygon
+from irsim.bridges.solids.cells import merged_cells
 from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
@@ -94,12 +95,10 @@ def line_solid(line: Line, height: float, thickness: float = WALL_THICKNESS) -> 
 
 def grid_solid(grid: Grid, height: float) -> Solid | None:
     """Boxes over the solid cells of a map, as few as runs along x that repeat along y allow; None without any."""
-    found = _rectangles(grid.occupied)
+    found = merged_cells(grid)
     if not len(found):
         return None
-    (cell_x, cell_y), (x, y) = grid.cell, grid.origin
-    x0, x1 = x + found[:, 0] * cell_x, x + found[:, 1] * cell_x
-    y0, y1 = y + found[:, 2] * cell_y, y + found[:, 3] * cell_y
+    x0, y0, x1, y1 = found.T
     corners = [np.stack(pair, axis=1) for pair in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
     return _boxes(np.stack(corners, axis=1), height)
 
@@ -116,26 +115,6 @@ def arrow(radius: float, low: float, high: float) -> Solid:
     found = polygon_solid(Polygon(corners), high - low)
     assert found is not None
     return replace(found, points=found.points + np.array([0.0, 0.0, low]))
-
-
-def _rectangles(occupied: NDArray[np.bool_]) -> Ints:
-    """(R, 4) ranges x0, x1, y0, y1 of cells that cover the occupied ones without overlaps."""
-    columns, rows = occupied.shape
-    padded = np.zeros((columns + 2, rows), dtype=np.int8)
-    padded[1:-1] = occupied
-    change = np.diff(padded, axis=0).T
-    row, begin = np.nonzero(change > 0)
-    end = np.nonzero(change < 0)[1]
-    first = np.searchsorted(row, np.arange(rows + 1))
-    runs = np.stack([begin, end], axis=1).tolist()
-    done: list[tuple[int, int, int, int]] = []
-    growing: dict[tuple[int, int], int] = {}
-    for y in range(rows + 1):
-        here = [(x0, x1) for x0, x1 in runs[first[y] : first[y + 1]]] if y < rows else []
-        grown = {run: growing.pop(run, y) for run in here}
-        done += [(*run, since, y) for run, since in growing.items()]
-        growing = grown
-    return np.array(done, dtype=np.int64).reshape(-1, 4)
 
 
 def _boxes(quads: Floats, height: float) -> Solid:
