@@ -1,4 +1,4 @@
-"""What actors are told in a step: walkers walk to where the scenario has them, vehicles get speed and steering."""
+"""Commands to actors in a step: walkers walk to their places in the scenario, vehicles get speed and steering."""
 
 from __future__ import annotations
 
