@@ -110,7 +110,7 @@ def _robots_with_lidars(scene: SceneDescription, options: Carla, present: Iterab
         chosen = set(options.lidar.robots)
         for name in sorted(chosen - known):
             fix = suggestion(name, sorted(known), f"those with lidars are {', '.join(sorted(known)) or 'none'}")
-            what = f"{clean(name)!r} is not an object in the town with a lidar"
+            what = f"{clean(name)!r} is no object in the town with a lidar"
             raise BridgeError("bridge-mismatch", what, fix)
     if not chosen:
         fix = "give a robot a sensor lidar2d, or leave out the key lidar"
