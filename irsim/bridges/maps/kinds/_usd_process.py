@@ -42,6 +42,7 @@ def main() -> None:
     except Exception as error:  # whatever the library stumbles over is the file's fault
         answer = {"error": f"it is damaged ({type(error).__name__}: {str(error).strip().splitlines()[-1][:150]})"}
     print("\n" + json.dumps(answer), flush=True)
+    os._exit(0)  # what the library does at its end can fail, and nothing is left to do
 
 
 def _read(path: Path, out: Path, most: int) -> dict[str, Any]:

@@ -25,6 +25,13 @@ __all__ = ["KIND"]
 
 _MAX_FILES = 10_000
 """Files in a ``.usdz``."""
+_ONE_THREAD = {
+    "PXR_WORK_THREAD_LIMIT": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+    "MALLOC_ARENA_MAX": "2",
+}
+"""Environment of the process: each thread reserves address space, of which the process may have a limited amount."""
 
 
 def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
@@ -48,6 +55,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
                 timeout=limits.seconds,
                 check=False,
                 cwd=folder,  # from which Python would import modules
+                env=os.environ | _ONE_THREAD,
             )
         except subprocess.TimeoutExpired:
             what = f"reading it took longer than {limits.seconds:g} s"
@@ -56,7 +64,9 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
         if "error" in answer:
             raise unusable(path, answer["error"], answer.get("fix"))
         if done.returncode != 0 or not out.is_file():
-            raise unusable(path, f"the library for USD failed on it (exit code {done.returncode})")
+            lines = [line.strip() for line in done.stderr.splitlines() if line.strip() and not line.startswith("#")]
+            said = f"; {lines[-1][:200]}" if lines else ""
+            raise unusable(path, f"the library for USD failed on it (exit code {done.returncode}{said})")
         with np.load(out, allow_pickle=False) as stored:
             triangles = stored["triangles"]
     scale, frame = float(answer["meters_per_unit"]), answer["frame"]
