@@ -188,7 +188,7 @@ std::size_t numbers_of(const std::monostate&) { return 0; }
 
 void observe_rows(World& world, BoundState& bound, const Looking& looking, const std::vector<PartAtColumn>& parts,
                   const RowNumbers& rows, const Output& out, int threads) {
-  const State& state = bound.of(world);
+  State& state = bound.of(world);
   const Claim claim(bound);
   expect_fit(out.shape(0) == rows.shape(0), "there must be one row of numbers for each row");
   check_looking(world, looking);
@@ -202,7 +202,7 @@ void observe_rows(World& world, BoundState& bound, const Looking& looking, const
   check_each(state, rows);
   nb::gil_scoped_release free;
   const Observer observer(world, state, looking);
-  in_parts(rows.shape(0), threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
+  in_parts(state.crew, rows.shape(0), threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
     Near near;
     std::vector<double> numbers(most);
     std::vector<std::uint8_t> mask(most_members);
@@ -226,7 +226,7 @@ void observe_rows(World& world, BoundState& bound, const Looking& looking, const
 
 nb::object gaps_of(World& world, BoundState& bound, const RowNumbers& rows, const Mask& codes, double reach,
                    int threads) {
-  const State& state = bound.of(world);
+  State& state = bound.of(world);
   check_each(state, rows);
   expect_fit(codes.shape(0) == static_cast<std::size_t>(world.objects), kObject);
   std::vector<ObjectKind> kinds;
@@ -237,7 +237,7 @@ nb::object gaps_of(World& world, BoundState& bound, const RowNumbers& rows, cons
   {
     const Claim claim(bound);
     nb::gil_scoped_release free;
-    in_parts(count, threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
+    in_parts(state.crew, count, threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
       for (std::size_t b = first; b < last; ++b)
         gaps(world, state, static_cast<int>(rows.data()[b]), kinds, reach, out.data() + b * each);
     });

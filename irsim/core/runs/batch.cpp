@@ -2,8 +2,6 @@
 
 #include <atomic>
 #include <exception>
-#include <system_error>
-#include <thread>
 
 #include "runs/fetch_ahead.hpp"
 
@@ -47,7 +45,7 @@ long long run_worlds(const World& world, State& state, const Schedule& schedule,
     if (schedule.steps == 1) fetch_ahead(state, w, last);
     return run_world(world, state, w, work, schedule, recording, scans);
   };
-  const int threads = std::max(1, std::min(schedule.threads, state.worlds));
+  const int threads = state.crew.hire(std::min(schedule.threads, state.worlds));
   while (static_cast<int>(state.workspaces.size()) < threads) state.workspaces.emplace_back();
   if (threads == 1) {
     long long most = 0;
@@ -62,7 +60,7 @@ long long run_worlds(const World& world, State& state, const Schedule& schedule,
   std::vector<long long> most(threads, 0);
   std::vector<std::exception_ptr> errors(threads);
   const int share = std::max(1, state.worlds / (8 * threads));
-  const auto worker = [&](int t) {
+  state.crew.run(threads, [&](int t) {
     try {
       for (int k = 0; k < threads; ++k) {
         const int part = (t + k) % threads, end = begin_of(part + 1);
@@ -74,15 +72,7 @@ long long run_worlds(const World& world, State& state, const Schedule& schedule,
     } catch (...) {
       errors[t] = std::current_exception();
     }
-  };
-  std::vector<std::thread> helpers;
-  try {
-    for (int t = 1; t < threads; ++t) helpers.emplace_back(worker, t);
-  } catch (const std::system_error&) {
-    // The system gives no more threads; those that were started do the work.
-  }
-  worker(0);
-  for (std::thread& helper : helpers) helper.join();
+  });
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }
