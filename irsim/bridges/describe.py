@@ -61,7 +61,7 @@ def world_state(simulation: Simulation, rows: NDArray[np.int64]) -> WorldState:
     state = simulation.state
     measured = np.where(simulation.valid.astype(bool), simulation.ranges, np.inf).astype(np.float32)
     records = simulation.scenario.objects
-    routes = {records[row].name: state.route(int(row)) for row in rows.tolist() if records[row].role == "robot"}
+    paths = {records[row].name: _path(simulation, row) for row in rows.tolist() if records[row].role == "robot"}
     return WorldState(
         step=int(simulation.count[0]),
         time=simulation.time,
@@ -73,8 +73,20 @@ def world_state(simulation: Simulation, rows: NDArray[np.int64]) -> WorldState:
         collided=simulation.collided[rows].astype(bool),
         stopped=simulation.stopped[rows].astype(bool),
         ranges={key: measured[beams] for key, beams in sensors(simulation)},
-        paths={name: route for name, route in routes.items() if route is not None},
+        paths={name: path for name, path in paths.items() if path is not None},
     )
+
+
+def _path(simulation: Simulation, row: int) -> Floats | None:
+    """(K, 2) the planned path of a robot; of one whose behavior plans none, from where it is through its goals."""
+    state, behavior = simulation.state, simulation.scenario.objects[row].active_behavior
+    route = state.route(row)
+    if route is not None:
+        return route
+    if hasattr(behavior, "planner") or getattr(behavior, "name", None) == "replay":
+        return None
+    points = np.array([simulation.pose[row, :2].tolist(), *(goal[:2] for goal in state.goals(row))])
+    return points if len(points) > 1 and np.isfinite(points).all() else None
 
 
 def _agent(simulation: Simulation, index: int, row: int) -> Agent:

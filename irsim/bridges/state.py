@@ -26,7 +26,8 @@ class WorldState:
         goal: (N, 3) present goal; NaN without one.
         arrived, collided, stopped: (N,) flags.
         ranges: Key of a lidar -> (beams,) ranges [m], infinite for a beam that hit nothing.
-        paths: Name of a robot -> (K, 2 or 3) the path that it follows, world frame; only of robots that have one.
+        paths: Name of a robot -> (K, 2 or 3) the path that it follows, world frame: the one that it has planned, or, if
+            its behavior plans none, from where it is through its goals. Only of robots that have one.
     """
 
     step: int

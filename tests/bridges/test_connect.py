@@ -101,6 +101,30 @@ def test_the_scene_has_all_that_a_simulator_needs() -> None:
     assert bridge.start.ranges["robot_0/0"].shape == (5,)
 
 
+@pytest.mark.parametrize(
+    ("behavior", "points"),
+    [
+        ("dash", [[1, 5], [5, 8], [9, 5]]),
+        ("orca", [[1, 5], [5, 8], [9, 5]]),
+        ("follow", None),
+        (None, [[1, 5], [9, 5]]),
+    ],
+)
+def test_every_robot_has_a_path_to_its_goals(behavior: str | None, points: list[Any] | None) -> None:
+    from irsim.api import read_scenario
+
+    way = "goal: [9, 5]" if behavior is None else f"waypoints: [[5, 8], [9, 5]], behavior: {{name: {behavior}}}"
+    text = f"robot:\n  - {{kinematics: {{name: diff}}, state: [1, 5, 0], {way}}}\n"
+    env = irsim.Env(read_scenario(text=text, strict=True)[0], headless=True, log_level="ERROR")
+    bridge = Recording()
+    with connect(env, [bridge]):
+        assert (bridge.start.paths["robot_0"].tolist() if bridge.start.paths else None) == points
+        env.step()
+        after = bridge.states[-1].paths["robot_0"]
+    assert after[0] == pytest.approx(bridge.states[-1].pose[0, :2] if points else [1, 5], abs=0.2)
+    assert after[-1].tolist() == [9, 5] if points else len(after) > 1
+
+
 def test_an_object_that_another_program_moves_is_where_that_program_has_it() -> None:
     """The robot stands in the way of nothing in irsim, but the other program moves it into the triangle."""
     bridge = Recording(("robot_0",), exchange=lambda motion: Feedback({"robot_0": (5.0, 5.0 + 0.1 * motion.step, 0.5)}))

@@ -24,7 +24,7 @@ from tests.interop.ros.idl_text import idl_of
 HERE = Path(__file__).parent
 KINDS = [
     "geometry_msgs/msg/Twist", "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseArray",
-    "nav_msgs/msg/Odometry", "nav_msgs/msg/OccupancyGrid", "sensor_msgs/msg/LaserScan", "tf2_msgs/msg/TFMessage",
+    "nav_msgs/msg/Odometry", "nav_msgs/msg/OccupancyGrid", "nav_msgs/msg/Path", "sensor_msgs/msg/LaserScan", "tf2_msgs/msg/TFMessage",
     "visualization_msgs/msg/MarkerArray",
 ]  # fmt: skip
 SCENE = """\

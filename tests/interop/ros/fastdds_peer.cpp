@@ -189,6 +189,7 @@ int main(int count, char** words) {
       "/robot_0/scan", "sensor_msgs::msg::dds_::LaserScan_", false, false);
   node.hear<nav::OccupancyGrid_PubSubType, nav::OccupancyGrid_>("/map", "nav_msgs::msg::dds_::OccupancyGrid_", true,
                                                                true);
+  node.hear<nav::Path_PubSubType, nav::Path_>("/robot_0/reference_path", "nav_msgs::msg::dds_::Path_", true, true);
   node.hear<visualization_msgs::msg::dds_::MarkerArray_PubSubType, visualization_msgs::msg::dds_::MarkerArray_>(
       "/irsim/markers", "visualization_msgs::msg::dds_::MarkerArray_", true, true);
   DataWriter* command = node.writer<geo::Twist_PubSubType>("/robot_0/cmd_vel", twist);

@@ -17,6 +17,7 @@ TOPICS = {
     "/robot_0/odom": "nav_msgs/msg/Odometry",
     "/robot_0/pose": "geometry_msgs/msg/PoseStamped",
     "/robot_0/scan": "sensor_msgs/msg/LaserScan",
+    "/robot_0/reference_path": "nav_msgs/msg/Path",
     "/pedestrians": "geometry_msgs/msg/PoseArray",
     "/tf": "tf2_msgs/msg/TFMessage",
     "/map": "nav_msgs/msg/OccupancyGrid",
@@ -71,6 +72,8 @@ def test_both_ways_and_the_same_bytes(
     messages = Messages()
     last = messages.from_cdr(bytes.fromhex(peer.on("/robot_0/scan")[-1]), TOPICS["/robot_0/scan"])
     assert len(last.ranges) == 90
+    path = messages.from_cdr(bytes.fromhex(peer.on("/robot_0/reference_path")[-1]), TOPICS["/robot_0/reference_path"])
+    assert [path.poses[-1].pose.position.x, path.poses[-1].pose.position.y] == goal  # it leads to the goal of the peer
 
 
 def _trimmed(text: str) -> str:

@@ -36,7 +36,7 @@ def test_all_messages_of_a_scene_have_equal_bytes(make_env: Callable[[str], Any]
         assert theirs[4:].rstrip(b"\0") == ours[4:].rstrip(b"\0"), topic
         seen.add(topic.key)
     out = {key for key, row in TABLE.items() if row.sim == "out"}
-    assert out - seen <= {"reference_path"}  # a robot without a behavior follows no path
+    assert seen == out
 
 
 @pytest.mark.parametrize("distro", ["humble", "jazzy"])
