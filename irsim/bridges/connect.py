@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext, suppress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +27,13 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Connection", "connect", "open_bridges"]
+
+_MAX_NUMBER = 1e7
+"""Greatest number that is believed of what comes from outside [m, rad, m/s, rad/s]."""
+_MAX_DELAY_S = 1.0
+"""Delay from which on steps in real time are not caught up: the world outside has seen none of them."""
+_CONTENTS = {"commands": "forward and leftward speed and yaw rate", "twists": "vx, vy and yaw rate"}
+"""What the three numbers are; x, y and yaw where nothing is written."""
 
 
 def open_bridges(options: Iterable[Any]) -> list[Bridge]:
@@ -99,11 +107,16 @@ class Connection:
         self._open = False
         try:
             start = world_state(simulation, self._rows)
-            for bridge in self.bridges:
+            for number, bridge in enumerate(self.bridges):
+                if not isinstance(bridge, Bridge):
+                    self.bridges = self.bridges[:number]
+                    raise BridgeError("bridge-mismatch", f"{bridge!r} is not a bridge",
+                                      "leave out the bridges to have those of the scenario")  # fmt: skip
                 self._guarded(bridge, bridge.open, self.scene, start)
                 self._claim(bridge)
         except BaseException:
-            self._close_all()
+            with suppress(BridgeError):
+                self._close_all()
             raise
         self._open = bool(self.bridges)
         if self._open:
@@ -114,8 +127,9 @@ class Connection:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *error: object) -> None:
-        self.close()
+    def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
+        with suppress(BridgeError) if kind is not None else nullcontext():
+            self.close()
 
     def notes(self) -> list[str]:
         """What the bridges tell when the run is over."""
@@ -143,7 +157,7 @@ class Connection:
         for bridge in self.bridges:
             feedback = self._guarded(bridge, bridge.pull)
             if feedback is not None:
-                self._take(bridge, feedback, before=True)
+                self._guarded(bridge, self._take, bridge, feedback, True)
 
     def __call__(self, simulation: Simulation) -> None:
         """Bridges decide nothing: commands were imposed before."""
@@ -164,7 +178,7 @@ class Connection:
         for bridge in self.bridges:
             feedback = self._guarded(bridge, bridge.exchange, motion)
             if feedback is not None:
-                self._take(bridge, feedback, before=False)
+                self._guarded(bridge, self._take, bridge, feedback, False)
 
     def measure(self, simulation: Simulation, mask: Any = None) -> None:
         """After the step: put in the scans of others, and show the world."""
@@ -180,7 +194,10 @@ class Connection:
             self._guarded(bridge, bridge.push, state)
 
     # what comes from outside ------------------------------------------------------------------------------------------
-    def _take(self, bridge: Bridge, feedback: Feedback, *, before: bool) -> None:
+    def _take(self, bridge: Bridge, feedback: Feedback, before: bool) -> None:
+        if not isinstance(feedback, Feedback):
+            what = f"{bridge.name} returned {type(feedback).__name__} instead of Feedback"
+            raise BridgeError("bridge-failed", what, "return irsim.bridges.state.Feedback or None")
         for what in ("poses", "twists", "commands", "goals", "starts"):
             self._check(bridge, what, getattr(feedback, what))
         for name, pose in feedback.poses.items():
@@ -206,9 +223,10 @@ class Connection:
             if what in ("poses", "twists") and self._owned.get(name) is not bridge:
                 fix = "name it in the agents of the bridge; for another start send starts"
                 raise BridgeError("bridge-failed", f"{bridge.name} sent {what} of '{name}', which irsim moves", fix)
-            if len(values) != 3 or not np.isfinite(np.asarray(values, dtype=np.float64)).all():
-                message = f"{bridge.name} sent {what} of '{name}' that are not three finite numbers: {list(values)}"
-                raise BridgeError("bridge-failed", message, "send x, y and yaw")
+            if not _are_three_numbers(values):
+                message = f"{bridge.name} sent {what} of '{name}' that are not three finite numbers: {values}"
+                fix = f"send {_CONTENTS.get(what, 'x, y and yaw')}, none beyond {_MAX_NUMBER:g}"
+                raise BridgeError("bridge-failed", message, fix)
 
     def _place(self, name: str, pose: Sequence[float], twist: Sequence[float] | None, *, moved: bool) -> None:
         """Set the pose of an object; one that moved in this step gets the velocity that led there."""
@@ -287,8 +305,10 @@ class Connection:
         ahead = self._wall + due - now
         if ahead > 0:
             time.sleep(ahead)
-        else:
-            self.late = max(self.late, -ahead)
+            return
+        self.late = max(self.late, -ahead)
+        if ahead < -_MAX_DELAY_S:
+            self._wall = now - due
 
     def _guarded(self, bridge: Bridge, call: Any, *arguments: Any) -> Any:
         """Call a bridge; an exception that is not one of irsim's becomes one, and all bridges are closed."""
@@ -309,6 +329,19 @@ class Connection:
             try:
                 bridge.close()
             except Exception as error:
-                errors.append(error)
-        if errors:
-            raise BridgeError("bridge-failed", f"a bridge could not be closed: {errors[0]}", None) from errors[0]
+                errors.append((bridge.name, error))
+        if not errors:
+            return
+        name, first = errors[0]
+        if isinstance(first, CodedError):
+            raise first
+        what = f"{name} could not be closed: {getattr(first, 'strerror', None) or first}"
+        raise BridgeError("bridge-failed", what, "see what it has written so far; some of it is missing") from first
+
+
+def _are_three_numbers(values: object) -> bool:
+    try:
+        numbers = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        return False
+    return numbers.shape == (3,) and bool((np.abs(numbers) <= _MAX_NUMBER).all())

@@ -58,7 +58,6 @@ def world_state(simulation: Simulation, rows: NDArray[np.int64]) -> WorldState:
         simulation: The simulation.
         rows: (N,) what :func:`agent_rows` returns.
     """
-    state = simulation.state
     measured = np.where(simulation.valid.astype(bool), simulation.ranges, np.inf).astype(np.float32)
     records = simulation.scenario.objects
     paths = {records[row].name: _path(simulation, row) for row in rows.tolist() if records[row].role == "robot"}

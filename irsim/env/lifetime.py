@@ -7,6 +7,7 @@ from typing import Any, NoReturn
 from weakref import ref
 
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
+from irsim.diagnostics.errors import CodedError
 from irsim.env.drawing import finish_drawing, redraw
 from irsim.env.loop import log_collisions
 from irsim.env.objects import count_ids, restore_objects
@@ -90,7 +91,13 @@ def reload(env: EnvState, world_name: str | Path | None = None) -> None:
 
     Args:
         world_name: Another file; by default the present one.
+
+    Raises:
+        CodedError: Bridges are open, which know the present scene only.
     """
+    if env._simulation.movers:
+        what = "the scenario cannot be read again while its bridges are open"
+        raise CodedError("bridge-mismatch", what, "leave the with statement of irsim.connect first")
     env._ended = False
     name = env.world_name if world_name is None else world_name
     env._wanted_seed = env._seed

@@ -193,10 +193,13 @@ def test_scans_of_others_replace_those_of_irsim() -> None:
         (Feedback(commands={"robto_0": (0, 0, 0)}), "unknown object"),
         (Feedback(poses={"robot_0": (0, 0, 0)}), "which irsim moves"),
         (Feedback(goals={"robot_0": (math.nan, 0, 0)}), "not three finite numbers"),
+        (Feedback(starts={"robot_0": (1e308, 0, 0)}), "send x, y and yaw, none beyond 1e"),
+        (Feedback(commands={"robot_0": None}), "send forward and leftward speed and yaw rate"),  # type: ignore[dict-item]
+        ({"goals": {}}, "returned dict instead of Feedback"),
         (Feedback(ranges={"robot_0/0": np.zeros(3)}), "3 ranges of 'robot_0/0'"),
     ],
 )
-def test_what_cannot_be_used_is_reported(said: Feedback, message: str) -> None:
+def test_what_cannot_be_used_is_reported(said: Any, message: str) -> None:
     env, bridge = make(), Recording(pull=lambda step: said)
     with pytest.raises(BridgeError, match=message), connect(env, [bridge]):
         env.step()

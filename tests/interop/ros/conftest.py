@@ -24,8 +24,8 @@ from tests.interop.ros.idl_text import idl_of
 HERE = Path(__file__).parent
 KINDS = [
     "geometry_msgs/msg/Twist", "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseArray",
-    "nav_msgs/msg/Odometry", "nav_msgs/msg/OccupancyGrid", "nav_msgs/msg/Path", "sensor_msgs/msg/LaserScan", "tf2_msgs/msg/TFMessage",
-    "visualization_msgs/msg/MarkerArray",
+    "nav_msgs/msg/Odometry", "nav_msgs/msg/OccupancyGrid", "nav_msgs/msg/Path", "sensor_msgs/msg/LaserScan",
+    "tf2_msgs/msg/TFMessage", "visualization_msgs/msg/MarkerArray",
 ]  # fmt: skip
 SCENE = """\
 world: {width: 10, height: 5, step_time: 0.05, obstacle_map: {name: perlin, resolution: 0.5, seed: 4}}
