@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import json
 import math
+import zipfile
+import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.scene import SCENE_VERSION, Agent, Circle, Grid, Lidar, Line, Part, Polygon, SceneDescription
+from irsim.bridges.scene_checks import MAX_CELLS, check_scene, check_states, read_arrays
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.common.files import replacing
 
 __all__ = [
+    "feedback_as_json",
     "feedback_of",
     "load_scene",
     "load_states",
@@ -27,6 +31,7 @@ __all__ = [
     "scene_as_json",
     "scene_of",
     "state_as_json",
+    "state_of",
 ]
 
 _MAX_SCENE_BYTES = 64 * 1024 * 1024
@@ -63,8 +68,10 @@ def scene_of(data: Any) -> SceneDescription:
         fields["agents"] = tuple(_agent(item) for item in data["agents"])
         fields["grid"] = None if data["grid"] is None else _grid(data["grid"])
         fields["low"], fields["high"] = _numbers(data["low"], 2), _numbers(data["high"], 2)
-        return SceneDescription(**fields)
-    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+        scene = SceneDescription(**fields)
+        check_scene(scene)
+        return scene
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
         if isinstance(error, BridgeError):
             raise
         raise _unusable(f"{type(error).__name__}: {error}") from None
@@ -133,7 +140,9 @@ def _agent(data: Mapping[str, Any]) -> Agent:
 def _grid(data: Mapping[str, Any]) -> Grid:
     nx, ny = (int(value) for value in data["size"])
     lengths = np.asarray(data["runs"], dtype=np.int64)
-    if nx < 1 or ny < 1 or (lengths < 0).any() or int(lengths.sum()) != nx * ny:
+    if nx > MAX_CELLS or ny > MAX_CELLS or nx * ny > MAX_CELLS:
+        raise ValueError(f"the map has {nx} x {ny} cells, more than {MAX_CELLS}")
+    if nx < 1 or ny < 1 or (lengths < 0).any() or (lengths > nx * ny).any() or int(lengths.sum()) != nx * ny:
         raise ValueError("the runs of the map do not fill its cells")
     flat = np.repeat(np.arange(len(lengths)) % 2 == 1, lengths)
     return Grid(flat.reshape(nx, ny), _numbers(data["cell"], 2), _numbers(data["origin"], 2))
@@ -184,18 +193,52 @@ def state_as_json(state: WorldState) -> dict[str, Any]:
     return _plain(found)  # type: ignore[no-any-return]
 
 
+def state_of(data: Any) -> WorldState:
+    """The inverse of :func:`state_as_json`: ``null`` is NaN, and infinite in ranges.
+
+    Raises:
+        BridgeError: The data are not those of a state.
+    """
+    try:
+        if data["version"] != SCENE_VERSION:
+            raise ValueError(f"it has version {data['version']!r}, this irsim reads {SCENE_VERSION}")
+        kinds = {"arrived": np.bool_, "collided": np.bool_, "stopped": np.bool_}
+        arrays: dict[str, Any] = {key: _rows(data[key], kinds.get(key, np.float64)) for key in _BY_ROW}
+        arrays |= {"step": np.array([data["step"]], dtype=np.int64), "time": np.array([data["time"]], dtype=np.float64)}
+        scans = {f"ranges:{key}": _rows(row, np.float32, math.inf) for key, row in data["ranges"].items()}
+        paths = {key: np.asarray(_rows(row, np.float64)[0]) for key, row in data["paths"].items()}
+        check_states(arrays | scans)
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError, OverflowError) as error:
+        raise BridgeError("bridge-file", f"this is not a state of irsim: {error}", "write it again") from None
+    return replace(_states(arrays | scans)[0], paths=paths)
+
+
+def _rows(data: Any, kind: Any, missing: float = math.nan) -> Any:
+    """(1, ...) an array of JSON types, whose ``null`` is a number."""
+    array = np.array(data, dtype=object)
+    array[np.frompyfunc(lambda value: value is None, 1, 1)(array).astype(bool)] = missing
+    with np.errstate(over="ignore"):
+        return array[None].astype(kind)
+
+
 def motion_as_json(motion: Motion) -> dict[str, Any]:
     """The middle of a step as JSON types."""
     return _plain({"version": SCENE_VERSION, **asdict(motion)})  # type: ignore[no-any-return]
 
 
 def save_states(states: Iterable[WorldState], path: str | Path) -> None:
-    """Write successive states to an NPZ file; paths are left out."""
+    """Write successive states to an NPZ file; paths are left out.
+
+    Raises:
+        BridgeError: There are no states.
+    """
     kept = list(states)
+    if not kept:
+        raise BridgeError("bridge-mismatch", "there are no states to write", "give at least one")
     arrays: dict[str, Any] = {key: np.stack([getattr(state, key) for state in kept]) for key in _BY_ROW}
     arrays["step"] = np.array([state.step for state in kept], dtype=np.int64)
     arrays["time"] = np.array([state.time for state in kept])
-    for key in kept[0].ranges if kept else ():
+    for key in kept[0].ranges:
         arrays[f"ranges:{key}"] = np.stack([state.ranges[key] for state in kept])
     with replacing(Path(path)) as temporary, temporary.open("wb") as file:
         np.savez_compressed(file, version=np.int64(SCENE_VERSION), **arrays)
@@ -208,20 +251,34 @@ def load_states(path: str | Path) -> list[WorldState]:
         BridgeError: The file cannot be read, or is not one of states.
     """
     try:
-        with np.load(Path(path), allow_pickle=False) as file:
-            data = {key: file[key] for key in file.files}
-        scans = {key.removeprefix("ranges:"): value for key, value in data.items() if key.startswith("ranges:")}
-        return [
-            WorldState(
-                int(step),
-                float(time),
-                **{key: data[key][row] for key in _BY_ROW},
-                ranges={key: value[row] for key, value in scans.items()},
-            )
-            for row, (step, time) in enumerate(zip(data["step"], data["time"], strict=True))
-        ]
-    except (OSError, ValueError, KeyError, IndexError, EOFError) as error:
-        raise BridgeError("bridge-file", f"this is not a file of states: {error}", "write it again") from None
+        data = read_arrays(Path(path))
+        version = int(data.pop("version"))
+        if version != SCENE_VERSION:
+            raise ValueError(f"it has version {version}, this irsim reads {SCENE_VERSION}")
+        check_states(data)
+    except _NOT_STATES as error:
+        why = f"{error} is missing" if isinstance(error, KeyError) else error
+        raise BridgeError("bridge-file", f"this is not a file of states: {why}", "write it again") from None
+    return _states(data)
+
+
+_NOT_STATES = (
+    OSError, ValueError, KeyError, TypeError, IndexError, EOFError, NotImplementedError, RuntimeError,
+    zipfile.BadZipFile, zlib.error,
+)  # fmt: skip
+
+
+def _states(data: Mapping[str, Any]) -> list[WorldState]:
+    scans = {key.removeprefix("ranges:"): value for key, value in data.items() if key.startswith("ranges:")}
+    return [
+        WorldState(
+            int(step),
+            float(time),
+            **{key: data[key][row] for key in _BY_ROW},
+            ranges={key: value[row] for key, value in scans.items()},
+        )
+        for row, (step, time) in enumerate(zip(data["step"], data["time"], strict=True))
+    ]
 
 
 # feedback -------------------------------------------------------------------------------------------------------------
@@ -238,6 +295,7 @@ _Named = Annotated[dict[str, _Three], Field(max_length=_MAX_NAMES)]
 class _Message(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
+    version: Literal[1] = 1
     poses: _Named = {}
     twists: _Named = {}
     commands: _Named = {}
@@ -245,6 +303,11 @@ class _Message(BaseModel):
     starts: _Named = {}
     ranges: Annotated[dict[str, list[float | None]], Field(max_length=_MAX_NAMES)] = {}
     end: str | None = None
+
+
+def feedback_as_json(feedback: Feedback) -> dict[str, Any]:
+    """Feedback as JSON types; infinite ranges are ``null``."""
+    return _plain({"version": SCENE_VERSION, **vars(feedback)})  # type: ignore[no-any-return]
 
 
 def feedback_of(data: Any) -> Feedback:
@@ -266,8 +329,9 @@ def feedback_of(data: Any) -> Feedback:
     triples: dict[str, Any] = {
         key: {name: tuple(values) for name, values in getattr(message, key).items()} for key in named
     }
-    ranges = {
-        key: np.array([np.inf if value is None else value for value in values], dtype=np.float32)
-        for key, values in message.ranges.items()
-    }
+    with np.errstate(over="ignore"):  # what is too large for its type is infinite
+        ranges = {
+            key: np.array([np.inf if value is None else value for value in values], dtype=np.float32)
+            for key, values in message.ranges.items()
+        }
     return Feedback(**triples, ranges=ranges, end=message.end)

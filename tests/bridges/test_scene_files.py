@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from irsim.bridges.describe import agent_rows, describe_scene, world_state
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.bridges.scene import Circle, Line, Polygon, SceneDescription
 from irsim.bridges.scene_files import (
+    feedback_as_json,
     feedback_of,
     load_scene,
     load_states,
@@ -23,7 +25,10 @@ from irsim.bridges.scene_files import (
     save_states,
     scene_as_json,
     scene_of,
+    state_as_json,
+    state_of,
 )
+from irsim.bridges.state import Feedback
 from irsim.runs import open_run
 
 SCENE = """
@@ -97,13 +102,101 @@ def test_states_cross_npz(tmp_path: Path) -> None:
         {"agents": [{}]},
         {"grid": {"size": [2, 2], "cell": [1, 1], "origin": [0, 0], "runs": [10**12]}},
         {"grid": {"size": [10**7, 10**7], "cell": [1, 1], "origin": [0, 0], "runs": [3]}},
+        {"grid": {"size": [10**6, 10**6], "cell": [1, 1], "origin": [0, 0], "runs": [10**12]}},
         {"low": [float("nan"), 0]},
+        {"name": 3},
+        {"step_time": 0},
+        {"about": 3},
         {"unknown": 1},
     ],
 )
 def test_a_wrong_scene_is_refused(scene: SceneDescription, change: dict[str, Any]) -> None:
     with pytest.raises(BridgeError, match="bridge-file"):
         scene_of({**scene_as_json(scene), **change})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"role": "king"},
+        {"index": 7},
+        {"radius": -1},
+        {"pose": [None, 0, 0]},
+        {"parts": [{"circle": [0, 0, -1]}]},
+        {"parts": [{"polygon": [[0, 0], [1, 1]]}]},
+        {"lidars": [{"beams": 10**12}]},
+        {"name": "walls"},
+    ],
+)
+def test_a_wrong_agent_is_refused(scene: SceneDescription, change: dict[str, Any]) -> None:
+    data = scene_as_json(scene)
+    agent = next(one for one in data["agents"] if one["lidars"])
+    if "lidars" in change:
+        change = {"lidars": [{**agent["lidars"][0], **change["lidars"][0]}]}
+    if "name" in change:
+        change = {"name": next(one["name"] for one in data["agents"] if one is not agent)}
+    agent |= change
+    with pytest.raises(BridgeError, match="bridge-file"):
+        scene_of(data)
+
+
+def test_states_and_feedback_cross_json() -> None:
+    running = simulation()
+    running.step()
+    state = world_state(running, agent_rows(running))
+    again = state_of(json.loads(json.dumps(state_as_json(state), allow_nan=False)))
+    assert state_as_json(again) == state_as_json(state)
+    assert np.array_equal(again.ranges["robot_0/0"], state.ranges["robot_0/0"])
+    assert np.array_equal(again.goal, state.goal, equal_nan=True)
+    said = Feedback(commands={"a": (1, 2, 3)}, ranges={"a/0": np.array([1, np.inf], dtype=np.float32)}, end="over")
+    heard = feedback_of(json.loads(json.dumps(feedback_as_json(said), allow_nan=False)))
+    assert feedback_as_json(heard) == feedback_as_json(said)
+    assert heard.ranges["a/0"].tolist() == [1, np.inf]
+
+
+@pytest.mark.parametrize("change", [{"version": 2}, {"pose": [[1, 2, 3]]}, {"time": None}, {"ranges": {"a": [[1]]}}])
+def test_a_wrong_state_is_refused(change: dict[str, Any]) -> None:
+    running = simulation()
+    data = state_as_json(world_state(running, agent_rows(running)))
+    with pytest.raises(BridgeError, match="not a state of irsim"):
+        state_of({**data, **change})
+
+
+def test_a_file_that_has_no_states(tmp_path: Path) -> None:
+    running, file = simulation(), tmp_path / "states.npz"
+    with pytest.raises(BridgeError, match="there are no states"):
+        save_states([], file)
+    assert not file.exists()
+    save_states([world_state(running, agent_rows(running))], file)
+    good = dict(np.load(file))
+    changes: list[dict[str, Any]] = [
+        {"version": np.int64(99)}, {"pose": np.zeros((1, 1, 3))}, {"pose": np.array(["a"])},
+        {"twist": np.full(good["twist"].shape, np.inf)}, {"time": np.array([np.nan])},
+        {"ranges:robot_0/0": np.full((1, 3), np.nan)}, {"ranges:robot_0/0": np.zeros(3)},
+    ]  # fmt: skip
+    for change in changes:
+        np.savez(file, **(good | change))
+        with pytest.raises(BridgeError, match="not a file of states"):
+            load_states(file)
+    np.savez(file, **{key: value for key, value in good.items() if key != "version"})
+    with pytest.raises(BridgeError, match="'version' is missing"):
+        load_states(file)
+
+
+def test_a_damaged_file_of_states(tmp_path: Path) -> None:
+    running, file = simulation(), tmp_path / "states.npz"
+    save_states([world_state(running, agent_rows(running))], file)
+    whole = file.read_bytes()
+    flipped = bytes(byte ^ 255 if 200 < place < len(whole) - 400 and place % 37 == 0 else byte
+                    for place, byte in enumerate(whole))  # fmt: skip
+    header = b"{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000,), }".ljust(117) + b"\n"
+    with zipfile.ZipFile(tmp_path / "huge.npz", "w") as archive:
+        archive.writestr("step.npy", b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header)
+    huge = (tmp_path / "huge.npz").read_bytes()
+    for content in (b"", b"PK\x03\x04junk", whole[: len(whole) // 2], whole[:-10], flipped, huge, b"\x80\x04."):
+        file.write_bytes(content)
+        with pytest.raises(BridgeError, match="not a file of states"):
+            load_states(file)
 
 
 @pytest.mark.parametrize("content", ["", "[", "[]", "{}", '"text"', "[" * 100_000])
