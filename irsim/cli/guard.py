@@ -5,11 +5,14 @@ from __future__ import annotations
 import functools
 import json
 import os
+import signal
 import sys
+import threading
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, NoReturn, ParamSpec, TypeVar
 
 import typer
 
@@ -17,7 +20,7 @@ from irsim.cli.output import silence_stdout
 from irsim.common.text import clean
 from irsim.diagnostics.errors import IrsimError, ScenarioError, ScenarioNotFoundError
 
-__all__ = ["FAILED", "INTERRUPTED", "INVALID", "handle_errors"]
+__all__ = ["FAILED", "INTERRUPTED", "INVALID", "ended_in_order", "handle_errors"]
 
 FAILED = 1
 """Exit code of a command that could not finish."""
@@ -56,6 +59,30 @@ def handle_errors(command: Callable[P, R]) -> Callable[P, R]:
             raise typer.Exit(_report(error, as_json=bool(kwargs.get("json_output")))) from None
 
     return call
+
+
+@contextmanager
+def ended_in_order() -> Iterator[None]:
+    """Let SIGTERM and SIGHUP end what runs as an exception does: bridges are closed, and files completed.
+
+    The exit code is 128 and the number of the signal, as shells have it. A signal that is ignored remains so.
+    """
+    changed = []
+    if threading.current_thread() is threading.main_thread():
+        for number in filter(None, (getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP"))):
+            if signal.getsignal(number) is signal.SIG_DFL:
+                signal.signal(number, _end)
+                changed.append(number)
+    try:
+        yield
+    finally:
+        for number in changed:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _end(number: int, frame: Any) -> NoReturn:
+    signal.signal(number, signal.SIG_IGN)  # what has begun to end is not interrupted
+    raise SystemExit(128 + number)
 
 
 _FAILURES = frozenset({"bridge-lost", "file-access", "no-cluster", "not-writable", "worker-failed"})

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from irsim.cli.guard import FAILED
+from irsim.cli.guard import FAILED, ended_in_order
 from irsim.cli.options import File, Imports, Json, MaxObjects, Perturb, Seed, Steps, Strict
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def run(
     import_user_modules(imports)
     if show:
         _mention_missing_screen()
-    with progress("simulating" if save_gif is None else "simulating and drawing") as report:
+    with ended_in_order(), progress("simulating" if save_gif is None else "simulating and drawing") as report:
         from irsim import api
         from irsim.common.files import check_suffix
         from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES

@@ -14,7 +14,7 @@ from irsim.bridges.ros.backends.opening import AnyOptions, make_messages, open_b
 from irsim.bridges.ros.guarded import Guard
 from irsim.bridges.ros.inbox import Inbox
 from irsim.bridges.ros.limiting import ZERO, Velocity
-from irsim.bridges.ros.names import nanoseconds
+from irsim.bridges.ros.names import nanoseconds, ros_names
 from irsim.bridges.ros.outgoing import Outgoing
 from irsim.bridges.ros.qos import Qos
 from irsim.bridges.ros.real import RealRobots
@@ -55,6 +55,7 @@ class RosBridge(Bridge):
         self.topics: tuple[Topic, ...] = ()
         self.mode: Mode = options.mode if isinstance(options, RosOptions) else "sim"
         self._inbox = Inbox()
+        self._spelled: dict[str, str] = {}
         self._reports = Reports(self.name)
         self._guard: Guard | None = None
         self._real: RealRobots | None = None
@@ -67,6 +68,8 @@ class RosBridge(Bridge):
             if wrong := check_keys(list(keys)):
                 raise BridgeError("bridge-mismatch", wrong, f"irsim describe bridge.{self.name} has an example")
         robots = _chosen(scene, options.robots)
+        names = zip(scene.names, ros_names(scene.names), strict=True)
+        self._spelled = {name: spelled for name, spelled in names if name != spelled and scene.agent(name) in robots}
         messages = make_messages(options)
         self.topics = self._topics(scene, robots)
         node = options.node if isinstance(options, RosOptions) else "irsim"
@@ -116,6 +119,9 @@ class RosBridge(Bridge):
         found = [
             f"{self.name}: {topic}: {count} message(s) ignored: {problem}"
             for (topic, problem), count in self._reports.counts.items()
+        ]
+        found += [
+            f"{self.name}: the topics of '{name}' are below /{spelled}" for name, spelled in self._spelled.items()
         ]
         if self._inbox.refused:
             found.append(f"{self.name}: {self._inbox.refused} messages were too long")

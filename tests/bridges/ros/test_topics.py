@@ -7,6 +7,7 @@ import pytest
 from irsim.bridges.base import BridgeError
 from irsim.bridges.options import read_bridge
 from irsim.bridges.ros.bridge import RosBridge
+from irsim.bridges.ros.names import ros_names
 from irsim.bridges.ros.qos import Qos
 from irsim.bridges.ros.topics import TABLE, check_keys, scene_topics
 from irsim.bridges.scene import Agent, Lidar, SceneDescription
@@ -34,6 +35,11 @@ def test_each_robot_and_each_lidar_has_its_topics() -> None:
     assert found["/robot_0/cmd_vel"] == "in Twist"
     assert found["/clock"] == "out Clock"
     assert "/ann/odom" not in found
+
+
+def test_a_name_that_fits_stays_as_it_is() -> None:
+    given = ["robot 1", "robot_1", "rob__ot", "机器人", "object", "3po", "a_", "tb3_0"]
+    assert ros_names(given) == ["robot_1_2", "robot_1", "rob_ot", "object_2", "object", "object_3po", "a", "tb3_0"]
 
 
 def test_real_robots_turn_odometry_scans_and_commands_around() -> None:
