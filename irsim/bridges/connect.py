@@ -43,8 +43,13 @@ def open_bridges(options: Iterable[Any]) -> list[Bridge]:
         ExtraError: A library is missing; the message has the command that installs it.
         BridgeError: The options cannot be used here.
     """
-    made = []
+    made, written = [], set[Any]()
     for item in options:
+        files = {getattr(item, key) for key in getattr(item, "files", ())} - {None}
+        if both := files & written:
+            what = f"two bridges write to '{min(both)}'"
+            raise BridgeError("bridge-mismatch", what, "give each of them a name of its own")
+        written |= files
         feature = BRIDGES.get(str(item.name))
         assert feature is not None
         assert feature.function is not None

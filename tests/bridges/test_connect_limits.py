@@ -35,6 +35,13 @@ def test_another_scene_needs_bridges_of_its_own(tmp_path: Path) -> None:
     env.reload()
 
 
+def test_two_bridges_do_not_write_to_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BridgeError, match="two bridges write to 'lab'"):
+        irsim.run(text=SCENE.format(drive="diff", world=""), bridges=[{"name": "rosbag", "folder": "lab"}] * 2)
+    assert not list(tmp_path.iterdir())
+
+
 def test_what_is_no_bridge_is_named() -> None:
     first = Recording()
     with pytest.raises(BridgeError, match="'ros2' is not a bridge"):

@@ -54,6 +54,7 @@ class RosBridge(Bridge):
         self.backend: Backend | None = None
         self.topics: tuple[Topic, ...] = ()
         self.mode: Mode = options.mode if isinstance(options, RosOptions) else "sim"
+        self._began = False
         self._inbox = Inbox()
         self._spelled: dict[str, str] = {}
         self._reports = Reports(self.name)
@@ -93,6 +94,7 @@ class RosBridge(Bridge):
 
     def pull(self) -> Feedback | None:
         """Goals, commands to simulated robots, and scans of real ones."""
+        self._began = True
         if self._receiver is None or self.backend is None:
             return None
         self._receiver.receive(self.backend, self._inbox)
@@ -143,6 +145,8 @@ class RosBridge(Bridge):
             if guard is not None:
                 guard.stop()
         finally:
+            if isinstance(backend, BagBackend) and not self._began:
+                backend.drop()  # another bridge could not be opened
             if backend is not None:
                 backend.close()
             self._reports.finish()

@@ -78,3 +78,14 @@ def test_a_bag_that_is_recorded_while_running(
         assert len(found["/clock"]) == 21
         assert len(found["/map"]) == 1
     assert [path.name for path in (tmp_path / "lab").iterdir() if path.name.startswith(".")] == []
+
+
+def test_a_run_that_does_not_begin_leaves_no_bag(
+    make_env: Callable[[str], Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    env = make_env(f"{SCENE}bridges: [{{name: rosbag, folder: lab}}, {{name: json_lines, address: '127.0.0.1:1'}}]\n")
+    before = set(tmp_path.iterdir())
+    with pytest.raises(irsim.IrsimError, match="no program listens"):
+        irsim.connect(env)
+    assert set(tmp_path.iterdir()) == before

@@ -122,6 +122,15 @@ class BagBackend(Backend):
         if self._bag is not None:
             self._bag.add(self._added[topic], self.stamp, message)
 
+    def drop(self) -> None:
+        """Leave nothing behind."""
+        bag, self._bag = self._bag, None
+        if bag is not None:
+            try:
+                bag.__exit__(KeyboardInterrupt)
+            finally:
+                shutil.rmtree(self._temporary, ignore_errors=True)
+
     def close(self) -> None:
         """Complete the folder."""
         bag, self._bag = self._bag, None
