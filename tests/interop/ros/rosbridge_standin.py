@@ -1,4 +1,4 @@
-"""A stand-in for rosbridge_server, not rosbridge_server: `rosbridge_standin.py PORT ROS [silent]`.
+"""A stand-in for rosbridge_server, not rosbridge_server: `rosbridge_standin.py PORT ROS [silent|drop]`.
 
 It speaks the operations advertise, publish and subscribe of the protocol rosbridge 2.0 over WebSocket. As the server
 does, it knows the definitions of messages and refuses fields that a message does not have; here they are turned into
@@ -57,6 +57,10 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
     def onOpen(self) -> None:
         self.kinds: dict[str, str] = {}
         self.count = 0
+        if sys.argv[3:] == ["drop"]:  # the first connection breaks
+            sys.argv[3] = "silent"
+            asyncio.get_running_loop().call_later(1.0, self.dropConnection, True)
+            asyncio.get_running_loop().call_later(1.0, say, "dropped", "")
 
     def onMessage(self, payload: bytes, isBinary: bool) -> None:
         said = json.loads(payload)

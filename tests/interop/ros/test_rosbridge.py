@@ -103,6 +103,25 @@ def test_a_server_that_dies_ends_the_run(start: Callable[..., Peer], make_env: C
         step_until_lost()
 
 
+def test_a_connection_that_breaks_is_made_again(start: Callable[..., Peer], make_env: Callable[[str], Any]) -> None:
+    port = free_port()
+    server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), "2", "drop")
+    until(lambda: server.on("ready"), 30, "the stand-in does not start")
+    env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, timeout: 20, clock: wall}}]\n")
+    steps = 0
+    with irsim.connect(env):
+        while steps < 1000 and len(server.on("/map")) < 2:
+            env.step()
+            steps += 1
+        for _ in range(20):
+            env.step()
+            steps += 1
+    assert server.on("dropped")
+    for topic in ("/map", "/irsim/markers", "/tf_static", "/pedestrians/ids"):
+        assert len(server.on(topic)) == 2, topic  # the server has forgotten the first ones
+    assert 20 < len(server.on("/robot_0/odom")) < steps - 10  # nothing that is old by then is sent
+
+
 def test_without_a_server_the_error_says_so(make_env: Callable[[str], Any]) -> None:
     env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {free_port()}, timeout: 1}}]\n")
     with pytest.raises(BridgeLostError, match="no rosbridge server answers"):

@@ -18,6 +18,8 @@ from irsim.common.extras import require
 
 __all__ = ["RosbridgeBackend", "namespaces", "plain"]
 
+_AGAIN_S = 1.5
+"""Time after the loss of a connection until latched messages are sent again; roslibpy advertises topics after 1 s."""
 _CLOSE_S = 2.0
 """Time for which to wait for the server when the connection is closed."""
 
@@ -47,9 +49,10 @@ class RosbridgeBackend(Backend):
         self._address, self._timeout, self._ros_version = f"{host}:{port}", timeout, ros
         self._store = messages.store if ros == 2 else _definitions_of_ros1()
         self._gone: float | None = None
+        self._latched: dict[Topic, dict[str, Any]] = {}
         self._publishers: dict[Topic, Any] = {}
         self._subscribers: list[Any] = []
-        self._client = roslibpy.Ros(host=host, port=port, transport="asyncio")
+        self._client = roslibpy.Ros(host=f"[{host}]" if ":" in host else host, port=port, transport="asyncio")
         try:
             self._client.run(timeout=timeout)
         except roslibpy.core.RosTimeoutError:
@@ -72,9 +75,13 @@ class RosbridgeBackend(Backend):
                 self._subscribers.append(channel)
 
     def publish(self, topic: Topic, message: Any) -> None:
-        """Send a message as JSON."""
+        """Send a message as JSON; while the connection is lost, only what is latched is kept for later."""
         self._check()
-        self._publishers[topic].publish(plain(message, topic.kind, self._store, self._ros_version))
+        content = plain(message, topic.kind, self._store, self._ros_version)
+        if topic.qos.latched:
+            self._latched[topic] = content
+        if self._gone is None:  # roslibpy would send a command that is old by then
+            self._publishers[topic].publish(content)
 
     def poll(self) -> None:
         """Notice that the server is gone; messages come in a thread of roslibpy."""
@@ -96,13 +103,15 @@ class RosbridgeBackend(Backend):
         self.inbox.put(topic, namespaces(dict(message)))
 
     def _check(self) -> None:
-        if self._client.is_connected:
-            self._gone = None
-            return
         now = time.monotonic()
-        self._gone = now if self._gone is None else self._gone
-        if now - self._gone > self._timeout:
-            raise BridgeLostError(f"the connection to the rosbridge server at {self._address} is lost")
+        if not self._client.is_connected:
+            self._gone = now if self._gone is None else self._gone
+            if now - self._gone > self._timeout:
+                raise BridgeLostError(f"the connection to the rosbridge server at {self._address} is lost")
+        elif self._gone is not None and now - self._gone > _AGAIN_S:
+            self._gone = None
+            for topic, content in self._latched.items():  # the server has forgotten them with the connection
+                self._publishers[topic].publish(content)
 
     def _end(self) -> None:
         client, self._client = self._client, None
