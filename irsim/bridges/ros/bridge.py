@@ -20,7 +20,7 @@ from irsim.bridges.ros.qos import Qos
 from irsim.bridges.ros.real import RealRobots
 from irsim.bridges.ros.receiver import Receiver
 from irsim.bridges.ros.reports import Reports
-from irsim.bridges.ros.topics import Mode, Topic, check_keys, scene_topics
+from irsim.bridges.ros.topics import Mode, Topic, scene_topics
 from irsim.bridges.scene import Agent, SceneDescription
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.components.bridges._ros import RosOptions
@@ -65,9 +65,6 @@ class RosBridge(Bridge):
     def open(self, scene: SceneDescription, start: WorldState) -> None:
         """Connect, show what does not change, and wait for real robots."""
         options = self.options
-        for keys in (options.topics, options.qos):
-            if wrong := check_keys(list(keys)):
-                raise BridgeError("bridge-mismatch", wrong, f"irsim describe bridge.{self.name} has an example")
         robots = _chosen(scene, options.robots)
         names = zip(scene.names, ros_names(scene.names), strict=True)
         self._spelled = {name: spelled for name, spelled in names if name != spelled and scene.agent(name) in robots}

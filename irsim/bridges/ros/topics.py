@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
@@ -12,13 +11,12 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.ros.names import ros_names
 from irsim.bridges.ros.qos import LATCHED, SENSOR, STATE, TRANSFORMS, Qos
 from irsim.bridges.scene import Agent, SceneDescription
-from irsim.diagnostics.diagnostic import suggestion
+from irsim.components.bridges._ros import TOPIC_NAME
 
 __all__ = ["TABLE", "Mode", "Row", "Topic", "frame_of", "laser_frame", "scene_topics"]
 
 Mode: TypeAlias = Literal["sim", "real"]
 Direction: TypeAlias = Literal["out", "in", ""]
-_NAME = re.compile(r"(/[A-Za-z_~{][A-Za-z0-9_{}]*)+")
 
 
 @dataclass(frozen=True)
@@ -129,7 +127,7 @@ def scene_topics(
         pattern = names.get(key, row.name)
         if not direction or pattern is None:
             continue
-        if pattern != row.name and not _NAME.fullmatch(pattern):
+        if pattern != row.name and not TOPIC_NAME.fullmatch(pattern):
             what = f"{pattern!r} cannot be the name of a topic"
             raise BridgeError("bridge-mismatch", what, f"topics: {{{key}: {row.name}}}")
         kind = f"{row.kind}Stamped" if stamped and row.kind == _TWIST else row.kind
@@ -146,14 +144,6 @@ def scene_topics(
                 found.append(replace(base, name=lidar_name, robot=robot.name, lidar=lidar.key))
     _check_unique(found)
     return tuple(found)
-
-
-def check_keys(keys: Sequence[str]) -> str | None:
-    """What is wrong with keys of topics in options; None if nothing is."""
-    for key in keys:
-        if key not in TABLE:
-            return f"{key!r} is no topic of the table; " + suggestion(key, TABLE, f"they are {', '.join(TABLE)}")
-    return None
 
 
 def pedestrians(scene: SceneDescription) -> list[Agent]:

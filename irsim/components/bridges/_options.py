@@ -17,6 +17,11 @@ class BridgeOptions(Options):
     files: ClassVar[tuple[str, ...]] = ()
     """Keys that name files or folders to write."""
 
+    objects: ClassVar[tuple[str, ...]] = ()
+    """Keys that name objects of the scenario."""
+    robots_only: ClassVar[tuple[str, ...]] = ()
+    """Those of these keys that name robots."""
+
     name: str
     """Name of the bridge."""
     clock: Literal["irsim", "external", "wall"] = "irsim"

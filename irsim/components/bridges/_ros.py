@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+import re
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from irsim.components.bridges._options import BridgeOptions
+from irsim.diagnostics.diagnostic import suggestion
 from irsim.options.base import Options, problem
 from irsim.options.units import (
     Bool,
@@ -19,8 +21,17 @@ from irsim.options.units import (
     unit,
 )
 
-__all__ = ["QosOptions", "RosOptions", "ShownOptions"]
+__all__ = ["TOPIC_KEYS", "TOPIC_NAME", "QosOptions", "RosOptions", "ShownOptions"]
 
+TOPIC_KEYS = (
+    "clock", "tf", "tf_static", "map", "markers", "pedestrians", "pedestrian_ids", "goal_pose", "initialpose", "odom",
+    "pose", "reference_path", "robot_goal_pose", "robot_initialpose", "cmd_vel", "cmd_vel_preview", "scan",
+)  # fmt: skip
+"""Keys of the table of topics."""
+TOPIC_NAME = re.compile(r"(/[A-Za-z_~{][A-Za-z0-9_{}]*)+")
+"""What a topic may be called; ``{robot}`` and ``{n}`` stand for something else."""
+
+T = TypeVar("T")
 RadiansPerSecondSquared = Annotated[float, unit("rad/s^2")]
 Delay = Annotated[Seconds, Field(gt=0, le=60)]
 
@@ -39,6 +50,9 @@ class QosOptions(Options):
 class ShownOptions(BridgeOptions):
     """What is shown of a scene, and how."""
 
+    objects: ClassVar[tuple[str, ...]] = ("robots",)
+    robots_only: ClassVar[tuple[str, ...]] = ("robots",)
+
     clock: Literal["irsim", "external", "wall"] = "wall"
     """Who decides when a step is: `wall` steps in real time, `irsim` as fast as it can."""
     robots: list[str] = []
@@ -50,6 +64,18 @@ class ShownOptions(BridgeOptions):
     """Other qualities of service of topics, by their key in the table of topics."""
     frame: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_/]*$")] = "map"
     """Name of the fixed frame, in which the coordinates of the scenario are."""
+
+    @field_validator("topics", "qos")
+    @classmethod
+    def _check_topics(cls, value: dict[str, T]) -> dict[str, T]:
+        for key, name in value.items():
+            if key not in TOPIC_KEYS:
+                fix = suggestion(key, TOPIC_KEYS, f"they are {', '.join(TOPIC_KEYS)}")
+                raise problem("invalid-value", f"{key!r} is no topic of the table", fix=fix)
+            if isinstance(name, str) and not TOPIC_NAME.fullmatch(name):
+                what = f"{name!r} cannot be the name of a topic: it begins with / and has letters, digits, _ and {{}}"
+                raise problem("invalid-value", what, fix=f"topics: {{{key}: /{{robot}}/{key}}}")
+        return value
 
     def model_post_init(self, context: Any) -> None:
         """Check what keys mean together."""

@@ -72,6 +72,8 @@ class Carla(BridgeOptions):
         ]
     }
 
+    objects: ClassVar[tuple[str, ...]] = ("walkers", "vehicles", "follow")
+
     name: Literal["carla"] = "carla"
     clock: Literal["irsim", "external"] = "irsim"
     """Who ticks CARLA: `irsim`, at least once in each step; with `external` another client, which irsim waits for."""

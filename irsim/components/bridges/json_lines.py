@@ -20,6 +20,8 @@ class JsonLines(BridgeOptions):
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "json_lines", "address": "127.0.0.1:9100"}]}
 
+    objects: ClassVar[tuple[str, ...]] = ("agents",)
+
     name: Literal["json_lines"] = "json_lines"
     address: str = "127.0.0.1:9100"
     """Where the program listens, `host:port`."""

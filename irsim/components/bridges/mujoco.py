@@ -24,6 +24,8 @@ class Mujoco(BridgeOptions):
 
     files: ClassVar[tuple[str, ...]] = ("video", "report")
 
+    objects: ClassVar[tuple[str, ...]] = ("agents",)
+
     name: Literal["mujoco"] = "mujoco"
     agents: list[str] | None = None
     """Names of the objects that MuJoCo moves; null is all robots whose drive is diff, omni, omni_angular or acker, and

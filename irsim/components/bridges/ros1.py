@@ -17,7 +17,9 @@ class Ros1(RosOptions):
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros1"}]}
 
     name: Literal["ros1"] = "ros1"
-    master: Annotated[str, Field(pattern=r"^http://[^\s/]+:[0-9]{1,5}/?$")] | None = None
+    master: Annotated[str, Field(pattern=r"^http://[^\s/]+:[0-9]{1,5}/?$")] | None = Field(
+        default=None, examples=["http://192.168.1.20:11311"]
+    )
     """Address of the master; default: that of the variable `ROS_MASTER_URI`."""
 
 

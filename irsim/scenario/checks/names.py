@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 from irsim.diagnostics.diagnostic import Edit, is_slip_of, nearest
 from irsim.scenario.checks._context import Context
@@ -42,3 +43,26 @@ def check(context: Context) -> Iterator[Finding]:
             edit=Edit("replace", path, near, safe=is_slip_of(viewpoint, near)) if near else None,
             carry_on=Edit("remove", path),
         )
+    yield from _check_bridges(context, set(first))
+
+
+def _check_bridges(context: Context, names: set[str]) -> Iterator[Finding]:
+    """Report objects that bridges name and that do not exist."""
+    robots = {record.name for record in context.resolved.robots()}
+    bridges: Sequence[Any] = context.resolved.bridges
+    for number, bridge in enumerate(bridges):
+        for key in getattr(bridge, "objects", ()):
+            known = robots if key in bridge.robots_only else names
+            given = getattr(bridge, key) or ()
+            for place, name in enumerate(given):
+                if name in known:
+                    continue
+                near = nearest(name, known)
+                yield error(
+                    "unknown-object",
+                    ("bridges", number, key, name if isinstance(given, dict) else place),
+                    f"no {'robot' if known is robots else 'object'} is called '{name}'",
+                    given=name,
+                    allowed=sorted(known)[:20],
+                    fix=None if near is None else f"write {near}",
+                )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -96,6 +97,8 @@ class Explainer:
             return self._length()
         if self.kind in _EXPECTED:
             return self._type()
+        if self.kind == "string_pattern_mismatch":
+            return self._pattern()
         return error("invalid-value", self.path, self.message.removeprefix("Value error, "), given=self.value)
 
     def _own(self) -> Finding:
@@ -184,6 +187,20 @@ class Explainer:
             fix=f"{self._key()}: {near}" if near else None,
             edit=Edit("replace", self.path, near, safe=is_slip_of(self.value, near)) if near else None,
             carry_on=carry_on_value("unknown-value", self.path, self.value),
+        )
+
+    def _pattern(self) -> Finding:
+        """A text that has other letters than it may have; the fix has an example, or else the default."""
+        key, pattern = self._key(), self.context.get("pattern")
+        examples = [*(getattr(self.field, "examples", None) or ()), getattr(self.field, "default", None)]
+        example = next((one for one in examples if isinstance(one, str) and re.search(str(pattern), one)), None)
+        return error(
+            "invalid-value",
+            self.path,
+            f"{quote_value(self.value)} is not a valid value of '{key}'",
+            given=self.value,
+            allowed=f"what matches {pattern}",
+            fix=None if example is None else f"something like '{key}: {example}'",
         )
 
     def _bound(self) -> Finding:

@@ -10,6 +10,7 @@ import pytest
 import irsim
 from irsim.bridges.ros.topics import TABLE
 from irsim.common.extras import ExtraError
+from irsim.components.bridges._ros import TOPIC_KEYS, TOPIC_NAME
 from irsim.diagnostics.errors import ScenarioError
 
 PAGE = Path(__file__).parents[3] / "skills" / "irsim-runner" / "bridges" / "ros2.md"
@@ -37,12 +38,27 @@ def test_the_scenario_of_the_page_is_valid_and_all_topics_are_in_its_table(tmp_p
         ("{name: rosbag, folder: ../../etc/bag}", "folder"),
         ("{name: rosbridge, host: 'a b'}", "host"),
         ("{name: ros2, backend: rospy}", "rclpy"),
+        ("{name: ros2, topics: {cmd_val: /cmd_vel}}", "did you mean cmd_vel"),
+        ("{name: ros2, topics: {xyz: null}}", "they are clock, tf, "),
+        ("{name: rosbag, qos: {skan: {depth: 2}}}", "did you mean scan"),
+        ("{name: ros2, topics: {odom: odom}}", "cannot be the name of a topic"),
+        ("{name: ros2, robots: [robto_0]}", "write robot_0"),
+        ("{name: json_lines, agents: [me], answers: true}", "no object is called 'me'"),
+        ("{name: mujoco, agents: [me]}", "no object is called 'me'"),
+        ("{name: carla, follow: {me: 3}}", "no object is called 'me'"),
     ],
 )
-def test_wrong_options_are_named(bridge: str, words: str, tmp_path: Path) -> None:
+def test_wrong_options_are_named_with_their_line(bridge: str, words: str, tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text(f"{WORLD}bridges: [{bridge}]\n")
-    with pytest.raises(ScenarioError, match=words):
+    with pytest.raises(ScenarioError, match=words) as error:
         irsim.make(tmp_path / "a.yaml", display=False)
+    assert [found.path[:2] for found in error.value.diagnostics if found.severity == "error"] == [("bridges", 0)]
+    assert "3:" in str(error.value)
+
+
+def test_the_keys_of_topics_are_those_of_the_table() -> None:
+    assert tuple(TABLE) == TOPIC_KEYS
+    assert all(TOPIC_NAME.fullmatch(row.name) for row in TABLE.values())
 
 
 @pytest.mark.parametrize(

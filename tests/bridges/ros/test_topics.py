@@ -9,7 +9,7 @@ from irsim.bridges.options import read_bridge
 from irsim.bridges.ros.bridge import RosBridge
 from irsim.bridges.ros.names import ros_names
 from irsim.bridges.ros.qos import Qos
-from irsim.bridges.ros.topics import TABLE, check_keys, scene_topics
+from irsim.bridges.ros.topics import TABLE, scene_topics
 from irsim.bridges.scene import Agent, Lidar, SceneDescription
 
 
@@ -66,12 +66,6 @@ def test_names_and_qualities_can_be_others() -> None:
 def test_names_that_cannot_be_are_refused(name: str, words: str) -> None:
     with pytest.raises(BridgeError, match=words):
         names(names={"cmd_vel": name})
-
-
-def test_unknown_keys_are_told_with_the_right_one() -> None:
-    assert str(check_keys(["cmd_val"])).endswith("did you mean cmd_vel?")
-    assert "they are clock, tf, " in str(check_keys(["xyz"]))
-    assert check_keys(["scan"]) is None
 
 
 def test_what_has_no_effect_on_simulated_robots_is_said() -> None:
