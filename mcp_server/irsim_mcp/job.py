@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -220,17 +220,15 @@ def _export(job: dict[str, Any], progress: _Progress) -> str:
 
     from irsim.bridges.export.export import export_run
     from irsim.bridges.export.registry import find_format
+    from irsim_mcp.set_aside import set_aside
 
     arguments = job["arguments"]
     run_id, objects, form = arguments["run_id"], arguments["objects"], find_format(arguments["to"], None)
     target = Path(arguments["out"]) / f"{run_id}{form.suffix}"
-    if form.folder and target.exists():
-        import shutil
-
-        shutil.rmtree(target)  # an earlier export of the same run
     names = objects if objects in ("movers", "robots", "all") else [name.strip() for name in objects.split(",")]
     options: dict[str, Any] = {"limits": _limits(job), "workspace": job["workspace"], "progress": progress}
-    return export_run(run_id, target, to=form.name, objects=names, **options).model_dump_json()
+    with set_aside(target) if form.folder else nullcontext():
+        return export_run(run_id, target, to=form.name, objects=names, **options).model_dump_json()
 
 
 def _artifact(job: dict[str, Any], progress: _Progress) -> str:

@@ -65,6 +65,32 @@ async def test_it_follows_no_link(workspace: Path) -> None:
     assert list(outside.iterdir()) == []
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="links of POSIX")
+async def test_an_earlier_folder_stays_until_there_is_another_one(workspace: Path) -> None:
+    outside = workspace.parent / "outside"
+    outside.mkdir()
+    (outside / "keep").touch()
+    async with Client(build_server(workspace, writing=True), raise_exceptions=True) as client:
+        run_id = await recorded(client)
+        wanted = {"run_id": run_id, "to": "colmap"}
+        folder = workspace / data_of(await client.call_tool("export_run", wanted))["path"]
+        before = sorted(folder.iterdir())
+        assert "rob" in error_of(await client.call_tool("export_run", {**wanted, "objects": "rob"}))
+        assert sorted(folder.iterdir()) == before
+        (folder / "note").touch()
+        await client.call_tool("export_run", wanted)
+        assert sorted(folder.iterdir()) == before
+        assert [path.name for path in folder.parent.iterdir()] == [folder.name]
+        folder.rename(outside / "moved")
+        for blocking in (lambda: folder.symlink_to(outside), folder.touch):
+            blocking()
+            told = error_of(await client.call_tool("export_run", wanted))
+            assert "file-exists" in told
+            assert "is in the way" in told
+            folder.unlink()
+    assert sorted(path.name for path in outside.iterdir()) == ["keep", "moved"]
+
+
 def connecting(address: str) -> dict[str, Any]:
     return {"scenario_yaml": ROOM + f"bridges: [{{name: json_lines, address: '{address}'}}]\n"}
 
