@@ -34,7 +34,14 @@ def doctor(
     The exit code is 1 if a library is broken; one that is missing is none that you need until you use its bridge.
     """
     from irsim.bridges.doctor import examine
+    from irsim.diagnostics.diagnostic import suggestion
+    from irsim.diagnostics.errors import ArgumentError
+    from irsim.options.registry import BRIDGES
 
+    for name in names or ():
+        if name not in BRIDGES.names():
+            known = BRIDGES.names()
+            raise ArgumentError(f"{name!r} is not a bridge", suggestion(name, known, f"they are {', '.join(known)}"))
     found = examine(names or ())
     if json_output:
         typer.echo(json.dumps([asdict(one) for one in found], indent=2))

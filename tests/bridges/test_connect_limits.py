@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 
 import irsim
-from irsim.bridges.base import BridgeError
+from irsim.bridges.base import BridgeError, BridgeLostError
 from irsim.bridges.connect import connect
 from irsim.diagnostics.errors import CodedError
-from tests.bridges.test_connect import SCENE, Recording, make
+from tests.bridges.peer import Peer
+from tests.bridges.test_connect import SCENE, Recording, lines, make
 
 
 def test_steps_are_not_caught_up_after_a_long_delay() -> None:
@@ -60,3 +61,17 @@ def test_a_bridge_that_cannot_be_closed_is_named() -> None:
         connect(make(), [Full()]).close()
     with pytest.raises(ZeroDivisionError), connect(make(), [Full()]):
         raise ZeroDivisionError  # the first error is the one that is told
+
+
+def test_a_line_without_end_is_told_though_nobody_waits_for_it() -> None:
+    with Peer(lambda message: b"x" * 5_000_000 if message["kind"] == "scene" else None) as peer:
+        env = make(more=lines(peer.address))
+
+        def step_until_lost() -> None:
+            with connect(env):
+                for _ in range(500):
+                    env.step()
+                    time.sleep(0.01)
+
+        with pytest.raises(BridgeLostError, match="a line of more than 4 MB"):
+            step_until_lost()

@@ -17,8 +17,9 @@ def test_doctor_lists_every_bridge(irsim: Run) -> None:
 
 def test_doctor_of_one_that_does_not_exist(irsim: Run) -> None:
     done = irsim("bridge", "doctor", "telepathy")
-    assert "no such bridge" in done.stdout
-    assert "json_lines" in done.stdout
+    assert done.exit_code == 2
+    assert "'telepathy' is not a bridge" in done.stderr
+    assert "json_lines" in done.stderr
 
 
 def test_a_key_that_there_is_none_of(irsim: Run, room: Path) -> None:

@@ -132,6 +132,8 @@ class JsonLinesBridge(Bridge):
         while len(self._text) < _MAX_LINE and self._receive(0.0):
             pass
         *lines, self._text = self._text.split(b"\n")
+        if len(self._text) >= _MAX_LINE:
+            self._lose(f"{self.name} sent a line of more than {_MAX_LINE // 2**20} MB")
         if not lines:
             return None
         found: dict[str, Any] = {}

@@ -59,7 +59,7 @@ class Mujoco(BridgeOptions):
     """Where the video is seen from: `top`, `corner`, or behind the robot of this name."""
     size: Annotated[list[Annotated[Integer, Field(ge=16, le=4096)]], Field(min_length=2, max_length=2)] = [640, 480]
     """Width and height of the video in pixels."""
-    report: str | None = None
+    report: Annotated[str, Field(pattern=r"\.json$")] | None = Field(default=None, examples=["report.json"])
     """File for the report as JSON; null writes none. The main numbers are logged in any case."""
 
 

@@ -15,8 +15,8 @@ from irsim.options.units import Bool, Integer
 class Ros2(RosOptions):
     """Take part in ROS 2: RViz, Nav2 and robots see the scene, and send commands and goals; or drive real robots.
 
-    Odometry, scans, transforms, map, markers, pedestrians and reference paths go out as topics; `irsim describe ros2`
-    and the guide of the skill irsim-runner list them.
+    Odometry, scans, transforms, map, markers, pedestrians and reference paths go out as topics; the guide of the skill
+    irsim-runner has a table of them.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros2"}, {"name": "ros2", "backend": "zenoh"}]}

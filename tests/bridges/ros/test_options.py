@@ -10,8 +10,9 @@ import pytest
 import irsim
 from irsim.bridges.ros.topics import TABLE
 from irsim.common.extras import ExtraError
-from irsim.components.bridges._ros import TOPIC_KEYS, TOPIC_NAME
+from irsim.components.bridges._ros import TOPIC_KEYS, TOPIC_NAME, ShownOptions
 from irsim.diagnostics.errors import ScenarioError
+from irsim.options.base import field_docs
 
 PAGE = Path(__file__).parents[3] / "skills" / "irsim-runner" / "bridges" / "ros2.md"
 WORLD = "world: {width: 5, height: 5}\nrobot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}}\n"
@@ -58,6 +59,8 @@ def test_wrong_options_are_named_with_their_line(bridge: str, words: str, tmp_pa
 
 def test_the_keys_of_topics_are_those_of_the_table() -> None:
     assert tuple(TABLE) == TOPIC_KEYS
+    told = field_docs(ShownOptions)["topics"]
+    assert [key for key in TABLE if not re.search(rf"\b{key}\b", told)] == []
     assert all(TOPIC_NAME.fullmatch(row.name) for row in TABLE.values())
 
 

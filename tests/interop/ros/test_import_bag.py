@@ -62,6 +62,18 @@ def test_the_robot_drives_as_recorded_in_what_its_scans_saw(bag: Path) -> None:
     assert set(np.unique(grey)) == {0, 205, 254}  # solid, unknown, free
 
 
+def test_scans_of_another_robot_make_no_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    second = "  - {name: blind, kinematics: {name: diff}, state: [1, 7, 0], goal: [9, 7, 0], behavior: {name: dash}}\n"
+    irsim.run(text=ROOM.replace("obstacle:", second + "obstacle:"), seed=1, steps=20,
+              bridges=["{name: rosbag, folder: two}"])  # fmt: skip
+    alone = import_bag("two", "blind.yaml", BagOptions(odom="/blind/odom"))
+    assert (alone.map, alone.scans) == (None, 0)
+    assert "no scans of this robot" in alone.notes[0]
+    assert import_bag("two", "rover.yaml", BagOptions(odom="/rover/odom")).scans == 21
+    assert import_bag("two", "both.yaml", BagOptions(odom="/blind/odom", scan="/rover/scan")).scans == 21
+
+
 def test_windows_and_options(bag: Path) -> None:
     found = import_bag(bag, "part.yaml", BagOptions(start=2.0, end=4.0, resolution=0.1, mount=(0.0, 0.0, 0.0)))
     assert found.duration == pytest.approx(2.0)

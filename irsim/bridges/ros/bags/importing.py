@@ -115,7 +115,8 @@ def import_bag(
         at = np.array([composed(_pose_at(found, found.scan_times[index]), mount) for index in chosen])
         grid = map_of_scans(at, scans, poses[:, :2], options.resolution, options.radius, 1.0)
     elif found.scan_topic is None:
-        notes.append("the bag has no scans, so there is no map")
+        named = " of this robot, so there is no map; --scan names those of another one"
+        notes.append(f"the bag has no scans{named if found.elsewhere else ', so there is no map'}")
     text = _text(found, grid, times, poses, scans[0] if scans else None, mount, path.name, out, options)
     contents = [(out, with_modeline(text, out).encode())]
     picture = out.with_suffix(".png")

@@ -38,6 +38,7 @@ class Recorded:
         mount: x, y [m], yaw [rad] of the lidar on the robot; None if the bag does not say.
         odom_topic, scan_topic: Where they come from; no scans without a topic.
         ignored: How many messages were not usable.
+        elsewhere: Whether the bag has scans, but of other robots only.
     """
 
     times: Floats
@@ -48,6 +49,7 @@ class Recorded:
     odom_topic: str
     scan_topic: str | None
     ignored: int
+    elsewhere: bool = False
 
 
 def read_bag(path: Path, odom: str | None, scan: str | None) -> Recorded:
@@ -56,7 +58,7 @@ def read_bag(path: Path, odom: str | None, scan: str | None) -> Recorded:
     Args:
         path: The bag.
         odom: Topic of the odometry; default: the only one.
-        scan: Topic of the scans; default: the only one, if there is one.
+        scan: Topic of the scans; default: the only one of the same robot, if there is one.
 
     Raises:
         BridgeError: The bag is damaged, or has no such topic.
@@ -67,8 +69,9 @@ def read_bag(path: Path, odom: str | None, scan: str | None) -> Recorded:
         raise BridgeError("bridge-file", f"'{clean(path, 200)}' does not exist", "name a .bag file or a rosbag2 folder")
     with _opened(path) as reader:
         odom_topic = _chosen(reader, _ODOMETRY, odom, "--odom")
-        scan_topic = _chosen(reader, _SCAN, scan, "--scan", needed=scan is not None)
         assert odom_topic is not None
+        scan_topic = _scan_of(reader, odom_topic) if scan is None else _chosen(reader, _SCAN, scan, "--scan")
+        elsewhere = scan_topic is None and any(one.msgtype == _SCAN for one in reader.connections)
         rows: list[tuple[float, float, float, float]] = []
         scans: list[tuple[float, Scan]] = []
         mounts: dict[tuple[str, str], tuple[float, float, float]] = {}
@@ -90,7 +93,9 @@ def read_bag(path: Path, odom: str | None, scan: str | None) -> Recorded:
             if len(rows) > MAX_POSES or len(scans) > MAX_SCANS:
                 raise BridgeError("bridge-file", f"the bag has more than {MAX_POSES} poses or {MAX_SCANS} scans",
                                   "cut it: ros2 bag convert")  # fmt: skip
-    return _recorded(rows, scans, mounts.get((frames[0], frames[1])), odom_topic, scan_topic, ignored)
+    found = _recorded(rows, scans, mounts.get((frames[0], frames[1])), odom_topic, scan_topic, ignored)
+    found.elsewhere = elsewhere
+    return found
 
 
 def _recorded(
@@ -132,6 +137,23 @@ def _opened(path: Path) -> Iterator[Any]:
     except Exception as error:  # damaged files raise errors of many kinds
         what = f"'{clean(path, 200)}' is not a bag that can be read: {clean(error, 200)}"
         raise BridgeError("bridge-file", what, "name a .bag file, or a folder with metadata.yaml") from None
+
+
+def _scan_of(reader: Any, odom: str) -> str | None:
+    """The only topic of scans beside that of the odometry, or else the only one that is not beside another odometry."""
+    topics = {kind: sorted({one.topic for one in reader.connections if one.msgtype == kind})
+              for kind in (_SCAN, _ODOMETRY)}  # fmt: skip
+    own = [name for name in topics[_SCAN] if _space(name) == _space(odom)]
+    if len(own) == 1:
+        return own[0]
+    others = {_space(name) for name in topics[_ODOMETRY]} - {_space(odom)}
+    if own or not all(_space(name) in others for name in topics[_SCAN]):
+        return _chosen(reader, _SCAN, None, "--scan", needed=False)
+    return None
+
+
+def _space(topic: str) -> str:
+    return topic.rpartition("/")[0]
 
 
 def _chosen(reader: Any, kind: str, name: str | None, option: str, *, needed: bool = True) -> str | None:
