@@ -30,10 +30,12 @@ from irsim.components.bridges._ros import RosOptions
 from irsim.diagnostics.errors import CodedError
 from irsim.options.registry import BRIDGES
 
-__all__ = ["READY", "limits_of", "main"]
+__all__ = ["LIFE", "READY", "limits_of", "main"]
 
 READY = "ready"
 """The line with which the process says that it publishes."""
+LIFE = b"."
+"""What it says each time when it has published."""
 _ZEROS, _ZERO_PERIOD_S = 20, 0.05
 """How many zero commands are sent at the end, and the time between two of them."""
 
@@ -89,6 +91,8 @@ def main(stream: TextIO = sys.stdin) -> int:
         return 1
     source = _Input(stream)
     print(READY, flush=True)
+    with suppress(OSError, ValueError):
+        os.set_blocking(sys.stdout.fileno(), False)
     try:
         _publish(backend, messages, topics, options, source)
     except (BridgeError, KeyboardInterrupt):
@@ -114,12 +118,19 @@ def _publish(backend: Backend, messages: Messages, topics: list[Topic], options:
         sent = {name: limited(wanted.get(name, ZERO), last, limits, elapsed) for name, last in sent.items()}
         before = now
         _send(backend, messages, topics, sent)
+        _show_life()
 
 
 def _send(backend: Backend, messages: Messages, topics: list[Topic], commands: Mapping[str, Velocity]) -> None:
     for topic in topics:
         command = commands.get(str(topic.robot), ZERO)
         backend.publish(topic, messages.command(topic.kind, time.time_ns(), "base_link", command))
+
+
+def _show_life() -> None:
+    """Tell irsim that commands go out; it need not listen."""
+    with suppress(OSError, ValueError):
+        os.write(sys.stdout.fileno(), LIFE)
 
 
 def _interrupted(number: int, frame: Any) -> None:

@@ -24,6 +24,9 @@ __all__ = ["Guard"]
 _START_S = 30.0
 """Time for which the start of the process may take; ROS takes some seconds to import on small computers."""
 _STOP_S = 5.0
+_SILENT_S = 1.0
+"""Time for which the process may be silent in addition to the timeout of commands."""
+_READ_BYTES = 65536
 
 
 class Guard:
@@ -53,6 +56,8 @@ class Guard:
             self._write(first)
             self._wait_until_ready()
             os.set_blocking(self._input.fileno(), False)
+            os.set_blocking(self._output.fileno(), False)
+            self._alive, self._silence = time.monotonic(), options.command_timeout + _SILENT_S
         except BaseException:
             self.stop()
             raise
@@ -70,6 +75,12 @@ class Guard:
         """
         if self._process.poll() is not None:
             raise BridgeLostError("the process that sends commands to the robots has ended")
+        with suppress(BlockingIOError):
+            if os.read(self._output.fileno(), _READ_BYTES):
+                self._alive = time.monotonic()
+        if time.monotonic() - self._alive > self._silence:
+            self._process.kill()
+            raise BridgeLostError("the process that sends commands to the robots hangs")
         try:
             self._write(commands)
         except OSError:

@@ -45,6 +45,7 @@ def test_the_scenario_of_the_page_is_valid_and_all_topics_are_in_its_table(tmp_p
         ("{name: ros2, topics: {odom: odom}}", "cannot be the name of a topic"),
         ("{name: ros2, robots: [robto_0]}", "write robot_0"),
         ("{name: json_lines, agents: [me], answers: true}", "no object is called 'me'"),
+        ("{name: mujoco, report: hall.yaml}", "report: report.json"),  # it would be overwritten
         ("{name: mujoco, agents: [me]}", "no object is called 'me'"),
         ("{name: carla, follow: {me: 3}}", "no object is called 'me'"),
     ],

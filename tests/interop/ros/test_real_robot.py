@@ -124,11 +124,14 @@ def test_the_robot_stops_when_we_are_killed(drive: Callable[..., tuple[Robot, Pe
     assert robot.speeds()[-5:] == [0.0] * 5
 
 
-def test_the_robot_stops_when_the_guard_is_killed(drive: Callable[..., tuple[Robot, Peer]]) -> None:
+@pytest.mark.parametrize(("number", "seconds"), [(signal.SIGKILL, TIMEOUT_S), (signal.SIGSTOP, TIMEOUT_S + 1.0)])
+def test_the_robot_stops_when_the_guard_is_killed_or_hangs(
+    drive: Callable[..., tuple[Robot, Peer]], number: int, seconds: float
+) -> None:
     robot, irsim = drive()
     until(lambda: max(robot.speeds(), default=0) > 0.3, START_S, "not driven")
-    os.kill(int(irsim.on("open")[0].split()[1]), signal.SIGKILL)
+    os.kill(int(irsim.on("open")[0].split()[1]), number)
     began = time.monotonic()
     until(lambda: stopped(robot), 10, "not stopped")
-    assert time.monotonic() - began < TIMEOUT_S + MARGIN_S
+    assert time.monotonic() - began < seconds + MARGIN_S
     assert irsim.process.wait(10) != 0

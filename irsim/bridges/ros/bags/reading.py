@@ -145,7 +145,7 @@ def _scan_of(reader: Any, odom: str) -> str | None:
               for kind in (_SCAN, _ODOMETRY)}  # fmt: skip
     own = [name for name in topics[_SCAN] if _space(name) == _space(odom)]
     if len(own) == 1:
-        return own[0]
+        return str(own[0])
     others = {_space(name) for name in topics[_ODOMETRY]} - {_space(odom)}
     if own or not all(_space(name) in others for name in topics[_SCAN]):
         return _chosen(reader, _SCAN, None, "--scan", needed=False)
