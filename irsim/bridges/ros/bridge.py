@@ -117,6 +117,7 @@ class RosBridge(Bridge):
             f"{self.name}: {topic}: {count} message(s) ignored: {problem}"
             for (topic, problem), count in self._reports.counts.items()
         ]
+        found += [f"{self.name}: {text} ({count} times)" for text, count in self._reports.heard.items()]
         if self._inbox.refused:
             found.append(f"{self.name}: {self._inbox.refused} messages were too long")
         if self._real is not None:

@@ -50,6 +50,7 @@ class RosbridgeBackend(Backend):
         self._publishers: dict[Topic, Any] = {}
         self._subscribers: list[Any] = []
         self._client = roslibpy.Ros(host=host, port=port, transport="asyncio")
+        self._client.factory.on("ready", self._listen)
         try:
             self._client.run(timeout=timeout)
         except roslibpy.core.RosTimeoutError:
@@ -91,6 +92,14 @@ class RosbridgeBackend(Backend):
                 channel.unsubscribe()
         self._publishers, self._subscribers = {}, []
         self._end()
+
+    def _listen(self, protocol: Any) -> None:
+        """Take what the server says of errors, for each connection anew; roslibpy has no other way to it."""
+        protocol._message_handlers["status"] = self._told
+
+    def _told(self, status: Mapping[str, Any]) -> None:
+        if status.get("level") in ("error", "warning"):
+            self.inbox.tell(f"the server says: {status.get('msg')}")
 
     def _received(self, topic: Topic, message: Mapping[str, Any]) -> None:
         self.inbox.put(topic, namespaces(dict(message)))
