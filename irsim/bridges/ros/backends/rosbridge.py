@@ -45,6 +45,7 @@ class RosbridgeBackend(Backend):
         import roslibpy
 
         self._address, self._timeout, self._ros_version = f"{host}:{port}", timeout, ros
+        self.peer = f"the rosbridge server at {self._address} (ROS {ros})"
         self._store = messages.store if ros == 2 else _definitions_of_ros1()
         self._gone: float | None = None
         self._publishers: dict[Topic, Any] = {}
