@@ -35,18 +35,18 @@ def message_class(kind: str) -> Any:
     return found
 
 
-def message_of(value: Any, kind: str) -> Any:
-    """The message of a JSON object, checked by ROS itself and serialized once.
+def message_of(value: Any, made: Any) -> Any:
+    """The message of a JSON object and a class, checked by ROS itself and serialized once.
 
     Raises:
         UnfitError: A field is missing or unknown, or a value does not fit its type.
     """
-    message = _message(value, kind)
+    message = _message(value, made)
     try:
         message._check_types()
         message.serialize(BytesIO())
     except genpy.SerializationError as error:
-        raise UnfitError(f"{kind}: {error}") from None
+        raise UnfitError(f"{made._type}: {error}") from None
     return message
 
 
@@ -58,8 +58,8 @@ def as_json(message: Any) -> dict[str, Any]:
     }
 
 
-def _message(value: Any, kind: str) -> Any:
-    made = message_class(kind)
+def _message(value: Any, made: Any) -> Any:
+    kind = made._type
     if not isinstance(value, dict):
         raise UnfitError(f"{kind} is an object, got {value!r:.60}")
     fields = dict(zip(made.__slots__, made._slot_types, strict=True))
@@ -87,7 +87,7 @@ def _field(value: Any, kind: str) -> Any:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise UnfitError(f"{kind} got {value!r:.60}")
         return float(value)
-    return _message(value, kind) if "/" in kind else value
+    return _message(value, message_class(kind)) if "/" in kind else value
 
 
 def _plain(value: Any, kind: str) -> Any:

@@ -38,7 +38,7 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
     def onOpen(self) -> None:
         self.number = next(NUMBERS)
         self.loop = asyncio.get_running_loop()
-        self.publishers: dict[str, tuple[Any, str]] = {}
+        self.publishers: dict[str, tuple[Any, Any]] = {}
         self.subscribers: dict[str, Any] = {}
         self.operations: dict[str, Callable[[dict[str, Any]], None]] = {
             "advertise": self.advertise,
@@ -72,15 +72,16 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
     def advertise(self, said: dict[str, Any]) -> None:
         topic, kind = said["topic"], said["type"]
         options = {"queue_size": said.get("queue_size", 100), "latch": said.get("latch", False)}
-        self.publishers[topic] = rospy.Publisher(topic, message_class(kind), **options), kind
+        made = message_class(kind)
+        self.publishers[topic] = rospy.Publisher(topic, made, **options), made
         say("advertise", f"{topic} {kind}")
 
     def unadvertise(self, said: dict[str, Any]) -> None:
         self.publishers.pop(said["topic"])[0].unregister()
 
     def publish(self, said: dict[str, Any]) -> None:
-        publisher, kind = self.publishers[said["topic"]]
-        publisher.publish(message_of(said["msg"], kind))
+        publisher, made = self.publishers[said["topic"]]
+        publisher.publish(message_of(said["msg"], made))
         say("publish", said["topic"])
 
     def subscribe(self, said: dict[str, Any]) -> None:
@@ -98,7 +99,7 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
     def call_service(self, said: dict[str, Any]) -> None:
         name = said["service"]
         service = rosservice.get_service_class_by_name(name)
-        request = message_of(said.get("args", {}), service._request_class._type)
+        request = message_of(said.get("args", {}), service._request_class)
         values = as_json(rospy.ServiceProxy(name, service)(request))
         self.send({"op": "service_response", "id": said.get("id"), "service": name, "values": values, "result": True})
 
