@@ -23,6 +23,7 @@ from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import (
     Progress,
     advance,
+    as_finding,
     default_time_limit,
     horizon_of,
     import_modules,
@@ -37,6 +38,7 @@ from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
+from irsim.scenario.checks.bridges import driven_without_goal
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
 from irsim.simulation.random_streams import fresh_seed
@@ -143,6 +145,7 @@ def run(
     )
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     others = read_bridges(bridges)
+    warnings = [*warnings, *(as_finding(found.diagnostic) for found in driven_without_goal(scenario, others))]
     opened = _bridges([*scenario.bridges, *others], limits)
     options = {
         "strict": strict,
