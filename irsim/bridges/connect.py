@@ -144,6 +144,7 @@ class Connection:
         """Before decisions: wait for the time of the step, and take over what has come from outside."""
         if self.lost is not None:
             raise BridgeLostError(self.lost)
+        self._follow()
         self._before = simulation.pose.copy()
         self._ranges = {}
         self._wait()
@@ -176,20 +177,25 @@ class Connection:
     def measure(self, simulation: Simulation, mask: Any = None) -> None:
         """After the step: put in the scans of others, and show the world."""
         self._put_ranges(simulation)
-        count, anew = int(simulation.count[0]), self._key_of_scene() != self._key
+        count, anew = int(simulation.count[0]), self._follow()
         if count == self._count and not anew:
             return
         if count < self._count:
             self._wall = None
         self._count = count
-        if anew:
-            self._describe()
         state = world_state(simulation, self._rows)
-        if anew:
-            for bridge in self.bridges:
-                self._guarded(bridge, bridge.renew, self.scene, state)
         for bridge in self.bridges:
             self._guarded(bridge, bridge.push, state)
+
+    def _follow(self) -> bool:
+        """Tell the bridges of another scene, if there is one; whether there was."""
+        if self._key_of_scene() == self._key:
+            return False
+        self._describe()
+        state = world_state(self.simulation, self._rows)
+        for bridge in self.bridges:
+            self._guarded(bridge, bridge.renew, self.scene, state)
+        return True
 
     def _describe(self) -> None:
         """Describe the present scene.

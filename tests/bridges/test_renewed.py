@@ -9,7 +9,7 @@ import pytest
 
 import irsim
 from irsim.api import read_scenario
-from irsim.bridges.base import Bridge
+from irsim.bridges.base import Bridge, BridgeError
 from irsim.bridges.connect import connect
 from irsim.bridges.state import WorldState
 from tests.bridges.peer import Peer
@@ -108,6 +108,27 @@ def test_a_program_gets_the_new_scene() -> None:
     assert peer.kinds() == ["scene", "state", "scene", "state", "state", "end"]
     first, second = (message["scene"] for message in peer.received if message["kind"] == "scene")
     assert first["agents"][1]["parts"] != second["agents"][1]["parts"]
+
+
+def test_objects_that_come_and_go_are_told() -> None:
+    env, bridge = make(), Renewed()
+    with connect(env, [bridge]):
+        env.step()
+        env.add_object(env.create_obstacle(shape={"name": "circle", "radius": 0.2}, state=[5, 2, 0]))
+        env.step()
+        env.delete_object(env.obstacle_list[0].id)
+        env.step()
+    assert [len(scene.agents) for scene in bridge.scenes] == [3, 4, 3]
+    assert bridge.told[-1] == "step 3"
+
+
+def test_a_bridge_needs_the_object_that_it_moves() -> None:
+    env, bridge = make(), Renewed()
+    bridge.agents = frozenset([env.obstacle_list[1].name])
+    with connect(env, [bridge]):
+        env.delete_object(env.obstacle_list[1].id)
+        with pytest.raises(BridgeError, match="which the scene does not have any more"):
+            env.step()
 
 
 @pytest.mark.parametrize("steps", [0, 3])

@@ -95,6 +95,9 @@ class RosBridge(Bridge):
 
     def renew(self, scene: SceneDescription, start: WorldState) -> None:
         """Show what does not change in the new scene, instead of that of the old one."""
+        if gone := {topic.robot for topic in self.topics if topic.robot is not None} - set(scene.names):
+            what = f"the scene does not have the robot '{min(gone)}' any more, which has topics"
+            raise BridgeError("bridge-mismatch", what, "connect again")
         self._outgoing = Outgoing(self._messages, scene, self.topics, self.options.frame, self._mode)
         self._publish_once(start)
 
