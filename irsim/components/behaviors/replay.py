@@ -28,10 +28,9 @@ _SLOWEST = 0.01
 class Replay(BehaviorOptions):
     """Be at recorded places at recorded times: people of a data set, a robot from a bag.
 
-    The drives `omni` and `omni_angular` are exactly there, others follow as well as they can. An obstacle is in the
-    world from its first to its last time. It waits for no room, and collisions neither stop it nor push it away.
-    `state`, `goal` and limits of speed follow from the recording; an object arrives at its last place when the
-    recording ends, not when it passes there before. `irsim bridge import-pedestrians` writes such scenarios.
+    `omni` and `omni_angular` are exactly there, other drives follow as they can. An obstacle is in the world from its
+    first to its last time. It waits for no room; collisions neither stop nor push it. `state`, `goal` and limits of
+    speed follow from the recording, at whose end it arrives. `irsim bridge import-pedestrians` writes such scenarios.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
