@@ -49,7 +49,8 @@ robot:
     state: [1, 2, 0]
     goal: [{goal}, 2.5, 0]
     behavior: {{name: dash}}
-{sensors}bridges: [{{name: rosbridge, port: {port}, ros: 1, mode: real, dry_run: false, timeout: 2}}]
+{sensors}bridges:
+  - {{name: rosbridge, port: {port}, ros: 1, mode: real, dry_run: false, timeout: {timeout}, lost_timeout: 60}}
 """
 
 
@@ -61,8 +62,8 @@ class Server:
         port: Its port.
     """
 
-    def __init__(self, start: Callable[..., Peer]) -> None:
-        self.port = free_port()
+    def __init__(self, start: Callable[..., Peer], port: int | None = None) -> None:
+        self.port = free_port() if port is None else port
         self.peer = start(PYTHON, str(HERE / "rosbridge_on_rospy.py"), str(self.port))
         until(lambda: self.peer.on("ready"), START_S, "the server does not start")
 
@@ -93,9 +94,9 @@ def places(robot: Peer) -> list[tuple[float, ...]]:
     return [tuple(map(float, line.split())) for line in robot.on("place")]
 
 
-def scene_file(folder: Path, port: int, goal: float, sensors: str = "") -> str:
+def scene_file(folder: Path, port: int, goal: float, sensors: str = "", timeout: int = 2) -> str:
     path = folder / "real.yaml"
-    path.write_text(REAL.format(port=port, goal=goal, sensors=sensors))
+    path.write_text(REAL.format(port=port, goal=goal, sensors=sensors, timeout=timeout))
     return str(path)
 
 
@@ -203,6 +204,35 @@ def test_a_server_that_dies_ends_the_run_and_leaves_ros_alone(
     pytest.fail("a new server at another port does not reach the same node")
 
 
+def test_a_server_that_comes_back_in_time_is_found_again(
+    server: Server, start: Callable[..., Peer], make_env: Callable[[str], Any]
+) -> None:
+    listener = start(PYTHON, str(HERE / "rospy_peer.py"), "200")
+    env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {server.port}, ros: 1, timeout: 40, clock: wall}}]\n")
+
+    def step_until(holds: Callable[[], object], why: str) -> None:
+        end = time.monotonic() + START_S
+        while not holds():
+            assert time.monotonic() < end, why
+            env.step()
+
+    with irsim.connect(env) as connection:
+        step_until(lambda: len(listener.on("odom")) > 10 and listener.on("map"), "nothing comes")
+        server.peer.process.kill()
+        server.peer.process.wait()
+        for _ in range(10):
+            env.step()
+        again = Server(start, server.port)
+        step_until(lambda: again.peer.on("client"), "the server is not found again")
+        before, maps = len(listener.on("odom")), len(listener.on("map"))
+        step_until(lambda: len(listener.on("odom")) > before + 20, "nothing comes any more")
+        step_until(lambda: len(listener.on("map")) > maps, "the map does not come again")
+        step_until(lambda: float(env.robot.velocity[1, 0]) == pytest.approx(0.5), "no commands come any more")
+        notes = connection.notes()
+    assert again.peer.on("error") == []
+    assert not [note for note in notes if "the server says" in note]
+
+
 def test_a_driven_robot_loses_its_server(server: Server, start: Callable[..., Peer], tmp_path: Path) -> None:
     """The robot needs a timeout of its own then; the run says what happened and fails."""
     robot = start(PYTHON, str(HERE / "rospy_robot.py"))
@@ -218,6 +248,23 @@ def test_a_driven_robot_loses_its_server(server: Server, start: Callable[..., Pe
     assert "bridge-lost" in problems
     assert "rosbridge" in problems
     assert "the program of a bridge was lost" in " ".join(printed.split())
+
+
+def test_a_robot_gets_no_old_commands_when_its_server_comes_back(
+    server: Server, start: Callable[..., Peer], tmp_path: Path
+) -> None:
+    robot = start(PYTHON, str(HERE / "rospy_robot.py"))
+    driver = start(PYTHON, str(HERE / "real_driver.py"), scene_file(tmp_path, server.port, 9, timeout=60), "2000")
+    until(lambda: max(commands(robot), default=0) > 0.45, START_S, "not driven")
+    server.peer.process.kill()
+    server.peer.process.wait()
+    time.sleep(0.5)  # for what is on its way
+    count = len(commands(robot))
+    again = Server(start, server.port)
+    until(lambda: len(commands(robot)) > count + 20, START_S, "not driven any more")
+    assert commands(robot)[count] < 0.2  # from rest, with the acceleration that is allowed
+    assert driver.process.poll() is None
+    assert again.peer.on("error") == []
 
 
 def test_what_is_wrong_is_told_by_the_server(server: Server, make_env: Callable[[str], Any], capsys: Any) -> None:
