@@ -63,7 +63,7 @@ void in_shares(Crew& crew, std::size_t count, int threads, const Work& work) {
   std::vector<std::atomic<std::size_t>> next(threads);
   for (int t = 0; t < threads; ++t) next[t] = count * t / threads;
   std::vector<std::exception_ptr> errors(threads);
-  const std::size_t share = threads < 2 ? count : std::max<std::size_t>(1, count / (8 * threads));
+  const std::size_t share = threads < 2 ? count : std::max<std::size_t>(1, count / (32 * threads));
   crew.run(threads, [&](int t) {
     try {
       for (int k = 0; k < threads; ++k) {
