@@ -55,6 +55,33 @@ void in_parts(Crew& crew, std::size_t count, int threads, std::size_t least, con
   crew.run(most, [&](int t) { work(count * t / most, count * (t + 1) / most); });
 }
 
+/// Call `work(first, last, thread)` for shares of 0 to `count` on `threads` that were hired. Each thread begins with
+/// the same turns in every call, because their memory is then in the caches of its processor, and goes on with what
+/// others have left. An error of a share is thrown after all threads have ended.
+template <class Work>
+void in_shares(Crew& crew, std::size_t count, int threads, const Work& work) {
+  std::vector<std::atomic<std::size_t>> next(threads);
+  for (int t = 0; t < threads; ++t) next[t] = count * t / threads;
+  std::vector<std::exception_ptr> errors(threads);
+  const std::size_t share = threads < 2 ? count : std::max<std::size_t>(1, count / (32 * threads));
+  crew.run(threads, [&](int t) {
+    try {
+      for (int k = 0; k < threads; ++k) {
+        const int part = (t + k) % threads;
+        const std::size_t end = count * (part + 1) / threads;
+        for (std::size_t first = next[part].fetch_add(share); first < end; first = next[part].fetch_add(share)) {
+          work(first, std::min(first + share, end), t);
+        }
+      }
+    } catch (...) {
+      errors[t] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
 /// Call `work(k, thread)` for each k below `count`, on threads that each take the next one when they are free, because
 /// turns take unequal times. The first thread, 0, is this one. An error of a turn is thrown after all threads have
 /// ended.

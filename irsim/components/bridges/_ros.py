@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import Field, field_validator
@@ -123,6 +124,10 @@ class RosOptions(ShownOptions):
     first odometry comes; `world` takes the odometry as coordinates of the scenario."""
     timeout: Delay = 5.0
     """Time for which to wait for a connection, and for the first odometry of real robots."""
+
+    def driven(self, robots: Sequence[str]) -> Sequence[str]:
+        """The robots with topics."""
+        return self.robots or robots
 
     def model_post_init(self, context: Any) -> None:
         """Check what keys mean together."""

@@ -132,7 +132,9 @@ def test_the_guard_sends_zeros_when_nothing_comes_and_when_all_ends(
 ) -> None:
     sent: list[tuple[float, float]] = []
     backend = N(
-        publish=lambda topic, said: sent.append((time.monotonic(), said[0])), close=lambda: sent.append((0, -1))
+        publish=lambda topic, said: sent.append((time.monotonic(), said[0])),
+        close=lambda: sent.append((0, -1)),
+        ready=True,
     )
     monkeypatch.setattr(guard, "make_messages", lambda options: N(command=lambda kind, stamp, frame, speed: speed))
     monkeypatch.setattr(guard, "open_backend", lambda *arguments: backend)
