@@ -168,7 +168,7 @@ def test_formats_are_found_by_module_and_suffix() -> None:
     for name in format_names():
         found = find_format(name, None)
         assert found.name == name
-        assert found.folder or find_format(None, Path(f"x.{name}{found.suffix}")) is found
+        assert find_format(None, Path(f"x{'' if found.folder else f'.{name}'}{found.suffix}")) is found
     assert {"parquet", "csv", "npz", "mcap", "minari"} <= set(format_names())
     for name, out, message in (
         ("parqet", None, "unknown-format: 'parqet' is not a format of runs. Fix: did you mean parquet"),

@@ -74,6 +74,7 @@ def find_format(name: str | None, out: Path | None) -> Format:
             raise RunError("bad-argument", "no format was given", f"name one with --to; {listed}", where="to")
         known = [_load(one) for one in format_names()]
         fitting = [one for one in known if out.suffix.lower() in (one.suffix, *one.more_suffixes)]
+        fitting = fitting or [one for one in known if one.folder and out.name.lower().endswith(one.suffix)]
         if len(fitting) > 1:  # x.mjcf.xml says which
             fitting = [one for one in fitting if Path(out.stem).suffix.lower() == f".{one.name}"] or fitting
         if len(fitting) == 1:
@@ -84,8 +85,9 @@ def find_format(name: str | None, out: Path | None) -> Format:
             fix = f"name the file {named}, or the format with --to {fitting[0].name}"
             raise RunError("unknown-format", what, fix, where="to")
         what = f"the suffix of '{clean(out, 200)}' does not select a format"
-        suffixes = {suffix for one in known for suffix in (one.suffix, *one.more_suffixes) if suffix.startswith(".")}
-        fix = f"end it with one of {', '.join(sorted(suffixes))}, or name the format with `irsim export --to`; {listed}"
+        suffixes = {suffix for one in known for suffix in (one.suffix, *one.more_suffixes)}
+        ends = ", ".join(sorted(suffixes, key=lambda suffix: (not suffix.startswith("."), suffix)))
+        fix = f"end it with one of {ends}, or name the format with `irsim export --to`; {listed}"
         raise RunError("unknown-format", what, fix, where="to")
     if name not in format_names():
         fix = suggestion(name, format_names(), listed)

@@ -31,7 +31,8 @@ class Ros2(RosOptions):
     domain: Annotated[Integer, Field(ge=0, le=101)] | None = None
     """Number of the domain; default: that of the variable `ROS_DOMAIN_ID`, else 0."""
     loopback: Bool = False
-    """With `dds`: whether to speak to nodes on this computer only."""
+    """With `dds`: whether to speak to nodes on this computer only, as also with the variables of ROS 2
+    `ROS_LOCALHOST_ONLY=1` and `ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST`."""
     address: Annotated[str, Field(pattern=r"^[^\s/]+:[0-9]{1,5}$")] = "127.0.0.1:7447"
     """With `zenoh`: where the router listens, `host:port`."""
     router: Bool = False

@@ -8,9 +8,12 @@ from pathlib import Path
 import pytest
 
 import irsim
+from irsim.bridges.ros.backends.opening import open_backend
+from irsim.bridges.ros.inbox import Inbox
 from irsim.bridges.ros.topics import TABLE
 from irsim.common.extras import ExtraError
 from irsim.components.bridges._ros import TOPIC_KEYS, TOPIC_NAME, ShownOptions
+from irsim.components.bridges.ros2 import Ros2
 from irsim.diagnostics.errors import ScenarioError
 from irsim.options.base import field_docs
 
@@ -77,3 +80,24 @@ def test_a_missing_library_is_an_error_that_names_the_command(
     env = irsim.make(tmp_path / "a.yaml", display=False)
     with pytest.raises(ExtraError, match=re.escape(f"pip install 'irsim-mcp[{extra}]'")):
         irsim.connect(env)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "stays"),
+    [
+        ("ROS_LOCALHOST_ONLY", "1", True),
+        ("ROS_LOCALHOST_ONLY", "0", False),
+        ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", True),
+        ("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET", False),
+    ],
+)
+def test_variables_of_ros_keep_a_node_on_this_computer(
+    name: str, value: str, stays: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = []
+    monkeypatch.setattr("irsim.bridges.ros.backends.dds.DdsBackend", lambda *_, loopback, **__: found.append(loopback))
+    for variable in ("ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setenv(name, value)
+    open_backend(Ros2(backend="dds", domain=3), "node", [], Inbox(), None)  # type: ignore[arg-type]
+    assert found == [stays]

@@ -83,7 +83,14 @@ def _ros2(options: Ros2, node: str, topics: Sequence[Topic], inbox: Inbox, messa
         )  # fmt: skip
     from irsim.bridges.ros.backends.dds import DdsBackend
 
-    return DdsBackend(node, topics, inbox, messages, domain=domain, loopback=options.loopback)
+    loopback = options.loopback or _stays_here()
+    return DdsBackend(node, topics, inbox, messages, domain=domain, loopback=loopback)
+
+
+def _stays_here() -> bool:
+    """Whether the variables of ROS 2 say that nodes speak to those on this computer only."""
+    found = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() in ("LOCALHOST", "OFF")
+    return found or os.environ.get("ROS_LOCALHOST_ONLY") == "1"
 
 
 def _environment_domain() -> int:

@@ -138,11 +138,12 @@ def _open(address: str, router: bool, timeout: float) -> Any:
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
+        why = str(error).split(" at /")[0]  # then comes a place in the sources of Zenoh
         if router:
-            what, fix = f"a Zenoh router cannot listen at {address}: {error}", "name another port in `address`"
+            what, fix = f"a Zenoh router cannot listen at {address}: {why}", "name another port in `address`"
             raise BridgeError("bridge-failed", what, fix) from None
         fix = "start the router: ros2 run rmw_zenoh_cpp rmw_zenohd, or write router: true"
-        raise BridgeLostError(f"no Zenoh router answers at {address}: {error}", fix) from None
+        raise BridgeLostError(f"no Zenoh router answers at {address}: {why}", fix) from None
 
 
 def _encoded(qos: Qos) -> str:
