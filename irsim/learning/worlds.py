@@ -103,6 +103,7 @@ class Worlds:
         self._begun = np.zeros(n, dtype=bool)
         self._low: Floats = np.zeros((len(self.rows), 3))
         self._high: Floats = np.zeros((len(self.rows), 3))
+        self._bounded = True  # as far as is known; if not, each step finds out
         self.present = np.ones(self._shape, dtype=bool)
         self.level = np.zeros(n, dtype=np.int64)
         self.drawn: dict[str, NDArray[Any]] = {}
@@ -133,18 +134,24 @@ class Worlds:
             if these.any():
                 self._draw(these, next_scene or seeds is not None)
         self._begun[chosen] = True
-        stepper, state = self._stepper, self._simulation.state
         if self._draws.varies:
             self._read_draws(chosen)
-        stepper.over[chosen] = False
-        stepper.taking_part[chosen] = self.present[chosen]
-        stepper.ended[chosen] = ~self.present[chosen]
-        stepper.horizon[chosen] = self._horizons[self.level[chosen]]
-        self._low, self._high = state.vel_min.take(self.rows, axis=0), state.vel_max.take(self.rows, axis=0)
-        self._bounded = are_finite(self._low, self._high, self.width)
-        flags = self._simulation
-        stepper.arrived[chosen] = flags.arrived.take(self.rows).reshape(self._shape)[chosen] != 0
-        stepper.collided[chosen] = flags.collided.take(self.rows).reshape(self._shape)[chosen] != 0
+        self._begin(np.flatnonzero(chosen))
+
+    def _begin(self, worlds: NDArray[np.int64]) -> None:
+        """Set the flags and limits of the learners of worlds, (k,) of which a scene has begun."""
+        stepper, state = self._stepper, self._simulation.state
+        rows, present = self.rows.reshape(self._shape)[worlds], self.present[worlds]
+        stepper.over[worlds] = False
+        stepper.taking_part[worlds] = present
+        stepper.ended[worlds] = ~present
+        stepper.horizon[worlds] = self._horizons[self.level[worlds]]
+        stepper.arrived[worlds] = state.arrived[rows] != 0
+        stepper.collided[worlds] = state.collided[rows] != 0
+        low, high = state.vel_min[rows], state.vel_max[rows]
+        self._low.reshape(*self._shape, 3)[worlds] = low
+        self._high.reshape(*self._shape, 3)[worlds] = high
+        self._bounded &= are_finite(low.reshape(-1, 3), high.reshape(-1, 3), self.width)
 
     def set_level(self, level: int) -> None:
         """Set the level of the curriculum of the episodes that start from now on.

@@ -1,5 +1,5 @@
-// Options classes of kinematics, behaviors, sensors, shapes and observation parts and reward terms, generated from their lists of
-// fields.
+// Options classes of kinematics, behaviors, sensors, shapes and observation parts and reward terms, generated from
+// their lists of fields.
 #include "bindings/helpers.hpp"
 #include "parts.gen.hpp"
 #include "rewards.gen.hpp"
