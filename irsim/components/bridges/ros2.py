@@ -15,8 +15,9 @@ from irsim.options.units import Bool, Integer
 class Ros2(RosOptions):
     """Take part in ROS 2: RViz, Nav2 and robots see the scene, and send commands and goals; or drive real robots.
 
-    Odometry, scans, transforms, map, markers, pedestrians and reference paths go out as topics; the guide of the skill
-    irsim-runner has a table of them.
+    Keys of its topics are clock, tf, tf_static, map, markers, pedestrians, pedestrian_ids, odom, pose, reference_path
+    and scan, which go out, and cmd_vel, goal_pose, initialpose, robot_goal_pose and robot_initialpose, which come in;
+    with `mode: real` odom and scan come in, and cmd_vel or cmd_vel_preview goes out.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros2"}, {"name": "ros2", "backend": "zenoh"}]}
