@@ -56,7 +56,7 @@ DEBIAN_PEERS = (
 PYTHON_PEERS = ("mcap-ros2-support>=0.5", "msgpack>=1", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
 """Packages of Python that bridges meet in tests, and that are no dependencies."""
 BLENDER = "bpy==4.5.*"
-"""Blender as a module (947 MB), for the Python of bridges only; it needs another NumPy, so it has its own environment."""
+"""Blender as a module (947 MB), for the Python of bridges; in its own environment, as it needs another NumPy."""
 NPM_PEERS = ("@sparkjsdev/spark@2.2.0", "three@0.180.0")
 """A renderer of Gaussian splats that ours are compared with, in a browser."""
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")

@@ -15,6 +15,7 @@ __all__ = [
     "TEMPORARY",
     "Buffer",
     "TargetError",
+    "check_new",
     "check_suffix",
     "create_bytes",
     "replace_bytes",
@@ -48,6 +49,20 @@ def check_suffix(target: Path, known: Iterable[str]) -> None:
     suffixes = [suffix.lstrip(".") for suffix in known]
     if target.suffix.lower().lstrip(".") not in suffixes:
         raise TargetError("unknown-format", f"{target} has none of the suffixes {', '.join(suffixes)}")
+
+
+def check_new(target: Path, *, overwrite: bool) -> None:
+    """Refuse a file that exists before any work is done.
+
+    Args:
+        target: The file.
+        overwrite: It may be replaced.
+
+    Raises:
+        TargetError: The file exists and ``overwrite`` is not set.
+    """
+    if not overwrite and (target.exists() or target.is_symlink()):
+        raise TargetError("file-exists", f"{target} exists; --force overwrites it, -o names another file")
 
 
 def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:

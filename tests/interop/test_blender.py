@@ -1,6 +1,6 @@
 """Blender reads stages that we write: where bodies are over time, which meshes and cameras there are.
 
-``nox -s nightly`` installs Blender and runs them. With a Python that has bpy 4.5 already (947 MB from PyPI, Python 3.11):
+``nox -s nightly`` installs Blender (bpy 4.5, 947 MB from PyPI, Python 3.11) and runs them. With a Python that has it:
 ``IRSIM_NIGHTLY=1 IRSIM_BPY=/path/of/python pytest -m slow tests/interop/test_blender.py``.
 """
 
