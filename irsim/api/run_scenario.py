@@ -76,6 +76,7 @@ def run(
     show: bool = False,
     record: bool | str | Path = False,
     export: str | Path | Sequence[str | Path] = (),
+    overwrite: bool = False,
     recorded: Callable[[str], None] | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
@@ -103,6 +104,7 @@ def run(
             deleted 24 hours after its last use; a path records to a new folder that is kept.
             :func:`irsim.runs.open_run` reads the recording.
         export: Files to write when the run is over, each in the format of its suffix: see :func:`irsim.export_run`.
+        overwrite: Replace exported files that exist.
         recorded: Callback ``(run_id)``, called when the recording starts.
         limits: Limits of the loader and of the run.
         progress: Callback ``(steps_done, steps_total)``.
@@ -119,6 +121,7 @@ def run(
             the run with that reason instead.
         ArgumentError: ``steps`` is not a whole number, or both ``policy`` and ``behavior`` are given.
         RunError: The folder to record to is not empty.
+        TargetError: A file to export exists, and ``overwrite`` is not set.
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
@@ -149,7 +152,7 @@ def run(
         **({"perturb": perturb_texts} if perturb_texts else {}),
         **({"bridges": [bridge.name for bridge in connected]} if connected else {}),
     }
-    targets = check_exports([export] if isinstance(export, (str, Path)) else export)
+    targets = check_exports([export] if isinstance(export, (str, Path)) else export, overwrite=overwrite)
     with (
         kept_or_temporary(record, targets) as kept,
         connect(env, connected) if connected else nullcontext() as connection,
@@ -189,7 +192,7 @@ def run(
             result.summary += f"; {skipped}"
         if recorder is not None:
             recorder.finish(result)
-            exported, notes = export_all(Path(recorder.folder), targets)
+            exported, notes = export_all(Path(recorder.folder), targets, overwrite=overwrite)
             result.files += exported
             result.notes += notes
             if record is False:
