@@ -31,6 +31,7 @@ from irsim.episodes.episode import (
 from irsim.episodes.reproduce import region_options, reproduce_command
 from irsim.episodes.room import MAX_TRIES, crowded_message, first_with_room
 from irsim.episodes.run_report import run_result
+from irsim.episodes.unopened import unopened_findings
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
@@ -292,6 +293,9 @@ def render(
     scenario, warnings = read_input(path, None, strict=strict, limits=limits, behavior=behavior)
     if driver is not None:
         warnings = findings_under_policy(warnings, scenario)
+    animated = target.suffix.lower() in MOVING_SUFFIXES
+    if not as_snapshot and (steps or animated):
+        warnings = [*warnings, *unopened_findings(scenario, "a picture")]
     driven = driver.text or driver.name if driver is not None else behavior
     if as_snapshot:
         sheet = snapshot_of(
@@ -313,7 +317,6 @@ def render(
             driven=driven,
         )
         return _write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
-    animated = target.suffix.lower() in MOVING_SUFFIXES
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
     if region is not None:
         env._env_plot.set_region(region)
