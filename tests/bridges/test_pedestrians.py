@@ -298,6 +298,9 @@ def test_options_of_suites_that_do_not_fit(square: Path, tmp_path: Path) -> None
     with pytest.raises(TargetError, match="exists"):
         import_pedestrians(square, tmp_path / "new.yaml", suite=tmp_path / "old.yaml")
     assert [path.name for path in tmp_path.iterdir()] == ["old.yaml"], "neither file is written"
+    for layout, expected in ((Layout("x", behavior="rov"), "did you mean rvo"), (Layout("x", margin=-1.0), "margin")):
+        with pytest.raises(ArgumentError, match=expected):
+            import_pedestrians(square, tmp_path / "s.yaml", layout=layout)
     with pytest.raises(BridgeError, match="nobody"):
         import_pedestrians(square, suite=tmp_path / "s.yaml", window=Window(box=(100, 100, 101, 101)))
 

@@ -15,7 +15,10 @@ from irsim.bridges.pedestrians.scenario import Layout, scenario_text
 from irsim.bridges.pedestrians.suite import Episodes, SuiteText, suite_text
 from irsim.bridges.pedestrians.tracks import Track, Window, frame_rate, make_tracks, pixels_to_metres
 from irsim.common.files import check_new, write_new
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
+from irsim.options.registry import BEHAVIORS
 
 __all__ = ["ImportedPedestrians", "import_pedestrians"]
 
@@ -103,6 +106,12 @@ def import_pedestrians(
         raise ArgumentError(
             f"a suite has at most {MAX_SCENARIOS} windows, got {episodes.windows}", "give fewer windows"
         )
+    if not (math.isfinite(layout.margin) and layout.margin >= 0):
+        raise ArgumentError(f"margin must be 0 or more, got {layout.margin}", "give a margin in metres, such as 1")
+    if layout.robot and BEHAVIORS.get(layout.behavior) is None:
+        known = BEHAVIORS.names()
+        fix = suggestion(layout.behavior, known, f"choose from {', '.join(known)}")
+        raise ArgumentError(f"{clean(layout.behavior)!r} is not a behavior", fix)
     for target in targets:
         check_new(target, overwrite=overwrite)
     recording = read_recording(path, form)
