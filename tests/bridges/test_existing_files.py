@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,8 +11,10 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 import irsim
+from irsim.bridges.export.registry import format_names
 from irsim.cli.app import app
 from irsim.common.files import TargetError
+from irsim.lookup.topics import lookup
 from irsim.runs import RunError
 from tests.bridges import crowds
 
@@ -87,6 +90,11 @@ def test_names_that_are_no_files(call: Callable[[str], Result], name: str) -> No
     assert done.exit_code in (1, 2)
     assert "is no folder" in done.output, done.output
     assert Path("scene.yaml").read_text() == SCENE
+
+
+def test_the_formats_are_described() -> None:
+    text = lookup("exports").text
+    assert [name for name in format_names() if not re.search(rf"\b{name}\b", text)] == []
 
 
 def test_exports_from_python(call: Callable[[str], Result]) -> None:
