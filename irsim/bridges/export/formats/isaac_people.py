@@ -125,4 +125,4 @@ def _number(value: float) -> str:
     return "0" if text == "-0" else text
 
 
-FORMAT = Format("isaac_people", ".txt", _write, ranges=False, objects="people", options=PeopleOptions)
+FORMAT = Format("isaac_people", ".txt", _write, ranges=False, objects="people", options=PeopleOptions, named=True)
