@@ -235,7 +235,7 @@ void reset(const World& world, State& state, const std::uint8_t* mask, bool next
   }
   threads = std::max(1, std::min(threads, static_cast<int>(chosen.size()) / kResetsPerThread));
   while (static_cast<int>(state.workspaces.size()) < threads) state.workspaces.emplace_back();
-  one_by_one(chosen.size(), threads, [&](std::size_t k, int thread) {
+  one_by_one(state.crew, chosen.size(), threads, [&](std::size_t k, int thread) {
     const int w = chosen[k];
     Workspace& work = state.workspaces[thread];
     if (state.fresh[w] || next_scene) {
