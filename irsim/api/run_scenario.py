@@ -16,12 +16,14 @@ from irsim.bridges.connect import connect, open_bridges
 from irsim.bridges.options import bridge_text, check_files, read_bridges
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
+from irsim.common.text import seconds
 from irsim.diagnostics.errors import ArgumentError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import (
     Progress,
     advance,
+    as_finding,
     default_time_limit,
     horizon_of,
     import_modules,
@@ -37,6 +39,7 @@ from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
+from irsim.scenario.checks.bridges import driven_without_goal
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
 from irsim.simulation.random_streams import fresh_seed
@@ -79,6 +82,7 @@ def run(
     export: str | Path | Sequence[str | Path] = (),
     overwrite: bool = False,
     recorded: Callable[[str], None] | None = None,
+    connected: Callable[[str], None] | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> RunResult:
@@ -107,6 +111,7 @@ def run(
         export: Files to write when the run is over, each in the format of its suffix: see :func:`irsim.export_run`.
         overwrite: Replace exported files that exist.
         recorded: Callback ``(run_id)``, called when the recording starts.
+        connected: Callback ``(sentence)``, called when all bridges are connected: with what, and when the run ends.
         limits: Limits of the loader and of the run.
         progress: Callback ``(steps_done, steps_total)``.
 
@@ -144,32 +149,36 @@ def run(
     )
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     others = read_bridges(bridges)
-    connected = _bridges([*scenario.bridges, *others], limits)
+    warnings = [*warnings, *(as_finding(found.diagnostic) for found in driven_without_goal(scenario, others))]
+    opened = _bridges([*scenario.bridges, *others], limits)
     options = {
         "strict": strict,
         "imports": list(imports),
         **({} if behavior_text is None else {"behavior": behavior_text}),
         **({} if driver is None else {"policy": driver.text or driver.name, "policy_digest": driver.digest}),
         **({"perturb": perturb_texts} if perturb_texts else {}),
-        **({"bridges": [bridge.name for bridge in connected]} if connected else {}),
+        **({"bridges": [bridge.name for bridge in opened]} if opened else {}),
     }
     targets = check_exports([export] if isinstance(export, (str, Path)) else export, overwrite=overwrite)
     with (
         kept_or_temporary(record, targets) as kept,
-        connect(env, connected) if connected else nullcontext() as connection,
+        connect(env, opened) if opened else nullcontext() as connection,
         recording(env, path, kept, horizon=horizon, options=options) as recorder,
     ):
+        if connection is not None and connected is not None:
+            stops = " and stops the robots" if any(bridge.mode == "real" for bridge in opened) else ""
+            until = f"the run ends when all robots have arrived or stopped, or at {seconds(horizon * env.step_time)}"
+            connected(f"connected to {connection.peers()}; {until}; Ctrl-C ends it now{stops}")
         if recorder is not None and recorded is not None and record is not False:
             recorded(recorder.run_id)
-        files, lost, who = list[str](), None, ""
+        files, lost = list[str](), None
         try:
             if save is None and not show:
                 advance(env, horizon, progress, recorder=recorder)
             else:
                 files = _animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
         except (PolicyLostError, BridgeLostError) as error:
-            lost = error.message
-            who = "program of a bridge" if isinstance(error, BridgeLostError) else "policy"
+            lost = error
         result = run_result(
             env,
             path,
@@ -185,8 +194,6 @@ def run(
             bridges=[bridge_text(one) for one in others],
             lost=lost,
         )
-        if lost is not None:
-            result.summary += f"; the {who} was lost, which ended the run"
         if connection is not None:
             result.notes += connection.notes()
         if skipped := crowded_message(crowded):

@@ -71,11 +71,9 @@ def _report(error: BaseException, *, as_json: bool) -> int:
 
         print_diagnostics(error.diagnostics, error.source, stderr=True)
     else:
-        from rich.text import Text
+        from irsim.cli.output import print_error
 
-        from irsim.cli.output import console
-
-        console(stderr=True).print(Text.assemble(("error ", "bold red"), (code, "bold"), f": {message}"))
+        print_error(code, message)
     if as_json:
         data: dict[str, object] = {"code": code, "message": message}
         if found := getattr(error, "diagnostics", ()):
