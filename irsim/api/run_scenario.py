@@ -33,6 +33,7 @@ from irsim.episodes.episode import (
 from irsim.episodes.reproduce import region_options, reproduce_command
 from irsim.episodes.room import MAX_TRIES, crowded_message, first_with_room
 from irsim.episodes.run_report import run_result
+from irsim.episodes.unopened import unopened_findings
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
@@ -79,6 +80,7 @@ def run(
     show: bool = False,
     record: bool | str | Path = False,
     export: str | Path | Sequence[str | Path] = (),
+    overwrite: bool = False,
     recorded: Callable[[str], None] | None = None,
     connected: Callable[[str], None] | None = None,
     limits: Limits | None = None,
@@ -107,6 +109,7 @@ def run(
             deleted 24 hours after its last use; a path records to a new folder that is kept.
             :func:`irsim.runs.open_run` reads the recording.
         export: Files to write when the run is over, each in the format of its suffix: see :func:`irsim.export_run`.
+        overwrite: Replace exported files that exist.
         recorded: Callback ``(run_id)``, called when the recording starts.
         connected: Callback ``(sentence)``, called when all bridges are connected: with what, and when the run ends.
         limits: Limits of the loader and of the run.
@@ -124,6 +127,7 @@ def run(
             the run with that reason instead.
         ArgumentError: ``steps`` is not a whole number, or both ``policy`` and ``behavior`` are given.
         RunError: The folder to record to is not empty.
+        TargetError: A file to export exists, and ``overwrite`` is not set.
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
@@ -155,7 +159,7 @@ def run(
         **({"perturb": perturb_texts} if perturb_texts else {}),
         **({"bridges": [bridge.name for bridge in opened]} if opened else {}),
     }
-    targets = check_exports([export] if isinstance(export, (str, Path)) else export)
+    targets = check_exports([export] if isinstance(export, (str, Path)) else export, overwrite=overwrite)
     with (
         kept_or_temporary(record, targets) as kept,
         connect(env, opened) if opened else nullcontext() as connection,
@@ -196,7 +200,7 @@ def run(
             result.summary += f"; {skipped}"
         if recorder is not None:
             recorder.finish(result)
-            exported, notes = export_all(Path(recorder.folder), targets)
+            exported, notes = export_all(Path(recorder.folder), targets, overwrite=overwrite)
             result.files += exported
             result.notes += notes
             if record is False:
@@ -296,6 +300,9 @@ def render(
     scenario, warnings = read_input(path, None, strict=strict, limits=limits, behavior=behavior)
     if driver is not None:
         warnings = findings_under_policy(warnings, scenario)
+    animated = target.suffix.lower() in MOVING_SUFFIXES
+    if not as_snapshot and (steps or animated):
+        warnings = [*warnings, *unopened_findings(scenario, "a picture")]
     driven = driver.text or driver.name if driver is not None else behavior
     if as_snapshot:
         sheet = snapshot_of(
@@ -317,7 +324,6 @@ def render(
             driven=driven,
         )
         return _write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
-    animated = target.suffix.lower() in MOVING_SUFFIXES
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
     if region is not None:
         env._env_plot.set_region(region)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
 from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import Feedback, Motion, WorldState
+from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import CodedError
 
 __all__ = ["Bridge", "BridgeError", "BridgeLostError", "Clock", "Mode"]
@@ -17,7 +19,13 @@ Clock: TypeAlias = Literal["irsim", "external", "wall"]
 
 
 class BridgeError(CodedError, ValueError):
-    """A bridge cannot be opened, or failed; the codes are those of :mod:`irsim.diagnostics.codes.bridges`."""
+    """A bridge cannot be opened, or failed; the codes are those of :mod:`irsim.diagnostics.codes.bridges`.
+
+    Attributes:
+        diagnostics: The problems of options that are not valid; their codes are those of scenarios.
+    """
+
+    diagnostics: Sequence[Diagnostic] = ()
 
 
 class BridgeLostError(BridgeError):

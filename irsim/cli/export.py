@@ -35,7 +35,7 @@ def export(
             "-o",
             "--out",
             metavar="PATH",
-            help="File to write; for minari a new folder. Default: named after the run, in the current directory.",
+            help="File to write; for some formats a new folder. Default: named after the run, in this directory.",
             show_default=False,
         ),
     ] = None,
@@ -43,8 +43,8 @@ def export(
         str | None,
         typer.Option(
             metavar="WHICH",
-            help="movers (robots, and obstacles that can move), robots, all, or names separated by commas. "
-            "Default: movers, but robots for cameras.",
+            help="movers (robots, and obstacles that can move), robots, people (obstacles that can move), all, or "
+            "names separated by commas. Default: movers, but robots for cameras and people for isaac_people.",
             show_default=False,
         ),
     ] = None,
@@ -63,6 +63,7 @@ def export(
             show_default=False,
         ),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
     json_output: Json = False,
 ) -> None:
     """Write recorded runs for other programs: tables, ROS 2 bags, datasets, cameras, scenes of other simulators.
@@ -87,6 +88,7 @@ def export(
             objects=chosen,
             ranges=ranges,
             options=parse_options(options or []),
+            overwrite=force,
             progress=report,
         )
     if json_output:

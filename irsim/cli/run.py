@@ -80,6 +80,7 @@ def run(
             show_default=False,
         ),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files of --export that exist.")] = False,
     max_objects: MaxObjects = None,
 ) -> None:
     """Simulate a scenario until every robot has arrived or collided, or the time limit is reached.
@@ -115,6 +116,7 @@ def run(
             show=show,
             record=record if record_to is None else record_to,
             export=export or (),
+            overwrite=force,
             limits=limits_for(max_objects),
             progress=report,
             connected=None if json_output else partial(typer.echo, err=True),

@@ -40,10 +40,11 @@ def rgb(color: Any) -> tuple[float, float, float]:
         return _of_digits(_CYCLED[int(color[1:]) % len(_CYCLED)][1:])
     if color[:1] in "01.":
         return (float(color),) * 3
-    from PIL.ImageColor import colormap
+    from PIL.ImageColor import colormap, getrgb
 
-    if (found := colormap.get(color.lower())) is not None:
-        return _of_digits(str(found)[1:])
+    if (name := color.lower()) in colormap:
+        red, green, blue, *_ = (value / 255 for value in getrgb(name))
+        return red, green, blue
     from matplotlib.colors import to_rgb  # knows the many names of xkcd, and takes half a second to load
 
     red, green, blue = to_rgb(color)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from matplotlib.colors import to_rgb
+from PIL.ImageColor import getrgb
 
 from irsim.options.color_values import rgb
 from irsim.options.colors import CYCLE, NAMES
@@ -22,6 +23,10 @@ def test_a_color_is_the_one_that_is_drawn(color: Any) -> None:
 
 def test_names_may_have_capital_letters() -> None:
     assert rgb("SteelBlue") == rgb("steelblue")
+
+
+def test_a_name_that_pillow_has_read_before_is_the_same() -> None:
+    assert rgb("teal") == rgb("teal") == tuple(value / 255 for value in getrgb("teal"))
 
 
 @pytest.mark.parametrize("color", ["#12", "#xyzxyz", "nocolor", "C", "1.2.3"])

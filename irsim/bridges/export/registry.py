@@ -40,6 +40,7 @@ class Format:
         objects: Word that chooses the objects unless the caller does.
         options: Model of its options, which writers find in :attr:`Episode.options`; None without any.
         more_suffixes: Other suffixes of its files, which select how it writes them.
+        named: Whether a file must name it, as ``x.NAME.txt`` does, because the suffix says nothing.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Format:
     options: type[Options] | None = None
     extra: str = "records"
     more_suffixes: tuple[str, ...] = ()
+    named: bool = False
 
 
 @cache
@@ -74,9 +76,11 @@ def find_format(name: str | None, out: Path | None) -> Format:
             raise RunError("bad-argument", "no format was given", f"name one with --to; {listed}", where="to")
         known = [_load(one) for one in format_names()]
         fitting = [one for one in known if out.suffix.lower() in (one.suffix, *one.more_suffixes)]
+        called = Path(out.stem).suffix.lower()  # x.mjcf.xml says which
+        fitting = [one for one in fitting if not one.named or called == f".{one.name}"]
+        if len(fitting) > 1:
+            fitting = [one for one in fitting if called == f".{one.name}"] or fitting
         fitting = fitting or [one for one in known if one.folder and out.name.lower().endswith(one.suffix)]
-        if len(fitting) > 1:  # x.mjcf.xml says which
-            fitting = [one for one in fitting if Path(out.stem).suffix.lower() == f".{one.name}"] or fitting
         if len(fitting) == 1:
             return fitting[0]
         if fitting:
@@ -85,7 +89,11 @@ def find_format(name: str | None, out: Path | None) -> Format:
             fix = f"name the file {named}, or the format with --to {fitting[0].name}"
             raise RunError("unknown-format", what, fix, where="to")
         what = f"the suffix of '{clean(out, 200)}' does not select a format"
-        suffixes = {suffix for one in known for suffix in (one.suffix, *one.more_suffixes)}
+        suffixes = {
+            suffix
+            for one in known
+            for suffix in (f".{one.name}{one.suffix}" if one.named else one.suffix, *one.more_suffixes)
+        }
         ends = ", ".join(sorted(suffixes, key=lambda suffix: (not suffix.startswith("."), suffix)))
         fix = f"end it with one of {ends}, or name the format with `irsim export --to`; {listed}"
         raise RunError("unknown-format", what, fix, where="to")

@@ -14,14 +14,30 @@ from irsim.bridges.pedestrians.tracks import Track
 from irsim.common.arrays import Floats
 from irsim.scenario.limits import DEFAULT_LIMITS
 
-__all__ = ["Layout", "default_robot", "scenario_text"]
+__all__ = [
+    "ROBOT_RADIUS",
+    "Layout",
+    "bounds",
+    "check_size",
+    "checked",
+    "crossing_time",
+    "default_robot",
+    "number",
+    "people_lines",
+    "robot_lines",
+    "scenario_text",
+    "world_lines",
+]
 
 _ROBOT_SPEED = 1.2
 """Top speed of the robot [m/s]."""
 _PATIENCE = 2.5
 """Factor on the time that the robot would need alone."""
+ROBOT_RADIUS = 0.3
+"""[m]."""
 _EVENTS_PER_ROW = 6
 """Events of YAML of one row: a time, two numbers and the brackets around them."""
+_FIX = "choose a window of time or space: --from, --to, --crop"
 
 
 @dataclass(frozen=True)
@@ -67,33 +83,104 @@ def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
     Raises:
         BridgeError: The scenario would be larger than scenarios may be.
     """
-    rows = sum(len(track.times) for track in tracks)
-    if rows * _EVENTS_PER_ROW > DEFAULT_LIMITS.events or len(tracks) > DEFAULT_LIMITS.objects:
-        what = f"{len(tracks)} pedestrians with {rows} rows are more than a scenario may hold"
-        raise BridgeError("bridge-file", what, "choose a window of time or space: --from, --to, --crop")
-    everything = np.concatenate([track.places for track in tracks])
-    ends = [point for point in (layout.start, layout.goal) if point is not None]
-    corners = np.concatenate([everything, np.array(ends).reshape(-1, 2)])
-    low = np.floor((corners.min(axis=0) - layout.margin) * 100) / 100
-    high = np.ceil((corners.max(axis=0) + layout.margin) * 100) / 100
+    check_size(tracks)
+    low, high = bounds(tracks, layout)
+    start, goal = default_robot(low, high, layout.margin)
+    start, goal = layout.start or start, layout.goal or goal
     duration = max(float(track.times[-1]) for track in tracks)
-    size = high - low
-    limit = max(duration, layout.step_time, _time_of_robot(layout, low, high))
+    patience = crossing_time(start, goal) if layout.robot else 0.0
+    heading = float(np.arctan2(goal[1] - start[1], goal[0] - start[0]))
+    ways = [
+        f"state: [{number(start[0])}, {number(start[1])}, {number(heading)}]",
+        f"goal: [{number(goal[0])}, {number(goal[1])}]",
+    ]
     lines = [
         f"# {len(tracks)} recorded pedestrians of {json.dumps(layout.source)}, replayed at their times. The recording",
         f"# ends after {duration:g} s. Written by `irsim bridge import-pedestrians`.",
         "",
-        "world:",
-        f"  width: {_number(size[0])}  # m",
-        f"  height: {_number(size[1])}  # m",
-        f"  offset: [{_number(low[0])}, {_number(low[1])}]  # m",
-        f"  step_time: {layout.step_time!r}  # s",
-        f"  time_limit: {_number(limit)}  # s",
+        *world_lines(low, high, layout),
+        f"  time_limit: {number(max(duration, layout.step_time, patience))}  # s",
+        "",
+        *([*robot_lines(ways, layout.behavior), ""] if layout.robot else []),
+        *people_lines(tracks, layout),
         "",
     ]
-    if layout.robot:
-        lines += _robot(layout, low, high)
-    lines += [
+    return checked("\n".join(lines))
+
+
+def check_size(tracks: Sequence[Track]) -> None:
+    """Refuse more pedestrians than a file may hold.
+
+    Raises:
+        BridgeError: There are too many pedestrians, or too many rows.
+    """
+    rows = sum(len(track.times) for track in tracks)
+    if rows * _EVENTS_PER_ROW > DEFAULT_LIMITS.events or len(tracks) > DEFAULT_LIMITS.objects:
+        raise BridgeError(
+            "bridge-file", f"{len(tracks)} pedestrians with {rows} rows are more than a file may hold", _FIX
+        )
+
+
+def checked(text: str) -> str:
+    """A text, unless it is longer than a scenario may be.
+
+    Raises:
+        BridgeError: It is.
+    """
+    if len(text) > DEFAULT_LIMITS.bytes:
+        raise BridgeError("bridge-file", f"the file would have {len(text) / 1e6:.0f} MB, more than it may have", _FIX)
+    return text
+
+
+def bounds(tracks: Sequence[Track], layout: Layout) -> tuple[Floats, Floats]:
+    """(2,) lower left and upper right corner of the world [m]."""
+    ends = [point for point in (layout.start, layout.goal) if point is not None]
+    corners = np.concatenate([*(track.places for track in tracks), np.array(ends).reshape(-1, 2)])
+    low = np.floor((corners.min(axis=0) - layout.margin) * 100) / 100
+    high = np.ceil((corners.max(axis=0) + layout.margin) * 100) / 100
+    return low, high
+
+
+def crossing_time(start: Sequence[float], goal: Sequence[float]) -> int:
+    """Time that the robot needs from one place to another, with room for giving way, in whole seconds."""
+    return math.ceil(_PATIENCE * math.dist(start, goal) / _ROBOT_SPEED)
+
+
+def world_lines(low: Floats, high: Floats, layout: Layout) -> list[str]:
+    """The key ``world`` without its time limit."""
+    return [
+        "world:",
+        f"  width: {number(high[0] - low[0])}  # m",
+        f"  height: {number(high[1] - low[1])}  # m",
+        f"  offset: [{number(low[0])}, {number(low[1])}]  # m",
+        f"  step_time: {layout.step_time!r}  # s",
+    ]
+
+
+def robot_lines(ways: Sequence[str], behavior: str) -> list[str]:
+    """The key ``robot``.
+
+    Args:
+        ways: Keys of its start and goal.
+        behavior: Its behavior.
+    """
+    return [
+        "robot:",
+        "  - name: robot",
+        "    kinematics: {name: diff}",
+        f"    shape: {{name: circle, radius: {ROBOT_RADIUS}}}",
+        *(f"    {line}" for line in ways),
+        "    goal_threshold: 0.3",
+        f"    vel_max: [{_ROBOT_SPEED}, 2.0]  # m/s, rad/s",
+        "    vel_min: [-0.3, -2.0]",
+        f"    behavior: {{name: {json.dumps(behavior)}}}",
+        "    color: '#0072B2'",
+    ]
+
+
+def people_lines(tracks: Sequence[Track], layout: Layout) -> list[str]:
+    """The key ``obstacle``: the pedestrians."""
+    return [
         "obstacle:",
         f"  - number: {len(tracks)}",
         "    tags: [pedestrian]",
@@ -103,43 +190,6 @@ def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
         "    color: '#56B4E9'",
         "    behavior:  # times [s] and places [m]",
         *(_behavior(track, layout) for track in tracks),
-        "",
-    ]
-    text = "\n".join(lines)
-    if len(text) > DEFAULT_LIMITS.bytes:
-        what = f"the scenario would have {len(text) / 1e6:.0f} MB, more than scenarios may have"
-        raise BridgeError("bridge-file", what, "choose a window of time or space: --from, --to, --crop")
-    return text
-
-
-def _ends(layout: Layout, low: Floats, high: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
-    start, goal = default_robot(low, high, layout.margin)
-    return layout.start or start, layout.goal or goal
-
-
-def _time_of_robot(layout: Layout, low: Floats, high: Floats) -> float:
-    """Time that the robot needs with room for giving way, in whole seconds; 0 without one."""
-    if not layout.robot:
-        return 0.0
-    return math.ceil(_PATIENCE * math.dist(*_ends(layout, low, high)) / _ROBOT_SPEED)
-
-
-def _robot(layout: Layout, low: Floats, high: Floats) -> list[str]:
-    start, goal = _ends(layout, low, high)
-    heading = float(np.arctan2(goal[1] - start[1], goal[0] - start[0]))
-    return [
-        "robot:",
-        "  - name: robot",
-        "    kinematics: {name: diff}",
-        "    shape: {name: circle, radius: 0.3}",
-        f"    state: [{_number(start[0])}, {_number(start[1])}, {_number(heading)}]",
-        f"    goal: [{_number(goal[0])}, {_number(goal[1])}]",
-        "    goal_threshold: 0.3",
-        f"    vel_max: [{_ROBOT_SPEED}, 2.0]  # m/s, rad/s",
-        "    vel_min: [-0.3, -2.0]",
-        f"    behavior: {{name: {json.dumps(layout.behavior)}}}",
-        "    color: '#0072B2'",
-        "",
     ]
 
 
@@ -158,5 +208,6 @@ def _exact(value: float) -> str:
     return text if "e" not in text or "." in text else text.replace("e", ".0e")
 
 
-def _number(value: float) -> str:
+def number(value: float) -> str:
+    """The number with four digits behind the point, as YAML."""
     return _exact(round(float(value), 4))
