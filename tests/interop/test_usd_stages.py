@@ -60,6 +60,20 @@ def test_a_flat_in_any_unit_and_axis(tmp_path, up, unit, suffix) -> None:
     assert sidecar.scale == pytest.approx(1 / unit)
 
 
+def test_a_stage_that_does_not_say_its_unit(tmp_path) -> None:
+    stage, _ = new_stage(tmp_path / "flat.usda")
+    add_mesh(stage, "/World/flat", flat())
+    stage.ClearMetadata("metersPerUnit")
+    stage.ClearMetadata("upAxis")
+    stage.Save()
+    with pytest.raises(BridgeError, match="--up y or z.* --meters-per-unit"):
+        import_map(tmp_path / "flat.usda", tmp_path / "flat.yaml")
+    result = import_map(tmp_path / "flat.usda", tmp_path / "flat.yaml", up="z", meters_per_unit=1)
+    assert result.free_area == pytest.approx(40.5, abs=0.6)
+    sidecar = read_sidecar(tmp_path / "flat.yaml")
+    assert sidecar.to_scene([[1.8, 1.45]], height=0.75) == pytest.approx(np.array([[1.8, 1.45, 0.75]]), abs=1e-9)
+
+
 def test_turned_mirrored_and_instanced(tmp_path) -> None:
     """Two instances of a room, one mirrored, beside a cube that is scaled; what is hidden or a guide does not count."""
     file = tmp_path / "rooms.usda"

@@ -29,7 +29,7 @@ def main() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     try:
-        answer = _read(Path(request["file"]), Path(request["out"]), int(request["triangles"]))
+        answer = _read(request)
     except Refused as refused:
         answer = dict(zip(("error", "fix"), refused.args, strict=False))
     except MemoryError:
@@ -40,24 +40,28 @@ def main() -> None:
     os._exit(0)  # what the library does at its end can fail, and nothing is left to do
 
 
-def _read(path: Path, out: Path, most: int) -> dict[str, Any]:
+def _read(request: dict[str, Any]) -> dict[str, Any]:
     from pxr import Usd, UsdGeom
+
+    path = Path(request["file"])
 
     missing = _check_layers(path)
     stage = Usd.Stage.Open(str(path))
     if stage is None:
         raise Refused("it is damaged: no stage can be opened from it")
-    up = str(UsdGeom.GetStageUpAxis(stage))
-    scale = float(UsdGeom.GetStageMetersPerUnit(stage))
+    up = str(UsdGeom.GetStageUpAxis(stage)) if request["up"] == "auto" else request["up"].upper()
+    scale = float(request["unit"] or UsdGeom.GetStageMetersPerUnit(stage))
     if not 1e-6 <= scale <= 1e6:
         raise Refused(f"its metersPerUnit is {scale:g}", "set metersPerUnit of the stage")
-    collector = Collector(most)
+    collector = Collector(int(request["triangles"]))
     triangles = collector.stage(stage) * scale
     if up == "Y":
         triangles = np.stack([triangles[..., 0], -triangles[..., 2], triangles[..., 1]], axis=-1)
-    np.savez(out, triangles=triangles)
+    np.savez(request["out"], triangles=triangles)
     left_out = ", ".join(sorted(collector.left_out))
     notes = [f"prims of these types were left out: {left_out}"] if left_out else []
+    if request["unit"] is None and not UsdGeom.StageHasAuthoredMetersPerUnit(stage):
+        notes.append(f"it does not say its unit, which is then {scale:g} m; --meters-per-unit gives another")
     if len(missing) == 1:
         notes.append(f"one of its layers was not found: '{missing[0][:150]}'")
     elif missing:
