@@ -66,7 +66,7 @@ def test_a_stage_that_does_not_say_its_unit(tmp_path) -> None:
     stage.ClearMetadata("metersPerUnit")
     stage.ClearMetadata("upAxis")
     stage.Save()
-    with pytest.raises(BridgeError, match="--up y or z.* --meters-per-unit"):
+    with pytest.raises(BridgeError, match=r"--up y or z.*--meters-per-unit"):
         import_map(tmp_path / "flat.usda", tmp_path / "flat.yaml")
     result = import_map(tmp_path / "flat.usda", tmp_path / "flat.yaml", up="z", meters_per_unit=1)
     assert result.free_area == pytest.approx(40.5, abs=0.6)
