@@ -93,13 +93,9 @@ def import_pedestrians(
     if json_output:
         typer.echo(json.dumps(asdict(found)))
         return
-    console().print(
-        Text.assemble(
-            "wrote ", (found.file, "bold"), f": {found.pedestrians} pedestrians, {found.rows} recorded places, "
-            f"{found.duration:g} s",
-        ),
-        soft_wrap=True,
-    )  # fmt: skip
+    people = f"{found.pedestrians} pedestrian{'' if found.pedestrians == 1 else 's'}"
+    what = f": {people}, {found.rows} recorded places, {found.duration:g} s"
+    console().print(Text.assemble("wrote ", (found.file, "bold"), what), soft_wrap=True)
     for note in found.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)
     console().print(Text.assemble("run it: ", (f"irsim run {found.file}", "cyan")), soft_wrap=True)

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -14,12 +15,16 @@ from irsim.bridges.pedestrians.tracks import Track
 from irsim.common.arrays import Floats
 from irsim.scenario.limits import DEFAULT_LIMITS
 
-__all__ = ["Layout", "default_robot", "scenario_text"]
+__all__ = ["Layout", "scenario_text"]
 
+Place: TypeAlias = tuple[float, float]
 _ROBOT_SPEED = 1.2
 """Top speed of the robot [m/s]."""
 _PATIENCE = 2.5
 """Factor on the time that the robot would need alone."""
+_ROBOT_RADIUS = 0.3
+_FIRST, _ROOM = 2.0, 0.5
+"""For how long from the start nobody comes closer to where the robot starts than this [s, m]."""
 _EVENTS_PER_ROW = 6
 """Events of YAML of one row: a time, two numbers and the brackets around them."""
 
@@ -50,11 +55,24 @@ class Layout:
     robot: bool = True
 
 
-def default_robot(low: Floats, high: Floats, margin: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Start and goal at the left and right edge of an area."""
-    middle = float(low[1] + high[1]) / 2
-    inset = min(margin / 2, float(high[0] - low[0]) / 4)
-    return (float(low[0]) + inset, middle), (float(high[0]) - inset, middle)
+def _start(tracks: Sequence[Track], layout: Layout, low: Floats, high: Floats, x: float) -> tuple[float, float]:
+    """The place at that x that is nearest to the middle and keeps clear of those who are there first.
+
+    Where no place does, it is the one with most room.
+    """
+    near = []
+    for track in tracks:
+        times = np.arange(0.0, _FIRST + 0.05, 0.1)
+        times = times[(times >= track.times[0]) & (times <= track.times[-1])]
+        near.append(np.column_stack([np.interp(times, track.times, track.places[:, axis]) for axis in (0, 1)]))
+    people = np.concatenate(near)
+    middle, reach = float(low[1] + high[1]) / 2, float(high[1] - low[1]) / 2 - _ROBOT_RADIUS
+    heights = middle + reach * np.array(sorted(np.linspace(-1, 1, 81), key=abs))
+    if not len(people) or reach <= 0:
+        return x, middle
+    room = np.array([np.hypot(people[:, 0] - x, people[:, 1] - y).min() for y in heights])
+    clear = np.flatnonzero(room >= layout.radius + _ROBOT_RADIUS + _ROOM)
+    return x, float(heights[clear[0] if len(clear) else int(room.argmax())])
 
 
 def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
@@ -72,13 +90,14 @@ def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
         what = f"{len(tracks)} pedestrians with {rows} rows are more than a scenario may hold"
         raise BridgeError("bridge-file", what, "choose a window of time or space: --from, --to, --crop")
     everything = np.concatenate([track.places for track in tracks])
-    ends = [point for point in (layout.start, layout.goal) if point is not None]
-    corners = np.concatenate([everything, np.array(ends).reshape(-1, 2)])
+    given = [point for point in (layout.start, layout.goal) if point is not None]
+    corners = np.concatenate([everything, np.array(given).reshape(-1, 2)])
     low = np.floor((corners.min(axis=0) - layout.margin) * 100) / 100
     high = np.ceil((corners.max(axis=0) + layout.margin) * 100) / 100
     duration = max(float(track.times[-1]) for track in tracks)
     size = high - low
-    limit = max(duration, layout.step_time, _time_of_robot(layout, low, high))
+    ends = _ends(tracks, layout, low, high)
+    limit = max(duration, layout.step_time, _time_of_robot(ends) if layout.robot else 0.0)
     lines = [
         f"# {len(tracks)} recorded pedestrians of {json.dumps(layout.source)}, replayed at their times. The recording",
         f"# ends after {duration:g} s. Written by `irsim bridge import-pedestrians`.",
@@ -92,7 +111,7 @@ def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
         "",
     ]
     if layout.robot:
-        lines += _robot(layout, low, high)
+        lines += _robot(layout, *ends)
     lines += [
         "obstacle:",
         f"  - number: {len(tracks)}",
@@ -112,20 +131,19 @@ def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
     return text
 
 
-def _ends(layout: Layout, low: Floats, high: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
-    start, goal = default_robot(low, high, layout.margin)
-    return layout.start or start, layout.goal or goal
+def _ends(tracks: Sequence[Track], layout: Layout, low: Floats, high: Floats) -> tuple[Place, Place]:
+    """Start and goal of the robot, by default at the left and right edge."""
+    inset = min(layout.margin / 2, float(high[0] - low[0]) / 4)
+    start = layout.start or _start(tracks, layout, low, high, float(low[0]) + inset)
+    return start, layout.goal or (float(high[0]) - inset, float(low[1] + high[1]) / 2)
 
 
-def _time_of_robot(layout: Layout, low: Floats, high: Floats) -> float:
-    """Time that the robot needs with room for giving way, in whole seconds; 0 without one."""
-    if not layout.robot:
-        return 0.0
-    return math.ceil(_PATIENCE * math.dist(*_ends(layout, low, high)) / _ROBOT_SPEED)
+def _time_of_robot(ends: tuple[Place, Place]) -> float:
+    """Time that the robot needs with room for giving way, in whole seconds."""
+    return math.ceil(_PATIENCE * math.dist(*ends) / _ROBOT_SPEED)
 
 
-def _robot(layout: Layout, low: Floats, high: Floats) -> list[str]:
-    start, goal = _ends(layout, low, high)
+def _robot(layout: Layout, start: Place, goal: Place) -> list[str]:
     heading = float(np.arctan2(goal[1] - start[1], goal[0] - start[0]))
     return [
         "robot:",
