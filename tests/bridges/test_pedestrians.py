@@ -110,6 +110,12 @@ def test_a_table_may_begin_with_the_names_of_its_columns(convert) -> None:
         convert(f"id,frame,x,y\n{text}", overwrite=True)
 
 
+def test_a_long_time_without_rows_is_told(convert) -> None:
+    rows = [f"{frame} {who} {frame / 10} {who}" for frame in (0, 10, 20, 400, 410) for who in (1, 2)]
+    assert any("has no row for 15.2 s" in note for note in convert("\n".join(rows))[1].notes)
+    assert not any("no row" in note for note in convert(crowds.trajnet(), overwrite=True)[1].notes)
+
+
 def test_windows_of_time_and_space(convert) -> None:
     scene, found = convert(crowds.trajnet(), window=Window(start=4.0, end=6.0), layout=Layout("x", robot=False))
     assert found.duration == pytest.approx(2.0)
