@@ -16,6 +16,7 @@
 - ``records``: exports of recorded runs, opened by the tools they are for: pandas, DuckDB, mcap-ros2-support, Minari.
 - ``interop``: bridges, each against software that somebody else wrote: middleware, simulators, parsers, a browser.
 - ``onnx``: policies from ONNX models, with onnxruntime.
+- ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 All quick tests together run in ``check``, and on the newest Python in the README's own test command, with which
@@ -54,6 +55,8 @@ DEBIAN_PEERS = (
 """Packages of Debian 12 that bridges meet in tests."""
 PYTHON_PEERS = ("mcap-ros2-support>=0.5", "msgpack>=1", "pycolmap>=4", "zenoh-ros2-sdk==0.1.8")
 """Packages of Python that bridges meet in tests, and that are no dependencies."""
+BLENDER = "bpy==4.5.*"
+"""Blender as a module (947 MB), for the Python of bridges; in its own environment, as it needs another NumPy."""
 NPM_PEERS = ("@sparkjsdev/spark@2.2.0", "three@0.180.0")
 """A renderer of Gaussian splats that ours are compared with, in a browser."""
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
@@ -301,6 +304,19 @@ def interop(session: nox.Session) -> None:
     peers = {"IRSIM_INTEROP": "required", "IRSIM_SPARK": install_npm(session, NPM_PEERS)}
     options = ("-m", "interop", "-n", "2", "--dist", "loadgroup", "--durations", "15", "tests/interop")
     timed(session, "tests of bridges", "pytest", *options, *session.posargs, env=peers)
+
+
+@nox.session(reuse_venv=True, python=find_python(INTEROP))
+def nightly(session: nox.Session) -> None:
+    """Stages of OpenUSD, read by Blender, which is 947 MB; a test that is skipped fails. No part of ``full``."""
+    install(session, "-e", ".[test,usd,records]")
+    blender = Path(session.virtualenv.location, "blender").resolve() / "bin" / "python"
+    if not blender.exists():
+        session.run("python", "-m", "venv", str(blender.parents[1]))
+    timed(session, "install Blender", str(blender), "-m", "pip", "install", "-q", BLENDER, external=True)
+    peers = {"IRSIM_INTEROP": "required", "IRSIM_NIGHTLY": "1", "IRSIM_BPY": str(blender)}
+    options = ("-m", "slow", "--durations", "5", "tests/interop/test_blender.py")
+    timed(session, "tests with Blender", "pytest", *options, *session.posargs, env=peers)
 
 
 def install_debian(session: nox.Session, packages: Iterable[str]) -> None:

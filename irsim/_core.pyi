@@ -5,13 +5,14 @@ properties are writable views of the memory of the core (no copies), of type flo
 """
 
 from collections.abc import Sequence
-from typing import ClassVar, TypeVar, overload
+from typing import Any, ClassVar, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.uint8]
+Bools = NDArray[np.bool_]
 Real = TypeVar("Real", np.float32, np.float64)
 
 class _Options:
@@ -144,6 +145,27 @@ class OwnOptions(_Options):
         limit_max: float,
         clip: bool,
     ) -> None: ...
+
+class ArrivalOptions(_Options):
+    def __init__(self, *, each: bool) -> None: ...
+
+class ClearanceOptions(_Options):
+    def __init__(self, *, margin: float, to: str) -> None: ...
+
+class CollisionOptions(_Options):
+    def __init__(self) -> None: ...
+
+class ProgressOptions(_Options):
+    def __init__(self) -> None: ...
+
+class SmoothnessOptions(_Options):
+    def __init__(self, *, of: str) -> None: ...
+
+class SocialOptions(_Options):
+    def __init__(self, *, distance: float) -> None: ...
+
+class TimeOptions(_Options):
+    def __init__(self) -> None: ...
 
 class GoalOptions(_Options):
     def __init__(
@@ -1059,6 +1081,80 @@ def gaps(world: World, state: State, rows: NDArray[np.int64], kinds: Flags, reac
         reach: Larger distances are infinite [m]. Those of overlaps are negative.
         threads: Number of threads.
     """
+
+class Learners:
+    """The A learners in each of the W worlds of a state, which must live as long.
+
+    The arrays are views; the caller sets them when episodes begin, and each step updates them.
+
+    Args:
+        world: The world.
+        state: The state.
+        indices: (A,) indices of the learners in a world.
+        kinds: (N,) what each object is to them, see `gaps`.
+        terms: Options of each term of the reward, or None if it is computed elsewhere, and its weight.
+        arrival: Whether the episode of a learner ends when it arrives.
+        collision: Whether it ends when the learner begins to collide.
+        ends: When a world is over: ``all`` of its learners are done, ``any`` is, or a ``collision`` begins.
+
+    Attributes:
+        taking_part: (W, A) whether the learner earns something in this episode.
+        ended: (W, A) whether the episode of the learner has ended.
+        arrived, collided: (W, A) whether it had arrived, and whether it touched something, at the end of the last step.
+        over: (W,) whether the world is over.
+        horizon: (W,) steps after which it is.
+
+    Raises:
+        ValueError: There are no such objects or kinds.
+    """
+
+    taking_part: Bools
+    ended: Bools
+    arrived: Bools
+    collided: Bools
+    over: Bools
+    horizon: NDArray[np.int64]
+
+    def __init__(
+        self,
+        world: World,
+        state: State,
+        *,
+        indices: Sequence[int],
+        kinds: Flags,
+        terms: Sequence[tuple[object | None, float]],
+        arrival: bool,
+        collision: bool,
+        ends: str,
+    ) -> None: ...
+    def begin(self, world: World, state: State, wanted: Floats | None, velocities: bool) -> None:
+        """Command the learners, before the step of the simulation. Those whose episode has ended stand still.
+
+        Args:
+            world: The world.
+            state: The state.
+            wanted: (W * A, C) controls, or (W * A, 2) velocities [m/s], world frame; None leaves them to behaviors.
+            velocities: Whether these are velocities.
+        """
+
+    def end(self, world: World, state: State, threads: int) -> tuple[Any, ...]:
+        """The arrays of a :class:`irsim.learning.result.Result`, after the step of the simulation.
+
+        Terms that are computed elsewhere are 0.
+        """
+
+    def step(
+        self,
+        world: World,
+        state: State,
+        wanted: Floats | None,
+        velocities: bool,
+        looking: Looking,
+        parts: Sequence[tuple[object, int]],
+        seen: NDArray[np.float32],
+        threads: int,
+    ) -> tuple[Any, ...]:
+        """`begin`, one period of every world, `end`, and `observe_rows` of the learners, world by world."""
 
 def find_neighbors(
     world: World, state: State, looking: Looking, rows: NDArray[np.int64]

@@ -13,21 +13,24 @@ from irsim.common.extras import require
 __all__ = ["check_exports", "export_all", "kept_or_temporary"]
 
 
-def check_exports(files: Sequence[str | Path]) -> list[Path]:
+def check_exports(files: Sequence[str | Path], *, overwrite: bool) -> list[Path]:
     """The files to write after a run, checked before it.
 
     Raises:
         RunError: A suffix selects no format.
+        TargetError: A file exists, and ``overwrite`` is not set.
         ExtraError: A library is missing.
     """
     if not files:
         return []  # as for most runs, which load no formats
+    from irsim.bridges.export.export import check_target
     from irsim.bridges.export.registry import find_format
 
     targets = [Path(file) for file in files]
     for target in targets:
         form = find_format(None, target)
         require(form.extra, *form.libraries)
+        check_target(form, target, overwrite=overwrite)
     return targets
 
 
@@ -44,9 +47,9 @@ def kept_or_temporary(record: bool | str | Path, exports: Sequence[Path]) -> Ite
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def export_all(run: Path, targets: Sequence[Path]) -> tuple[list[str], list[str]]:
+def export_all(run: Path, targets: Sequence[Path], *, overwrite: bool) -> tuple[list[str], list[str]]:
     """Write the files; return their paths, and notes on what they leave out."""
     from irsim.bridges.export.export import export_run
 
-    written = [export_run(run, target) for target in targets]
+    written = [export_run(run, target, overwrite=overwrite) for target in targets]
     return [one.file for one in written], [note for one in written for note in one.notes]

@@ -16,12 +16,14 @@ from irsim.bridges.connect import connect, open_bridges
 from irsim.bridges.options import bridge_text, check_files, read_bridges
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
+from irsim.common.text import seconds
 from irsim.diagnostics.errors import ArgumentError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import (
     Progress,
     advance,
+    as_finding,
     default_time_limit,
     horizon_of,
     import_modules,
@@ -31,11 +33,13 @@ from irsim.episodes.episode import (
 from irsim.episodes.reproduce import region_options, reproduce_command
 from irsim.episodes.room import MAX_TRIES, crowded_message, first_with_room
 from irsim.episodes.run_report import run_result
+from irsim.episodes.unopened import unopened_findings
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
+from irsim.scenario.checks.bridges import driven_without_goal
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
 from irsim.simulation.random_streams import fresh_seed
@@ -76,7 +80,9 @@ def run(
     show: bool = False,
     record: bool | str | Path = False,
     export: str | Path | Sequence[str | Path] = (),
+    overwrite: bool = False,
     recorded: Callable[[str], None] | None = None,
+    connected: Callable[[str], None] | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> RunResult:
@@ -103,7 +109,9 @@ def run(
             deleted 24 hours after its last use; a path records to a new folder that is kept.
             :func:`irsim.runs.open_run` reads the recording.
         export: Files to write when the run is over, each in the format of its suffix: see :func:`irsim.export_run`.
+        overwrite: Replace exported files that exist.
         recorded: Callback ``(run_id)``, called when the recording starts.
+        connected: Callback ``(sentence)``, called when all bridges are connected: with what, and when the run ends.
         limits: Limits of the loader and of the run.
         progress: Callback ``(steps_done, steps_total)``.
 
@@ -119,6 +127,7 @@ def run(
             the run with that reason instead.
         ArgumentError: ``steps`` is not a whole number, or both ``policy`` and ``behavior`` are given.
         RunError: The folder to record to is not empty.
+        TargetError: A file to export exists, and ``overwrite`` is not set.
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
@@ -140,32 +149,36 @@ def run(
     )
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     others = read_bridges(bridges)
-    connected = _bridges([*scenario.bridges, *others], limits)
+    warnings = [*warnings, *(as_finding(found.diagnostic) for found in driven_without_goal(scenario, others))]
+    opened = _bridges([*scenario.bridges, *others], limits)
     options = {
         "strict": strict,
         "imports": list(imports),
         **({} if behavior_text is None else {"behavior": behavior_text}),
         **({} if driver is None else {"policy": driver.text or driver.name, "policy_digest": driver.digest}),
         **({"perturb": perturb_texts} if perturb_texts else {}),
-        **({"bridges": [bridge.name for bridge in connected]} if connected else {}),
+        **({"bridges": [bridge.name for bridge in opened]} if opened else {}),
     }
-    targets = check_exports([export] if isinstance(export, (str, Path)) else export)
+    targets = check_exports([export] if isinstance(export, (str, Path)) else export, overwrite=overwrite)
     with (
         kept_or_temporary(record, targets) as kept,
-        connect(env, connected) if connected else nullcontext() as connection,
+        connect(env, opened) if opened else nullcontext() as connection,
         recording(env, path, kept, horizon=horizon, options=options) as recorder,
     ):
+        if connection is not None and connected is not None:
+            stops = " and stops the robots" if any(bridge.mode == "real" for bridge in opened) else ""
+            until = f"the run ends when all robots have arrived or stopped, or at {seconds(horizon * env.step_time)}"
+            connected(f"connected to {connection.peers()}; {until}; Ctrl-C ends it now{stops}")
         if recorder is not None and recorded is not None and record is not False:
             recorded(recorder.run_id)
-        files, lost, who = list[str](), None, ""
+        files, lost = list[str](), None
         try:
             if save is None and not show:
                 advance(env, horizon, progress, recorder=recorder)
             else:
                 files = _animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
         except (PolicyLostError, BridgeLostError) as error:
-            lost = error.message
-            who = "program of a bridge" if isinstance(error, BridgeLostError) else "policy"
+            lost = error
         result = run_result(
             env,
             path,
@@ -181,15 +194,13 @@ def run(
             bridges=[bridge_text(one) for one in others],
             lost=lost,
         )
-        if lost is not None:
-            result.summary += f"; the {who} was lost, which ended the run"
         if connection is not None:
             result.notes += connection.notes()
         if skipped := crowded_message(crowded):
             result.summary += f"; {skipped}"
         if recorder is not None:
             recorder.finish(result)
-            exported, notes = export_all(Path(recorder.folder), targets)
+            exported, notes = export_all(Path(recorder.folder), targets, overwrite=overwrite)
             result.files += exported
             result.notes += notes
             if record is False:
@@ -289,6 +300,9 @@ def render(
     scenario, warnings = read_input(path, None, strict=strict, limits=limits, behavior=behavior)
     if driver is not None:
         warnings = findings_under_policy(warnings, scenario)
+    animated = target.suffix.lower() in MOVING_SUFFIXES
+    if not as_snapshot and (steps or animated):
+        warnings = [*warnings, *unopened_findings(scenario, "a picture")]
     driven = driver.text or driver.name if driver is not None else behavior
     if as_snapshot:
         sheet = snapshot_of(
@@ -310,7 +324,6 @@ def render(
             driven=driven,
         )
         return _write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
-    animated = target.suffix.lower() in MOVING_SUFFIXES
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
     if region is not None:
         env._env_plot.set_region(region)

@@ -15,6 +15,7 @@ from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
 from irsim.episodes.reproduce import overlay_options, region_options, reproduce_command, strip_options
 from irsim.episodes.room import MAX_TRIES, first_with_room
 from irsim.episodes.scene_summary import counts_of, in_words
+from irsim.episodes.unopened import unopened_findings
 from irsim.results.findings import Finding
 from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
@@ -137,6 +138,8 @@ def snapshot_of(
             env.end(ending_time=0.0)
             env = Env(scenario, seed=env.seed, headless=True, log_level="ERROR", policy=policy)
     count = int(env.simulation.count[0]) if chosen is None else chosen[-1]
+    if count:
+        warnings = [*warnings, *unopened_findings(scenario, "a picture")]
     options = [*region_options(region), *strip_options(strip), *overlay_options(shown)]
     extra = ["--size", str(size), *options, *([] if driven is None else ["--policy", driven]), "-o", str(out)]
     result = snapshot_of_env(

@@ -37,6 +37,7 @@ from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
 from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import Progress, import_modules, read_document, source_of
+from irsim.episodes.unopened import unopened_findings
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import PolicySource
 from irsim.policies.policy import Policy
@@ -158,6 +159,7 @@ def benchmark(
         scenario, warnings[name] = read_document(document, strict=strict)
         if AS_WRITTEN not in wanted:
             warnings[name] = findings_under_policy(warnings[name], scenario)
+        warnings[name] += unopened_findings(scenario, "a benchmark")
         scenario = perturbed(scenario, perturbations, called=name if isinstance(source, Document) else None)
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
         if texts:

@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
 from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import Feedback, Motion, WorldState
+from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import CodedError
 
-__all__ = ["Bridge", "BridgeError", "BridgeLostError", "Clock"]
+__all__ = ["Bridge", "BridgeError", "BridgeLostError", "Clock", "Mode"]
 
+Mode: TypeAlias = Literal["sim", "dry-run", "real"]
+"""Whether robots are simulated, or real ones that are not commanded, or real ones that are."""
 Clock: TypeAlias = Literal["irsim", "external", "wall"]
 """Who decides when a step is: irsim as fast as it can, the other program, or the time on the wall."""
 
 
 class BridgeError(CodedError, ValueError):
-    """A bridge cannot be opened, or failed; the codes are those of :mod:`irsim.diagnostics.codes.bridges`."""
+    """A bridge cannot be opened, or failed; the codes are those of :mod:`irsim.diagnostics.codes.bridges`.
+
+    Attributes:
+        diagnostics: The problems of options that are not valid; their codes are those of scenarios.
+    """
+
+    diagnostics: Sequence[Diagnostic] = ()
 
 
 class BridgeLostError(BridgeError):
@@ -35,12 +45,19 @@ class Bridge:
     Attributes:
         name: Name of the bridge in messages.
         clock: Who decides when a step is.
+        mode: Whether robots are simulated or real.
         agents: Names of the objects that the other program moves, known after ``open``; irsim does not move them.
     """
 
     name: str = "bridge"
     clock: Clock = "irsim"
+    mode: Mode = "sim"
     agents: frozenset[str] = frozenset()
+
+    @property
+    def peer(self) -> str:
+        """What it is connected to, in a few words, known after ``open``."""
+        return self.name
 
     def open(self, scene: SceneDescription, start: WorldState) -> None:
         """Connect, and tell the other program the scene.
@@ -48,6 +65,9 @@ class Bridge:
         Raises:
             BridgeError: The other program cannot be reached, or the scene does not fit it.
         """
+
+    def renew(self, scene: SceneDescription, start: WorldState) -> None:
+        """Take over another scene, which a reset has drawn, or in which a body is another one; ``push`` follows."""
 
     def pull(self) -> Feedback | None:
         """What has come from outside since the last step: goals, commands, poses; never NaN.

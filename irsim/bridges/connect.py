@@ -80,6 +80,7 @@ class Connection:
 
     Attributes:
         scene: The scene that the bridges got.
+        lost: Why a program is lost, after which no step is possible; None otherwise.
         late: Longest time by which a step in real time came too late [s].
     """
 
@@ -88,10 +89,10 @@ class Connection:
             raise BridgeError("bridge-mismatch", "bridges connect one world", f"got {simulation.copies}; use one")
         self.simulation, self.bridges = simulation, list(bridges)
         self.late = 0.0
-        self._rows = agent_rows(simulation)
-        self.scene: SceneDescription = describe_scene(simulation)
-        self._row_of = dict(zip(self.scene.names, self._rows.tolist(), strict=True))
+        self.lost: str | None = None
         self._owned: dict[str, Bridge] = {}
+        self.scene: SceneDescription
+        self._describe()
         self._ranges: dict[str, NDArray[np.float32]] = {}
         self._before: Floats = simulation.pose.copy()
         self._count = int(simulation.count[0])
@@ -117,6 +118,10 @@ class Connection:
     def __exit__(self, *error: object) -> None:
         self.close()
 
+    def peers(self) -> str:
+        """To what the bridges are connected, and whether robots are simulated or real, as the words of a sentence."""
+        return " and ".join(f"{clean(bridge.peer, 200)} (mode: {bridge.mode})" for bridge in self.bridges)
+
     def notes(self) -> list[str]:
         """What the bridges tell when the run is over."""
         found = [note for bridge in self.bridges for note in bridge.notes()]
@@ -137,6 +142,9 @@ class Connection:
     # a step -----------------------------------------------------------------------------------------------------------
     def claim(self, simulation: Simulation) -> None:
         """Before decisions: wait for the time of the step, and take over what has come from outside."""
+        if self.lost is not None:
+            raise BridgeLostError(self.lost)
+        self._follow()
         self._before = simulation.pose.copy()
         self._ranges = {}
         self._wait()
@@ -169,8 +177,8 @@ class Connection:
     def measure(self, simulation: Simulation, mask: Any = None) -> None:
         """After the step: put in the scans of others, and show the world."""
         self._put_ranges(simulation)
-        count = int(simulation.count[0])
-        if count == self._count:
+        count, anew = int(simulation.count[0]), self._follow()
+        if count == self._count and not anew:
             return
         if count < self._count:
             self._wall = None
@@ -178,6 +186,36 @@ class Connection:
         state = world_state(simulation, self._rows)
         for bridge in self.bridges:
             self._guarded(bridge, bridge.push, state)
+
+    def _follow(self) -> bool:
+        """Tell the bridges of another scene, if there is one; whether there was."""
+        if self._key_of_scene() == self._key:
+            return False
+        self._describe()
+        state = world_state(self.simulation, self._rows)
+        for bridge in self.bridges:
+            self._guarded(bridge, bridge.renew, self.scene, state)
+        return True
+
+    def _describe(self) -> None:
+        """Describe the present scene.
+
+        Raises:
+            BridgeError: It lacks an object that a bridge moves.
+        """
+        self._key = self._key_of_scene()
+        self._rows = agent_rows(self.simulation)
+        self.scene = describe_scene(self.simulation)
+        self._row_of = dict(zip(self.scene.names, self._rows.tolist(), strict=True))
+        for name, bridge in self._owned.items():
+            if name not in self._row_of:
+                what = f"{bridge.name} moves '{name}', which the scene does not have any more"
+                raise BridgeError("bridge-mismatch", what, "connect again")
+
+    def _key_of_scene(self) -> tuple[int, int, int]:
+        """What differs between two scenes: seed, number, and number of changes of bodies."""
+        seed, scene, _ = self.simulation.key()
+        return seed, scene, self.simulation.revision
 
     # what comes from outside ------------------------------------------------------------------------------------------
     def _take(self, bridge: Bridge, feedback: Feedback, *, before: bool) -> None:
@@ -193,7 +231,8 @@ class Connection:
             self._command(name, command)
         self._ranges |= self._checked_ranges(bridge, feedback.ranges)
         if feedback.end is not None:
-            raise BridgeLostError(f"{bridge.name} ended the episode: {clean(feedback.end, 200)}", "run it again")
+            self.lost = f"{bridge.name} ended the episode: {clean(feedback.end, 200)}"
+            raise BridgeLostError(self.lost, "run it again")
 
     def _check(self, bridge: Bridge, what: str, named: Mapping[str, Sequence[float]]) -> None:
         for name, values in named.items():
@@ -294,10 +333,14 @@ class Connection:
         """Call a bridge; an exception that is not one of irsim's becomes one, and all bridges are closed."""
         try:
             return call(*arguments)
+        except BridgeLostError as error:
+            self.lost = error.message
+            raise
         except CodedError:
             raise
         except OSError as error:
-            raise BridgeLostError(f"{bridge.name}: {error.strerror or error}") from error
+            self.lost = f"{bridge.name}: {error.strerror or error}"
+            raise BridgeLostError(self.lost) from error
         except Exception as error:
             what = f"{bridge.name} raised {type(error).__name__}: {error}"
             raise BridgeError("bridge-failed", what, "the error above this one says where") from error

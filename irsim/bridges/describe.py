@@ -12,6 +12,7 @@ from irsim.bridges.state import WorldState
 from irsim.common.arrays import Floats
 from irsim.common.version import version
 from irsim.objects.obstacle_map import grid_values
+from irsim.options.color_values import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import sensors
@@ -163,11 +164,7 @@ def _grid(simulation: Simulation) -> Grid | None:
 
 
 def _color(record: ObjectRecord) -> tuple[float, float, float]:
-    from matplotlib.colors import to_rgb
-
-    color: Any = record.color
     try:
-        red, green, blue = to_rgb(color)
+        return rgb(record.color)
     except ValueError:
         return _GREY
-    return float(red), float(green), float(blue)

@@ -10,11 +10,11 @@ from pydantic import ValidationError
 
 from irsim.bridges.base import BridgeError
 from irsim.common.arguments import as_given
-from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.diagnostic import Diagnostic, suggestion
 from irsim.options.registry import BRIDGES
-from irsim.options.selection import Select
 from irsim.scenario.behavior_override import BenchmarkError, parse_behavior
+from irsim.scenario.messages.of_options import option_message, option_problems
+from irsim.scenario.model.scenario import Scenario
 from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = ["bridge_text", "check_files", "read_bridge", "read_bridges"]
@@ -51,19 +51,22 @@ def read_bridge(given: str | Mapping[str, Any]) -> Any:
         raise _wrong(
             f"{name!r} is not a bridge", suggestion(name, BRIDGES.names(), f"they are {', '.join(BRIDGES.names())}")
         )
+    whole = {"bridges": [dict(data)]}
     try:
-        return Select(BRIDGES).validate(dict(data))
+        return Scenario.model_validate(whole).bridges[0]
     except ValidationError as error:
-        found = "; ".join(_problem(item["type"], item["loc"], item["msg"]) for item in error.errors())
-        raise _wrong(found, f"irsim describe bridge.{name} lists the keys") from None
+        called = f"the bridge '{name}'" if isinstance(name, str) else "a bridge"
+        raise _invalid(option_problems(error, whole, Scenario, ("bridges", 0), called), called, name) from None
 
 
-def _problem(kind: str, place: Sequence[int | str], text: str) -> str:
-    """One problem of the options, in a few words."""
-    where = ".".join(map(str, place))
-    if kind == "extra_forbidden":
-        return f"there is no key {clean(where)!r}"
-    return f"{where}: {text}" if where else text
+def _invalid(found: list[Diagnostic], called: str, name: Any) -> BridgeError:
+    """The error of options that are not valid, with their problems as data."""
+    message, fix = option_message(found)
+    fix = fix or (f"irsim describe bridge.{name} lists the keys" if isinstance(name, str) else None)
+    text = message if called in message else f"{called}: {message}"
+    error = BridgeError(found[0].code, text, fix, where="bridges")
+    error.diagnostics = found
+    return error
 
 
 def check_files(options: Sequence[Any], root: Path) -> None:

@@ -1,4 +1,4 @@
-"""``irsim bridge import-pedestrians``: recorded pedestrians of a data set become a scenario that replays them."""
+"""``irsim bridge import-pedestrians``: recorded pedestrians of a data set become a scenario or a suite."""
 
 from __future__ import annotations
 
@@ -19,7 +19,17 @@ def import_pedestrians(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="ETH's obsmat.txt, UCY's .vsp, or lines 'frame id x y' (TrajNet).")
     ],
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Scenario to write.")],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Scenario to write.", show_default=False)
+    ] = None,
+    suite: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            show_default=False,
+            help="Benchmark suite to write: windows of the recording are its scenarios.",
+        ),
+    ] = None,
     form: Annotated[
         str | None,
         typer.Option("--format", metavar="FORMAT", help="obsmat, vsp or trajnet.", show_default="as the file looks"),
@@ -53,10 +63,21 @@ def import_pedestrians(
     radius: Annotated[float, typer.Option(help="Radius of a pedestrian, in metres.")] = 0.25,
     margin: Annotated[float, typer.Option(help="Free border around all that is recorded, in metres.")] = 1.0,
     smooth: Annotated[bool, typer.Option("--smooth", help="Smooth curves between the recorded places.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite the scenario if it exists.")] = False,
+    windows: Annotated[int, typer.Option(help="Largest number of windows of the suite.")] = 10,
+    length: Annotated[
+        float | None,
+        typer.Option(
+            help="Length of a window of the suite, in seconds.",
+            show_default="what the robot needs, with room to give way",
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Chooses the windows of the suite, if the recording has more.")] = 0,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")] = False,
     json_output: Json = False,
 ) -> None:
-    """Turn recorded pedestrians into a scenario: each is an obstacle that walks as it did, at its recorded times.
+    """Turn recorded pedestrians into a scenario or a benchmark suite, in which each walks as it did, at its own times.
+
+    In the suite a robot crosses windows of the recording, from and to places that the seeds draw.
 
     Write into a checkout of your own only what the licence of the data allows; irsim ships none.
     """
@@ -65,6 +86,7 @@ def import_pedestrians(
     from irsim.bridges.pedestrians.importing import import_pedestrians as convert
     from irsim.bridges.pedestrians.rows import FORMATS
     from irsim.bridges.pedestrians.scenario import Layout
+    from irsim.bridges.pedestrians.suite import Episodes
     from irsim.bridges.pedestrians.tracks import Window
     from irsim.cli.output import console
     from irsim.diagnostics.errors import ArgumentError
@@ -81,6 +103,7 @@ def import_pedestrians(
     found = convert(
         file,
         out,
+        suite=suite,
         form=form,
         fps=fps,
         window=Window(start, float("inf") if end is None else end, box),
@@ -88,17 +111,26 @@ def import_pedestrians(
         scale=scale,
         image_size=size,
         layout=layout,
+        episodes=Episodes(windows, length, seed),
         overwrite=force,
     )
     if json_output:
         typer.echo(json.dumps(asdict(found)))
         return
-    people = f"{found.pedestrians} pedestrian{'' if found.pedestrians == 1 else 's'}"
-    what = f": {people}, {found.rows} recorded places, {found.duration:g} s"
-    console().print(Text.assemble("wrote ", (found.file, "bold"), what), soft_wrap=True)
+    if found.file is not None:
+        people = f"{found.pedestrians} pedestrian{'' if found.pedestrians == 1 else 's'}"
+        what = f": {people}, {found.rows} recorded places, {found.duration:g} s"
+        console().print(Text.assemble("wrote ", (found.file, "bold"), what), soft_wrap=True)
+    if found.suite is not None:
+        what = f": {len(found.windows)} windows of {found.length:g} s, 10 seeds each"
+        console().print(Text.assemble("wrote ", (found.suite, "bold"), what), soft_wrap=True)
     for note in found.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)
-    console().print(Text.assemble("run it: ", (f"irsim run {found.file}", "cyan")), soft_wrap=True)
+    if found.file is not None:
+        console().print(Text.assemble("run it: ", (f"irsim run {found.file}", "cyan")), soft_wrap=True)
+    if found.suite is not None:
+        command = f"irsim benchmark {found.suite} --policies orca,sfm"
+        console().print(Text.assemble("run it: ", (command, "cyan")), soft_wrap=True)
 
 
 def _numbers(option: str, text: str | None, count: int) -> tuple[float, ...] | None:

@@ -14,6 +14,7 @@ def export_scene(
     scenario: Annotated[Path, typer.Argument(metavar="FILE", help="Scenario; it is not run.")],
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="File to write: .usda, .usdc or .usdz.")],
     seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn at random.")] = 0,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
 ) -> None:
     """Write the start of a scenario as a stage of OpenUSD. For a whole run, see `irsim export --to usd`."""
     from rich.text import Text
@@ -21,6 +22,6 @@ def export_scene(
     from irsim.bridges.usd.files import export_scene as write
     from irsim.cli.output import console
 
-    written = write(scenario, out, seed=seed)
+    written = write(scenario, out, seed=seed, overwrite=force)
     size = written.stat().st_size / 1e3
     console().print(Text.assemble("wrote ", (str(written), "bold"), f" ({size:.0f} kB)"), soft_wrap=True)

@@ -25,7 +25,7 @@ def export(
         str | None,
         typer.Option(
             metavar="FORMAT",
-            help="Name of a format: colmap, commonroad, csv, mcap, minari, mjcf, nerfstudio, npz, openscenario, "
+            help="Name of a format: colmap, commonroad, csv, isaac_people, mcap, minari, mjcf, nerfstudio, npz, openscenario, "
             "parquet, poses, rosbag2, sdf or usd. Default: as the suffix of the file says.",
             show_default=False,
         ),
@@ -36,7 +36,7 @@ def export(
             "-o",
             "--out",
             metavar="PATH",
-            help="File to write; for minari a new folder. Default: named after the run, in the current directory.",
+            help="File to write; for some formats a new folder. Default: named after the run, in this directory.",
             show_default=False,
         ),
     ] = None,
@@ -44,8 +44,8 @@ def export(
         str | None,
         typer.Option(
             metavar="WHICH",
-            help="movers (robots, and obstacles that can move), robots, all, or names separated by commas. "
-            "Default: movers, but robots for cameras.",
+            help="movers (robots, and obstacles that can move), robots, people (obstacles that can move), all, or "
+            "names separated by commas. Default: movers, but robots for cameras and people for isaac_people.",
             show_default=False,
         ),
     ] = None,
@@ -64,6 +64,7 @@ def export(
             show_default=False,
         ),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
     json_output: Json = False,
 ) -> None:
     """Write recorded runs for other programs: tables, ROS 2 bags, datasets, cameras, scenes of other simulators.
@@ -88,6 +89,7 @@ def export(
             objects=chosen,
             ranges=ranges,
             options=parse_options(options or []),
+            overwrite=force,
             progress=report,
         )
     if json_output:

@@ -71,15 +71,13 @@ def _report(error: BaseException, *, as_json: bool) -> int:
 
         print_diagnostics(error.diagnostics, error.source, stderr=True)
     else:
-        from rich.text import Text
+        from irsim.cli.output import print_error
 
-        from irsim.cli.output import console
-
-        console(stderr=True).print(Text.assemble(("error ", "bold red"), (code, "bold"), f": {message}"))
+        print_error(code, message)
     if as_json:
         data: dict[str, object] = {"code": code, "message": message}
-        if isinstance(error, ScenarioError):
-            data["findings"] = [diagnostic.as_dict() for diagnostic in error.diagnostics]
+        if found := getattr(error, "diagnostics", ()):
+            data["findings"] = [diagnostic.as_dict() for diagnostic in found]
         try:
             typer.echo(json.dumps({"error": data}, indent=2, default=str))
             sys.stdout.flush()

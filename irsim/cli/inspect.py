@@ -112,6 +112,7 @@ def _list_runs() -> None:
 
     from irsim.cli.output import console
     from irsim.common.text import clean
+    from irsim.results.labels import ending
     from irsim.runs import list_runs
 
     runs = list_runs()
@@ -126,7 +127,7 @@ def _list_runs() -> None:
         try:
             result = run.result
             steps = run.last_step if result is None else result.steps
-            outcome: str = run.status if result is None else result.outcome
+            outcome: str = run.status if result is None else ending(result.outcome, result.lost)
         except RunError:
             steps, outcome = -1, "unreadable"
         table.add_row(
@@ -159,10 +160,13 @@ def _show(table: RunTable, out: object) -> None:
     from rich.table import Table
 
     from irsim.common.text import clean
+    from irsim.results.labels import ending
 
     assert isinstance(out, Console)
-    ended = table.status if table.outcome is None else table.outcome
+    ended = table.status if table.outcome is None else ending(table.outcome, table.lost)
     out.print(f"{table.run_id}: {ended}: {clean(table.summary, 400)}")
+    if table.lost is not None:
+        out.print(f"reason: {clean(table.lost, 400)}")
     for note in table.notes:
         out.print(f"note: {clean(note, 200)}", style="yellow")
     shown = Table(box=None, pad_edge=False, header_style="dim")

@@ -20,6 +20,7 @@ __all__ = [
     "has_colors",
     "is_terminal",
     "prepare_streams",
+    "print_error",
     "print_json",
     "progress",
     "silence_stdout",
@@ -51,6 +52,13 @@ def console(*, stderr: bool = False) -> Console:
             raise BrokenPipeError
 
     return Console(stderr=stderr, markup=False, highlight=False, soft_wrap=not is_terminal(stderr=stderr))
+
+
+def print_error(code: str, message: str) -> None:
+    """Print an error to standard error, in one line."""
+    from rich.text import Text
+
+    console(stderr=True).print(Text.assemble(("error ", "bold red"), (code, "bold"), f": {message}"))
 
 
 def has_colors(stream: TextIO) -> bool:

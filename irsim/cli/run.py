@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -79,14 +80,17 @@ def run(
             show_default=False,
         ),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files of --export that exist.")] = False,
     max_objects: MaxObjects = None,
 ) -> None:
     """Simulate a scenario until every robot has arrived or collided, or the time limit is reached.
 
-    The exit code is 0 also after a collision or a time-out, unless --require-success is given.
+    The exit code is 0 also after a collision or a time-out, unless --require-success is given. It is 1 if the policy or
+    the program of a bridge was lost.
     """
     from irsim.cli.findings import import_user_modules, limits_for, print_findings
-    from irsim.cli.output import console, print_json, progress
+    from irsim.cli.output import console, print_error, print_json, progress
+    from irsim.common.text import seconds
 
     import_user_modules(imports)
     if show:
@@ -112,14 +116,19 @@ def run(
             show=show,
             record=record if record_to is None else record_to,
             export=export or (),
+            overwrite=force,
             limits=limits_for(max_objects),
             progress=report,
+            connected=None if json_output else partial(typer.echo, err=True),
         )
     if json_output:
         print_json(result)
     else:
         print_findings(result.warnings, file, stderr=True)
         show_result(result, console())
+    if result.lost is not None:
+        print_error(result.lost_code or "", f"{result.lost}; the run ended after {seconds(result.sim_time)}")
+        raise typer.Exit(FAILED)
     if require_success and result.outcome != "success":
         raise typer.Exit(FAILED)
 
@@ -135,12 +144,14 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     from rich.text import Text
 
     from irsim.common.text import clean, seconds
+    from irsim.results.labels import ending
 
     if result.robots:
         out.print(_table(result))
     if len(result.robots) > MAX_ROBOTS_SHOWN:
         out.print(f"... and {len(result.robots) - MAX_ROBOTS_SHOWN} more robots (--json lists all)")
-    out.print(Text.assemble((result.outcome, f"bold {_COLORS[result.outcome]}"), ": ", clean(result.summary, 400)))
+    ended = Text(ending(result.outcome, result.lost), style=f"bold {_COLORS[result.outcome]}")
+    out.print(Text.assemble(ended, ": ", clean(result.summary, 400)))
     if result.reason and result.reason not in result.summary:
         out.print(f"reason: {clean(result.reason, 400)}")
     limit = {

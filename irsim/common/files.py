@@ -9,14 +9,17 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TypeAlias
 
+from irsim.common.text import clean
 from irsim.diagnostics.errors import CodedError
 
 __all__ = [
     "TEMPORARY",
     "Buffer",
     "TargetError",
+    "check_new",
     "check_suffix",
     "create_bytes",
+    "make_folder_of",
     "replace_bytes",
     "replacing",
     "write_all",
@@ -50,22 +53,62 @@ def check_suffix(target: Path, known: Iterable[str]) -> None:
         raise TargetError("unknown-format", f"{target} has none of the suffixes {', '.join(suffixes)}")
 
 
+def check_new(target: Path, *, overwrite: bool) -> None:
+    """Refuse a file that exists before any work is done.
+
+    Args:
+        target: The file.
+        overwrite: It may be replaced.
+
+    Raises:
+        TargetError: The file exists and ``overwrite`` is not set, or it is a folder, or a part of its path is a file.
+    """
+    above = next((folder for folder in target.parents if os.path.lexists(folder)), None)
+    if above is not None and not above.is_dir():
+        raise _no_folder(above)
+    if target.is_dir():
+        raise TargetError("file-exists", f"'{clean(target, 200)}' is a folder", "name another file with -o")
+    if not overwrite and os.path.lexists(target):
+        raise TargetError(
+            "file-exists", f"'{clean(target, 200)}' exists", "--force overwrites it, -o names another file"
+        )
+
+
+def make_folder_of(target: Path) -> None:
+    """Make the folder of a file that is written, if there is none.
+
+    Raises:
+        TargetError: A part of its path is a file.
+    """
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError):
+        raise _no_folder(target.parent) from None
+
+
+def _no_folder(path: Path) -> TargetError:
+    return TargetError("file-access", f"'{clean(path, 200)}' is no folder", "name another file with -o")
+
+
 def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
     """Write a text file in one step.
 
     Args:
-        target: The file; its folder must exist.
+        target: The file; its folder is made if it does not exist.
         text: Its content.
         overwrite: Replace a file that exists.
 
     Raises:
-        TargetError: The file exists and ``overwrite`` is not set.
+        TargetError: The file exists and ``overwrite`` is not set, or it is a folder.
     """
+    check_new(target, overwrite=overwrite)
+    make_folder_of(target)
     if not overwrite:
         try:
             target.open("x").close()  # claims the name, also against another process
         except FileExistsError:
-            raise TargetError("file-exists", f"{target} exists; --force overwrites it, -o names another file") from None
+            check_new(target, overwrite=False)
+            raise
     try:
         write_atomically(target, text)
     except BaseException:
@@ -148,7 +191,7 @@ def replacing(path: Path) -> Iterator[Path]:
     This is for encoders that open files by name; the temporary file has the suffix of the path. The folder is made if
     it does not exist.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder_of(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
     try:
         yield temporary

@@ -57,6 +57,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "surplus-states": ("robot: {state: [[1, 1, 0], [1, 3, 0]], goal: [[9, 1], [9, 3]]}", "robot: {number: 2, state: [[1, 1, 0], [1, 3, 0]], goal: [[9, 1], [9, 3]]}"),
     "default-state": ("obstacle: {shape: {name: polygon, vertices: [[4, 4], [6, 4], [5, 6]]}}", "obstacle: {shape: {name: polygon, vertices: [[4, 4], [6, 4], [5, 6]]}, state: [0, 0, 0]}"),
     "default-goal": ("robot: {goal: null}", "robot: {goal: [9, 9]}"),
+    "driven-without-goal": ("bridges: [{name: rosbridge}]\nrobot: {behavior: null, goal: null}", "bridges: [{name: rosbridge}]\nrobot: {behavior: null, goal: [9, 9]}"),
     "heading-in-degrees": ("robot: {state: [1, 1, 90]}", "robot: {state: [1, 1, 1.5708]}"),
     "default-shape": ("robot: {shape: null}", "robot: {shape: {name: circle, radius: 0.2}}"),
     "default-vertices": ("obstacle: {shape: {name: polygon}, state: [5, 5, 0]}", "obstacle: {shape: {name: rectangle, length: 2, width: 2}, state: [5, 5, 0]}"),

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from irsim.common.arrays import Floats
 from irsim.common.text import clean
 from irsim.common.version import version
+from irsim.diagnostics.errors import CodedError
 from irsim.episodes.decisive import decisive_step, nearest_to_goals
 from irsim.episodes.explanation import has_one_end, reason_message, summary_message
 from irsim.episodes.incidents import find_incidents
@@ -40,6 +41,8 @@ __all__ = ["run_result"]
 
 _MAX_EVENTS = 100
 """Number of events that a result lists."""
+_LOST = {"bridge-lost": "program of a bridge", "policy-lost": "policy"}
+"""What was lost, by the code of the error."""
 _MAX_POSES = 2_000_000
 """Number of poses, of all objects in all steps, up to which clearances of robots are computed."""
 
@@ -58,7 +61,7 @@ def run_result(
     policy: Policy | None = None,
     perturb: Sequence[str] = (),
     bridges: Sequence[str] = (),
-    lost: str | None = None,
+    lost: CodedError | None = None,
 ) -> RunResult:
     """Make the result of an episode.
 
@@ -75,7 +78,7 @@ def run_result(
         policy: Policy in Python that drove the robots.
         perturb: Perturbations of the scenario, as on the command line.
         bridges: Bridges besides those of the scenario, as on the command line.
-        lost: Why the policy or a bridge could not go on, which ended the run.
+        lost: Why the policy or the program of a bridge could not go on, which ended the run.
     """
     events = env.events
     hits, counts = _collisions(env, events)
@@ -100,8 +103,21 @@ def run_result(
         extra += ["--bridge", bridge]
     because: str | None = None
     if outcome != "success":
-        ended = None if lost is None else f"{lost}; the run ended"
+        ended = None if lost is None else f"{lost.message}; the run ended"
         because = ended or reason_message(env, robots, hits, events, source, parked, held)
+    summary = summary_message(
+        env,
+        robots,
+        hits,
+        _driven_by(behavior, policy),
+        parked,
+        held,
+        events,
+        left,
+        incidents,
+        nearest_to_goals(env, incidents.jumps),
+        zones,
+    )
     given = horizon if source in ("argument", "limits") else None
     return RunResult(
         scenario="(text)" if path is None else str(path),
@@ -112,21 +128,10 @@ def run_result(
         policy_digest=None if policy is None else policy.digest,
         perturb=list(perturb),
         outcome=outcome,
-        summary=summary_message(
-            env,
-            robots,
-            hits,
-            _driven_by(behavior, policy),
-            parked,
-            held,
-            events,
-            left,
-            incidents,
-            nearest_to_goals(env, incidents.jumps),
-            zones,
-        ),
+        summary=summary + ("" if lost is None else f"; the {_LOST[_lost_code(lost)]} was lost, which ended the run"),
         reason=because,
-        lost=lost,
+        lost=None if lost is None else lost.message,
+        lost_code=None if lost is None else _lost_code(lost),
         decisive_step=decisive_step(env, robots, hits, events, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
@@ -244,6 +249,10 @@ def _exits(env: Env) -> list[Left]:
         return np.vstack([simulation.state.initial_state(row)[None, :3], *past])
 
     return find_exits(env.scenario, track, int(simulation.count[0]))
+
+
+def _lost_code(error: CodedError) -> Literal["bridge-lost", "policy-lost"]:
+    return "bridge-lost" if error.code == "bridge-lost" else "policy-lost"
 
 
 def _driven_by(behavior: str | None, policy: Policy | None) -> str | None:

@@ -38,6 +38,7 @@ class Eyes:
         parts: Label of each part -> its columns, and its shape.
         drawn: Columns of the draws that are observed.
         low, high: (D,) bounds.
+        native: Options for the core of the parts that it observes, and the column at which each begins.
 
     Raises:
         TaskError: A learner lacks the lidar that a part needs.
@@ -76,7 +77,7 @@ class Eyes:
         self.size = column + draws.size
         self.low = np.concatenate(low).astype(np.float32)
         self.high = np.concatenate(high).astype(np.float32)
-        self._native = native
+        self.native = native
         self._all_native = len(native) == len(layout.parts)
 
     def observe(self, rows: NDArray[np.int64], out: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
@@ -87,13 +88,22 @@ class Eyes:
             out: (B, D) array that is filled and returned; None: a new one.
         """
         seen = np.empty((len(rows), self.size), dtype=np.float32) if out is None else out
-        simulation, looking = self._simulation, self._observer.looking
-        core.observe_rows(simulation.world, simulation.state, looking, self._native, rows, seen, self._threads)
+        simulation = self._simulation
+        core.observe_rows(simulation.world, simulation.state, self.looking, self.native, rows, seen, self._threads)
+        self.complete(rows, seen)
+        return seen
+
+    @property
+    def looking(self) -> core.Looking:
+        """What the core observes of others."""
+        return self._observer.looking
+
+    def complete(self, rows: NDArray[np.int64], seen: NDArray[np.float32]) -> None:
+        """Write the parts of (B, D) observations that the core has not written: those besides :attr:`native`."""
         if not self._all_native:
             self._observe_others(rows, seen)
         if self._draws.size:
             seen[:, self.drawn] = self._facts[self._slot[rows]]
-        return seen
 
     def read_draws(self) -> None:
         """Find out what was drawn for the present episodes."""
@@ -102,7 +112,7 @@ class Eyes:
 
     def _observe_others(self, rows: NDArray[np.int64], seen: NDArray[np.float32]) -> None:
         """Parts that the core does not observe in bulk: pictures of maps, and parts in Python."""
-        done = {column for _, column in self._native}
+        done = {column for _, column in self.native}
         there = self._simulation.appeared[rows] >= 0
         rows = rows[there]
         first, world = np.zeros(len(rows), dtype=bool), rows // self._simulation.objects

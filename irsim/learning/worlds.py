@@ -14,15 +14,13 @@ from irsim.diagnostics.errors import ArgumentError, PlacementError
 from irsim.env.batch import Batch
 from irsim.learning.actions import read_actions
 from irsim.learning.draws import Draws, check_observed
-from irsim.learning.features import REWARDS
 from irsim.learning.latency import Latency
-from irsim.learning.moment import Moment
 from irsim.learning.observing import Eyes
 from irsim.learning.result import Result, Step
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
-from irsim.learning.threats import Threats
+from irsim.learning.terms import PythonTerms, weighted_terms
 from irsim.metrics.roles import kinds_of
 from irsim.policies.networks.output import Present, are_finite, decide
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -86,22 +84,26 @@ class Worlds:
         self._draws = Draws(self.task, scene, simulation, team.indices)
         self.eyes = Eyes(simulation, self.task.layout, team.indices, threads, self._draws)
         self.width = team.action_width
-        self._controls = team.controls
-        self._kinds = kinds_of(self.scenario.objects)
         step_time = self.scenario.world.step_time
         horizons = [max(1, round(self.task.horizon_of(k) / step_time)) for k in range(len(self.task.levels))]
         self._horizons = np.array(horizons, dtype=np.int64)
-        self._terms: list[tuple[Any, Any]] = [(REWARDS.get(term.name), term) for term in self.task.reward]
-        wary = any(term.name == "rvo" for term in self.task.reward)
-        self._threats = Threats(simulation, team.indices, threads) if wary else None
+        kinds, reward = kinds_of(self.scenario.objects), self.task.reward
+        self._terms = PythonTerms(simulation, reward, team.indices, self.rows, kinds, threads)
+        self._stepper = core.Learners(
+            simulation.world,
+            simulation.state,
+            indices=team.indices.tolist(),
+            kinds=kinds,
+            terms=weighted_terms(reward),
+            arrival=self.task.ends_on_arrival,
+            collision=self.task.ends.collision,
+            ends=self.task.ends.world,
+        )
         self._shape = (n, self.learners)
         self._begun = np.zeros(n, dtype=bool)
-        self._over = np.zeros(n, dtype=bool)
-        self._ended = np.zeros(self._shape, dtype=bool)
-        self._arrived = np.zeros(self._shape, dtype=bool)
-        self._collided = np.zeros(self._shape, dtype=bool)
         self._low: Floats = np.zeros((len(self.rows), 3))
         self._high: Floats = np.zeros((len(self.rows), 3))
+        self._bounded = True  # as far as is known; if not, each step finds out
         self.present = np.ones(self._shape, dtype=bool)
         self.level = np.zeros(n, dtype=np.int64)
         self.drawn: dict[str, NDArray[Any]] = {}
@@ -132,16 +134,24 @@ class Worlds:
             if these.any():
                 self._draw(these, next_scene or seeds is not None)
         self._begun[chosen] = True
-        self._over[chosen] = False
-        state = self._simulation.state
         if self._draws.varies:
             self._read_draws(chosen)
-        self._ended[chosen] = ~self.present[chosen]
-        self._low, self._high = state.vel_min.take(self.rows, axis=0), state.vel_max.take(self.rows, axis=0)
-        self._bounded = are_finite(self._low, self._high, self.width)
-        flags = self._simulation
-        self._arrived[chosen] = flags.arrived.take(self.rows).reshape(self._shape)[chosen] != 0
-        self._collided[chosen] = flags.collided.take(self.rows).reshape(self._shape)[chosen] != 0
+        self._begin(np.flatnonzero(chosen))
+
+    def _begin(self, worlds: NDArray[np.int64]) -> None:
+        """Set the flags and limits of the learners of worlds, (k,) of which a scene has begun."""
+        stepper, state = self._stepper, self._simulation.state
+        rows, present = self.rows.reshape(self._shape)[worlds], self.present[worlds]
+        stepper.over[worlds] = False
+        stepper.taking_part[worlds] = present
+        stepper.ended[worlds] = ~present
+        stepper.horizon[worlds] = self._horizons[self.level[worlds]]
+        stepper.arrived[worlds] = state.arrived[rows] != 0
+        stepper.collided[worlds] = state.collided[rows] != 0
+        low, high = state.vel_min[rows], state.vel_max[rows]
+        self._low.reshape(*self._shape, 3)[worlds] = low
+        self._high.reshape(*self._shape, 3)[worlds] = high
+        self._bounded &= are_finite(low.reshape(-1, 3), high.reshape(-1, 3), self.width)
 
     def set_level(self, level: int) -> None:
         """Set the level of the curriculum of the episodes that start from now on.
@@ -216,7 +226,7 @@ class Worlds:
         Raises:
             ArgumentError: The actions have another shape, or are not finite.
         """
-        return self._step(self.read(actions))
+        return self._step(self.read(actions), None)
 
     def advance(
         self,
@@ -240,11 +250,12 @@ class Worlds:
         Returns:
             What has happened, and what the learners observe then.
         """
-        before = self._over
-        result = self._step(numbers)
+        before = self._stepper.over.copy()
+        seen = np.empty((len(self.rows), self.eyes.size), dtype=np.float32) if out is None else out
+        result = self._step(numbers, seen)
         if reset == "before" and before.any():
             self.reset(before)
-        seen = self.observe(out)
+            self._observe_again(before, seen)
         if watch is not None:
             watch(result)
         if last is None:
@@ -263,87 +274,36 @@ class Worlds:
         """
         if not over.any():
             return
-        slots = np.flatnonzero(np.repeat(over, self.learners))
+        slots = np.repeat(over, self.learners)
         last[slots] = seen[slots]
         self.reset(over)
+        self._observe_again(over, seen)
+
+    def _observe_again(self, these: NDArray[np.bool_], seen: NDArray[np.float32]) -> None:
+        """Write what the learners of some worlds observe into their rows of what all do."""
+        slots = np.flatnonzero(np.repeat(these, self.learners))
         seen[slots] = self.eyes.observe(self.rows[slots])
 
-    def _step(self, numbers: Floats | None) -> Result:
-        simulation, rows, shape = self._simulation, self.rows, self._shape
-        goal, before = simulation.goal.take(rows, axis=0), simulation.pose.take(rows, axis=0)
-        control_before = simulation.control.take(rows, axis=0)
-        if numbers is not None:
-            self._impose(numbers, before, goal, control_before)
-        commanded = simulation.state.commanded.take(rows, axis=0)
-        threat = None if self._threats is None else self._threats.urgency(rows)
+    def _step(self, numbers: Floats | None, seen: NDArray[np.float32] | None) -> Result:
+        """Advance all worlds by one period, and write what the learners observe then, if that is wanted."""
+        simulation, stepper, terms, eyes = self._simulation, self._stepper, self._terms, self.eyes
+        world, state, velocities = simulation.world, simulation.state, self._meaning.returns == "velocity"
+        wanted = None if numbers is None else self._wanted(numbers)
+        if seen is not None and not terms and not simulation.in_python:  # all in one loop of the core
+            result = Result(
+                *stepper.step(world, state, wanted, velocities, eyes.looking, eyes.native, seen, self._threads)
+            )
+            eyes.complete(self.rows, seen)
+            return result
+        stepper.begin(world, state, wanted, velocities)
+        terms.look()
         simulation.step()
-        after, twist = simulation.pose.take(rows, axis=0), simulation.twist.take(rows, axis=0)
-        reached = ~_same(simulation.goal.take(rows, axis=0), goal)
-        arrived = (simulation.arrived.take(rows) != 0).reshape(shape)
-        collided = (simulation.collided.take(rows) != 0).reshape(shape)
-        active = ~self._ended & ~self._over[:, None]
-        came, hit = arrived & ~self._arrived & active, collided & ~self._collided & active
-        self._arrived |= arrived
-        self._collided = collided
-        moment = Moment(
-            step_time=float(self.scenario.world.step_time),
-            pose_before=before.reshape(*shape, 3),
-            pose=after.reshape(*shape, 3),
-            goal=goal.reshape(*shape, 3),
-            reached=(reached.reshape(shape) & active) | came,
-            arrived=came,
-            collided=hit,
-            control=simulation.control.take(rows, axis=0).reshape(*shape, 3),
-            control_before=control_before.reshape(*shape, 3),
-            low=self._low.reshape(*shape, 3),
-            high=self._high.reshape(*shape, 3),
-            velocity=twist[:, :2].reshape(*shape, 2),
-            yaw_rate=twist[:, 2].reshape(shape),
-            gaps=self._gaps(),
-            commanded=commanded.reshape(*shape, 2),
-            urgency=lambda: np.zeros(shape) if threat is None else threat.reshape(shape),
-        )
-        terms = np.empty((len(self._terms), *shape))
-        for term, (feature, options) in zip(terms, self._terms, strict=True):
-            np.multiply(options.weight, feature.function(moment, options), out=term)
-        terms *= active
-        if not self.present.all():
-            terms[:, ~self.present] = 0.0  # their places are not numbers
-        return self._close(terms, active, came, hit)
-
-    def _close(self, terms: Floats, active: Any, came: Any, hit: Any) -> Result:
-        """Find what has ended."""
-        ends = self.task.ends
-        terminated = np.zeros(self._shape, dtype=bool)
-        if self.task.ends_on_arrival:
-            terminated |= came
-        if ends.collision:
-            terminated |= hit
-        done = self._simulation.done()
-        terminated = active & (terminated | done[:, None])
-        self._ended |= terminated
-        over = self._over | _all(self._ended) | done | (self._simulation.count >= self._horizons[self.level])
-        if ends.world == "any":
-            over |= _any(terminated)
-        elif ends.world == "collision":
-            over |= _any(hit)
-        truncated = active & ~terminated & over[:, None]
-        self._ended |= truncated
-        self._over = over.copy()
-        return Result(terms.sum(axis=0), terminated, truncated, active, over, came, hit, terms)
-
-    def _gaps(self) -> Callable[[float], Floats]:
-        """The distances to others now, measured once for each reach."""
-        known: dict[float, Floats] = {}
-
-        def gaps(reach: float) -> Floats:
-            if reach not in known:
-                world, state = self._simulation.world, self._simulation.state
-                found = core.gaps(world, state, self.rows, self._kinds, reach, self._threads)
-                known[reach] = found.reshape(*self._shape, 3)
-            return known[reach]
-
-        return gaps
+        result = Result(*stepper.end(world, state, self._threads))
+        if terms:
+            result = terms.add(result, self.present)
+        if seen is not None:
+            eyes.observe(self.rows, seen)
+        return result
 
     # actions ----------------------------------------------------------------------------------------------------------
     def read(self, actions: Any) -> Floats | None:
@@ -354,40 +314,19 @@ class Worlds:
         """
         return None if actions is None else read_actions(actions, self._meaning.choices, len(self.rows), self.width)
 
-    def _impose(self, numbers: Floats, pose: Floats, goal: Floats, control: Floats) -> None:
-        """Command the learners whose episodes go on; the others stand still."""
-        simulation, rows = self._simulation, self.rows
+    def _wanted(self, numbers: Floats) -> Floats:
+        """(n * A, C) controls, or (n * A, 2) velocities, that actions command now."""
+        simulation, rows, meaning = self._simulation, self.rows, self._meaning
         held = None
         if self._latency is not None:
             numbers, held = self._latency.pass_on(numbers, simulation.count)
-        velocity = simulation.twist.take(rows, axis=0)[:, :2]
-        present = Present(pose, goal, velocity, control, self._low, self._high, self._bounded)
-        wanted = decide(self._meaning, numbers, present)
-        if self._ended.any():
-            wanted[self._ended.reshape(-1)] = 0.0
+        pose = goal = velocity = control = self._low  # which are not read, but in these cases
+        if meaning.returns == "velocity":
+            pose, goal = simulation.pose.take(rows, axis=0), simulation.goal.take(rows, axis=0)
+        if meaning.increment:
+            velocity = simulation.twist.take(rows, axis=0)[:, :2]
+            control = simulation.control.take(rows, axis=0)
+        wanted = decide(meaning, numbers, Present(pose, goal, velocity, control, self._low, self._high, self._bounded))
         if held is not None:
             wanted[held] = 0.0
-        simulation.given[rows] = 1
-        if self._meaning.returns == "velocity":
-            core.follow_rows(simulation.world, simulation.state, rows, wanted)
-        else:
-            for k in range(self._controls):
-                simulation.command[:, k][rows] = wanted[:, k]
-
-
-def _all(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """(n,) whether all flags of a world are set."""
-    return flags[:, 0] if flags.shape[1] == 1 else np.asarray(np.logical_and.reduce(flags, axis=1))
-
-
-def _any(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """(n,) whether any flag of a world is set."""
-    return flags[:, 0] if flags.shape[1] == 1 else np.asarray(np.logical_or.reduce(flags, axis=1))
-
-
-def _same(a: Floats, b: Floats) -> NDArray[np.bool_]:
-    """Whether goals are equal, (B,)."""
-    if a.tobytes() == b.tobytes():
-        return np.ones(len(a), dtype=bool)
-    equal: NDArray[np.bool_] = ((a == b) | (np.isnan(a) & np.isnan(b))).all(axis=1)
-    return equal
+        return np.ascontiguousarray(wanted)

@@ -117,6 +117,17 @@ GUIDES: dict[str, Guide] = {
             "c++",
         ),
     ),
+    "exports": Guide(
+        "formats of recorded runs",
+        "`irsim export last -o FILE` picks the format by the suffix, --to names it; `irsim run FILE --export OUT` "
+        "needs no record. Tables: csv, npz, parquet. ROS 2: mcap, rosbag2. Learning: minari. Isaac Sim, Blender: usd; "
+        "ways of people for Isaac Sim: isaac_people. Gazebo: sdf. MuJoCo: mjcf. CARLA, esmini: openscenario. Planners: "
+        "commonroad. Cameras that look where robots go: colmap, nerfstudio, poses. --set KEY=VALUE gives a format its "
+        "options, --objects chooses robots, people or names, --force replaces a file. What each of them writes: "
+        "references/exports.md of the skill irsim-runner.",
+        "irsim run hall.yaml --record && irsim export last --to usd -o hall.usdc",
+        ("export", "export formats", "formats", "irsim export", "other programs", "recorded run as a file"),
+    ),
     "perturb": Guide(
         "starts that differ a little with each seed",
         "Does it still work when things start slightly differently? An option of `irsim run` and `irsim benchmark` "

@@ -59,8 +59,12 @@ class ObjectDynamics(SimObject):
 
     @property
     def pushable(self) -> bool:
-        """Whether contacts can move the object, which requires a finite mass and that it is not static."""
-        return not self.static and math.isfinite(self.mass)
+        """Whether contacts can move the object.
+
+        That requires a finite mass, and that it is neither static nor an obstacle that replays a recording.
+        """
+        replays = self.record.recorded and self.record.role == "obstacle"
+        return not self.static and math.isfinite(self.mass) and not replays
 
     @property
     def passive(self) -> bool:

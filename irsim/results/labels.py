@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from irsim.common.text import listed
 
-__all__ = ["CROWDED", "LOST", "labels_of", "seeds_of"]
+__all__ = ["CROWDED", "LOST", "ending", "labels_of", "seeds_of"]
 
 CROWDED = "placement-crowded"
 """Outcome of an episode of a benchmark whose seed leaves no room for an object."""
@@ -16,6 +16,11 @@ LOST = "policy-lost"
 
 MAX_LABEL = 24
 """Characters of a behavior that is its own label; a longer one is numbered."""
+
+
+def ending(outcome: str, lost: str | None) -> str:
+    """The word for how a run ended: its outcome, but ``lost`` if time was left when something was lost."""
+    return "lost" if lost is not None and outcome == "timeout" else outcome
 
 
 def labels_of(behaviors: Sequence[str]) -> dict[str, str]:

@@ -144,14 +144,17 @@ class RunResult(Result):
     perturb: list[str] = Field(default_factory=list)
     """Perturbations of starts, speeds and delays, as on the command line."""
     outcome: Literal["success", "collision", "timeout"]
-    """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``."""
+    """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``, also if the run
+    ended early because something was ``lost``."""
     summary: str
     """One sentence: which robots arrived, which did not, and why."""
     reason: str | None = None
     """Why the run failed: the first collision, and what robots that did not arrive were doing; None on success."""
     lost: str | None = None
-    """Why the policy could not go on, which ended the run early; None otherwise. Only policies in other processes are
-    lost."""
+    """Why the policy, or the program at the other end of a bridge, could not go on, which ended the run early; None
+    otherwise. Only policies in other processes are lost."""
+    lost_code: Literal["bridge-lost", "policy-lost"] | None = None
+    """Which of the two was lost; None if neither was."""
     decisive_step: int | None = None
     """Step that decided the outcome: of the first collision of a robot, or in which the first robot that did not arrive
     ceased to make progress; None on success, and if such robots moved on until the end."""
@@ -210,6 +213,8 @@ class RunTable(Result):
     """``interrupted``: cut short, no process writes it any more; the table shows what was recorded."""
     outcome: Literal["success", "collision", "timeout"] | None
     """How it ended; None if it has no result."""
+    lost: str | None = None
+    """Why the policy or the program of a bridge could not go on, which ended it early; None otherwise."""
     summary: str
     """One sentence about the run."""
     view: str

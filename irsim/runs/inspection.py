@@ -101,6 +101,7 @@ def inspect_run(
         run_id=opened.id,
         status=opened.status,
         outcome=None if result is None else result.outcome,
+        lost=None if result is None else result.lost,
         summary=f"recorded until step {end}" if result is None else result.summary,
         view=view,
         columns=found.columns,

@@ -122,9 +122,9 @@ class Run:
 
     @property
     def notes(self) -> list[str]:
-        """Notes on what was too large to be recorded."""
+        """Notes on what was too large to be recorded, and of a finished run those of its bridges."""
         result = self.result
-        return omission_notes(self.meta, None if result is None else result.steps)
+        return omission_notes(self.meta) if result is None else result.notes
 
     @property
     def extent(self) -> str:

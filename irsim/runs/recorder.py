@@ -186,7 +186,7 @@ class Recorder:
     def finish(self, result: RunResult) -> None:
         """Write the last piece and the result, which gets the id and the files of the run."""
         self._flush(last=True)
-        result.notes = omission_notes(self._meta, result.steps)
+        result.notes = [*omission_notes(self._meta, result.steps), *result.notes]
         result.run_id = self.run_id
         result.artifacts = {name: self._path(name) for name in FILES}
         self._write(RESULT, to_json(result, indent=1))

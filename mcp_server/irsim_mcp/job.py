@@ -218,6 +218,7 @@ def _inspect(job: dict[str, Any], progress: _Progress) -> str:
 def _export(job: dict[str, Any], progress: _Progress) -> str:
     from pathlib import Path
 
+    from irsim.bridges.export.episode import CHOICES
     from irsim.bridges.export.export import export_run
     from irsim.bridges.export.registry import find_format
 
@@ -228,9 +229,9 @@ def _export(job: dict[str, Any], progress: _Progress) -> str:
         import shutil
 
         shutil.rmtree(target)  # an earlier export of the same run
-    names = objects if objects in ("movers", "robots", "all") else [name.strip() for name in objects.split(",")]
+    names = objects if objects in CHOICES else [name.strip() for name in objects.split(",")]
     options: dict[str, Any] = {"limits": _limits(job), "workspace": job["workspace"], "progress": progress}
-    return export_run(run_id, target, to=form.name, objects=names, **options).model_dump_json()
+    return export_run(run_id, target, to=form.name, objects=names, overwrite=True, **options).model_dump_json()
 
 
 def _artifact(job: dict[str, Any], progress: _Progress) -> str:

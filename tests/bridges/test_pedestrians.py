@@ -8,15 +8,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 import irsim
+from irsim.api.read_input import read_input
+from irsim.benchmarks.stored import measure_plan
+from irsim.benchmarks.suite_plan import suite_plan
 from irsim.bridges.base import BridgeError
 from irsim.bridges.pedestrians.importing import import_pedestrians
 from irsim.bridges.pedestrians.rows import read_recording
 from irsim.bridges.pedestrians.scenario import Layout
+from irsim.bridges.pedestrians.suite import Episodes
 from irsim.bridges.pedestrians.tracks import Window
 from irsim.common.files import TargetError
 from irsim.diagnostics.errors import ArgumentError
+from irsim.env import Env
 from tests.bridges import crowds
 
 FILES = {"obsmat.txt": crowds.obsmat, "biwi.txt": crowds.trajnet, "commas.csv": lambda: crowds.trajnet(", ")}
@@ -222,6 +228,104 @@ def test_options_that_do_not_fit(convert, tmp_path: Path) -> None:
     with pytest.raises(TargetError, match="exists"):
         convert(crowds.trajnet(), window=Window(end=3.0))
     assert scene.read_text() == before
+
+
+@pytest.fixture(scope="module")
+def square(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("recorded") / "square.txt"
+    path.write_text(crowds.square())
+    return path
+
+
+def test_a_suite_of_windows(square: Path, tmp_path: Path) -> None:
+    found = import_pedestrians(square, suite=tmp_path / "my crowd.yaml", episodes=Episodes(length=20))
+    assert (found.file, found.length, found.notes[1:]) == (None, 20, [])
+    assert found.windows == pytest.approx([0, 20, 40, 60, 80, 100])
+    plan = suite_plan(str(tmp_path / "my crowd.yaml"), policies=["orca", "sfm"], seeds=3)
+    result = measure_plan(plan, workers=1)
+    assert result.scenarios == [f"from-{start}s" for start in (0, 20, 40, 60, 80, 100)]
+    assert (plan.name, len(result.episodes)) == ("my_crowd", 6 * 2 * 3)
+    orca = next(row for row in result.rows if row.scenario == "(all)")
+    assert orca.success.rate > 0.8
+    again = measure_plan(plan, workers=1)
+    assert again.episodes == result.episodes
+
+
+def test_windows_have_the_people_of_their_time(square: Path, tmp_path: Path) -> None:
+    window = Window(10.0, 110.0)
+    found = import_pedestrians(square, suite=tmp_path / "s.yaml", window=window, episodes=Episodes(length=25))
+    scenarios = yaml.safe_load((tmp_path / "s.yaml").read_text())["scenarios"]
+    recorded = np.loadtxt(square)
+    assert len(scenarios) == 4
+    for scenario, start in zip(scenarios, found.windows, strict=True):
+        since = start + 10
+        assert scenario["name"] == f"from-{since:g}s"
+        (people,) = scenario["scenario"]["obstacle"]
+        for name, behavior in zip(people["name"], people["behavior"], strict=True):
+            mine = recorded[recorded[:, 1] == int(name.removeprefix("ped_"))]
+            times = mine[:, 0] / crowds.FRAME_STEP * crowds.PERIOD
+            inside = (times >= since - 1e-6) & (times <= since + 25 + 1e-6)
+            np.testing.assert_allclose(behavior["times"], times[inside] - since, atol=1e-6)
+            np.testing.assert_allclose(behavior["poses"], mine[inside, 2:])
+
+
+def test_seeds_draw_free_starts_and_goals_far_apart(square: Path, tmp_path: Path) -> None:
+    import_pedestrians(square, suite=tmp_path / "s.yaml", episodes=Episodes(length=40))
+    scenario, _ = read_input(tmp_path / "s.yaml" / "from-40s", None, strict=True)
+    ways = []
+    for seed in range(20):
+        env = Env(scenario, seed=seed, headless=True, log_level="ERROR")
+        start, goal = env.robot.state[:2, 0], env.robot.goal[:2, 0]
+        people = [item.state[:2, 0] for item in env.obstacle_list if np.isfinite(item.state[0, 0])]
+        ways.append((*start, *goal))
+        assert len(people) > 3
+        assert np.hypot(*(goal - start)) >= 0.6 * 16
+        for ends, room in ((start, 0.25 + 0.5), (goal, 0.0)):
+            assert np.abs(ends[0]) < 9
+            assert np.abs(ends[1]) < 6
+            assert min(np.hypot(*(ends - place)) for place in people) > 0.3 + room
+        env.end(ending_time=0.0)
+    assert len(set(ways)) == 20, "each seed draws another way"
+
+
+def test_a_seed_chooses_the_windows(square: Path, tmp_path: Path) -> None:
+    def windows(seed: int, count: int = 3) -> tuple[list[float], str]:
+        episodes = Episodes(count, 10.0, seed)
+        found = import_pedestrians(square, suite=tmp_path / "s.yaml", episodes=episodes, overwrite=True)
+        return found.windows, (tmp_path / "s.yaml").read_text()
+
+    starts, text = windows(0)
+    assert len(starts) == 3
+    assert starts == sorted(starts)
+    assert windows(0) == (starts, text)
+    assert len({tuple(windows(seed)[0]) for seed in range(6)}) > 2
+    assert len(windows(0, 100)[0]) == 13
+
+
+def test_a_recording_that_is_shorter_than_a_window(square: Path, tmp_path: Path) -> None:
+    window = Window(0.0, 10.0)
+    found = import_pedestrians(square, suite=tmp_path / "s.yaml", window=window, episodes=Episodes(length=60))
+    assert found.windows == [0.0]
+    assert "ends before the only window" in found.notes[0]
+    assert len(measure_plan(suite_plan(str(tmp_path / "s.yaml"), seeds=2), workers=1).episodes) == 3 * 2
+
+
+def test_options_of_suites_that_do_not_fit(square: Path, tmp_path: Path) -> None:
+    for episodes, expected in ((Episodes(0), "windows"), (Episodes(201), "at most 200"), (Episodes(1, -1.0), "length")):
+        with pytest.raises(ArgumentError, match=expected):
+            import_pedestrians(square, suite=tmp_path / "s.yaml", episodes=episodes)
+    for targets in ({}, {"out": tmp_path / "s.yaml", "suite": tmp_path / "s.yaml"}):
+        with pytest.raises(ArgumentError, match="a scenario or a suite"):
+            import_pedestrians(square, **targets)
+    (tmp_path / "old.yaml").write_text("mine")
+    with pytest.raises(TargetError, match="exists"):
+        import_pedestrians(square, tmp_path / "new.yaml", suite=tmp_path / "old.yaml")
+    assert [path.name for path in tmp_path.iterdir()] == ["old.yaml"], "neither file is written"
+    for layout, expected in ((Layout("x", behavior="rov"), "did you mean rvo"), (Layout("x", margin=-1.0), "margin")):
+        with pytest.raises(ArgumentError, match=expected):
+            import_pedestrians(square, tmp_path / "s.yaml", layout=layout)
+    with pytest.raises(BridgeError, match="nobody"):
+        import_pedestrians(square, suite=tmp_path / "s.yaml", window=Window(box=(100, 100, 101, 101)))
 
 
 def test_the_command(tmp_path: Path) -> None:

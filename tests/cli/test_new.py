@@ -65,8 +65,15 @@ def test_mistakes_are_explained_and_nothing_is_written(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_place_that_does_not_exist_is_a_failure(irsim: Run) -> None:
-    result = irsim("new", "empty-room", "-o", "no/such/place.yaml")
+def test_a_folder_that_does_not_exist_is_made(irsim: Run, tmp_path: Path) -> None:
+    result = irsim("new", "empty-room", "-o", str(tmp_path / "no" / "such" / "place.yaml"))
+    assert result.exit_code == 0
+    assert (tmp_path / "no" / "such" / "place.yaml").exists()
+
+
+def test_a_place_that_cannot_exist_is_a_failure(irsim: Run, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    result = irsim("new", "empty-room", "-o", str(tmp_path / "file" / "place.yaml"))
     assert result.exit_code == 1
     assert "file-access" in result.stderr
 

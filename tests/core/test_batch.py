@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -131,6 +136,42 @@ def test_every_drive_in_one_batch_on_threads() -> None:
         results.append(everything(state))
     assert_identical(results[0], results[1])
     assert_identical(results[0], results[2])
+
+
+FORKED = """
+import os, sys
+import irsim._core as core
+from tests.core.worlds import lidar, robot, scene
+
+world, state = scene(robot(goals=[[9, 9]], sensors=[lidar(9)]), seeds=range(40))
+core.advance(world, state, 3, threads=3)
+child = os.fork()
+for _ in range(5):
+    core.advance(world, state, 1, threads=3)
+numbers = state.pose.tobytes().hex()
+if child == 0:
+    open(sys.argv[1], "w").write(numbers)
+    os._exit(0)
+assert os.waitpid(child, 0)[1] == 0
+assert open(sys.argv[1]).read() == numbers
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes that fork")
+def test_a_forked_process_has_threads_of_its_own(tmp_path: Path) -> None:
+    command = [sys.executable, "-W", "ignore", "-c", FORKED, str(tmp_path / "numbers")]
+    subprocess.run(command, check=True, timeout=60)
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted on Linux")
+def test_threads_go_with_their_state() -> None:
+    before = len(os.listdir("/proc/self/task"))
+    world, state = scene(robot(), seeds=range(40))
+    core.advance(world, state, 2, threads=3)
+    core.advance(world, state, 2, threads=3)
+    assert len(os.listdir("/proc/self/task")) == before + 2
+    del world, state
+    assert len(os.listdir("/proc/self/task")) == before
 
 
 def test_empty_worlds() -> None:

@@ -1,7 +1,7 @@
 """Blender reads stages that we write: where bodies are over time, which meshes and cameras there are.
 
-``IRSIM_NIGHTLY=1 IRSIM_BPY=/path/of/python pytest -m slow tests/interop/test_blender.py``, where that Python has bpy
-4.5 (947 MB from PyPI, Python 3.11).
+``nox -s nightly`` installs Blender (bpy 4.5, 947 MB from PyPI, Python 3.11) and runs them. With a Python that has it:
+``IRSIM_NIGHTLY=1 IRSIM_BPY=/path/of/python pytest -m slow tests/interop/test_blender.py``.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tests.interop.usd_run import record
 pytestmark = [
     pytest.mark.slow(30),
     pytest.mark.skipif(
-        os.environ.get("IRSIM_NIGHTLY") != "1", reason="Blender (bpy) is 947 MB: IRSIM_NIGHTLY=1 runs it"
+        os.environ.get("IRSIM_NIGHTLY") != "1", reason="Blender (bpy) is 947 MB: nox -s nightly runs it"
     ),
 ]
 BLENDER = """

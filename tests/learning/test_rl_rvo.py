@@ -20,7 +20,7 @@ def test_learners_observe_what_a_network_observes_and_their_last_velocity() -> N
     for _ in range(40):
         before = simulation.twist[rows, :2].copy()
         actions = rng.uniform(-1, 1, (len(rows), 2))
-        active = ~worlds._ended.reshape(-1)
+        active = ~worlds._stepper.ended.reshape(-1)
         worlds.step(actions)
         seen = observer.observe(rows, np.zeros(len(rows), bool), rows // simulation.objects)
         assert seen.commanded is not None

@@ -51,6 +51,41 @@ def test_a_world_is_the_same_alone_and_among_others_on_any_number_of_threads(mad
                 assert np.array_equal(np.ravel(mine), np.ravel(part[i]))
 
 
+TERMS = [
+    {"name": "progress"},
+    {"name": "arrival", "weight": 5, "each": True},
+    {"name": "collision", "weight": -5},
+    {"name": "clearance", "margin": 0.5, "to": "robots"},
+    {"name": "smoothness"},
+    {"name": "smoothness", "of": "turning", "weight": -0.3},
+    {"name": "social", "distance": 0.7},
+    {"name": "time"},
+]
+
+
+def zeros(moment: Any) -> Any:
+    return np.zeros(moment.arrived.shape)
+
+
+@pytest.mark.parametrize("action", [{}, {"returns": "velocity", "low": [-1, -1], "high": [1, 1]}], ids=["", "velocity"])
+def test_one_loop_of_the_core_is_its_parts_one_after_the_other(action: dict[str, Any]) -> None:
+    python = {"name": "python", "function": "tests.learning.test_worlds:zeros"}
+    worlds = Worlds(crowd(reward=TERMS, action=action), 5, seed=3, threads=2)
+    other = Worlds(crowd(reward=TERMS, action=action), 5, seed=3)
+    third = Worlds(crowd(reward=[*TERMS, python], action=action), 5, seed=3)
+    rng = np.random.default_rng(2)
+    for _ in range(120):
+        actions = rng.uniform(-1, 1, (len(worlds.rows), worlds.width))
+        step, parts = worlds.advance(worlds.read(actions), "over"), one_step(other, actions)
+        result = step.result
+        flags = result.reward, result.terminated, result.truncated, result.over
+        assert all(np.array_equal(a, b) for a, b in zip((step.seen, *flags), parts, strict=True))
+        in_python = third.advance(third.read(actions), "over")
+        assert np.array_equal(step.seen, in_python.seen)
+        assert np.array_equal(result.terms, in_python.result.terms[:-1])
+        assert np.array_equal(result.reward, in_python.result.reward)
+
+
 def test_a_seed_decides_about_all_episodes() -> None:
     first, again = (drive(Worlds(crowd(), 3, seed=4), 150) for _ in range(2))
     for a, b in zip(first, again, strict=True):

@@ -91,3 +91,17 @@ async def test_a_server_that_may_opens_them(workspace: Path) -> None:
             run = data_of(await client.call_tool("run_episode", connecting(peer.address)))
     assert peer.kinds()[0] == "scene"
     assert peer.kinds().count("state") == run["steps"]
+
+
+async def test_a_program_that_leaves_is_what_the_run_says(workspace: Path) -> None:
+    def leaving(message: dict[str, Any]) -> Any:
+        return b"" if message["kind"] == "state" and message["step"] == 3 else {}
+
+    with Peer(leaving) as peer:
+        text = connecting(peer.address)["scenario_yaml"].replace("'}]", "', answers: true, timeout: 0.5}]")
+        async with Client(build_server(workspace, ServerLimits(bridges=True)), raise_exceptions=True) as client:
+            run = data_of(await client.call_tool("run_episode", {"scenario_yaml": text}))
+    assert (run["outcome"], run["steps"]) == ("timeout", 3)
+    assert "did not answer within 0.5 s; the run ended" in run["reason"]
+    assert run["summary"].endswith("the program of a bridge was lost, which ended the run")
+    assert run["next"].startswith("The program of a bridge was lost: start it again, then run_episode ")

@@ -18,6 +18,7 @@ def after(run_id: str, job_id: str) -> tuple[tuple[str, dict[str, object]], ...]
     """Calls that need what others have made."""
     return (
         ("inspect_run", {"run_id": run_id}),
+        ("export_run", {"run_id": run_id, "to": "csv"}),
         ("get_job", {"job_id": job_id, "wait_s": 1}),
         ("write_scenario", {"path": "room.yaml", "yaml": ROOM, "overwrite": True}),
     )

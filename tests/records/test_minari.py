@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import irsim
+from irsim.common.files import TargetError
 from irsim.runs import Run, RunError, open_run
 from tests.records.conftest import HALL
 
@@ -157,5 +158,5 @@ def test_what_is_no_dataset_is_refused_and_leaves_nothing(hall: Run, minari: Any
         irsim.export_run(mixed, "mixed-v0", to="minari")
     assert [path.name for path in Path().iterdir()] == [".irsim"]
     irsim.export_run(hall, "hall-v0", to="minari")
-    with pytest.raises(RunError, match="'hall-v0' exists"):
+    with pytest.raises(TargetError, match="'hall-v0' exists"):
         irsim.export_run(hall, "hall-v0", to="minari")

@@ -97,7 +97,7 @@ def test_size_of_blocks_changes_no_file(traffic: Run, monkeypatch: pytest.Monkey
     whole, parts = {}, {}
     for made in (whole, parts):
         for name in ("run.npz", "run.csv"):
-            irsim.export_run(traffic, name, ranges=True)
+            irsim.export_run(traffic, name, ranges=True, overwrite=True)
             made[name] = Path(name).read_bytes()
         monkeypatch.setattr("irsim.bridges.export.episode._BLOCK_NUMBERS", numbers)
     assert whole["run.csv"] == parts["run.csv"]
@@ -143,13 +143,13 @@ def test_objects_are_chosen_by_kind_or_name(traffic: Run) -> None:
         ("all", ["rover", "glider", "walker", "crate"]),
         (["crate", "rover"], ["crate", "rover"]),
     ):
-        assert irsim.export_run(traffic, "run.csv", objects=objects).objects == names
+        assert irsim.export_run(traffic, "run.csv", objects=objects, overwrite=True).objects == names
         assert [row["name"] for row in table(Path("run.csv"))[: len(names)]] == names
     crate = table(Path("run.csv"))[2]
     assert [crate[key] for key in ("name", "x", "vx", "control_0", "goal_x")] == ["crate", "4.0", "0.0", "", ""]
-    for objects, message in ((["rovr"], "did you mean 'rover'"), ("robot", "choose movers, robots, all")):
+    for objects, message in ((["rovr"], "did you mean 'rover'"), ("robot", "choose movers, robots, people, all")):
         with pytest.raises(RunError, match=message):
-            irsim.export_run(traffic, "run.csv", objects=objects)
+            irsim.export_run(traffic, "other.csv", objects=objects)
 
 
 def test_several_runs_are_one_table(traffic: Run, room: Path) -> None:
@@ -177,6 +177,7 @@ def test_formats_are_found_by_module_and_suffix() -> None:
             Path("x.txt"),
             "unknown-format: the suffix of 'x.txt' does not select a format. Fix: end it with one of .csv",
         ),
+        (None, Path("x.txt"), r"\.isaac_people\.txt"),
         (None, Path("x.xml"), "files of commonroad and mjcf end with .xml. Fix: name the file x.commonroad.xml, or"),
         (None, None, "no format was given"),
     ):
@@ -188,7 +189,7 @@ def test_what_cannot_be_written_leaves_nothing(traffic: Run, monkeypatch: pytest
     Path("plain").write_text("a file")
     Path("full-v0").mkdir()
     before = sorted(path.name for path in Path().iterdir())
-    with pytest.raises(RunError, match="file-access"):
+    with pytest.raises(TargetError, match="file-access"):
         irsim.export_run(traffic, "plain/run.csv")
     with pytest.raises(TargetError, match="unknown-format"):
         irsim.export_run(traffic, "run.txt", to="csv")

@@ -77,6 +77,11 @@ class CarlaBridge(Bridge):
         self._step = 0
         self._turn = 0
 
+    @property
+    def peer(self) -> str:
+        """The server."""
+        return f"the CARLA server at {self.options.host}:{self.options.port}"
+
     # the episode ------------------------------------------------------------------------------------------------------
     def open(self, scene: SceneDescription, start: WorldState) -> None:
         """Connect, make the server synchronous, and spawn the actors; after an error, nothing of it is left."""

@@ -21,8 +21,8 @@ from irsim.simulation.trace import Trace
 
 __all__ = ["CHOICES", "Actor", "Block", "Episode", "Lidar", "open_episode"]
 
-CHOICES = ("movers", "robots", "all")
-"""Words that choose objects: robots and obstacles that can move, robots, or all objects."""
+CHOICES = ("movers", "robots", "people", "all")
+"""Words that choose objects: robots and obstacles that can move, robots, obstacles that can move, or all objects."""
 _BLOCK_NUMBERS = 2_000_000
 """Number of values of one block, which bounds the memory of an export."""
 _MAX_BLOCK_ROWS = 65_536
@@ -290,7 +290,9 @@ def open_episode(
 
 
 def _is_chosen(facts: dict[str, Any], word: str) -> bool:
-    return word == "all" or facts["role"] == "robot" or (word == "movers" and not facts["static"])
+    if facts["role"] == "robot":
+        return word != "people"
+    return word == "all" or (word in ("movers", "people") and not facts["static"])
 
 
 def _has_beams(options: dict[str, Any]) -> bool:

@@ -13,7 +13,7 @@ from irsim.bridges.export.episode import open_episode
 from irsim.bridges.export.options import chosen_options
 from irsim.bridges.export.registry import Format, find_format
 from irsim.common.extras import require
-from irsim.common.files import TEMPORARY, check_suffix, replacing
+from irsim.common.files import TEMPORARY, TargetError, check_new, check_suffix, make_folder_of, replacing
 from irsim.common.text import clean
 from irsim.episodes.episode import Progress
 from irsim.results.records import ExportResult
@@ -21,7 +21,7 @@ from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.scenario.limits import Limits
 
-__all__ = ["export_run"]
+__all__ = ["check_target", "export_run"]
 
 
 def export_run(
@@ -32,6 +32,7 @@ def export_run(
     objects: str | Sequence[str] | None = None,
     ranges: bool | None = None,
     options: Mapping[str, Any] | None = None,
+    overwrite: bool = False,
     workspace: str | Path | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
@@ -46,13 +47,15 @@ def export_run(
 
     Args:
         run: Id of a run, its folder, or ``last``; or several of them for a table or a dataset.
-        out: File or folder to write. An existing file is replaced; a folder must not exist. Default: the id of the run
-            with the suffix of the format, in the current directory.
+        out: File or folder to write; folders above it are made. Default: the id of the run with the suffix of the
+            format, in the current directory.
         to: Name of the format. Default: as the suffix of ``out`` says.
-        objects: ``movers`` (robots, and obstacles that can move), ``robots``, ``all``, or a list of names. Default:
-            ``robots`` for cameras, else ``movers``.
+        objects: ``movers`` (robots, and obstacles that can move), ``robots``, ``people`` (obstacles that can move),
+            ``all``, or a list of names. Default: ``robots`` for cameras, ``people`` for ``isaac_people``, else
+            ``movers``.
         ranges: Whether to write the ranges of lidars. Default: in all formats but ``csv``.
         options: Options of the format, such as the height of cameras.
+        overwrite: Replace a file that exists; a folder is never replaced.
         workspace: Folder whose ``.irsim/runs`` holds the runs; default: the current directory.
         limits: Limits of the reader of the scenario.
         progress: Callback ``(rows_done, rows_total)``.
@@ -61,7 +64,7 @@ def export_run(
         RunError: There is no such run, object or format, or the format does not hold these runs or their objects.
         ExtraError: A library is missing.
         ArgumentError: The format has no such option, or the value is not allowed.
-        TargetError: The file has another suffix than files of the format.
+        TargetError: The file has another suffix than files of the format, or exists.
         ScenarioError: The scenario of the run has errors now (only ``mcap`` reads it).
     """
     names = [run] if isinstance(run, (str, os.PathLike, Run)) else list(run)
@@ -75,6 +78,7 @@ def export_run(
     require(form.extra, *form.libraries)
     chosen = chosen_options(form.options, options or {}, f"the format {form.name}")
     target = _target(form, runs, out)
+    check_target(form, target, overwrite=overwrite)
     total, done = sum(one.last_step + 1 for one in runs), 0
 
     def count(rows: int) -> None:
@@ -107,25 +111,32 @@ def export_run(
 
 
 def _target(form: Format, runs: Sequence[Run], out: str | Path | None) -> Path:
-    """The file or folder to write, whose name fits the format."""
+    """The file or folder to write."""
     if out is None:
         if len(runs) > 1:
             raise RunError("bad-argument", "several runs need a name for their file", "name it with -o", where="out")
         out = f"{runs[0].id}{form.suffix}"
-    target = Path(out)
+    return Path(out)
+
+
+def check_target(form: Format, target: Path, *, overwrite: bool) -> None:
+    """Refuse a file or folder that a format cannot write, before any work is done.
+
+    Raises:
+        TargetError: The file has another suffix than files of the format, or exists.
+    """
     if not form.folder:
         check_suffix(target, (form.suffix, *form.more_suffixes))
-        if target.is_dir():
-            raise RunError("file-exists", f"'{clean(target, 200)}' is a folder", "name another file with -o")
-    elif target.exists():
-        raise RunError("file-exists", f"'{clean(target, 200)}' exists", "name another folder with -o")
-    return target
+        check_new(target, overwrite=overwrite)
+    elif os.path.lexists(target):
+        what = f"'{clean(target, 200)}' exists, and folders are not replaced"
+        raise TargetError("file-exists", what, "name another folder with -o, or delete this one")
 
 
 @contextmanager
 def _new_folder(target: Path) -> Iterator[Path]:
     """Yield a temporary folder beside ``target``, which gets that name if the block succeeds, else is deleted."""
-    target.parent.mkdir(parents=True, exist_ok=True)
+    make_folder_of(target)
     temporary = target.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
     temporary.mkdir()
     try:

@@ -7,11 +7,11 @@ from typing import Any, TypeVar, overload
 
 from pydantic import ValidationError
 
-from irsim.common.arguments import as_given
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.base import Options
+from irsim.scenario.messages.of_options import option_message, option_problems
 
 __all__ = ["chosen_options"]
 
@@ -45,7 +45,5 @@ def chosen_options(model: type[Options] | None, given: Mapping[str, Any], owner:
     try:
         return model.model_validate(dict(given))
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        what = f"{where}: {first['msg']}, got {as_given(first.get('input'))}"
-        raise ArgumentError(what, "give an allowed value") from None
+        message, fix = option_message(option_problems(error, dict(given), model))
+        raise ArgumentError(f"{owner}: {message}", fix or "give an allowed value") from None

@@ -41,6 +41,7 @@ class Format:
         options: Model of its options, which writers find in :attr:`Episode.options`; None without any.
         more_suffixes: Other suffixes of its files, which select how it writes them.
         scene: Whether it has the world around the chosen objects, so that there may be none of them.
+        named: Whether a file must name it, as ``x.NAME.txt`` does, because the suffix says nothing.
     """
 
     name: str
@@ -55,6 +56,7 @@ class Format:
     extra: str = "records"
     more_suffixes: tuple[str, ...] = ()
     scene: bool = False
+    named: bool = False
 
 
 @cache
@@ -76,8 +78,10 @@ def find_format(name: str | None, out: Path | None) -> Format:
             raise RunError("bad-argument", "no format was given", f"name one with --to; {listed}", where="to")
         known = [_load(one) for one in format_names()]
         fitting = [one for one in known if out.suffix.lower() in (one.suffix, *one.more_suffixes)]
-        if len(fitting) > 1:  # x.mjcf.xml says which
-            fitting = [one for one in fitting if Path(out.stem).suffix.lower() == f".{one.name}"] or fitting
+        called = Path(out.stem).suffix.lower()  # x.mjcf.xml says which
+        fitting = [one for one in fitting if not one.named or called == f".{one.name}"]
+        if len(fitting) > 1:
+            fitting = [one for one in fitting if called == f".{one.name}"] or fitting
         if len(fitting) == 1:
             return fitting[0]
         if fitting:
@@ -86,7 +90,12 @@ def find_format(name: str | None, out: Path | None) -> Format:
             fix = f"name the file {named}, or the format with --to {fitting[0].name}"
             raise RunError("unknown-format", what, fix, where="to")
         what = f"the suffix of '{clean(out, 200)}' does not select a format"
-        suffixes = {suffix for one in known for suffix in (one.suffix, *one.more_suffixes) if suffix.startswith(".")}
+        suffixes = {
+            suffix
+            for one in known
+            for suffix in (f".{one.name}{one.suffix}" if one.named else one.suffix, *one.more_suffixes)
+            if suffix.startswith(".")
+        }
         fix = f"end it with one of {', '.join(sorted(suffixes))}, or name the format with `irsim export --to`; {listed}"
         raise RunError("unknown-format", what, fix, where="to")
     if name not in format_names():

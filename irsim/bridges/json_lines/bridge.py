@@ -2,7 +2,7 @@
 
 irsim connects to the program and sends one object per line, with the key ``kind``:
 
-- ``scene``: the scene, and the state at the start
+- ``scene``: the scene, and the state at the start; once more when a reset has drawn another scene
 - ``pull``: with ``clock: external`` only, before each step: irsim waits for the answer
 - ``motion``: only if the program moves objects: what the objects want in this step, and where irsim would have them
 - ``state``: all objects after a step
@@ -49,6 +49,11 @@ class JsonLinesBridge(Bridge):
         self._text = b""
         self._last: Feedback | None = None
 
+    @property
+    def peer(self) -> str:
+        """The program."""
+        return f"the program at {self.options.address}"
+
     def open(self, scene: SceneDescription, start: WorldState) -> None:
         """Connect to the program and send the scene."""
         host, _, port = self.options.address.rpartition(":")
@@ -57,6 +62,12 @@ class JsonLinesBridge(Bridge):
         except OSError as error:
             what = f"no program listens at {self.options.address}: {error.strerror or error}"
             raise BridgeLostError(what, "start the program first, or change the address") from None
+        self._send("scene", {"scene": scene_as_json(scene), "state": state_as_json(start)})
+        if self.options.answers:
+            self._answer()
+
+    def renew(self, scene: SceneDescription, start: WorldState) -> None:
+        """Send the new scene; its state follows."""
         self._send("scene", {"scene": scene_as_json(scene), "state": state_as_json(start)})
         if self.options.answers:
             self._answer()

@@ -20,6 +20,8 @@ __all__ = ["cropped", "eroded", "occupancy_of", "within"]
 _UNITS = ", or its unit if that is not the meter: --meters-per-unit 0.001 for millimeters, 0.01 for centimeters"
 _MARGIN = 10
 """Cells that are kept around the free ones."""
+COARSE, FINE = 0.25, 0.1
+"""Sides of cells in which walls may hide rooms, and in which they do not [m]."""
 
 
 def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> Occupancy:
@@ -63,6 +65,12 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
     found.headroom, found.climb = scene.headroom, scene.climb
     if spans is not None and len(levels) > 1 and options.level is None and options.height is None:
         found.notes.append(f"level {number} of {len(levels)} was taken; --list-levels lists them, --level picks one")
+    if spans is not None and _may_be_roof(level, surfaces, spans, options, headroom):
+        found.notes.append(
+            f"this level at {level.height:.2f} m is under the sky, and the scene goes on below it: cells of "
+            f"{options.resolution:g} m are too large for rooms, whose walls fill them, so this may be a roof; try "
+            f"--resolution {FINE:g}"
+        )
     return cropped(found)
 
 
@@ -72,6 +80,19 @@ def _within_bounds(scene: Scene, bounds: tuple[float, float, float, float]) -> S
     if not len(solid) + len(floors) + len(barred):
         raise _empty("it has nothing within the bounds", "give other --bounds, or none")
     return replace(scene, solid=solid, floors=floors, barred=barred)
+
+
+def _may_be_roof(
+    level: Level, surfaces: Surfaces, spans: Spans, options: ImportOptions, headroom: float
+) -> bool:  # fmt: skip
+    """Whether cells are so large that floors below a level under the sky may have disappeared."""
+    if options.resolution <= COARSE or options.level is not None or options.height is not None:
+        return False
+    own = level.regions == 0
+    if np.isfinite(surfaces.ceiling[own]).mean() >= 0.5:
+        return False
+    deep = np.unique(spans.column[spans.low < level.height - headroom])
+    return bool(np.isin(surfaces.column[own], deep).mean() >= 0.5)
 
 
 def _at_seed(levels: list[Level], surfaces: Surfaces, grid: Grid, options: ImportOptions) -> list[int]:

@@ -169,7 +169,7 @@ def find_levels(surfaces: Surfaces, grid: Grid, climb: float, headroom: float) -
             levels.append((height, [k]))
     found = [_level(height, members, region, sizes * cell) for height, members in sorted(levels)]
     for level in found:
-        level.roof = _is_roof(level, found, surfaces)
+        level.roof = _is_roof(level, found, surfaces, grid)
     return found
 
 
@@ -195,14 +195,21 @@ def _level(height: float, members: list[int], region: Ints, areas: np.ndarray) -
     return Level(height, number[region], [float(areas[k]) for k in members])
 
 
-def _is_roof(level: Level, levels: list[Level], surfaces: Surfaces) -> bool:
-    """Whether most of a level's largest surface is under the sky and above another level's largest surface."""
+def _is_roof(level: Level, levels: list[Level], surfaces: Surfaces, grid: Grid) -> bool:
+    """Whether most of a level's largest surface is under the sky and above another level.
+
+    Cells beside those of the level below count, too: they have walls, which take much of a floor if cells are large.
+    """
     own = level.regions == 0
     if np.isfinite(surfaces.ceiling[own]).mean() >= 0.5:
         return False
     for other in levels:
         if other.height < level.height:
-            below = surfaces.column[other.regions == 0]
-            if np.isin(surfaces.column[own], below).mean() >= 0.5:
+            below = np.zeros(grid.columns, bool)
+            below[surfaces.column[other.regions >= 0]] = True
+            below = np.pad(below.reshape(grid.nx, grid.ny), 1)
+            rows = below[:-2] | below[1:-1] | below[2:]
+            near = rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
+            if near.reshape(-1)[surfaces.column[own]].mean() >= 0.5:
                 return True
     return False

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ from PIL import Image
 
 from irsim.bridges.base import BridgeError
 from irsim.common.arrays import Floats
-from irsim.common.files import check_suffix, write_new
+from irsim.common.files import check_new, check_suffix, write_new
 from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of
 from irsim.objects.obstacle_map import grid_values
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -89,7 +88,7 @@ def export_map(
     values, side = _with_square_cells(values, scenario.grid.cell)
     picture = target.with_suffix(f".{image}")
     meta = RosMeta(picture.name, side, (*scenario.grid.origin, 0.0), mode=mode)
-    _check_new(picture, overwrite)
+    check_new(picture, overwrite=overwrite)
     write_new(target, meta.as_yaml(), overwrite=overwrite)
     Image.fromarray(np.ascontiguousarray(pixels_of(values, meta))).save(picture)
     nx, ny = values.shape
@@ -108,9 +107,3 @@ def _with_square_cells(values: Floats, cell: tuple[float, float]) -> tuple[Float
         for n, c, have in zip(size, cell, values.shape, strict=True)
     )
     return values[np.ix_(i, j)], side
-
-
-def _check_new(picture: Path, overwrite: bool) -> None:
-    """Refuse to overwrite an existing picture."""
-    if not overwrite and os.path.lexists(picture):
-        raise MapFileError("file-exists", f"{picture} exists; --force overwrites it, -o names another file")

@@ -16,7 +16,7 @@ from irsim.bridges.maps.sidecar import MapSidecar, sidecar_path
 from irsim.bridges.maps.source import Occupancy
 from irsim.bridges.maps.suggest import Trip
 from irsim.common.arrays import Floats
-from irsim.common.files import TargetError, create_bytes, replace_bytes
+from irsim.common.files import TargetError, check_new, create_bytes, make_folder_of, replace_bytes
 from irsim.components.maps._rosmap import RosMeta, pixels_of
 from irsim.scenario.yaml.modeline import with_modeline
 
@@ -110,20 +110,17 @@ def _short(value: float) -> str:
 
 
 def write_all_or_none(contents: list[tuple[Path, bytes]], *, overwrite: bool) -> None:
-    """Write files; if one cannot be written, those that are new are deleted.
+    """Write files, in folders that are made if need be; if one cannot be written, those that are new are deleted.
 
     Raises:
-        TargetError: Two are the same file, a folder is missing, or one exists and ``overwrite`` is not set.
+        TargetError: Two are the same file, or one exists and ``overwrite`` is not set.
     """
-    for path, _ in contents:
-        if not path.parent.is_dir():
-            raise TargetError("file-access", f"there is no folder {path.parent}", "make it first, or name another file")
     if len({path.absolute() for path, _ in contents}) < len(contents):
         raise TargetError("bad-argument", "two of the files would have the same name", "give the map another name")
-    if not overwrite:
-        for path, _ in contents:
-            if os.path.lexists(path):
-                raise TargetError("file-exists", f"{path} exists; --force overwrites it, -o names another file")
+    for path, _ in contents:
+        check_new(path, overwrite=overwrite)
+    for path, _ in contents:
+        make_folder_of(path)
     made: list[Path] = []
     try:
         for path, content in contents:
@@ -139,5 +136,5 @@ def write_all_or_none(contents: list[tuple[Path, bytes]], *, overwrite: bool) ->
             with suppress(OSError):
                 path.unlink()
         if isinstance(error, FileExistsError):
-            raise TargetError("file-exists", f"{path} exists; --force overwrites it") from None
+            check_new(path, overwrite=False)
         raise

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -38,12 +39,14 @@ class MujocoBridge(Bridge):
     """
 
     name = "mujoco"
+    peer = "MuJoCo"
 
     def __init__(self, options: Mujoco) -> None:
         self.options = options
         self.physics: Physics | None = None
         self._film: Film | None = None
         self._report = MujocoReport()
+        self._warnings: Counter[str] = Counter()
         self._noted = False
         if options.report is not None and Path(options.report).suffix != ".json":
             what = f"report: a report is a .json file, got {options.report!r}"
@@ -57,19 +60,34 @@ class MujocoBridge(Bridge):
             fix = suggestion(self.options.camera, known, f"cameras are {', '.join(known[:20])}")
             raise BridgeError("bridge-mismatch", f"there is no camera {self.options.camera!r}", fix)
         self.agents = moved
-        self.physics = Physics(scene, moved, self.options)
-        self.physics.start(start.pose)
+        self._build(scene, start)
+        assert self.physics is not None
         self._contacts = Contacts(self.physics)
-        self._rays = Rays(self.physics) if self.options.lidar != "off" else None
         self._comparison = LidarComparison()
         self._noise = np.random.Generator(np.random.Philox(key=np.array([scene.seed, 0x6C696461], dtype=np.uint64)))
-        self._noisy = {lidar.key for agent in scene.agents for lidar in agent.lidars if lidar.noise}
         self._slip: list[float] = []
         self._begun = time.perf_counter()
-        self._steps, self._last = 0, start.step
+        self._steps = 0
         if self.options.video is not None:
             self._film = Film(self.physics, self.options, scene.step_time)
             self._film.take()
+
+    def renew(self, scene: SceneDescription, start: WorldState) -> None:
+        """Build the model of another scene; counts and the film go on."""
+        assert self.physics is not None
+        self._warnings.update(self.physics.warnings())
+        self.agents = choose_agents(scene, self.options.agents)
+        self._build(scene, start)
+        self._contacts.follow(self.physics)
+        if self._film is not None:
+            self._film.follow(self.physics)
+
+    def _build(self, scene: SceneDescription, start: WorldState) -> None:
+        self.physics = Physics(scene, self.agents, self.options)
+        self.physics.start(start.pose)
+        self._rays = Rays(self.physics) if self.options.lidar != "off" else None
+        self._noisy = {lidar.key for agent in scene.agents for lidar in agent.lidars if lidar.noise}
+        self._last = start.step
 
     def exchange(self, motion: Motion) -> Feedback | None:
         """Advance the physics by one step; return where the robots are."""
@@ -143,7 +161,7 @@ class MujocoBridge(Bridge):
             lidar_median_m=comparison.quantile(0.5),
             lidar_p99_m=comparison.quantile(0.99),
             lidar_largest_m=comparison.largest,
-            warnings=self.physics.warnings(),
+            warnings=dict(self._warnings + Counter(self.physics.warnings())),
         )
 
     def notes(self) -> list[str]:

@@ -60,10 +60,16 @@ class Contacts:
     def __init__(self, physics: Physics) -> None:
         self.found: list[Contact] = []
         self.count = self.ghosts = 0
+        self.follow(physics)
+
+    def follow(self, physics: Physics) -> None:
+        """Watch another model from now on, and go on counting."""
         self._scene = physics.scene
         self._physics = physics
         self._owner = self._owners(physics)
         self._last: dict[int, float] = {}
+        for kept in ("_map", "_walls"):
+            self.__dict__.pop(kept, None)
 
     def _owners(self, physics: Physics) -> np.ndarray:
         """(geoms,) row of the object that a geom belongs to; N: map, N + 1: walls, -1: ground and wheels."""

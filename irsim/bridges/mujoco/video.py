@@ -53,7 +53,7 @@ class Film:
         if self._target.suffix.lower() not in ANIMATION_SUFFIXES:
             what = f"video: files of videos are {', '.join(ANIMATION_SUFFIXES)}; got {options.video!r}"
             raise BridgeError("bridge-mismatch", what, "video: run.mp4")
-        self._physics = physics
+        self._physics, self._options = physics, options
         scene = physics.scene
         named = options.camera in scene.names and options.camera not in ("top", "corner")
         self._camera = f"{body_name(scene.agent(options.camera))}/camera" if named else options.camera
@@ -76,6 +76,12 @@ class Film:
             what = f"MuJoCo cannot draw here: {error}"
             fix = "install libegl1 or libosmesa6 and set the environment variable MUJOCO_GL to egl or osmesa"
             raise BridgeError("bridge-failed", what, f"{fix}, or leave out video") from error
+
+    def follow(self, physics: Physics) -> None:
+        """Draw another model from now on."""
+        self._renderer.close()
+        self._physics = physics
+        self._renderer = self._drawer(self._options)
 
     def take(self) -> None:
         """Add a frame of the present state."""

@@ -1,4 +1,4 @@
-"""``irsim bridge import-pedestrians``: a file of recorded pedestrians becomes a scenario."""
+"""``irsim bridge import-pedestrians``: recorded pedestrians become a scenario, a benchmark suite, or both."""
 
 from __future__ import annotations
 
@@ -8,12 +8,17 @@ from pathlib import Path
 
 import numpy as np
 
+from irsim.benchmarks.suite import MAX_SCENARIOS
 from irsim.bridges.base import BridgeError
 from irsim.bridges.pedestrians.rows import FormatName, read_homography, read_recording
 from irsim.bridges.pedestrians.scenario import Layout, scenario_text
-from irsim.bridges.pedestrians.tracks import Window, frame_rate, make_tracks, pixels_to_metres
-from irsim.common.files import write_new
+from irsim.bridges.pedestrians.suite import Episodes, SuiteText, suite_text
+from irsim.bridges.pedestrians.tracks import Track, Window, frame_rate, make_tracks, pixels_to_metres
+from irsim.common.files import check_new, write_new
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
+from irsim.options.registry import BEHAVIORS
 
 __all__ = ["ImportedPedestrians", "import_pedestrians"]
 
@@ -28,28 +33,35 @@ class ImportedPedestrians:
     """What was written.
 
     Attributes:
-        file: The scenario.
+        file: The scenario; None if only a suite was written.
         format: Format of the recording.
         pedestrians: Number of obstacles that are replayed.
         rows: Number of recorded places.
         duration: Time of the last one [s].
         fps: Frames per second that times were computed with.
         notes: What is worth knowing.
+        suite: The suite; None if there is none.
+        windows: Times at which the windows of the suite start [s].
+        length: Length of a window [s]; 0 without a suite.
     """
 
-    file: str
+    file: str | None
     format: str
     pedestrians: int
     rows: int
     duration: float
     fps: float
     notes: list[str] = field(default_factory=list)
+    suite: str | None = None
+    windows: list[float] = field(default_factory=list)
+    length: float = 0.0
 
 
 def import_pedestrians(
     path: str | Path,
-    out: str | Path,
+    out: str | Path | None = None,
     *,
+    suite: str | Path | None = None,
     form: FormatName | None = None,
     fps: float | None = None,
     window: Window | None = None,
@@ -57,13 +69,15 @@ def import_pedestrians(
     scale: float | None = None,
     image_size: tuple[float, float] | None = None,
     layout: Layout | None = None,
+    episodes: Episodes | None = None,
     overwrite: bool = False,
 ) -> ImportedPedestrians:
-    """Write a scenario in which recorded pedestrians walk as they did.
+    """Write a scenario in which recorded pedestrians walk as they did, a suite whose scenarios are windows, or both.
 
     Args:
         path: ETH's ``obsmat.txt``, UCY's ``.vsp``, or lines ``frame id x y``.
         out: The scenario to write.
+        suite: The suite to write.
         form: Format of the file; default: as suffix and columns say.
         fps: Frames per second; default: 25 for ``vsp``, else such that the usual step between frames takes 0.4 s.
         window: What is kept.
@@ -71,18 +85,37 @@ def import_pedestrians(
         scale: Metres of a pixel, instead of a homography.
         image_size: Width and height of the picture, if the homography counts pixels from its upper left corner.
         layout: Robot, sizes, step time.
-        overwrite: Replace a file that exists.
+        episodes: How the suite divides the recording.
+        overwrite: Replace files that exist.
 
     Raises:
         BridgeError: The file cannot be used, or nobody is in the window. Nothing is written then.
-        ArgumentError: An option does not fit the file.
-        TargetError: The scenario exists.
+        ArgumentError: An option does not fit the file, or no file is to be written.
+        TargetError: The scenario or the suite exists.
     """
     path, window = Path(path), window or Window()
-    layout = layout or Layout(path.name)
-    for name, value in (("fps", fps), ("scale", scale), ("step_time", layout.step_time), ("radius", layout.radius)):
+    layout, episodes = layout or Layout(path.name), episodes or Episodes()
+    targets = [Path(target) for target in (out, suite) if target is not None]
+    if not targets or len(set(targets)) < len(targets):
+        raise ArgumentError("a scenario or a suite must be written, each to a file of its own", "give -o or --suite")
+    for name, value in (
+        ("fps", fps), ("scale", scale), ("length", episodes.length), ("step_time", layout.step_time),
+        ("radius", layout.radius), ("windows", episodes.windows),
+    ):  # fmt: skip
         if value is not None and not (math.isfinite(value) and value > 0):
             raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} above 0")
+    if episodes.windows > MAX_SCENARIOS:
+        raise ArgumentError(
+            f"a suite has at most {MAX_SCENARIOS} windows, got {episodes.windows}", "give fewer windows"
+        )
+    if not (math.isfinite(layout.margin) and layout.margin >= 0):
+        raise ArgumentError(f"margin must be 0 or more, got {layout.margin}", "give a margin in metres, such as 1")
+    if layout.robot and BEHAVIORS.get(layout.behavior) is None:
+        known = BEHAVIORS.names()
+        fix = suggestion(layout.behavior, known, f"choose from {', '.join(known)}")
+        raise ArgumentError(f"{clean(layout.behavior)!r} is not a behavior", fix)
+    for target in targets:
+        check_new(target, overwrite=overwrite)
     recording = read_recording(path, form)
     matrix = None if homography is None else read_homography(Path(homography))
     places = recording.place
@@ -96,9 +129,19 @@ def import_pedestrians(
     if not tracks:
         what = f"nobody is in {path.name} for two rows, in this window of time and space"
         raise BridgeError("bridge-file", what, "widen --from, --to and --crop; times count from the first frame")
-    text = scenario_text(tracks, layout)
-    write_new(Path(out), text, overwrite=overwrite)
+    texts: dict[Path, str] = {}
+    made: SuiteText | None = None
+    if out is not None:
+        texts[Path(out)] = scenario_text(tracks, layout)
+    if suite is not None:
+        name = Path(suite).stem
+        made = suite_text(recording, places, rate, window, layout, episodes, name)
+        texts[Path(suite)] = made.text
+    for target, text in texts.items():
+        write_new(target, text, overwrite=overwrite)
     notes = []
+    if made is not None and not made.whole:
+        notes.append(f"the recording ends before the only window of the suite, which is {made.length:g} s long")
     if fps is None and recording.format != "vsp":
         notes.append(f"{rate:g} frames per second are assumed, so that 0.4 s are between rows; --fps says otherwise")
     if left_out:
@@ -106,9 +149,23 @@ def import_pedestrians(
     longest, name = max((float(np.diff(track.times).max()), track.name) for track in tracks)
     if recording.format != "vsp" and longest > _GAP:
         notes.append(f"{name} has no row for {longest:g} s, and goes on between those before and after it")
-    steps = np.concatenate([track.times for track in tracks]) / layout.step_time
-    if np.abs(steps - np.round(steps)).max() > _ON_STEP:
+    if _between_steps(tracks, layout.step_time):
         notes.append("recorded times lie between steps: at the ends of steps, places are interpolated")
-    rows = sum(len(track.times) for track in tracks)
-    duration = max(float(track.times[-1]) for track in tracks)
-    return ImportedPedestrians(str(out), recording.format, len(tracks), rows, duration, rate, notes)
+    return ImportedPedestrians(
+        file=None if out is None else str(out),
+        format=recording.format,
+        pedestrians=len(tracks),
+        rows=sum(len(track.times) for track in tracks),
+        duration=max(float(track.times[-1]) for track in tracks),
+        fps=rate,
+        notes=notes,
+        suite=None if suite is None else str(suite),
+        windows=[] if made is None else made.starts,
+        length=0.0 if made is None else made.length,
+    )
+
+
+def _between_steps(tracks: list[Track], step_time: float) -> bool:
+    """Whether a recorded time is not that of the end of a step."""
+    steps = np.concatenate([track.times for track in tracks]) / step_time
+    return bool(np.abs(steps - np.round(steps)).max() > _ON_STEP)

@@ -6,7 +6,6 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 
@@ -15,18 +14,32 @@ from irsim.bridges.pedestrians.tracks import Track
 from irsim.common.arrays import Floats
 from irsim.scenario.limits import DEFAULT_LIMITS
 
-__all__ = ["Layout", "scenario_text"]
+__all__ = [
+    "ROBOT_RADIUS",
+    "Layout",
+    "bounds",
+    "check_size",
+    "checked",
+    "crossing_time",
+    "default_robot",
+    "number",
+    "people_lines",
+    "robot_lines",
+    "scenario_text",
+    "world_lines",
+]
 
-Place: TypeAlias = tuple[float, float]
 _ROBOT_SPEED = 1.2
 """Top speed of the robot [m/s]."""
 _PATIENCE = 2.5
 """Factor on the time that the robot would need alone."""
-_ROBOT_RADIUS = 0.3
+ROBOT_RADIUS = 0.3
+"""[m]."""
 _FIRST, _ROOM = 2.0, 0.5
 """For how long from the start nobody comes closer to where the robot starts than this [s, m]."""
 _EVENTS_PER_ROW = 6
 """Events of YAML of one row: a time, two numbers and the brackets around them."""
+_FIX = "choose a window of time or space: --from, --to, --crop"
 
 
 @dataclass(frozen=True)
@@ -55,6 +68,13 @@ class Layout:
     robot: bool = True
 
 
+def default_robot(low: Floats, high: Floats, margin: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Start and goal at the left and right edge of an area."""
+    middle = float(low[1] + high[1]) / 2
+    inset = min(margin / 2, float(high[0] - low[0]) / 4)
+    return (float(low[0]) + inset, middle), (float(high[0]) - inset, middle)
+
+
 def _start(tracks: Sequence[Track], layout: Layout, low: Floats, high: Floats, x: float) -> tuple[float, float]:
     """The place at that x that is nearest to the middle and keeps clear of those who are there first.
 
@@ -66,12 +86,12 @@ def _start(tracks: Sequence[Track], layout: Layout, low: Floats, high: Floats, x
         times = times[(times >= track.times[0]) & (times <= track.times[-1])]
         near.append(np.column_stack([np.interp(times, track.times, track.places[:, axis]) for axis in (0, 1)]))
     people = np.concatenate(near)
-    middle, reach = float(low[1] + high[1]) / 2, float(high[1] - low[1]) / 2 - _ROBOT_RADIUS
+    middle, reach = float(low[1] + high[1]) / 2, float(high[1] - low[1]) / 2 - ROBOT_RADIUS
     heights = middle + reach * np.array(sorted(np.linspace(-1, 1, 81), key=abs))
     if not len(people) or reach <= 0:
         return x, middle
     room = np.array([np.hypot(people[:, 0] - x, people[:, 1] - y).min() for y in heights])
-    clear = np.flatnonzero(room >= layout.radius + _ROBOT_RADIUS + _ROOM)
+    clear = np.flatnonzero(room >= layout.radius + ROBOT_RADIUS + _ROOM)
     return x, float(heights[clear[0] if len(clear) else int(room.argmax())])
 
 
@@ -85,34 +105,104 @@ def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
     Raises:
         BridgeError: The scenario would be larger than scenarios may be.
     """
-    rows = sum(len(track.times) for track in tracks)
-    if rows * _EVENTS_PER_ROW > DEFAULT_LIMITS.events or len(tracks) > DEFAULT_LIMITS.objects:
-        what = f"{len(tracks)} pedestrians with {rows} rows are more than a scenario may hold"
-        raise BridgeError("bridge-file", what, "choose a window of time or space: --from, --to, --crop")
-    everything = np.concatenate([track.places for track in tracks])
-    given = [point for point in (layout.start, layout.goal) if point is not None]
-    corners = np.concatenate([everything, np.array(given).reshape(-1, 2)])
-    low = np.floor((corners.min(axis=0) - layout.margin) * 100) / 100
-    high = np.ceil((corners.max(axis=0) + layout.margin) * 100) / 100
+    check_size(tracks)
+    low, high = bounds(tracks, layout)
+    start, goal = default_robot(low, high, layout.margin)
+    start, goal = layout.start or _start(tracks, layout, low, high, start[0]), layout.goal or goal
     duration = max(float(track.times[-1]) for track in tracks)
-    size = high - low
-    ends = _ends(tracks, layout, low, high)
-    limit = max(duration, layout.step_time, _time_of_robot(ends) if layout.robot else 0.0)
+    patience = crossing_time(start, goal) if layout.robot else 0.0
+    heading = float(np.arctan2(goal[1] - start[1], goal[0] - start[0]))
+    ways = [
+        f"state: [{number(start[0])}, {number(start[1])}, {number(heading)}]",
+        f"goal: [{number(goal[0])}, {number(goal[1])}]",
+    ]
     lines = [
         f"# {len(tracks)} recorded pedestrians of {json.dumps(layout.source)}, replayed at their times. The recording",
         f"# ends after {duration:g} s. Written by `irsim bridge import-pedestrians`.",
         "",
-        "world:",
-        f"  width: {_number(size[0])}  # m",
-        f"  height: {_number(size[1])}  # m",
-        f"  offset: [{_number(low[0])}, {_number(low[1])}]  # m",
-        f"  step_time: {layout.step_time!r}  # s",
-        f"  time_limit: {_number(limit)}  # s",
+        *world_lines(low, high, layout),
+        f"  time_limit: {number(max(duration, layout.step_time, patience))}  # s",
+        "",
+        *([*robot_lines(ways, layout.behavior), ""] if layout.robot else []),
+        *people_lines(tracks, layout),
         "",
     ]
-    if layout.robot:
-        lines += _robot(layout, *ends)
-    lines += [
+    return checked("\n".join(lines))
+
+
+def check_size(tracks: Sequence[Track]) -> None:
+    """Refuse more pedestrians than a file may hold.
+
+    Raises:
+        BridgeError: There are too many pedestrians, or too many rows.
+    """
+    rows = sum(len(track.times) for track in tracks)
+    if rows * _EVENTS_PER_ROW > DEFAULT_LIMITS.events or len(tracks) > DEFAULT_LIMITS.objects:
+        raise BridgeError(
+            "bridge-file", f"{len(tracks)} pedestrians with {rows} rows are more than a file may hold", _FIX
+        )
+
+
+def checked(text: str) -> str:
+    """A text, unless it is longer than a scenario may be.
+
+    Raises:
+        BridgeError: It is.
+    """
+    if len(text) > DEFAULT_LIMITS.bytes:
+        raise BridgeError("bridge-file", f"the file would have {len(text) / 1e6:.0f} MB, more than it may have", _FIX)
+    return text
+
+
+def bounds(tracks: Sequence[Track], layout: Layout) -> tuple[Floats, Floats]:
+    """(2,) lower left and upper right corner of the world [m]."""
+    ends = [point for point in (layout.start, layout.goal) if point is not None]
+    corners = np.concatenate([*(track.places for track in tracks), np.array(ends).reshape(-1, 2)])
+    low = np.floor((corners.min(axis=0) - layout.margin) * 100) / 100
+    high = np.ceil((corners.max(axis=0) + layout.margin) * 100) / 100
+    return low, high
+
+
+def crossing_time(start: Sequence[float], goal: Sequence[float]) -> int:
+    """Time that the robot needs from one place to another, with room for giving way, in whole seconds."""
+    return math.ceil(_PATIENCE * math.dist(start, goal) / _ROBOT_SPEED)
+
+
+def world_lines(low: Floats, high: Floats, layout: Layout) -> list[str]:
+    """The key ``world`` without its time limit."""
+    return [
+        "world:",
+        f"  width: {number(high[0] - low[0])}  # m",
+        f"  height: {number(high[1] - low[1])}  # m",
+        f"  offset: [{number(low[0])}, {number(low[1])}]  # m",
+        f"  step_time: {layout.step_time!r}  # s",
+    ]
+
+
+def robot_lines(ways: Sequence[str], behavior: str) -> list[str]:
+    """The key ``robot``.
+
+    Args:
+        ways: Keys of its start and goal.
+        behavior: Its behavior.
+    """
+    return [
+        "robot:",
+        "  - name: robot",
+        "    kinematics: {name: diff}",
+        f"    shape: {{name: circle, radius: {ROBOT_RADIUS}}}",
+        *(f"    {line}" for line in ways),
+        "    goal_threshold: 0.3",
+        f"    vel_max: [{_ROBOT_SPEED}, 2.0]  # m/s, rad/s",
+        "    vel_min: [-0.3, -2.0]",
+        f"    behavior: {{name: {json.dumps(behavior)}}}",
+        "    color: '#0072B2'",
+    ]
+
+
+def people_lines(tracks: Sequence[Track], layout: Layout) -> list[str]:
+    """The key ``obstacle``: the pedestrians."""
+    return [
         "obstacle:",
         f"  - number: {len(tracks)}",
         "    tags: [pedestrian]",
@@ -122,42 +212,6 @@ def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
         "    color: '#56B4E9'",
         "    behavior:  # times [s] and places [m]",
         *(_behavior(track, layout) for track in tracks),
-        "",
-    ]
-    text = "\n".join(lines)
-    if len(text) > DEFAULT_LIMITS.bytes:
-        what = f"the scenario would have {len(text) / 1e6:.0f} MB, more than scenarios may have"
-        raise BridgeError("bridge-file", what, "choose a window of time or space: --from, --to, --crop")
-    return text
-
-
-def _ends(tracks: Sequence[Track], layout: Layout, low: Floats, high: Floats) -> tuple[Place, Place]:
-    """Start and goal of the robot, by default at the left and right edge."""
-    inset = min(layout.margin / 2, float(high[0] - low[0]) / 4)
-    start = layout.start or _start(tracks, layout, low, high, float(low[0]) + inset)
-    return start, layout.goal or (float(high[0]) - inset, float(low[1] + high[1]) / 2)
-
-
-def _time_of_robot(ends: tuple[Place, Place]) -> float:
-    """Time that the robot needs with room for giving way, in whole seconds."""
-    return math.ceil(_PATIENCE * math.dist(*ends) / _ROBOT_SPEED)
-
-
-def _robot(layout: Layout, start: Place, goal: Place) -> list[str]:
-    heading = float(np.arctan2(goal[1] - start[1], goal[0] - start[0]))
-    return [
-        "robot:",
-        "  - name: robot",
-        "    kinematics: {name: diff}",
-        "    shape: {name: circle, radius: 0.3}",
-        f"    state: [{_number(start[0])}, {_number(start[1])}, {_number(heading)}]",
-        f"    goal: [{_number(goal[0])}, {_number(goal[1])}]",
-        "    goal_threshold: 0.3",
-        f"    vel_max: [{_ROBOT_SPEED}, 2.0]  # m/s, rad/s",
-        "    vel_min: [-0.3, -2.0]",
-        f"    behavior: {{name: {json.dumps(layout.behavior)}}}",
-        "    color: '#0072B2'",
-        "",
     ]
 
 
@@ -176,5 +230,6 @@ def _exact(value: float) -> str:
     return text if "e" not in text or "." in text else text.replace("e", ".0e")
 
 
-def _number(value: float) -> str:
+def number(value: float) -> str:
+    """The number with four digits behind the point, as YAML."""
     return _exact(round(float(value), 4))

@@ -53,12 +53,19 @@ class RosBridge(Bridge):
         self.clock = options.clock
         self.backend: Backend | None = None
         self.topics: tuple[Topic, ...] = ()
-        self.mode: Mode = options.mode if isinstance(options, RosOptions) else "sim"
+        self._mode: Mode = "sim"
+        if isinstance(options, RosOptions) and options.mode == "real":
+            self._mode, self.mode = "real", "dry-run" if options.dry_run else "real"
         self._inbox = Inbox()
         self._reports = Reports(self.name)
         self._guard: Guard | None = None
         self._real: RealRobots | None = None
         self._receiver: Receiver | None = None
+
+    @property
+    def peer(self) -> str:
+        """The node's other side."""
+        return self.name if self.backend is None else self.backend.peer
 
     def open(self, scene: SceneDescription, start: WorldState) -> None:
         """Connect, show what does not change, and wait for real robots."""
@@ -72,21 +79,27 @@ class RosBridge(Bridge):
         node = options.node if isinstance(options, RosOptions) else "irsim"
         self.backend = open_backend(options, node, self.topics, self._inbox, messages)
         self._messages = messages
-        self._outgoing = Outgoing(messages, scene, self.topics, options.frame, self.mode)
+        self._outgoing = Outgoing(messages, scene, self.topics, options.frame, self._mode)
         if isinstance(options, RosOptions):
-            if self.mode == "real":
+            if self._mode == "real":
                 self._real = RealRobots(options, scene.step_time)
                 self._real.add(robots)
                 self.agents = frozenset(robot.name for robot in robots)
             self._receiver = Receiver(options, messages, robots, self._reports, self._real)
-        stamp = nanoseconds(start.time) if self.mode == "sim" else time.time_ns()
-        for topic, message in self._outgoing.once(stamp):
-            self._publish(topic, message, stamp)
+        self._publish_once(start)
         if self._real is not None:
             self._wait_for_robots(self._real)
             if not options.dry_run:
                 self._guard = Guard(options, self._command_topics())
         self.push(start)
+
+    def renew(self, scene: SceneDescription, start: WorldState) -> None:
+        """Show what does not change in the new scene, instead of that of the old one."""
+        if gone := {topic.robot for topic in self.topics if topic.robot is not None} - set(scene.names):
+            what = f"the scene does not have the robot '{min(gone)}' any more, which has topics"
+            raise BridgeError("bridge-mismatch", what, "connect again")
+        self._outgoing = Outgoing(self._messages, scene, self.topics, self.options.frame, self._mode)
+        self._publish_once(start)
 
     def pull(self) -> Feedback | None:
         """Goals, commands to simulated robots, and scans of real ones."""
@@ -107,7 +120,7 @@ class RosBridge(Bridge):
 
     def push(self, state: WorldState) -> None:
         """Publish the state."""
-        stamp = nanoseconds(state.time) if self.mode == "sim" else time.time_ns()
+        stamp = nanoseconds(state.time) if self._mode == "sim" else time.time_ns()
         for topic, message in self._outgoing.step(state, stamp):
             self._publish(topic, message, stamp)
 
@@ -117,6 +130,7 @@ class RosBridge(Bridge):
             f"{self.name}: {topic}: {count} message(s) ignored: {problem}"
             for (topic, problem), count in self._reports.counts.items()
         ]
+        found += [f"{self.name}: {text} ({count} times)" for text, count in self._reports.heard.items()]
         if self._inbox.refused:
             found.append(f"{self.name}: {self._inbox.refused} messages were too long")
         if self._real is not None:
@@ -148,8 +162,8 @@ class RosBridge(Bridge):
             for key, one in options.qos.items()
         }
         stamped = isinstance(options, RosOptions) and options.stamped
-        found = scene_topics(scene, robots, self.mode, names=options.topics, qos=qos, stamped=stamped)
-        if self.mode == "sim":
+        found = scene_topics(scene, robots, self._mode, names=options.topics, qos=qos, stamped=stamped)
+        if self._mode == "sim":
             return found
         unused = "cmd_vel" if options.dry_run else "cmd_vel_preview"
         return tuple(topic for topic in found if topic.key != unused)
@@ -160,6 +174,11 @@ class RosBridge(Bridge):
             raise BridgeError("bridge-mismatch", "robots without the topic cmd_vel cannot be driven",
                               "topics: {cmd_vel: /cmd_vel}, or dry_run: true")  # fmt: skip
         return found
+
+    def _publish_once(self, start: WorldState) -> None:
+        stamp = nanoseconds(start.time) if self._mode == "sim" else time.time_ns()
+        for topic, message in self._outgoing.once(stamp):
+            self._publish(topic, message, stamp)
 
     def _publish(self, topic: Topic, message: Any, stamp: int) -> None:
         backend = self.backend

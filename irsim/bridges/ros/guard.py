@@ -109,7 +109,7 @@ def _publish(backend: Backend, messages: Messages, topics: list[Topic], options:
     before = time.monotonic()
     while not source.ended.wait(period) and os.getppid() == parent:
         now = time.monotonic()
-        wanted = source.commands(now - options.command_timeout)
+        wanted = source.commands(now - options.command_timeout) if backend.ready else {}
         elapsed = min(now - before, 2 * period)
         sent = {name: limited(wanted.get(name, ZERO), last, limits, elapsed) for name, last in sent.items()}
         before = now

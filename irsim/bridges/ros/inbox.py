@@ -11,6 +11,8 @@ from irsim.bridges.ros.topics import Topic
 
 __all__ = ["MAX_BYTES", "Arrival", "Inbox"]
 
+MAX_TOLD = 100
+"""Number of sentences of another program that are kept until they are read."""
 MAX_BYTES = 8_000_000
 """Longest message that is kept; a scan of 100,000 beams has less than 1 MB."""
 
@@ -34,6 +36,7 @@ class Inbox:
     def __init__(self) -> None:
         self._lock = Lock()
         self._newest: dict[Topic, Arrival] = {}
+        self._told: list[str] = []
         self.received = 0
         self.overwritten = 0
         self.refused = 0
@@ -53,4 +56,16 @@ class Inbox:
         """All that has come since the last call."""
         with self._lock:
             found, self._newest = self._newest, {}
+        return found
+
+    def tell(self, sentence: str) -> None:
+        """Keep what the other program says about itself."""
+        with self._lock:
+            if len(self._told) < MAX_TOLD:
+                self._told.append(sentence)
+
+    def told(self) -> list[str]:
+        """What the other program has said since the last call."""
+        with self._lock:
+            found, self._told = self._told, []
         return found

@@ -57,6 +57,8 @@ class Receiver:
     def receive(self, backend: Backend, inbox: Inbox) -> None:
         """Read what has come since the last call."""
         backend.poll()
+        for sentence in inbox.told():
+            self._reports.hear(sentence)
         for topic, arrival in inbox.take().items():
             try:
                 self._read(topic, arrival)

@@ -27,10 +27,12 @@ class Reports:
 
     Attributes:
         counts: Topic and problem -> how often it occurred.
+        heard: What the other program has said -> how often.
     """
 
     def __init__(self, name: str, say: Callable[[str], None] = _print) -> None:
         self.counts: Counter[tuple[str, str]] = Counter()
+        self.heard: Counter[str] = Counter()
         self._name, self._say = name, say
 
     def add(self, topic: str, problem: str) -> None:
@@ -41,6 +43,15 @@ class Reports:
                 key = ("", "further problems")
             self._say(f"{self._name}: {topic}: {key[1]}; the message is ignored")
         self.counts[key] += 1
+
+    def hear(self, sentence: str) -> None:
+        """Count what the other program says; the first time it is shown."""
+        text = clean(sentence, 300)
+        if text not in self.heard:
+            if len(self.heard) >= _MAX_KINDS:
+                return
+            self._say(f"{self._name}: {text}")
+        self.heard[text] += 1
 
     def finish(self) -> None:
         """Say how often repeated problems occurred."""

@@ -13,7 +13,7 @@ from irsim.bridges.state import WorldState
 from irsim.bridges.usd.motion import animate
 from irsim.bridges.usd.stage import Heights, author_scene, new_stage
 from irsim.common.extras import require
-from irsim.common.files import check_suffix, replacing
+from irsim.common.files import check_new, check_suffix, replacing
 
 if TYPE_CHECKING:
     from irsim.scenario.limits import Limits
@@ -85,6 +85,7 @@ def export_scene(
     *,
     seed: int = 0,
     heights: Heights | None = None,
+    overwrite: bool = False,
     limits: Limits | None = None,
 ) -> Path:
     """Write the start of a scenario, which need not have been run, as a stage.
@@ -94,12 +95,13 @@ def export_scene(
         out: File to write, with one of the suffixes :data:`SUFFIXES`.
         seed: Seed of what the scenario draws at random.
         heights: Heights of solids.
+        overwrite: Replace a file that exists.
         limits: Limits of the reader of the scenario.
 
     Raises:
         ExtraError: OpenUSD is not installed.
         ScenarioError: The scenario has errors.
-        TargetError: The file has another suffix.
+        TargetError: The file has another suffix, or exists.
     """
     from irsim.bridges.describe import agent_rows, describe_scene, world_state
     from irsim.env import Env
@@ -108,6 +110,7 @@ def export_scene(
     target = Path(out)
     require("usd", "pxr")
     check_suffix(target, SUFFIXES)
+    check_new(target, overwrite=overwrite)
     resolved, _ = open_scenario(scenario, limits=limits)
     env = Env(resolved, seed=seed, headless=True, log_level="ERROR")
     try:

@@ -28,9 +28,9 @@ _SLOWEST = 0.01
 class Replay(BehaviorOptions):
     """Be at recorded places at recorded times: people of a data set, a robot from a bag.
 
-    The drives `omni` and `omni_angular` are exactly there, others follow as well as they can. An obstacle is in the
-    world from its first to its last time. It waits for no room, and collisions do not stop it. `state`,
-    `goal` and limits of speed follow from the recording. `irsim bridge import-pedestrians` writes such scenarios.
+    `omni` and `omni_angular` are exactly there, other drives follow as they can. An obstacle is in the world from its
+    first to its last time. It waits for no room; collisions neither stop nor push it. `state`, `goal` and limits of
+    speed follow from the recording, at whose end it arrives. `irsim bridge import-pedestrians` writes some.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -52,7 +52,7 @@ class Replay(BehaviorOptions):
     poses: Annotated[list[Pose], Field(max_length=1_000_000)] = []
     """Places [x, y] or [x, y, heading]; without headings it looks where it goes."""
     interpolation: Literal["linear", "cubic"] = "linear"
-    """Between two times: straight at constant speed, or along a smooth curve without jumps of speed."""
+    """Between two times: straight at constant speed, or along a curve without jumps of speed."""
     vanish: Bool = True
     """With false, and if it is a robot, it is always in the world: at its first and last pose."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any, ClassVar, Literal
 
@@ -22,6 +22,10 @@ class BridgeOptions(Options):
     clock: Literal["irsim", "external", "wall"] = "irsim"
     """Who decides when a step is: `irsim` steps as fast as it can and the other program follows, `external` waits for
     the other program before each step, `wall` steps in real time."""
+
+    def driven(self, robots: Sequence[str]) -> Sequence[str]:
+        """Which of the robots with these names the other program may drive by commands."""
+        return ()
 
 
 def opened_by(package: str) -> Callable[[Any], Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
@@ -95,6 +96,10 @@ class RosOptions(ShownOptions):
     first odometry comes; `world` takes the odometry as coordinates of the scenario."""
     timeout: Delay = 5.0
     """Time for which to wait for a connection, and for the first odometry of real robots."""
+
+    def driven(self, robots: Sequence[str]) -> Sequence[str]:
+        """The robots with topics."""
+        return self.robots or robots
 
     def model_post_init(self, context: Any) -> None:
         """Check what keys mean together."""

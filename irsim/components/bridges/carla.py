@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
@@ -114,6 +115,10 @@ class Carla(BridgeOptions):
     takes with its own settings."""
     rendering: Bool = True
     """Draw the town; without, a server is faster and shows nothing."""
+
+    def driven(self, robots: Sequence[str]) -> Sequence[str]:
+        """Those that follow actors."""
+        return tuple(self.follow)
 
 
 BRIDGES.register(Carla)(opened_by("carla"))

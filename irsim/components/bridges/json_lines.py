@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
@@ -30,6 +31,10 @@ class JsonLines(BridgeOptions):
     with `clock: external`."""
     timeout: Annotated[Seconds, Field(gt=0, le=3600)] = 5.0
     """Time for which irsim waits for a connection and for each answer."""
+
+    def driven(self, robots: Sequence[str]) -> Sequence[str]:
+        """All of them."""
+        return robots
 
     def model_post_init(self, context: Any) -> None:
         """Check what keys mean together."""

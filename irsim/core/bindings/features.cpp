@@ -1,7 +1,8 @@
-// Options classes of kinematics, behaviors, sensors, shapes and observation parts, generated from their lists of
-// fields.
+// Options classes of kinematics, behaviors, sensors, shapes and observation parts and reward terms, generated from
+// their lists of fields.
 #include "bindings/helpers.hpp"
 #include "parts.gen.hpp"
+#include "rewards.gen.hpp"
 #include "world/spec.hpp"
 
 namespace irsim {
@@ -13,6 +14,7 @@ void bind_features(nb::module_& m) {
   IRSIM_SENSORS(IRSIM_BIND)
   IRSIM_SHAPES(IRSIM_BIND)
   IRSIM_PARTS(IRSIM_BIND)
+  IRSIM_REWARDS(IRSIM_BIND)
 #undef IRSIM_BIND
 }
 

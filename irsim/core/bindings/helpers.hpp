@@ -85,7 +85,7 @@ void read_fields(T& target, const nb::kwargs& given) {
   std::size_t used = 0;
   std::apply(
       [&](const auto&... field) {
-        const auto one = [&](const auto& f) {
+        [[maybe_unused]] const auto one = [&](const auto& f) {
           if (!given.contains(f.name)) throw nb::type_error((std::string("missing argument: ") + f.name).c_str());
           try {
             read_field(target, f, given[f.name]);
@@ -116,7 +116,7 @@ void bind_fields(nb::module_& m, const char* name) {
   nb::list names;
   std::apply(
       [&](const auto&... field) {
-        const auto one = [&](const auto& f) {
+        [[maybe_unused]] const auto one = [&](const auto& f) {
           names.append(f.name);
           bound.def_prop_ro(f.name, [f](const T& self) { return show_field(self, f); });
         };
@@ -136,6 +136,7 @@ void bind_state(nb::module_& m);
 void bind_steps(nb::module_& m);
 void bind_object(nb::module_& m);
 void bind_observing(nb::module_& m);
+void bind_learners(nb::module_& m);
 void bind_pictures(nb::module_& m);
 void bind_tools(nb::module_& m);
 void bind_clearance(nb::module_& m);

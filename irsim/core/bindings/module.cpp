@@ -16,5 +16,6 @@ NB_MODULE(_core, m) {
   irsim::bind_networks(m);
   irsim::bind_policies(m);
   irsim::bind_observing(m);
+  irsim::bind_learners(m);
   irsim::bind_pictures(m);
 }

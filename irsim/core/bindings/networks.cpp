@@ -7,13 +7,13 @@ namespace {
 
 template <class T, int N>
 using In = nb::ndarray<const T, nb::ndim<N>, nb::c_contig, nb::device::cpu>;
-using Mask = std::optional<In<std::uint8_t, 2>>;
+using MemberMask = std::optional<In<std::uint8_t, 2>>;
 
 void expect(bool fits, const char* what) {
   if (!fits) throw nb::value_error(what);
 }
 
-const std::uint8_t* memory(const Mask& mask, std::size_t rows, std::size_t columns) {
+const std::uint8_t* memory(const MemberMask& mask, std::size_t rows, std::size_t columns) {
   if (!mask) return nullptr;
   expect(mask->shape(0) == rows && mask->shape(1) == columns, "the mask has another shape");
   return mask->data();
@@ -55,7 +55,7 @@ nb::object normalize(const In<Real, 2>& x, double epsilon) {
 }
 
 template <class Real>
-nb::object softmax(const In<Real, 2>& x, const Mask& mask) {
+nb::object softmax(const In<Real, 2>& x, const MemberMask& mask) {
   const std::size_t rows = x.shape(0), columns = x.shape(1);
   std::vector<Real> y(rows * columns);
   networks::softmax(x.data(), memory(mask, rows, columns), y.data(), rows, columns);
@@ -63,7 +63,7 @@ nb::object softmax(const In<Real, 2>& x, const Mask& mask) {
 }
 
 template <class Real>
-nb::object attention(const In<Real, 3>& query, const In<Real, 3>& key, const In<Real, 3>& value, const Mask& mask,
+nb::object attention(const In<Real, 3>& query, const In<Real, 3>& key, const In<Real, 3>& value, const MemberMask& mask,
                      std::size_t heads) {
   const std::size_t batch = query.shape(0), queries = query.shape(1), keys = key.shape(1);
   expect(heads > 0 && query.shape(2) % heads == 0 && value.shape(2) % heads == 0, "the heads do not divide the width");

@@ -1,11 +1,10 @@
 // Observation parts: over the rows of a simulation at once, and over arrays of what robots observed.
 #include <cstring>
 
-#include "bindings/bound_state.hpp"
+#include "bindings/observing.hpp"
+#include "learning/write_parts.hpp"
 #include "parallel.hpp"
-#include "parts.gen.hpp"
 #include "surroundings/gaps.hpp"
-#include "surroundings/observe.hpp"
 
 namespace irsim {
 namespace {
@@ -16,23 +15,13 @@ using RowNumbers = Given<std::int64_t, 1>;
 using Output = nb::ndarray<float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 constexpr std::size_t kRowsPerThread = 64;
-constexpr const char* kObject = "there must be one entry for each object";
 constexpr const char* kRow = "there must be one row for each robot";
 constexpr const char* kMember = "there must be one row for each neighbor of each robot";
-
-void expect_fit(bool fits, const char* what) {
-  if (!fits) throw nb::value_error(what);
-}
 
 void check_each(const State& state, const RowNumbers& rows) {
   for (std::size_t b = 0; b < rows.shape(0); ++b) {
     if (rows.data()[b] < 0 || rows.data()[b] >= state.rows) throw nb::index_error("no such row");
   }
-}
-
-void check_looking(const World& world, const Looking& looking) {
-  const std::size_t n = world.objects;
-  expect_fit(looking.steered.size() == n && looking.first_beam.size() == n, kObject);
 }
 
 Vec2 vector_at(const double* numbers, std::size_t k) { return {numbers[2 * k], numbers[2 * k + 1]}; }
@@ -176,68 +165,33 @@ nb::object look(const Options& options, const SeenRows& rows) {
   return nb::make_tuple(own(std::move(out), {count, set, numbers}), own(std::move(mask), {count, set}));
 }
 
-/// A part and the column of the observation at which its numbers begin.
-using PartAtColumn = std::pair<ObservationPart, std::size_t>;
-
-template <class Options>
-std::size_t numbers_of(const Options& options) {
-  const std::size_t set = members(options);
-  return (set > 0 ? set : 1) * width(options);
-}
-std::size_t numbers_of(const std::monostate&) { return 0; }
-
 void observe_rows(World& world, BoundState& bound, const Looking& looking, const std::vector<PartAtColumn>& parts,
                   const RowNumbers& rows, const Output& out, int threads) {
-  const State& state = bound.of(world);
+  State& state = bound.of(world);
   const Claim claim(bound);
   expect_fit(out.shape(0) == rows.shape(0), "there must be one row of numbers for each row");
   check_looking(world, looking);
-  std::size_t most = 0, most_members = 0;
-  for (const auto& [part, column] : parts) {
-    const std::size_t numbers = std::visit([](const auto& o) { return numbers_of(o); }, part);
-    expect_fit(column + numbers <= out.shape(1), "the parts do not fit into the observation");
-    most = std::max(most, numbers);
-    with(part, [&](const auto& o) { most_members = std::max(most_members, members(o)); });
-  }
+  check_parts(parts, out.shape(1));
   check_each(state, rows);
   nb::gil_scoped_release free;
-  const Observer observer(world, state, looking);
-  in_parts(rows.shape(0), threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
-    Near near;
-    std::vector<double> numbers(most);
-    std::vector<std::uint8_t> mask(most_members);
-    for (std::size_t b = first; b < last; ++b) {
-      float* const row = out.data() + b * out.shape(1);
-      if (state.absent(static_cast<int>(rows.data()[b]))) {  // it sees nothing
-        for (const auto& [part, column] : parts)
-          std::fill_n(row + column, std::visit([](const auto& o) { return numbers_of(o); }, part), 0.0F);
-        continue;
-      }
-      const Seen seen = observer.see(static_cast<int>(rows.data()[b]), near);
-      for (const auto& [part, column] : parts) {
-        with(part, [&, column = column](const auto& o) {
-          run(o, seen, numbers.data(), mask.data());
-          std::copy(numbers.data(), numbers.data() + numbers_of(o), row + column);
-        });
-      }
-    }
+  in_parts(state.crew, rows.shape(0), threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
+    PartWriter writer(world, state, looking, parts);
+    for (std::size_t b = first; b < last; ++b)
+      writer.write(static_cast<int>(rows.data()[b]), out.data() + b * out.shape(1));
   });
 }
 
 nb::object gaps_of(World& world, BoundState& bound, const RowNumbers& rows, const Mask& codes, double reach,
                    int threads) {
-  const State& state = bound.of(world);
+  State& state = bound.of(world);
   check_each(state, rows);
-  expect_fit(codes.shape(0) == static_cast<std::size_t>(world.objects), kObject);
-  std::vector<ObjectKind> kinds;
-  for (std::size_t i = 0; i < codes.shape(0); ++i)
-    kinds.push_back(static_cast<ObjectKind>(std::min<int>(codes.data()[i], kKinds)));
+  const std::vector<ObjectKind> kinds = kinds_of(world, codes);
   const std::size_t count = rows.shape(0), each = kKinds;
   std::vector<double> out(count * each);
   {
     const Claim claim(bound);
     nb::gil_scoped_release free;
-    in_parts(count, threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
+    in_parts(state.crew, count, threads, kRowsPerThread, [&](std::size_t first, std::size_t last) {
       for (std::size_t b = first; b < last; ++b)
         gaps(world, state, static_cast<int>(rows.data()[b]), kinds, reach, out.data() + b * each);
     });
@@ -277,6 +231,24 @@ nb::object neighbors_of(World& world, BoundState& bound, const Looking& looking,
 }
 
 }  // namespace
+
+void check_looking(const World& world, const Looking& looking) {
+  const std::size_t n = world.objects;
+  expect_fit(looking.steered.size() == n && looking.first_beam.size() == n, kObject);
+}
+
+void check_parts(const std::vector<PartAtColumn>& parts, std::size_t columns) {
+  for (const auto& [part, column] : parts)
+    expect_fit(column + numbers_of(part) <= columns, "the parts do not fit into the observation");
+}
+
+std::vector<ObjectKind> kinds_of(const World& world, const Mask& codes) {
+  expect_fit(codes.shape(0) == static_cast<std::size_t>(world.objects), kObject);
+  std::vector<ObjectKind> kinds;
+  for (std::size_t i = 0; i < codes.shape(0); ++i)
+    kinds.push_back(static_cast<ObjectKind>(std::min<int>(codes.data()[i], kKinds)));
+  return kinds;
+}
 
 void bind_observing(nb::module_& m) {
   nb::class_<Looking>(m, "Looking")

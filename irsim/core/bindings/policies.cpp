@@ -31,8 +31,11 @@ nb::object circles_of(World& world, BoundState& bound) {
   const State& state = bound.of(world);
   std::vector<double> out;
   out.reserve(3 * static_cast<std::size_t>(state.rows));
-  for (const BoundingCircle& circle : bounding_circles(world, state)) {
-    out.insert(out.end(), {circle.centre.x, circle.centre.y, circle.radius});
+  std::vector<BoundingCircle> circles;
+  for (int w = 0; w < state.worlds; ++w) {
+    bounding_circles(world, state, w, circles);
+    for (const BoundingCircle& circle : circles)
+      out.insert(out.end(), {circle.centre.x, circle.centre.y, circle.radius});
   }
   return own(std::move(out), {static_cast<std::size_t>(state.rows), 3});
 }

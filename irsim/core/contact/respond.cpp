@@ -7,6 +7,7 @@ Vec3 respond(const World& world, State& state, int row, Vec3 command) {
   if (!is_native(world.drive[object])) return command;  // the drive is in Python
   const BodyDynamics& dynamics = world.dynamics[object];
   Vec3& c = state.drive[row];
+  if (world.unstoppable[object]) return c = command;
   Vec3 target = command;
   if (dynamics.tau > 0.0) {
     const double part = std::min(1.0, world.step_time / dynamics.tau);

@@ -1,6 +1,9 @@
 // Arrival at goals and waypoints.
+#include <variant>
+
 #include "geometry/predicates.hpp"
 #include "phases.hpp"
+#include "world/spec.hpp"
 
 namespace irsim {
 namespace {
@@ -33,6 +36,16 @@ bool is_settled(const World& world, const State& state, int row, int object) {
          !world.loop[object];
 }
 
+/// Whether an object is on its recorded way to its goal: it may pass that place before its recording ends.
+bool replays(const World& world, const State& state, int w, int object) {
+  const auto* recording = std::get_if<ReplayOptions>(&world.specs[object].behavior);
+  if (!recording || recording->times.empty()) return false;
+  const Goal& goal = state.goal[w * world.objects + object];
+  if (recording->poses.back()[0] != goal.x || recording->poses.back()[1] != goal.y) return false;
+  constexpr double kRounding = 1e-9;  // of a number of steps
+  return static_cast<double>(state.count[w] + 1) <= recording->times.back() / world.step_time + kRounding;
+}
+
 /// Whether an object that came from `from`, and is not at its goal, passed it in this step and was not at it before.
 bool overshoots(const World& world, const State& state, int row, int object, Vec2 from) {
   const Vec2 to = state.pose[row].position(), at = state.goal[row].position();
@@ -51,6 +64,10 @@ void arrive(const World& world, State& state, int w) {
     const Vec2 from = state.before[row];
     state.before[row] = state.pose[row].position();
     if (std::isnan(state.goal[row].x)) {
+      state.arrived[row] = 0;
+      continue;
+    }
+    if (replays(world, state, w, i)) {
       state.arrived[row] = 0;
       continue;
     }

@@ -1,9 +1,6 @@
 #include "runs/batch.hpp"
 
-#include <atomic>
-#include <exception>
-#include <system_error>
-#include <thread>
+#include <algorithm>
 
 #include "runs/fetch_ahead.hpp"
 
@@ -29,9 +26,8 @@ long long run_world(const World& world, State& state, int w, Workspace& work, co
                     Recording* recording, Scans scans) {
   long long executed = 0;
   while (executed < schedule.steps && !(schedule.until_done && done(world, state, w))) {
-    step(world, state, w, work, schedule.external);
+    step_and_log(world, state, w, work, schedule.external);
     ++executed;
-    if (w == 0 && state.record) state.record->add(state);
     if (recording != nullptr) record(world, state, w, *recording, scans);
   }
   if (recording != nullptr) recording->steps = executed;
@@ -40,52 +36,29 @@ long long run_world(const World& world, State& state, int w, Workspace& work, co
 
 }  // namespace
 
+int hire(State& state, int threads) {
+  const int hired = state.crew.hire(std::min(threads, state.worlds));
+  while (static_cast<int>(state.workspaces.size()) < hired) state.workspaces.emplace_back();
+  return hired;
+}
+
+void step_and_log(const World& world, State& state, int w, Workspace& work, bool external) {
+  step(world, state, w, work, external);
+  if (w == 0 && state.record) state.record->add(state);
+}
+
 long long run_worlds(const World& world, State& state, const Schedule& schedule, std::vector<Recording>* recordings,
                      Scans scans) {
-  const auto run_one = [&](int w, int last, Workspace& work) {  // `last`: end of the worlds that this thread runs
-    Recording* recording = recordings != nullptr ? &(*recordings)[w] : nullptr;
-    if (schedule.steps == 1) fetch_ahead(state, w, last);
-    return run_world(world, state, w, work, schedule, recording, scans);
-  };
-  const int threads = std::max(1, std::min(schedule.threads, state.worlds));
-  while (static_cast<int>(state.workspaces.size()) < threads) state.workspaces.emplace_back();
-  if (threads == 1) {
-    long long most = 0;
-    for (int w = 0; w < state.worlds; ++w) most = std::max(most, run_one(w, state.worlds, state.workspaces[0]));
-    return most;
-  }
-  // Each thread begins with the same worlds in every call, because their memory is then in the caches of its processor,
-  // and goes on with what others have left.
-  std::vector<std::atomic<int>> next(threads);
-  const auto begin_of = [&](int t) { return static_cast<int>(static_cast<long long>(state.worlds) * t / threads); };
-  for (int t = 0; t < threads; ++t) next[t] = begin_of(t);
+  const int threads = hire(state, schedule.threads);
   std::vector<long long> most(threads, 0);
-  std::vector<std::exception_ptr> errors(threads);
-  const int share = std::max(1, state.worlds / (8 * threads));
-  const auto worker = [&](int t) {
-    try {
-      for (int k = 0; k < threads; ++k) {
-        const int part = (t + k) % threads, end = begin_of(part + 1);
-        for (int first = next[part].fetch_add(share); first < end; first = next[part].fetch_add(share)) {
-          const int last = std::min(first + share, end);
-          for (int w = first; w < last; ++w) most[t] = std::max(most[t], run_one(w, last, state.workspaces[t]));
-        }
-      }
-    } catch (...) {
-      errors[t] = std::current_exception();
+  in_shares(state.crew, state.worlds, threads, [&](std::size_t first, std::size_t last, int t) {
+    for (std::size_t w = first; w < last; ++w) {
+      Recording* recording = recordings != nullptr ? &(*recordings)[w] : nullptr;
+      if (schedule.steps == 1) fetch_ahead(state, static_cast<int>(w), static_cast<int>(last));
+      most[t] = std::max(most[t],
+                         run_world(world, state, static_cast<int>(w), state.workspaces[t], schedule, recording, scans));
     }
-  };
-  std::vector<std::thread> helpers;
-  try {
-    for (int t = 1; t < threads; ++t) helpers.emplace_back(worker, t);
-  } catch (const std::system_error&) {
-    // The system gives no more threads; those that were started do the work.
-  }
-  worker(0);
-  for (std::thread& helper : helpers) helper.join();
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
+  });
   return *std::max_element(most.begin(), most.end());
 }
 

@@ -29,6 +29,10 @@ struct Scans {
   bool ranges, returns;
 };
 
+/// Have up to this number of threads for the worlds, with a workspace each, and return their number.
+int hire(State& state, int threads);
+/// Advance world w by one period; world 0 is recorded if a record is attached.
+void step_and_log(const World& world, State& state, int w, Workspace& work, bool external);
 /// Run all worlds and return the largest number of steps that one of them executed. `recordings`: one per world, or
 /// null.
 long long run_worlds(const World& world, State& state, const Schedule& schedule, std::vector<Recording>* recordings,

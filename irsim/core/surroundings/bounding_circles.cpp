@@ -16,15 +16,14 @@ bool is_compact(const World& world, const Shapes& shapes, int object) {
 
 }  // namespace
 
-std::vector<BoundingCircle> bounding_circles(const World& world, const State& state) {
-  std::vector<BoundingCircle> circles(state.rows);
-  for (int row = 0; row < state.rows; ++row) {
-    const Shapes& shapes = *state.scenes[row / world.objects].shapes;
-    const int object = row % world.objects;
-    const Vec2 offset = rotate(shapes.centre[object], state.heading(row));
-    circles[row] = {state.pose[row].position() + offset, shapes.radius[object]};
+void bounding_circles(const World& world, const State& state, int w, std::vector<BoundingCircle>& out) {
+  const Shapes& shapes = *state.scenes[w].shapes;
+  out.resize(world.objects);
+  for (int i = 0; i < world.objects; ++i) {
+    const int row = w * world.objects + i;
+    const Vec2 offset = rotate(shapes.centre[i], state.heading(row));
+    out[i] = {state.pose[row].position() + offset, shapes.radius[i]};
   }
-  return circles;
 }
 
 void nearest_objects(const World& world, const State& state, const std::vector<BoundingCircle>& circles, int row,
@@ -34,14 +33,14 @@ void nearest_objects(const World& world, const State& state, const std::vector<B
   out.object.resize(room);
   out.gap.resize(room);
   if (room == 0) return;
-  const int w = row / world.objects, self = row % world.objects, first = w * world.objects;
+  const int w = row / world.objects, self = row % world.objects;
   const int roles = world.target_roles[self];
   const Shapes& shapes = *state.scenes[w].shapes;
-  const BoundingCircle& own = circles[row];
+  const BoundingCircle& own = circles[self];
   for (int i = 0; i < world.objects; ++i) {
     if (i == self || (roles != 0 && (roles == 1) != (world.is_robot[i] != 0))) continue;
     if (world.is_static[i] && !(statics && is_compact(world, shapes, i))) continue;
-    const BoundingCircle& other = circles[first + i];
+    const BoundingCircle& other = circles[i];
     const double gap = norm(other.centre - own.centre) - other.radius - own.radius;
     const bool full = count == room;
     if (!(gap <= reach) || (full && gap >= out.gap[count - 1])) continue;

@@ -16,8 +16,8 @@ struct BoundingCircle {
   double radius;
 };
 
-/// The minimum bounding circles of all rows at their present poses.
-std::vector<BoundingCircle> bounding_circles(const World& world, const State& state);
+/// The minimum bounding circles of the objects of world w at their present poses.
+void bounding_circles(const World& world, const State& state, int w, std::vector<BoundingCircle>& out);
 
 /// The nearest objects of a row and the gaps to them [m].
 struct NearestRows {
@@ -27,7 +27,8 @@ struct NearestRows {
 
 /// The indices of up to `most` other objects of the world of a row, nearest first by the distance between bounding
 /// circles, then by index. An object counts if this distance is at most `reach`, and if the row targets its role.
-/// Static objects count with `statics`, except unobstructed ones, maps and the walls round a world.
+/// Static objects count with `statics`, except unobstructed ones, maps and the walls round a world. `circles`: those of
+/// this world.
 void nearest_objects(const World& world, const State& state, const std::vector<BoundingCircle>& circles, int row,
                      int most, double reach, bool statics, NearestRows& out);
 

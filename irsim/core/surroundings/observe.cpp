@@ -6,15 +6,9 @@
 
 namespace irsim {
 
-Observer::Observer(const World& world, const State& state, const Looking& looking)
-    : world_(world), state_(state), looking_(looking) {
-  if (looking.neighbors > 0) circles_ = bounding_circles(world, state);
-}
-
-Neighbor Observer::neighbor(int row) const {
+Neighbor Observer::neighbor(int row, const BoundingCircle& circle) const {
   const double robot = world_.is_robot[row % world_.objects] ? 1.0 : 0.0, arrived = state_.arrived[row] ? robot : 0.0;
   const Vec3& twist = state_.twist[row];
-  const BoundingCircle& circle = circles_[row];
   return {circle.centre, state_.pose[row].theta, state_.heading(row), {twist[0], twist[1]}, circle.radius, arrived,
           robot};
 }
@@ -46,9 +40,12 @@ Seen Observer::see(int row, Near& near) const {
   seen.arrived = state_.arrived[row] ? 1.0 : 0.0;
   near.neighbors.clear();
   if (looking_.neighbors > 0) {
-    nearest_objects(world_, state_, circles_, row, looking_.neighbors, looking_.reach, looking_.statics, near.nearest);
+    if (near.world != w) bounding_circles(world_, state_, w, near.circles);
+    near.world = w;
+    nearest_objects(world_, state_, near.circles, row, looking_.neighbors, looking_.reach, looking_.statics,
+                    near.nearest);
     for (const int i : near.nearest.object) {
-      near.neighbors.push_back(neighbor(w * world_.objects + i));
+      near.neighbors.push_back(neighbor(w * world_.objects + i, near.circles[i]));
       if (looking_.extents) measure_extents(row, seen.pose.position(), i, near.neighbors.back());
     }
   }

@@ -21,8 +21,11 @@ struct Looking {
   double range_max;                   // [m]
 };
 
-/// The neighbors of a row, with the memory for finding them.
+/// The neighbors of a row, with the memory for finding them. As long as the state stays as it is, it serves for any
+/// row.
 struct Near {
+  int world = -1;  // whose bounding circles are known
+  std::vector<BoundingCircle> circles;
   NearestRows nearest;
   std::vector<Neighbor> neighbors;
 };
@@ -30,19 +33,19 @@ struct Near {
 /// Looks at rows of a state, which stays as it is meanwhile.
 class Observer {
  public:
-  Observer(const World& world, const State& state, const Looking& looking);
+  Observer(const World& world, const State& state, const Looking& looking)
+      : world_(world), state_(state), looking_(looking) {}
 
   /// What a row knows; its neighbors are written to `near`, which the result points to.
   Seen see(int row, Near& near) const;
 
  private:
-  Neighbor neighbor(int row) const;
+  Neighbor neighbor(int row, const BoundingCircle& circle) const;
   void measure_extents(int row, Vec2 place, int other, Neighbor& neighbor) const;
 
   const World& world_;
   const State& state_;
   const Looking& looking_;
-  std::vector<BoundingCircle> circles_;
 };
 
 }  // namespace irsim

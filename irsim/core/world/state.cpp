@@ -10,9 +10,6 @@
 namespace irsim {
 namespace {
 
-/// Least number of worlds to reset for which a thread is worth starting.
-constexpr int kResetsPerThread = 4;
-
 Goal goal_of(const std::vector<double>& numbers) {
   return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : kNone};
 }
@@ -233,9 +230,9 @@ void reset(const World& world, State& state, const std::uint8_t* mask, bool next
   for (int w = 0; w < state.worlds; ++w) {
     if (mask[w]) chosen.push_back(w);
   }
-  threads = std::max(1, std::min(threads, static_cast<int>(chosen.size()) / kResetsPerThread));
+  threads = std::max(1, std::min(threads, static_cast<int>(chosen.size())));
   while (static_cast<int>(state.workspaces.size()) < threads) state.workspaces.emplace_back();
-  one_by_one(chosen.size(), threads, [&](std::size_t k, int thread) {
+  one_by_one(state.crew, chosen.size(), threads, [&](std::size_t k, int thread) {
     const int w = chosen[k];
     Workspace& work = state.workspaces[thread];
     if (state.fresh[w] || next_scene) {

@@ -8,6 +8,7 @@
 
 #include "footprints/detour.hpp"
 #include "orca/opinions.hpp"
+#include "parallel.hpp"
 #include "random.hpp"
 #include "routes/route.hpp"
 #include "runs/log.hpp"
@@ -99,6 +100,7 @@ struct State {
   std::vector<std::uint8_t> fresh;               // (W,) 1 if the next reset draws scene 0 with noise 0
   std::vector<std::int64_t> event_count;         // (W,) number of events since the state was made
   std::vector<Workspace> workspaces;             // one per thread
+  Crew crew;                                     // threads that step its worlds
   std::shared_ptr<Log> record;                   // record of world 0; null unless one is attached
 
   /// Key of the random draws of the present episode of world w.

@@ -185,8 +185,9 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     group.push_back(s.group);
     number.push_back(s.number < 0 ? i : s.number);
     drive.push_back(s.drive);
-    dynamics.push_back(
-        {s.mass, s.friction, s.inertia, s.restitution, s.tau, s.driven, !s.is_static && std::isfinite(s.mass)});
+    unstoppable.push_back(s.role == 1 && std::holds_alternative<ReplayOptions>(s.behavior));
+    const bool pushable = !s.is_static && std::isfinite(s.mass) && !unstoppable.back();
+    dynamics.push_back({s.mass, s.friction, s.inertia, s.restitution, s.tau, s.driven, pushable});
     vel_min.push_back(padded(s.vel_min));
     vel_max.push_back(padded(s.vel_max));
     acce.push_back(padded(s.acce));
@@ -202,7 +203,6 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     if (s.route && !s.is_static) routed.push_back(i);
     if (s.appear_step > 0) latecomers.push_back(i);
     if (s.vanish_step > 0) leavers.push_back(i);
-    unstoppable.push_back(s.role == 1 && std::holds_alternative<ReplayOptions>(s.behavior));
     random_statics = random_statics || (s.is_static && s.appear_step > 0);
     add_to_group(*this, i, s);
     add_scans(*this, i, s);

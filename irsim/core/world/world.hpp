@@ -55,7 +55,7 @@ struct BodyDynamics {
   double restitution;  // bounciness, 0 to 1
   double tau;          // time constant of the drive [s]
   bool driven;         // whether it has a drive; a body without one moves only when it is pushed
-  bool pushable;       // whether it is not static and has a finite mass
+  bool pushable;       // whether it is not static, has a finite mass, and is no obstacle that replays a recording
 };
 
 struct World {
@@ -77,7 +77,7 @@ struct World {
 
   // (N,) for each object
   std::vector<std::uint8_t> is_robot, is_static, unobstructed, wander, loop, state_arrival, target_roles, behaves;
-  std::vector<std::uint8_t> unstoppable;  // whether collisions do not stop it: an obstacle that replays a recording
+  std::vector<std::uint8_t> unstoppable;  // whether nothing stops or pushes it: an obstacle that replays a recording
   std::vector<int> group;
   std::vector<int> number;  // id in draws and events; equal to the index until objects are removed
   std::vector<Drive> drive;

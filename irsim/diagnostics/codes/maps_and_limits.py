@@ -87,6 +87,11 @@ MAPS_AND_LIMITS: dict[str, Code] = {
         "min_distance; with perturb, a smaller spread. In a benchmark it is the outcome of that seed: it counts in no "
         "rate and no mean, and the first line says which seeds these are.",
     ),
+    "bridges-not-opened": Code(
+        "simulated without the bridges of the scenario",
+        "Benchmarks, training and pictures do not open the bridges of a scenario: robots that another program moves or "
+        "commands in irsim run follow their own behavior here. Compare such numbers with care, or use irsim run.",
+    ),
     "too-many-problems": Code(
         "more problems than are shown",
         "Fix the first problems and validate again.",

@@ -57,6 +57,12 @@ OBJECTS: dict[str, Code] = {
         "no goal given",
         "Every object has a goal. The default is [1, 9, 0], whatever the size of the world.",
     ),
+    "driven-without-goal": Code(
+        "robot of a bridge without a goal",
+        "A robot that the program at the other end of a bridge may drive arrives, like any other, at its goal, which "
+        "ends the run. Without 'goal' that is [1, 9, 0], a place that nobody has chosen. Write the goal; where only "
+        "the other program knows it, write one out of reach, such as goal: [1000, 0], and the time_limit of the world.",
+    ),
     "heading-in-degrees": Code(
         "angle looks like degrees",
         "All angles are in radians: a right angle is 1.5708, half a turn 3.14159, one degree 0.01745. Headings of "

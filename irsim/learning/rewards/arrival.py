@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from irsim.common.arrays import Floats
+import irsim._core as core
 from irsim.learning.features import REWARDS
-from irsim.learning.moment import Moment
 from irsim.learning.rewards._options import RewardOptions
 from irsim.options.units import Bool
 
@@ -21,7 +20,4 @@ class Arrival(RewardOptions):
     """Whether every goal of several counts, also those of objects that wander."""
 
 
-@REWARDS.register(Arrival)
-def arrival(moment: Moment, options: Arrival) -> Floats:
-    """(n, A) 1 for arrivals."""
-    return (moment.reached if options.each else moment.arrived).astype(float)
+REWARDS.register(Arrival, kernel=core.ArrivalOptions)

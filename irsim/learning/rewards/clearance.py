@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-import numpy as np
 from pydantic import Field
 
-from irsim.common.arrays import Floats
+import irsim._core as core
 from irsim.learning.features import REWARDS
-from irsim.learning.moment import Moment
 from irsim.learning.rewards._options import RewardOptions
 from irsim.options.units import Meters, Number
-
-_COLUMNS = {"robots": (0,), "obstacles": (1, 2), "all": (0, 1, 2)}
 
 
 class Clearance(RewardOptions):
@@ -33,14 +29,4 @@ class Clearance(RewardOptions):
     """What keeps the learner at a distance: other robots, obstacles (static and moving ones), or all of them."""
 
 
-@REWARDS.register(Clearance)
-def clearance(moment: Moment, options: Clearance) -> Floats:
-    """(n, A) missing share, times the duration of the step [s]."""
-    return moment.step_time * missing_share(moment, options.margin, _COLUMNS[options.to])
-
-
-def missing_share(moment: Moment, margin: float, kinds: tuple[int, ...]) -> Floats:
-    """(n, A) share of a margin [m] that is missing to the nearest object of these kinds, 0 to 1."""
-    gap = moment.gaps(margin)[..., list(kinds)].min(axis=-1)
-    missing: Floats = np.clip((margin - gap) / margin, 0.0, 1.0)
-    return missing
+REWARDS.register(Clearance, kernel=core.ClearanceOptions)

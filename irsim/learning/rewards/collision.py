@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from irsim.common.arrays import Floats
+import irsim._core as core
 from irsim.learning.features import REWARDS
-from irsim.learning.moment import Moment
 from irsim.learning.rewards._options import RewardOptions
 from irsim.options.units import Number
 
@@ -21,7 +20,4 @@ class Collision(RewardOptions):
     """Factor of the term; negative for a cost."""
 
 
-@REWARDS.register(Collision)
-def collision(moment: Moment, options: Collision) -> Floats:
-    """(n, A) 1 for collisions that begin."""
-    return moment.collided.astype(float)
+REWARDS.register(Collision, kernel=core.CollisionOptions)

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-import numpy as np
-
-from irsim.common.arrays import Floats
+import irsim._core as core
 from irsim.learning.features import REWARDS
-from irsim.learning.moment import Moment
 from irsim.learning.rewards._options import RewardOptions
 
 
@@ -24,8 +21,4 @@ class Progress(RewardOptions):
     name: Literal["progress"] = "progress"
 
 
-@REWARDS.register(Progress)
-def progress(moment: Moment, options: Progress) -> Floats:
-    """(n, A) progress [m]; 0 without a goal."""
-    gained = moment.distance_before - moment.distance
-    return np.where(np.isfinite(gained), gained, 0.0)
+REWARDS.register(Progress, kernel=core.ProgressOptions)

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-import numpy as np
-
-from irsim.common.arrays import Floats
+import irsim._core as core
 from irsim.learning.features import REWARDS
-from irsim.learning.moment import Moment
 from irsim.learning.rewards._options import RewardOptions
 from irsim.options.units import Number
 
@@ -30,13 +27,4 @@ class Smoothness(RewardOptions):
     """What should be small."""
 
 
-@REWARDS.register(Smoothness)
-def smoothness(moment: Moment, options: Smoothness) -> Floats:
-    """(n, A) squares, times the duration of the step [s]."""
-    if options.of == "turning":
-        return moment.step_time * moment.yaw_rate * moment.yaw_rate
-    extent = moment.high - moment.low
-    usable = np.isfinite(extent) & (extent > 0)
-    share = np.where(usable, (moment.control - moment.control_before) / np.where(usable, extent, 1.0), 0.0)
-    squares: Floats = (share * share).sum(axis=-1) / np.maximum(usable.sum(axis=-1), 1)
-    return moment.step_time * squares
+REWARDS.register(Smoothness, kernel=core.SmoothnessOptions)

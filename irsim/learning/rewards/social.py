@@ -6,14 +6,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from irsim.common.arrays import Floats
+import irsim._core as core
 from irsim.learning.features import REWARDS
-from irsim.learning.moment import Moment
 from irsim.learning.rewards._options import RewardOptions
-from irsim.learning.rewards.clearance import missing_share
 from irsim.options.units import Meters, Number
-
-_PEOPLE = (1,)
 
 
 class Social(RewardOptions):
@@ -31,7 +27,4 @@ class Social(RewardOptions):
     """Smallest gap that disturbs no person."""
 
 
-@REWARDS.register(Social)
-def social(moment: Moment, options: Social) -> Floats:
-    """(n, A) missing share, times the duration of the step [s]."""
-    return moment.step_time * missing_share(moment, options.distance, _PEOPLE)
+REWARDS.register(Social, kernel=core.SocialOptions)

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-import numpy as np
-
-from irsim.common.arrays import Floats
+import irsim._core as core
 from irsim.learning.features import REWARDS
-from irsim.learning.moment import Moment
 from irsim.learning.rewards._options import RewardOptions
 from irsim.options.units import Number
 
@@ -23,7 +20,4 @@ class Time(RewardOptions):
     """Factor of the term; negative for a cost."""
 
 
-@REWARDS.register(Time)
-def time(moment: Moment, options: Time) -> Floats:
-    """(n, A) duration of the step [s]."""
-    return np.full(moment.arrived.shape, moment.step_time)
+REWARDS.register(Time, kernel=core.TimeOptions)

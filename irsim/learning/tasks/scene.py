@@ -16,6 +16,7 @@ from irsim.bundled.templates.metadata import Template, TemplateError
 from irsim.bundled.templates.store import load
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, suggestion
+from irsim.episodes.unopened import unopened_bridges
 from irsim.learning.tasks.files import TaskError, task_error
 from irsim.learning.tasks.randomize import Value
 from irsim.learning.tasks.task import Task
@@ -156,6 +157,7 @@ def _resolved(
         scenario = perturbed(scenario, task.perturb, called=task.task)
     except BenchmarkError as error:
         raise task_error(("perturb",), error.message, error.fix or "") from None
+    found = [*found, *unopened_bridges(scenario, "training")]
     return scenario, tuple(item for item in found if item.severity == "warning")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from irsim.scenario.checks import (
     behaviors,
+    bridges,
     files,
     goals,
     groups,
@@ -41,6 +42,7 @@ _FAMILIES = (
     kinematics,
     shapes,
     goals,
+    bridges,
     placement,
     random_placement,
     overlap,

@@ -58,6 +58,13 @@ class Context:
             leaders.setdefault(record.group, record)
         return frozenset(group for group, leader in leaders.items() if leader.group_behavior is not None)
 
+    @cached_property
+    def bridged(self) -> frozenset[str]:
+        """Names of the robots that programs at the other end of bridges may drive."""
+        robots = [record.name for record in self.resolved.robots()]
+        bridges: list[Any] = list(self.resolved.bridges)
+        return frozenset(name for bridge in bridges for name in bridge.driven(robots))
+
     def entry(self, path: Path) -> Entry:
         """The entry at a path: ("robot", 0) or ("robot",)."""
         section: Any = getattr(self.scenario, str(path[0]))

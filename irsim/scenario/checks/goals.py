@@ -50,7 +50,7 @@ def check(context: Context) -> Iterator[Finding]:
             yield from _surplus_states(path, entry)
             yield from _outside_world(context, records)
             yield from _surplus_values(context, path, entry)
-            yield from _default_goal(path, entry, records)
+            yield from _default_goal(context, path, entry, records)
             yield from _headings_in_degrees(context, records)
         yield from _goals_reached_at_start(context, records)
         yield from _threshold_too_large(context, path, entry, records)
@@ -224,11 +224,15 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
             )
 
 
-def _default_goal(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
+def _default_goal(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
     driven = [
         r
         for r in records
-        if not r.static and not r.wander and not r.recorded and (r.behavior or r.group_behavior) is not None
+        if not r.static
+        and not r.wander
+        and not r.recorded
+        and (r.behavior or r.group_behavior) is not None
+        and r.name not in context.bridged  # of which driven-without-goal tells
     ]
     if driven and entry.goal is None and entry.waypoints is None:
         yield hint(
@@ -346,7 +350,8 @@ def _outside_world(context: Context, records: list[ObjectRecord]) -> Iterator[Fi
         what.append(("goal", "has a goal"))
     for key, words in what:
         for record in records:
-            points = [record.state] if key == "state" else [] if record.wander else record.goals
+            free = record.wander or (record.behavior is None and record.name in context.bridged)
+            points = [record.state] if key == "state" else [] if free else record.goals
             lost = [(i, p) for i, p in enumerate(points) if not (x0 <= p[0] <= x1 and y0 <= p[1] <= y1)]
             if lost and (context.is_given(record, key) or key == "state" or record.behavior is not None):
                 written = "waypoints" if key == "goal" and context.is_given(record, "waypoints") else key
@@ -360,7 +365,8 @@ def _outside_world(context: Context, records: list[ObjectRecord]) -> Iterator[Fi
                     fix=f"use x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, or a larger world",
                 )
                 break
-            over = _over_the_edge(context, record) if key == "goal" and context.is_given(record, "goal") else None
+            near = key == "goal" and not free and context.is_given(record, "goal")
+            over = _over_the_edge(context, record) if near else None
             if over is not None and not lost:
                 yield over
                 break

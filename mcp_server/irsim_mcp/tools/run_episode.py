@@ -26,6 +26,8 @@ _DESCRIPTION = """
     a run_id, kept for 24 hours. Next: after a failure the
     call that `next` has, change the scenario and run again; after a success try other seeds if anything is random.
 """
+_LOST = {"bridge-lost": "program of a bridge", "policy-lost": "policy"}
+"""What was lost, by its code."""
 _UNDRIVEN = "has no behavior"
 """Part of the reason of a run with a robot that nothing drives."""
 _ARTIFACTS = ("events.json", "trace.csv")
@@ -275,6 +277,9 @@ def _advice(found: dict[str, Any], given: str) -> str:
     run = f" run_id={found['run_id']}"
     if found["run_id"] is None:
         run = f" {given}" + (f" seed={found['seed']}" if found["random"] else "")
+    if found["lost"] is not None:
+        again = f"run_episode {given}" + (f" seed={found['seed']}" if found["random"] else "")
+        return f"The {_LOST[found['lost_code']]} was lost: start it again, then {again}."
     held = set(found["jammed"])
     if found["outcome"] == "success" and not held:
         name = given.removeprefix("scenario_path=")

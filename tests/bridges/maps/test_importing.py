@@ -86,7 +86,7 @@ def test_the_radius_is_taken_away(scene, tmp_path) -> None:
 
 def test_files_are_all_written_or_none(scene, tmp_path, monkeypatch) -> None:
     (tmp_path / "flat.png").write_text("mine")
-    with pytest.raises(TargetError, match=r"flat\.png exists"):
+    with pytest.raises(TargetError, match=r"flat\.png' exists"):
         import_map(scene, tmp_path / "flat.yaml")
     assert names(tmp_path) == ["flat.navmesh", "flat.png"]
     import_map(scene, tmp_path / "flat.yaml", overwrite=True)
@@ -259,8 +259,10 @@ def test_the_command(scene, tmp_path, monkeypatch) -> None:
         assert wrong.exit_code == 2, wrong.output
         assert said in wrong.output
     assert not Path("c.yaml").exists()
-    lost = call("flat.navmesh", "-o", "none/b.yaml")
-    assert (lost.exit_code, "there is no folder none" in lost.output) == (1, True)
+    assert call("flat.navmesh", "-o", "none/b.yaml").exit_code == 0
+    assert Path("none/b.bridge.json").exists(), "the folder is made"
+    lost = call("flat.navmesh", "-o", "b.yaml/c.yaml")
+    assert (lost.exit_code, "'b.yaml' is no folder" in lost.output) == (1, True)
 
 
 def test_the_map_is_where_the_scene_is(scene, tmp_path) -> None:

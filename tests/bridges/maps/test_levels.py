@@ -75,6 +75,30 @@ def test_levels_of_a_house() -> None:
         occupancy(house(), level=0, height=1.0)
 
 
+@pytest.mark.parametrize("resolution", [0.05, 0.4, 0.5, 0.7, 1.0, 2.0])
+def test_large_cells_do_not_make_a_floor_of_the_roof(resolution: float) -> None:
+    found = occupancy(flat(), resolution=resolution)
+    assert found.height == pytest.approx(0.0, abs=0.03)
+    assert [roof for _, _, roof in found.levels] == [False, True]
+    assert not any("may be a roof" in note for note in found.notes)
+    assert occupancy(house(), resolution=resolution).height < 3
+
+
+def test_cells_in_which_no_floor_is_left_are_told_of() -> None:
+    found = occupancy(flat(), resolution=3.0)
+    assert found.height == pytest.approx(2.8, abs=0.01)
+    assert "this may be a roof; try --resolution 0.1" in found.notes[-1]
+    assert occupancy(flat(), resolution=3.0, level=0).notes == []
+    assert occupancy(box([0, 0, -0.2], [9, 9, 0.0]), resolution=3.0).notes == [], "a ground without rooms"
+
+
+@pytest.mark.parametrize("resolution", [0.1, 0.5, 2.0])
+def test_a_yard_above_a_cellar_is_no_roof(resolution: float) -> None:
+    yard, cellar = box([0, 0, -0.2], [30, 30, 0]), box([3, 3, -3.1], [12, 11, -3])
+    found = occupancy(np.concatenate([yard, cellar]), resolution=resolution)
+    assert (found.height, found.levels[-1][2]) == (pytest.approx(0.0, abs=0.01), False)
+
+
 def test_a_seed_point_picks_a_part() -> None:
     rooms = np.concatenate([box([0, 0, -0.1], [3, 2, 0]), box([5, 0, -0.1], [6, 2, 0])])
     assert at(occupancy(rooms), 1, 1) == FREE

@@ -132,7 +132,9 @@ def test_the_guard_sends_zeros_when_nothing_comes_and_when_all_ends(
 ) -> None:
     sent: list[tuple[float, float]] = []
     backend = N(
-        publish=lambda topic, said: sent.append((time.monotonic(), said[0])), close=lambda: sent.append((0, -1))
+        ready=True,
+        publish=lambda topic, said: sent.append((time.monotonic(), said[0])),
+        close=lambda: sent.append((0, -1)),
     )
     monkeypatch.setattr(guard, "make_messages", lambda options: N(command=lambda kind, stamp, frame, speed: speed))
     monkeypatch.setattr(guard, "open_backend", lambda *arguments: backend)
@@ -157,6 +159,12 @@ def test_the_guard_sends_zeros_when_nothing_comes_and_when_all_ends(
     pipe.say({"rover": [0.2, 0.0, 0.0]})
     while sent[-1][1] != 0.2:
         assert time.monotonic() - began < 5
+        time.sleep(0.005)
+    backend.ready = False  # the connection is made anew: what is dropped was not driven
+    pipe.say({"rover": [0.3, 0.0, 0.0]})
+    until_zero = time.monotonic()
+    while sent[-1][1] != 0.0:
+        assert time.monotonic() - until_zero < 0.15, "before the command is too old"
         time.sleep(0.005)
     pipe.end()
     thread.join(10)

@@ -6,6 +6,7 @@ import fcntl
 import os
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -87,6 +88,12 @@ def until(holds: Callable[[], object], seconds: float, why: str) -> None:
         time.sleep(0.02)
 
 
+def free_port() -> int:
+    """A port of TCP that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return int(server.getsockname()[1])
+
+
 @pytest.fixture(scope="session")
 def fastdds_program(tmp_path_factory: pytest.TempPathFactory) -> str:
     """The peer on Fast DDS, made by its code generator and the compiler."""
@@ -133,6 +140,31 @@ def domain(request: pytest.FixtureRequest) -> int:
     worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
     number = _DOMAINS.setdefault(request.node.nodeid, len(_DOMAINS))
     return 2 + (os.getpid() * 7 + int(worker) * 31 + number) % 95
+
+
+@pytest.fixture
+def master(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """Address of a running roscore, which all processes of the test use."""
+    if not Path("/usr/bin/roscore").exists():
+        pytest.skip("roscore is missing")
+    port = free_port()
+    address = f"http://127.0.0.1:{port}"
+    monkeypatch.setenv("ROS_MASTER_URI", address)
+    monkeypatch.setenv("ROS_IP", "127.0.0.1")
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    core = subprocess.Popen(["/usr/bin/roscore", "-p", str(port)], **quiet)  # type: ignore[call-overload]
+
+    def runs() -> bool:
+        listed = subprocess.run(["/usr/bin/rostopic", "list"], capture_output=True, text=True, check=False)
+        return "/rosout" in listed.stdout
+
+    try:
+        until(runs, 60, "roscore does not start")
+        yield address
+    finally:
+        core.send_signal(signal.SIGINT)  # on which it ends the processes that it has started
+        core.wait(30)
 
 
 _DOMAINS: dict[str, int] = {}

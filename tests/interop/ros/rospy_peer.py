@@ -1,7 +1,12 @@
-"""A node of ROS 1 in a process of its own: `rospy_peer.py SECONDS`."""
+"""A node of ROS 1 in a process of its own: `rospy_peer.py SECONDS [numbered]`.
+
+Its commands are all the same, or numbered in thousandths of the yaw rate; then every tenth is not a number.
+"""
 
 from __future__ import annotations
 
+import itertools
+import math
 import sys
 import time
 
@@ -33,7 +38,11 @@ twist, target = Twist(), PoseStamped()
 twist.linear.x, twist.angular.z = 0.4, 0.5
 target.header.frame_id, target.pose.position.x, target.pose.orientation.w = "map", 3.0, 1.0
 end = time.monotonic() + float(sys.argv[1])
-while time.monotonic() < end:
+for number in itertools.count(1):
+    if time.monotonic() > end:
+        break
+    if "numbered" in sys.argv:
+        twist.linear.x, twist.angular.z = 0.4 if number % 10 else math.nan, number / 1000
     command.publish(twist)
     goal.publish(target)
     time.sleep(0.05)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import socket
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +12,7 @@ import pytest
 
 import irsim
 from irsim.bridges.base import BridgeLostError
-from tests.interop.ros.conftest import HERE, PYTHON, SCENE, Peer, until
+from tests.interop.ros.conftest import HERE, PYTHON, SCENE, Peer, free_port, until
 
 pytestmark = [
     pytest.mark.interop,
@@ -33,11 +32,6 @@ robot:
     goal: [9, 2, 0]
     behavior: {name: dash}
 """
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        return int(server.getsockname()[1])
 
 
 @pytest.mark.parametrize("ros", [1, 2])

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import os
-import signal
-import socket
 import subprocess
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 import irsim
-from tests.interop.ros.conftest import HERE, PYTHON, SCENE, Peer, until
+from tests.interop.ros.conftest import HERE, PYTHON, SCENE, Peer, free_port
 
 pytestmark = [
     pytest.mark.interop,
@@ -21,36 +18,6 @@ pytestmark = [
     # rospy and what it needs leave sockets to the collector of garbage
     pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::pytest.PytestUnraisableExceptionWarning"),
 ]
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        return int(server.getsockname()[1])
-
-
-@pytest.fixture
-def master(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """Address of a running roscore, which all processes of the test use."""
-    if not Path("/usr/bin/roscore").exists():
-        pytest.skip("roscore is missing")
-    port = free_port()
-    address = f"http://127.0.0.1:{port}"
-    monkeypatch.setenv("ROS_MASTER_URI", address)
-    monkeypatch.setenv("ROS_IP", "127.0.0.1")
-    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    core = subprocess.Popen(["/usr/bin/roscore", "-p", str(port)], **quiet)  # type: ignore[call-overload]
-
-    def runs() -> bool:
-        listed = subprocess.run(["/usr/bin/rostopic", "list"], capture_output=True, text=True, check=False)
-        return "/rosout" in listed.stdout
-
-    try:
-        until(runs, 60, "roscore does not start")
-        yield address
-    finally:
-        core.send_signal(signal.SIGINT)  # on which it ends the processes that it has started
-        core.wait(30)
 
 
 def test_both_ways_with_a_node_of_ros_1(

@@ -111,6 +111,7 @@ class BagBackend(Backend):
         if folder.exists():
             raise BridgeError("file-exists", f"'{folder}' exists", "name another folder, or remove it")
         self._target = folder
+        self.peer = f"the bag {folder}"
         self._temporary = folder.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
         self._bag: BagFolder | None = BagFolder(self._temporary, messages, storage, folder.name)
         self._added = {topic: self._bag.topic_of(topic.name, topic.kind, topic.qos) for topic in self.topics}

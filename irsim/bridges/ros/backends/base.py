@@ -20,10 +20,20 @@ class Backend:
         topics: Topics to publish and to subscribe to.
         inbox: Where messages from outside are put.
         messages: Makes messages, and their CDR.
+
+    Attributes:
+        peer: What it is connected to, in a few words.
     """
+
+    peer = "ROS"
 
     def __init__(self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages) -> None:
         self.node, self.topics, self.inbox, self.messages = node, tuple(topics), inbox, messages
+
+    @property
+    def ready(self) -> bool:
+        """Whether what is published now goes out; not while a connection is made anew."""
+        return True
 
     def publish(self, topic: Topic, message: Any) -> None:
         """Send a message.

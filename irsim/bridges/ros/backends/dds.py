@@ -50,6 +50,7 @@ class DdsBackend(Backend):
         super().__init__(node, topics, inbox, messages)
         from cyclonedds.core import DDSException
 
+        self.peer = f"ROS 2 over DDS, domain {domain}"
         self._writers: dict[Topic, Any] = {}
         self._readers: dict[Topic, Any] = {}
         self._owned: list[Any] = []

@@ -41,6 +41,7 @@ class RclpyBackend(Backend):
         self._rclpy = import_module("rclpy")
         self._context = import_module("rclpy.context").Context()
         self._rclpy.init(args=None, context=self._context, domain_id=domain)
+        self.peer = "ROS 2 with rclpy"
         self._node: Any = None
         try:
             self._node = self._rclpy.create_node(node, context=self._context)

@@ -18,6 +18,10 @@ from irsim.common.extras import require
 
 __all__ = ["RosbridgeBackend", "namespaces", "plain"]
 
+_ADVERTISE_S = 0.5
+"""Time in which roslibpy advertises all topics anew after the connection was made again."""
+_RETRY_S = 2.0
+"""Longest time between two attempts to find a server again."""
 _CLOSE_S = 2.0
 """Time for which to wait for the server when the connection is closed."""
 
@@ -45,11 +49,16 @@ class RosbridgeBackend(Backend):
         import roslibpy
 
         self._address, self._timeout, self._ros_version = f"{host}:{port}", timeout, ros
+        self.peer = f"the rosbridge server at {self._address} (ROS {ros})"
         self._store = messages.store if ros == 2 else _definitions_of_ros1()
         self._gone: float | None = None
+        self._connected, self._again = False, 0.0
+        self._latched: dict[Topic, Any] = {}
         self._publishers: dict[Topic, Any] = {}
         self._subscribers: list[Any] = []
         self._client = roslibpy.Ros(host=host, port=port, transport="asyncio")
+        self._client.factory.on("ready", self._listen)
+        self._client.factory.maxDelay = _RETRY_S
         try:
             self._client.run(timeout=timeout)
         except roslibpy.core.RosTimeoutError:
@@ -71,10 +80,25 @@ class RosbridgeBackend(Backend):
                 channel.subscribe(partial(self._received, topic))
                 self._subscribers.append(channel)
 
+    @property
+    def ready(self) -> bool:
+        """Whether the server is there and knows the topics."""
+        return bool(self._client.is_connected) and time.monotonic() >= self._again
+
     def publish(self, topic: Topic, message: Any) -> None:
-        """Send a message as JSON."""
+        """Send a message as JSON; without a connection it is dropped, so that none is sent when it is old."""
         self._check()
-        self._publishers[topic].publish(plain(message, topic.kind, self._store, self._ros_version))
+        content = plain(message, topic.kind, self._store, self._ros_version)
+        if topic.qos.latched:
+            self._latched[topic] = content
+        if not self.ready:
+            return
+        if self._again:  # the server has lost what it had kept for those who subscribe later
+            self._again = 0.0
+            for other, kept in self._latched.items():
+                if other != topic:
+                    self._publishers[other].publish(kept)
+        self._publishers[topic].publish(content)
 
     def poll(self) -> None:
         """Notice that the server is gone; messages come in a thread of roslibpy."""
@@ -91,6 +115,17 @@ class RosbridgeBackend(Backend):
                 channel.unsubscribe()
         self._publishers, self._subscribers = {}, []
         self._end()
+
+    def _listen(self, protocol: Any) -> None:
+        """Take what the server says of errors, for each connection anew; roslibpy has no other way to it."""
+        protocol._message_handlers["status"] = self._told
+        if self._connected:
+            self._again = time.monotonic() + _ADVERTISE_S
+        self._connected = True
+
+    def _told(self, status: Mapping[str, Any]) -> None:
+        if status.get("level") in ("error", "warning"):
+            self.inbox.tell(f"the server says: {status.get('msg')}")
 
     def _received(self, topic: Topic, message: Mapping[str, Any]) -> None:
         self.inbox.put(topic, namespaces(dict(message)))

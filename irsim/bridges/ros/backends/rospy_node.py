@@ -56,6 +56,7 @@ class RospyBackend(Backend):
             raise BridgeLostError(
                 f"no ROS master answers at {address}", "start roscore, or set master: http://HOST:11311"
             )
+        self.peer = f"the ROS master at {address}"
         self._publishers: dict[Topic, Any] = {}
         self._subscribers: list[Any] = []
         if not self._rospy.core.is_initialized():

@@ -47,6 +47,7 @@ class ZenohBackend(Backend):
     ) -> None:  # fmt: skip
         require("zenoh", "zenoh", "rosbags")
         super().__init__(node, topics, inbox, messages)
+        self.peer = f"ROS 2 over Zenoh, domain {domain}, router {address}"
         self._domain, self._numbers = domain, dict.fromkeys(self.topics, 0)
         self._publishers: dict[Topic, Any] = {}
         self._kept: list[Any] = []

@@ -1,0 +1,130 @@
+"""Reward terms that Python computes: functions of users and plug-ins, over all learners at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irsim._core as core
+from irsim.common.arrays import Floats
+from irsim.learning.features import REWARDS
+from irsim.learning.moment import Moment
+from irsim.learning.result import Result
+from irsim.learning.rewards._options import RewardOptions
+from irsim.learning.threats import Threats
+
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["PythonTerms", "weighted_terms"]
+
+
+def weighted_terms(terms: Sequence[RewardOptions]) -> list[tuple[Any, float]]:
+    """Options for the core and weight of each term; None for those that Python computes."""
+    found = []
+    for term in terms:
+        feature = REWARDS.get(term.name)
+        kernel = None if feature is None else feature.kernel
+        options = None if kernel is None else kernel(**{name: getattr(term, name) for name in kernel.fields})
+        found.append((options, float(term.weight)))
+    return found
+
+
+class PythonTerms:
+    """The terms of a task that are functions of a :class:`irsim.learning.Moment`.
+
+    Args:
+        simulation: The simulation.
+        terms: All terms of the task.
+        indices: (A,) indices of the learners in a world.
+        rows: (n * A,) their rows.
+        kinds: (N,) what each object is, see :func:`irsim._core.gaps`.
+        threads: Number of threads.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        terms: Sequence[RewardOptions],
+        indices: NDArray[np.int64],
+        rows: NDArray[np.int64],
+        kinds: NDArray[np.uint8],
+        threads: int,
+    ) -> None:
+        self._simulation, self._rows, self._kinds, self._threads = simulation, rows, kinds, threads
+        features = [(number, REWARDS.get(term.name), term) for number, term in enumerate(terms)]
+        self._terms = [(k, feature.function, term) for k, feature, term in features if feature and feature.function]
+        wary = any(term.name == "rvo" for term in terms)
+        self._threats = Threats(simulation, indices, threads) if wary else None
+        self._shape = len(rows) // len(indices), len(indices)
+        self._before: dict[str, Floats] = {}
+
+    def __bool__(self) -> bool:
+        """Whether there are any."""
+        return bool(self._terms)
+
+    def look(self) -> None:
+        """Keep what the terms need from before the step, after the learners were commanded."""
+        simulation, rows = self._simulation, self._rows
+        self._before = {
+            "pose_before": simulation.pose.take(rows, axis=0),
+            "goal": simulation.goal.take(rows, axis=0),
+            "control_before": simulation.control.take(rows, axis=0),
+            "commanded": simulation.state.commanded.take(rows, axis=0),
+        }
+        self._urgency = np.zeros(len(rows)) if self._threats is None else self._threats.urgency(rows)
+
+    def add(self, result: Result, present: NDArray[np.bool_]) -> Result:
+        """The result of a step with these terms. Absent learners earn nothing: their places are not numbers."""
+        moment = self._moment(result)
+        for number, function, options in self._terms:
+            term = result.terms[number]
+            np.multiply(options.weight, function(moment, options), out=term)
+            term *= result.active
+            term[~present] = 0.0
+        return replace(result, reward=result.terms.sum(axis=0))
+
+    def _moment(self, result: Result) -> Moment:
+        simulation, rows, shape = self._simulation, self._rows, self._shape
+        state = simulation.state
+        twist = simulation.twist.take(rows, axis=0)
+        reached = ~_same(simulation.goal.take(rows, axis=0), self._before["goal"]).reshape(shape)
+        urgency = self._urgency.reshape(shape)
+        return Moment(
+            step_time=float(simulation.scenario.world.step_time),
+            pose=simulation.pose.take(rows, axis=0).reshape(*shape, 3),
+            reached=(reached & result.active) | result.arrived,
+            arrived=result.arrived,
+            collided=result.collided,
+            control=simulation.control.take(rows, axis=0).reshape(*shape, 3),
+            low=state.vel_min.take(rows, axis=0).reshape(*shape, 3),
+            high=state.vel_max.take(rows, axis=0).reshape(*shape, 3),
+            velocity=twist[:, :2].reshape(*shape, 2),
+            yaw_rate=twist[:, 2].reshape(shape),
+            gaps=self._gaps(),
+            urgency=lambda: urgency,
+            **{name: values.reshape(*shape, -1) for name, values in self._before.items()},
+        )
+
+    def _gaps(self) -> Callable[[float], Floats]:
+        """The distances to others now, measured once for each reach."""
+        known: dict[float, Floats] = {}
+
+        def gaps(reach: float) -> Floats:
+            if reach not in known:
+                world, state = self._simulation.world, self._simulation.state
+                found = core.gaps(world, state, self._rows, self._kinds, reach, self._threads)
+                known[reach] = found.reshape(*self._shape, 3)
+            return known[reach]
+
+        return gaps
+
+
+def _same(a: Floats, b: Floats) -> NDArray[np.bool_]:
+    """Whether goals are equal, (B,)."""
+    equal: NDArray[np.bool_] = ((a == b) | (np.isnan(a) & np.isnan(b))).all(axis=1)
+    return equal
