@@ -118,7 +118,8 @@ def import_pedestrians(
         typer.echo(json.dumps(asdict(found)))
         return
     if found.file is not None:
-        what = f": {found.pedestrians} pedestrians, {found.rows} recorded places, {found.duration:g} s"
+        people = f"{found.pedestrians} pedestrian{'' if found.pedestrians == 1 else 's'}"
+        what = f": {people}, {found.rows} recorded places, {found.duration:g} s"
         console().print(Text.assemble("wrote ", (found.file, "bold"), what), soft_wrap=True)
     if found.suite is not None:
         what = f": {len(found.windows)} windows of {found.length:g} s, 10 seeds each"

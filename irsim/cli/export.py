@@ -25,7 +25,8 @@ def export(
         str | None,
         typer.Option(
             metavar="FORMAT",
-            help="Name of a format; irsim describe exports lists them. Default: as the suffix of the file says.",
+            help="Name of a format: colmap, commonroad, csv, isaac_people, mcap, minari, mjcf, nerfstudio, npz, "
+            "openscenario, parquet, poses, rosbag2, sdf or usd. Default: as the suffix of the file says.",
             show_default=False,
         ),
     ] = None,

@@ -95,14 +95,27 @@ def import_(
         float, typer.Option(help="Distance from obstacles that becomes occupied (m); robots have their own shape.")
     ] = 0.0,
     up: Annotated[
-        Up, typer.Option(help="Axis that points up (-y: y points down); auto: y for glTF and OBJ, z for PLY and STL.")
+        Up,
+        typer.Option(
+            help="Axis that points up (-y: y points down); auto: y for glTF and OBJ, z for PLY and STL, what a "
+            "stage of USD says."
+        ),
     ] = Up.auto,
-    meters_per_unit: Annotated[float, typer.Option(help="Length of a unit of a scene of splats (m).")] = 1.0,
+    meters_per_unit: Annotated[
+        float | None,
+        typer.Option(
+            help="Length of a unit of a mesh, a stage or splats (m), such as 0.001 for millimeters. Default: what a "
+            "stage of USD says, else 1.",
+            show_default=False,
+        ),
+    ] = None,
     opacity: Annotated[float, typer.Option(help="Splats with less opacity are left out.")] = 0.05,
     bounds: Annotated[
         str | None,
         typer.Option(
-            metavar="X,Y,X,Y", help="Lower left and upper right corner of a map of splats (m).", show_default=False
+            metavar="X,Y,X,Y",
+            help="Lower left and upper right corner of the part that becomes the map (m).",
+            show_default=False,
         ),
     ] = None,
     lanes: Annotated[Lanes, typer.Option(help="Lanes of roads that are free.")] = Lanes.drive,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import shlex
 import shutil
+import time
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -16,8 +18,9 @@ from typer.testing import CliRunner
 import irsim
 from irsim.bridges.gazebo.meshes import prism
 from irsim.bridges.gazebo.sdf import SdfWorld
+from irsim.bridges.scene import Grid
 from irsim.cli.app import app
-from irsim.runs import Run, open_run
+from irsim.runs import Run, RunError, open_run
 from tests.bridges.scenes import gallery
 
 TRAFFIC = """\
@@ -129,3 +132,28 @@ def test_what_the_page_says_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         done = CliRunner().invoke(app, shlex.split(command)[1:])
         assert done.exit_code == 0, (command, done.output)
     assert Path("hall-gazebo/world.sdf").stat().st_size > 5000
+
+
+@pytest.mark.parametrize("to", ["mjcf", "sdf"])
+def test_a_world_without_anything_that_moves_is_a_scene_as_well(
+    to: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    crate = "obstacle: [{name: crate, shape: {name: circle, radius: 0.5}, state: [4, 4]}]"
+    for text, models in (("", 0), (crate, 1)):
+        run = irsim.run(text=f"world: {{width: 9, height: 9}}\n{text}", seed=1, steps=2, record=True)
+        result = irsim.export_run(str(run.run_id), to=to, out=f"{to}{models}.{'xml' if to == 'mjcf' else 'd'}")
+        file = Path(result.file)
+        assert (file if file.is_file() else file / "world.sdf").read_text().count('name="crate"') == models
+    with pytest.raises(RunError, match="has no objects"):
+        irsim.export_run(str(irsim.run(text="world: {width: 9}", steps=1, record=True).run_id), to="csv", objects="all")
+
+
+def test_maps_of_many_parts_become_a_world_in_seconds() -> None:
+    board = np.indices((240, 240)).sum(axis=0) % 2 == 0
+    scene = replace(gallery(), grid=Grid(board, (0.1, 0.1), (0.0, 0.0)))
+    start = time.process_time()
+    text = SdfWorld(scene, {}).write()
+    assert time.process_time() - start < 15, "it is about 2 s; it grew with the square of the number of parts"
+    names = re.findall(r'<collision name="(collision_\d+)"', text[text.index('<model name="map"') :])
+    assert names[:28_800] == [f"collision_{number}" for number in range(28_800)]

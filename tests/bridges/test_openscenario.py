@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import irsim
 from irsim.bridges.export.formats import openscenario
@@ -81,3 +82,13 @@ def test_characters_that_xml_has_none_for(run: Run) -> None:
     assert openscenario._text("a\x00b\ud800c\td") == "a\ufffdb\ufffdc\td"
     assert openscenario._text(1e-9) == "0"
     assert openscenario._text(-0.25) == "-0.25"
+
+
+def test_a_map_is_no_entity(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Image.fromarray(np.array([[0, 255], [255, 255]], dtype=np.uint8)).save("map.png")
+    text = SCENE.replace("step_time: 0.1", "step_time: 0.1, obstacle_map: {name: image, path: map.png}")
+    run = open_run(str(irsim.run(text=text, seed=1, steps=2, record=True).run_id))
+    result = irsim.export_run(run, to="openscenario", objects="all")
+    assert len(list(ET.parse(result.file).getroot().iter("ScenarioObject"))) == 3
+    assert "the map was left out: OpenSCENARIO has no grids" in result.notes

@@ -99,6 +99,29 @@ def test_a_run_with_a_robot(convert) -> None:
     assert not irsim.validate(str(scene)).findings
 
 
+@pytest.mark.parametrize("way", [0.4, 0.0])
+def test_a_robot_does_not_start_in_a_person(convert, way: float) -> None:
+    lines = [f"{10 * row} 1 {way * row:g} 0" for row in range(10)]
+    scene, _ = convert("\n".join(lines))
+    run = irsim.run(str(scene), seed=1, steps=20)
+    assert run.outcome != "collision", "it started beside the one who stands or walks where it would have started"
+
+
+def test_a_table_may_begin_with_the_names_of_its_columns(convert) -> None:
+    text = crowds.trajnet(", ")
+    plain = convert(text)[0].read_text()
+    for header in ("frame,id,x,y", "frame_id, ped_id, x, y", "Frame, TrackID, X, Y"):
+        assert convert(f"{header}\n{text}", overwrite=True)[0].read_text() == plain
+    with pytest.raises(BridgeError, match=r"line 1 of .* has 'id' instead of a number"):
+        convert(f"id,frame,x,y\n{text}", overwrite=True)
+
+
+def test_a_long_time_without_rows_is_told(convert) -> None:
+    rows = [f"{frame} {who} {frame / 10} {who}" for frame in (0, 10, 20, 400, 410) for who in (1, 2)]
+    assert any("has no row for 15.2 s" in note for note in convert("\n".join(rows))[1].notes)
+    assert not any("no row" in note for note in convert(crowds.trajnet(), overwrite=True)[1].notes)
+
+
 def test_windows_of_time_and_space(convert) -> None:
     scene, found = convert(crowds.trajnet(), window=Window(start=4.0, end=6.0), layout=Layout("x", robot=False))
     assert found.duration == pytest.approx(2.0)
@@ -139,7 +162,7 @@ def test_frame_rates(convert) -> None:
         ("0 1 0 0\n1 1 0\n", "a.txt", "line 2 .*3 columns instead of 4 numbers"),
         ("0 1 0\n", "a.txt", "line 1 .*3 columns, and files of pedestrians have 4 or 8"),
         ("0 1 0 0 0 0 0 0\n1 1 0 0\n", "a.txt", "line 2 .*instead of 8 numbers"),
-        ("frame id x y\n", "a.txt", "line 1 .*'frame' instead of a number"),
+        ("frame id x y\n", "a.txt", "is empty"),
         ("0 1 0 0\n0 1 2 0\n", "a.txt", "person 1 is at two places in frame 0"),
         ("0 1 0 0\n1e12 1 2 0\n1e12 2 2 0\n1000000000001 2 2 0", "a.txt", "lasts"),
         ("0 1 0 0\n", "a.txt", "nobody"),

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from irsim import api
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, read_sidecar
+from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.read import read
 from tests.bridges.maps.flat import box, flat, house, write_glb, write_obj, y_up
 
@@ -190,3 +191,36 @@ def test_an_obj_names_materials_and_nothing_is_opened(tmp_path, monkeypatch) -> 
     monkeypatch.setattr(Path, "open", lambda self, *rest, **more: opened.append(self.name) or real(self, *rest, **more))
     import_map(tmp_path / "a.obj", tmp_path / "a.yaml")
     assert "secret.mtl" not in opened
+
+
+def floor_and_far(tmp_path: Path) -> Path:
+    """A floor of 4 m x 3 m with a crate, and a crumb half a kilometer away, whose floor is in front of it."""
+    crate = box([1, 1, 0], [2, 2, 1])
+    far = box([500, 500, 0], [500.2, 500.2, 0.1])
+    return write_obj(tmp_path / "scene.obj", y_up(np.concatenate([box([0, 0, -0.1], [4, 3, 0]), crate, far])))
+
+
+def test_a_part_of_a_scene_is_imported_within_bounds(tmp_path) -> None:
+    file = floor_and_far(tmp_path)
+    with pytest.raises(BridgeError, match=r"--resolution .*, a part of it with --bounds, or its unit .*--meters-per-"):
+        import_map(file, tmp_path / "a.yaml", resolution=0.05)
+    result = import_map(file, tmp_path / "a.yaml", bounds=(-1, 0.5, 3, 3))
+    assert result.free_area == pytest.approx(3 * 2.5 - 1, abs=0.4)
+    assert result.origin[1] == pytest.approx(0.45, abs=0.051)
+    with pytest.raises(BridgeError, match="nothing within the bounds"):
+        import_map(file, tmp_path / "b.yaml", bounds=(10, 10, 20, 20))
+    with pytest.raises(ArgumentError, match="the bounds 3, 3, 0, 0 hold nothing"):
+        import_map(file, tmp_path / "b.yaml", bounds=(3, 3, 0, 0))
+    assert not (tmp_path / "b.yaml").exists()
+
+
+def test_a_mesh_in_millimeters(tmp_path) -> None:
+    triangles = np.concatenate([box([0, 0, -0.1], [4, 3, 0]), box([1, 1, 0], [2, 2, 1])])
+    write_obj(tmp_path / "m.obj", y_up(triangles))
+    write_obj(tmp_path / "mm.obj", y_up(triangles * 1000))
+    meters = import_map(tmp_path / "m.obj", tmp_path / "m.yaml")
+    millimeters = import_map(tmp_path / "mm.obj", tmp_path / "mm.yaml", meters_per_unit=0.001)
+    assert millimeters.free_area == pytest.approx(meters.free_area, abs=0.3)
+    assert (millimeters.columns, millimeters.origin) == (meters.columns, meters.origin)
+    points = read_sidecar(tmp_path / "mm.yaml").to_scene(np.array([[2.0, 1.0, 0.0]]), height=0.5)
+    np.testing.assert_allclose(points, [[2000.0, 500.0, -1000.0]], atol=1e-6)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zipfile
 from contextlib import suppress
 from pathlib import Path
@@ -11,7 +12,10 @@ import pytest
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, read_sidecar
-from irsim.bridges.maps.options import ImportLimits
+from irsim.bridges.maps.importing import read_occupancy
+from irsim.bridges.maps.kinds._usd_shapes import Collector
+from irsim.bridges.maps.options import ImportLimits, ImportOptions
+from irsim.bridges.maps.source import FREE
 from irsim.scenario.read import read
 from tests.bridges.maps.flat import box, flat, house, y_up
 
@@ -56,6 +60,20 @@ def test_a_flat_in_any_unit_and_axis(tmp_path, up, unit, suffix) -> None:
     assert sidecar.scale == pytest.approx(1 / unit)
 
 
+def test_a_stage_that_does_not_say_its_unit(tmp_path) -> None:
+    stage, _ = new_stage(tmp_path / "flat.usda")
+    add_mesh(stage, "/World/flat", flat())
+    stage.ClearMetadata("metersPerUnit")
+    stage.ClearMetadata("upAxis")
+    stage.Save()
+    with pytest.raises(BridgeError, match=r"--up y or z.*--meters-per-unit"):
+        import_map(tmp_path / "flat.usda", tmp_path / "flat.yaml")
+    result = import_map(tmp_path / "flat.usda", tmp_path / "flat.yaml", up="z", meters_per_unit=1)
+    assert result.free_area == pytest.approx(40.5, abs=0.6)
+    sidecar = read_sidecar(tmp_path / "flat.yaml")
+    assert sidecar.to_scene([[1.8, 1.45]], height=0.75) == pytest.approx(np.array([[1.8, 1.45, 0.75]]), abs=1e-9)
+
+
 def test_turned_mirrored_and_instanced(tmp_path) -> None:
     """Two instances of a room, one mirrored, beside a cube that is scaled; what is hidden or a guide does not count."""
     file = tmp_path / "rooms.usda"
@@ -78,11 +96,83 @@ def test_turned_mirrored_and_instanced(tmp_path) -> None:
     UsdGeom.Imageable(hidden).MakeInvisible()
     guide = add_mesh(stage, "/World/guide", box([6, 1, 0], [7, 2, 2]))
     guide.CreatePurposeAttr(UsdGeom.Tokens.guide)
-    UsdGeom.Sphere.Define(stage, "/World/ball")
+    UsdGeom.Points.Define(stage, "/World/points")
     stage.Save()
     result = import_map(file, tmp_path / "rooms.yaml")
     assert result.free_area == pytest.approx(8 * 3 - 0.5 * 0.5, rel=0.02)
-    assert any("Sphere" in note for note in result.notes)
+    assert any("Points" in note for note in result.notes)
+
+
+def test_shapes_and_instances_of_instancers(tmp_path) -> None:
+    """A pillar, a ball, a tank on its side and crates of an instancer stand in a hall; its prototypes do not."""
+    file = tmp_path / "shapes.usda"
+    stage, _ = new_stage(file)
+    UsdGeom.Plane.Define(stage, "/World/floor").CreateWidthAttr(10.0)
+    UsdGeom.Plane(stage.GetPrimAtPath("/World/floor")).CreateLengthAttr(6.0)
+    kinds = ("Cylinder", "Sphere", "Capsule", "Cone")
+    places = {kind: (2.0 * k - 4, 2.0, 0.5) for k, kind in enumerate(kinds)}
+    for kind, place in places.items():
+        shape = getattr(UsdGeom, kind).Define(stage, f"/World/{kind}")
+        shape.CreateRadiusAttr(0.5)
+        if kind != "Sphere":
+            shape.CreateHeightAttr(1.0)
+            shape.CreateAxisAttr("X" if kind == "Capsule" else "Z")
+        UsdGeom.XformCommonAPI(shape).SetTranslate(Gf.Vec3d(*place))
+    crates = UsdGeom.PointInstancer.Define(stage, "/World/crates")
+    UsdGeom.XformCommonAPI(crates).SetTranslate(Gf.Vec3d(0, -2, 0.5))
+    crate = UsdGeom.Cube.Define(stage, "/World/crates/prototypes/crate")
+    crate.CreateSizeAttr(1.0)
+    crates.CreatePrototypesRel().SetTargets([crate.GetPath()])
+    crates.CreateProtoIndicesAttr([0, 0, 0])
+    crates.CreateIdsAttr([7, 8, 9])
+    crates.CreatePositionsAttr([(-3, 0, 0), (0, 0, 0), (3, 0, 0)])
+    crates.CreateInvisibleIdsAttr([8])
+    stage.Save()
+    _, found, _ = read_occupancy(file, ImportOptions(), ImportLimits())
+    assert not found.notes
+    assert found.regions[0] == pytest.approx(60 - 2 - 3 * math.pi / 4 - (1 + math.pi / 4), abs=1.2)
+
+    def stands(x: float, y: float) -> bool:
+        return bool(found.values.reshape(-1)[found.grid.column_at(x, y)] != FREE)
+
+    assert all(stands(x, y) for x, y, _ in places.values())
+    assert [stands(x, -2) for x in (-3, 0, 3)] == [True, False, True]
+    assert [stands(x, 2) for x in (-4.6, -4.45, -2.6, -0.9, 0.9, 1.2, 2.6)] == [0, 1, 0, 1, 1, 0, 0]
+    assert [stands(0, y) for y in (1.4, 1.6, 2.4, 2.6)] == [0, 1, 1, 0]
+
+
+def test_shapes_look_outwards() -> None:
+    stage = Usd.Stage.CreateInMemory()
+    for kind, share in {"Cylinder": 2, "Sphere": 4 / 3, "Capsule": 10 / 3, "Cone": 2 / 3}.items():
+        for axis in "XYZ" if kind != "Sphere" else "Z":
+            shape = getattr(UsdGeom, kind).Define(stage, "/shape")
+            shape.CreateRadiusAttr(1.0)
+            if kind != "Sphere":
+                shape.CreateHeightAttr(2.0)
+                shape.CreateAxisAttr(axis)
+            corners = Collector(10_000).stage(stage)
+            a, b, c = corners.transpose(1, 0, 2)
+            assert (np.cross(a, b) * c).sum() / 6 == pytest.approx(share * math.pi, rel=0.02)
+            low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+            along = {"Cylinder": 1, "Sphere": 1, "Capsule": 2, "Cone": 1}[kind]
+            wanted = np.where(np.array(list("XYZ")) == axis, along, 1.0)
+            np.testing.assert_allclose([-low, high], [wanted, wanted], atol=0.01)
+            stage.RemovePrim("/shape")
+
+
+def test_instances_are_counted_before_they_are_made(tmp_path) -> None:
+    file = tmp_path / "many.usda"
+    stage, _ = new_stage(file)
+    for depth in range(4):
+        crates = UsdGeom.PointInstancer.Define(stage, "/World/" + "/".join(f"x{k}" for k in range(depth + 1)))
+        child = "/World/" + "/".join(f"x{k}" for k in range(depth + 2))
+        crates.CreatePrototypesRel().SetTargets([child])
+        crates.CreateProtoIndicesAttr([0] * 200)
+        crates.CreatePositionsAttr([(k, 0, 0) for k in range(200)])
+    UsdGeom.Cube.Define(stage, child)
+    stage.Save()
+    with pytest.raises(BridgeError, match="more than 20,000,000 triangles"):
+        import_map(file, tmp_path / "many.yaml")
 
 
 def test_polygons_with_more_corners_and_left_handed_ones(tmp_path) -> None:

@@ -238,3 +238,10 @@ def test_a_run_is_written_when_it_is_over(tmp_path: Path, monkeypatch: pytest.Mo
     assert not (tmp_path / ".irsim").exists()
     with pytest.raises(RunError, match="unknown-format"):
         irsim.run(text=scene, seed=0, export="run.pdf")
+
+
+def test_the_help_lists_all_formats() -> None:
+    shown = CliRunner().invoke(app, ["export", "--help"], env={"COLUMNS": "400"}).output
+    words = " ".join(shown.replace("│", " ").split())
+    *names, last = format_names()
+    assert f"Name of a format: {', '.join(names)} or {last}." in words

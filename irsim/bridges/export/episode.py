@@ -254,6 +254,7 @@ def open_episode(
     limits: Limits | None = None,
     progress: Callable[[int], None] = lambda rows: None,
     options: Options | None = None,
+    none: bool = False,
 ) -> Episode:
     """A run with the objects to export.
 
@@ -264,6 +265,7 @@ def open_episode(
         limits: Limits of the reader of the scenario.
         progress: Callback with the number of rows read since the last call.
         options: Options of the format.
+        none: Whether a run without any such object is exported, too.
 
     Raises:
         RunError: No object has one of the names, no object is chosen, or the run cannot be read.
@@ -278,8 +280,10 @@ def open_episode(
         chosen = [index for index, item in enumerate(facts) if _is_chosen(item, objects)]
     else:
         chosen = [run.index_of(name) for name in dict.fromkeys(objects)]
-    if not chosen:
+    if not chosen and not none:
         what, fix = f"run {run.id} has no {objects}", "choose all objects, or name some"
+        if not facts:
+            what, fix = f"run {run.id} has no objects", "export a run with robots or obstacles"
         raise RunError("bad-argument", what, fix, where="objects")
     actors = tuple(Actor(index, run.names[index], facts[index]) for index in chosen)
     return Episode(run, actors, with_ranges, limits, progress, options)

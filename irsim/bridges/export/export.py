@@ -90,7 +90,8 @@ def export_run(
     with_ranges = form.ranges if ranges is None else ranges
     who = form.objects if objects is None else objects
     episodes = [
-        open_episode(one, who, with_ranges=with_ranges, limits=limits, progress=count, options=chosen) for one in runs
+        open_episode(one, who, with_ranges=with_ranges, limits=limits, progress=count, options=chosen, none=form.scene)
+        for one in runs
     ]
     try:
         with _new_folder(target) if form.folder else replacing(target) as path:

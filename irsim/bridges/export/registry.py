@@ -40,6 +40,7 @@ class Format:
         objects: Word that chooses the objects unless the caller does.
         options: Model of its options, which writers find in :attr:`Episode.options`; None without any.
         more_suffixes: Other suffixes of its files, which select how it writes them.
+        scene: Whether it has the world around the chosen objects, so that there may be none of them.
         named: Whether a file must name it, as ``x.NAME.txt`` does, because the suffix says nothing.
     """
 
@@ -54,6 +55,7 @@ class Format:
     options: type[Options] | None = None
     extra: str = "records"
     more_suffixes: tuple[str, ...] = ()
+    scene: bool = False
     named: bool = False
 
 

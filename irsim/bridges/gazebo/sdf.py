@@ -51,6 +51,7 @@ class SdfWorld:
         self.scene, self.paths = scene, paths
         self.meshes: dict[str, str] = {}
         self._names: set[str] = set()
+        self._solids: dict[ET.Element, int] = {}  # number of the last one of a link
         self.root = ET.Element("sdf", version=SDF_VERSION)
         self.world = ET.SubElement(self.root, "world", name=self._name(scene.name or "irsim"))
 
@@ -156,7 +157,7 @@ class SdfWorld:
         touches: bool = True,
     ) -> None:
         """A shape that is seen and, unless it is only drawn, touched."""
-        number = len(link.findall("visual"))
+        number = self._solids[link] = self._solids.get(link, -1) + 1
         for kind in ("collision", "visual") if touches else ("visual",):
             element = ET.SubElement(link, kind, name=f"{kind}_{number}")
             shape = ET.Element("geometry")

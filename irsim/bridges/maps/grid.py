@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from irsim.bridges.base import BridgeError
 from irsim.common.arrays import Floats
 
-__all__ = ["Bools", "Grid", "Ints", "Triangles", "grid_over", "least", "most", "rows_of", "slices", "spread"]
+__all__ = ["Bools", "Grid", "Ints", "Triangles", "clipped", "grid_over", "least", "most", "rows_of", "slices", "spread"]
 
 Ints: TypeAlias = NDArray[np.int64]
 """Array of integers."""
@@ -59,7 +59,28 @@ class Grid:
         return np.column_stack([self.x + (i + 0.5) * self.resolution, self.y + (j + 0.5) * self.resolution])
 
 
-def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int) -> Grid:
+def clipped(triangles: Triangles, bounds: tuple[float, float, float, float]) -> Triangles:
+    """The parts of triangles within left, lower, right and upper bounds [m], as triangles that face the same way."""
+    for axis, limit, side in ((0, bounds[0], -1), (1, bounds[1], -1), (0, bounds[2], 1), (1, bounds[3], 1)):
+        beyond = side * (triangles[..., axis].astype(np.float64) - limit)
+        out = beyond > 0
+        count = out.sum(axis=1)
+        parts = [triangles[count == 0]]
+        for number in (1, 2):
+            cut = np.flatnonzero(count == number)
+            single = out[cut] if number == 1 else ~out[cut]  # the corner that is alone on its side comes first
+            order = (np.argmax(single, axis=1)[:, None] + [0, 1, 2]) % 3
+            (a, b, c), far = triangles[cut[:, None], order].transpose(1, 0, 2), beyond[cut[:, None], order]
+            ab = a + (b - a) * (far[:, 0] / (far[:, 0] - far[:, 1]))[:, None]
+            ac = a + (c - a) * (far[:, 0] / (far[:, 0] - far[:, 2]))[:, None]
+            ab[:, axis] = ac[:, axis] = limit
+            corners = [(ab, b, c), (ab, c, ac)] if number == 1 else [(a, ab, ac)]
+            parts += [np.stack(three, axis=1) for three in corners]
+        triangles = np.concatenate(parts)
+    return triangles
+
+
+def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int, hint: str = "") -> Grid:
     """The grid over a rectangle with one cell more on each side; its lines are at multiples of the resolution.
 
     Args:
@@ -67,6 +88,7 @@ def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int) -> G
         high: (2,) upper right corner [m].
         resolution: Side of a cell [m].
         max_cells: Largest number of cells.
+        hint: What else the message about too many cells advises.
 
     Raises:
         BridgeError: There would be too many cells; the message has a resolution that fits.
@@ -84,7 +106,7 @@ def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int) -> G
         what = (
             f"the scene is {size[0]:,.0f} m x {size[1]:,.0f} m, which is more than {limit:,} cells of {resolution:g} m"
         )
-        raise BridgeError("bridge-file", what, f"give a coarser resolution: --resolution {fits:.3g}")
+        raise BridgeError("bridge-file", what, f"give a coarser resolution: --resolution {fits:.3g}{hint}")
     first = np.floor(low / resolution) - 1
     last = np.floor(high / resolution) + 2
     count = (last - first).astype(np.int64)

@@ -18,7 +18,7 @@ from irsim.bridges.maps.suggest import Trip, suggest_trip
 from irsim.bridges.maps.writing import files_of, write_all_or_none
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
-from irsim.common.files import check_suffix
+from irsim.common.files import TargetError, check_suffix
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
 from irsim.results.map_import import MapImportResult, MapLevel, MapTrip
@@ -71,9 +71,9 @@ def import_map(
     unknown = chosen.unknown or kind.unknown
     values = eroded(found.values, chosen.radius / found.grid.resolution)
     filled = np.where(values < 0, 100.0 if unknown == "occupied" else 0.0, values)
-    if robot and not (filled <= _HALF).any():
-        raise BridgeError("bridge-file", "the map has no free cell for a robot", "leave out the robot")
     trip = suggest_trip(found, filled)
+    if robot and trip is None:
+        raise BridgeError("bridge-file", "the map has no room for a robot", "leave out the robot, or try less --radius")
     sidecar = MapSidecar(
         scene_transform(found.frame, found.height, found.meters_per_unit),
         found.frame,
@@ -94,6 +94,7 @@ def import_map(
     about = f"Made from {clean(source['file'], 100)}" + (f", level {found.level}" if found.levels else "")
     placed = trip if robot else None
     contents = files_of(found, values, filled, target, sidecar, about, placed, ros_target)
+    _check_targets([path for path, _ in contents], [_confined(file, "file", bounds), *found.parts])
     write_all_or_none(contents, overwrite=overwrite)
     return _result(kind, found, values, filled, unknown, trip, [str(path) for path, _ in contents])
 
@@ -130,6 +131,7 @@ def read_occupancy(
     """
     path = _confined(file, "file", limits)
     kind = find_kind(path)
+    _check_used(kind, options)
     size = path.stat().st_size
     if size > limits.bytes:
         raise unusable(path, f"it has {size:,} bytes, and at most {limits.bytes:,} are read", "give a smaller file")
@@ -168,12 +170,33 @@ def _confined(name: str | Path, where: str, limits: ImportLimits) -> Path:
 
 def _options(given: dict[str, Any]) -> ImportOptions:
     try:
-        return ImportOptions(**given)
+        chosen = ImportOptions(**given)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
         names = ", ".join(ImportOptions.model_fields)
         raise ArgumentError(f"the option {key} is wrong: {first['msg']}", f"options of imports are {names}") from None
+    if chosen.bounds is not None and not (chosen.bounds[0] < chosen.bounds[2] and chosen.bounds[1] < chosen.bounds[3]):
+        shown = ", ".join(f"{value:g}" for value in chosen.bounds)
+        raise ArgumentError(
+            f"the bounds {shown} hold nothing", "give x, y of the lower left and the upper right corner"
+        )
+    return chosen
+
+
+def _check_targets(targets: list[Path], sources: list[Path]) -> None:
+    """Nothing that the map is made from is overwritten."""
+    for target in targets:
+        if target.exists() and any(target.samefile(source) for source in sources):
+            raise TargetError("file-exists", f"{target} is what the map is made from; name another file with -o")
+
+
+def _check_used(kind: Kind, options: ImportOptions) -> None:
+    """No option is given that says nothing about files of this kind."""
+    for name in kind.unused:
+        if getattr(options, name) != ImportOptions.model_fields[name].default:
+            what = f"the option {name} says nothing about {kind.title}"
+            raise ArgumentError(what, f"leave out --{name.replace('_', '-')}")
 
 
 def _result(
@@ -200,7 +223,7 @@ def _result(
         components=[round(area, 4) for area in found.regions[:_MAX_COMPONENTS]],
         kept=found.kept,
         trip=None if trip is None else MapTrip(start=trip.start, goal=trip.goal, clearance=trip.clearance),
-        notes=[*found.notes, *_smaller_part(found)],
+        notes=[*found.notes, *_smaller_part(found), *([] if free.any() else ["no cell is free"])],
     )
 
 

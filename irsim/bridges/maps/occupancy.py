@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.grid import Bools, Grid, Ints, grid_over
+from irsim.bridges.maps.grid import Bools, Grid, Ints, clipped, grid_over
 from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.regions import Level, find_levels
 from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, Occupancy, Scene
@@ -16,6 +17,7 @@ from irsim.common.arrays import Floats
 
 __all__ = ["cropped", "eroded", "occupancy_of", "within"]
 
+_UNITS = ", or its unit if that is not the meter: --meters-per-unit 0.001 for millimeters, 0.01 for centimeters"
 _MARGIN = 10
 """Cells that are kept around the free ones."""
 COARSE, FINE = 0.25, 0.1
@@ -30,11 +32,14 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
     """
     headroom = options.headroom if scene.headroom is None else scene.headroom
     climb = options.climb if scene.climb is None else scene.climb
+    if options.bounds is not None:
+        scene = _within_bounds(scene, options.bounds)
     parts = [part.reshape(-1, 3) for part in (scene.solid, scene.floors, scene.barred) if len(part)]
     if not parts:
         raise _empty("it has no triangles", "export the scene with its meshes")
     low, high = (np.array([op(part[:, :2], axis=0) for part in parts]) for op in (np.min, np.max))
-    grid = grid_over(low.min(axis=0), high.max(axis=0), options.resolution, limits.cells)
+    hint = f", a part of it with --bounds{_UNITS if len(scene.solid) else ''}"
+    grid = grid_over(low.min(axis=0), high.max(axis=0), options.resolution, limits.cells, hint)
     spans = None
     if len(scene.solid):
         spans = spans_of(scene.solid, grid, math.radians(options.slope), climb)
@@ -44,7 +49,8 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
     levels = find_levels(surfaces, grid, climb, headroom) if len(surfaces.column) else []
     if not levels:
         what = f"it has no connected floor of 0.5 m² with {headroom:g} m of free height"
-        raise _empty(what, "check which axis points up (--up y or z), and that it is in meters; or try less --headroom")
+        fix = "check which axis points up (--up y or z), and the unit (--meters-per-unit); or try less --headroom"
+        raise _empty(what, fix)
     number = _chosen(levels, _at_seed(levels, surfaces, grid, options), options)
     level = levels[number]
     region = _region(level, surfaces, grid, options)
@@ -66,6 +72,14 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
             f"--resolution {FINE:g}"
         )
     return cropped(found)
+
+
+def _within_bounds(scene: Scene, bounds: tuple[float, float, float, float]) -> Scene:
+    """The part of a scene between bounds of x and y [m]."""
+    solid, floors, barred = (clipped(part, bounds) for part in (scene.solid, scene.floors, scene.barred))
+    if not len(solid) + len(floors) + len(barred):
+        raise _empty("it has nothing within the bounds", "give other --bounds, or none")
+    return replace(scene, solid=solid, floors=floors, barred=barred)
 
 
 def _may_be_roof(

@@ -28,8 +28,8 @@ class ImportOptions(Options):
     """Distance from obstacles within which cells become occupied. irsim keeps a robot's own shape clear of obstacles;
     only planning for points needs it."""
     up: Literal["auto", "y", "z", "-y"] = "auto"
-    """Axis of a mesh or of splats that points up; ``-y``: y points down. ``auto`` is y for glTF and OBJ, and z for PLY
-    and STL."""
+    """Axis of a mesh, a stage or of splats that points up; ``-y``: y points down. ``auto`` is y for glTF and OBJ, z for
+    PLY and STL, and what a stage of USD says."""
     level: Annotated[int, Field(ge=0)] | None = None
     """Number of the level, the lowest is 0. Default: the largest one that is no roof of another."""
     height: Meters | None = None
@@ -38,12 +38,13 @@ class ImportOptions(Options):
     """x, y of a place that is free: what is connected to it is free in the map. Default: the largest connected part."""
     unknown: Literal["free", "occupied"] | None = None
     """Whether unknown cells count as free or occupied in the scenario. Default: free for maps of ROS, else occupied."""
-    meters_per_unit: Annotated[Meters, Field(gt=0, le=1e6)] = 1.0
-    """Length of a unit of a scene of splats, whose scale is often arbitrary."""
+    meters_per_unit: Annotated[Meters, Field(gt=0, le=1e6)] | None = None
+    """Length of a unit of a mesh, a stage or a scene of splats, such as 0.001 for millimeters. Default: what a stage of
+    USD says, else 1."""
     opacity: Annotated[Fraction, Field(gt=0)] = 0.05
     """Splats with less opacity are left out."""
     bounds: tuple[Meters, Meters, Meters, Meters] | None = None
-    """Left, lower, right and upper bound of a map of splats. Default: around obstacles, without far splats."""
+    """Left, lower, right and upper bound of the part that becomes the map. Default: all, without far splats."""
     lanes: Literal["drive", "walk", "all"] = "drive"
     """Lanes of roads that are free: those for vehicles, those for pedestrians, or both."""
 

@@ -68,6 +68,7 @@ class Occupancy:
         radius: Distance from walls that free cells keep already [m].
         headroom, climb: What the file was made for [m]; None if the options decide.
         notes: Remarks for the user.
+        parts: Other files that it was read from.
     """
 
     values: Floats
@@ -83,6 +84,7 @@ class Occupancy:
     headroom: float | None = None
     climb: float | None = None
     notes: list[str] = field(default_factory=list)
+    parts: list[Path] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,7 @@ class Kind:
         unknown: Whether unknown cells count as free or occupied unless the caller decides.
         extra: Extra of pyproject.toml whose libraries it needs.
         libraries: Their modules.
+        unused: Names of options that say nothing about such files.
     """
 
     name: str
@@ -108,6 +111,7 @@ class Kind:
     unknown: str = "occupied"
     extra: str = "mesh"
     libraries: tuple[str, ...] = ()
+    unused: tuple[str, ...] = ()
 
 
 @cache
@@ -125,7 +129,7 @@ def find_kind(path: Path) -> Kind:
         BridgeError: The file does not exist, or is of no known kind.
     """
     if path.exists() and not path.is_file():
-        raise unusable(path, "it is a folder or a device, no file", "give a file")
+        raise unusable(path.resolve(), "it is a folder or a device, no file", "give a file")
     try:
         with path.open("rb") as file:
             head = file.read(_HEAD)

@@ -22,6 +22,8 @@ from irsim.options.registry import BEHAVIORS
 
 __all__ = ["ImportedPedestrians", "import_pedestrians"]
 
+_GAP = 2.0
+"""Time without a row that is worth a note [s]; splines have long ones."""
 _ON_STEP = 1e-6
 """Steps by which a recorded time may miss the end of a step."""
 
@@ -144,6 +146,9 @@ def import_pedestrians(
         notes.append(f"{rate:g} frames per second are assumed, so that 0.4 s are between rows; --fps says otherwise")
     if left_out:
         notes.append(f"{left_out} with a single row in the window were left out")
+    longest, name = max((float(np.diff(track.times).max()), track.name) for track in tracks)
+    if recording.format != "vsp" and longest > _GAP:
+        notes.append(f"{name} has no row for {longest:g} s, and goes on between those before and after it")
     if _between_steps(tracks, layout.step_time):
         notes.append("recorded times lie between steps: at the ends of steps, places are interpolated")
     return ImportedPedestrians(

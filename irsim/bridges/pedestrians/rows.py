@@ -125,7 +125,11 @@ def _lines(path: Path) -> Iterator[tuple[int, str]]:
 
 def _read_table(path: Path, lines: Iterator[tuple[int, str]], form: FormatName | None) -> tuple[FormatName, Numbers]:
     rows: Numbers = array("d")
+    first = True
     for number, text in lines:
+        header, first = first and _is_header(_fields(text.lower())), False
+        if header:
+            continue
         if form is None:
             count = len(_fields(text))
             if count not in _COLUMNS:
@@ -167,6 +171,13 @@ def _count(path: Path, number: int, text: str) -> int:
     if not word.isascii() or not word.isdigit() or len(word) > 9:
         raise _bad(path, number, f"must begin with a count, got {clean(word, 40)!r}", "give the whole file")
     return int(word)
+
+
+def _is_header(names: list[str]) -> bool:
+    """Whether a line names the columns of a table of frame, person, x and y."""
+    if len(names) != 4 or names[2:] != ["x", "y"] or "frame" not in names[0]:
+        return False
+    return any(word in names[1] for word in ("id", "ped", "agent", "track"))
 
 
 def _fields(text: str) -> list[str]:

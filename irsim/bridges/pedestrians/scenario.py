@@ -35,6 +35,8 @@ _PATIENCE = 2.5
 """Factor on the time that the robot would need alone."""
 ROBOT_RADIUS = 0.3
 """[m]."""
+_FIRST, _ROOM = 2.0, 0.5
+"""For how long from the start nobody comes closer to where the robot starts than this [s, m]."""
 _EVENTS_PER_ROW = 6
 """Events of YAML of one row: a time, two numbers and the brackets around them."""
 _FIX = "choose a window of time or space: --from, --to, --crop"
@@ -73,6 +75,26 @@ def default_robot(low: Floats, high: Floats, margin: float) -> tuple[tuple[float
     return (float(low[0]) + inset, middle), (float(high[0]) - inset, middle)
 
 
+def _start(tracks: Sequence[Track], layout: Layout, low: Floats, high: Floats, x: float) -> tuple[float, float]:
+    """The place at that x that is nearest to the middle and keeps clear of those who are there first.
+
+    Where no place does, it is the one with most room.
+    """
+    near = []
+    for track in tracks:
+        times = np.arange(0.0, _FIRST + 0.05, 0.1)
+        times = times[(times >= track.times[0]) & (times <= track.times[-1])]
+        near.append(np.column_stack([np.interp(times, track.times, track.places[:, axis]) for axis in (0, 1)]))
+    people = np.concatenate(near)
+    middle, reach = float(low[1] + high[1]) / 2, float(high[1] - low[1]) / 2 - ROBOT_RADIUS
+    heights = middle + reach * np.array(sorted(np.linspace(-1, 1, 81), key=abs))
+    if not len(people) or reach <= 0:
+        return x, middle
+    room = np.array([np.hypot(people[:, 0] - x, people[:, 1] - y).min() for y in heights])
+    clear = np.flatnonzero(room >= layout.radius + ROBOT_RADIUS + _ROOM)
+    return x, float(heights[clear[0] if len(clear) else int(room.argmax())])
+
+
 def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
     """The scenario as YAML.
 
@@ -86,7 +108,7 @@ def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
     check_size(tracks)
     low, high = bounds(tracks, layout)
     start, goal = default_robot(low, high, layout.margin)
-    start, goal = layout.start or start, layout.goal or goal
+    start, goal = layout.start or _start(tracks, layout, low, high, start[0]), layout.goal or goal
     duration = max(float(track.times[-1]) for track in tracks)
     patience = crossing_time(start, goal) if layout.robot else 0.0
     heading = float(np.arctan2(goal[1] - start[1], goal[0] - start[0]))

@@ -35,6 +35,8 @@ _GROUND = 0.5
 _FLOOR_BIN_M = 0.05
 _FLOOR_SHARE = 0.3
 """Share of the most level area in one bin that the floor has at least; tables and shelves lie above it."""
+_MOSTLY = 0.9
+"""Share of splats that are round in a scene that was made with round ones."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +98,8 @@ def level_shares(splats: Splats) -> dict[str, float]:
 def find_floor(splats: Splats, up: Floats, *, unit: float = 1.0, opacity: float = 0.05) -> float:
     """Height of the floor along a direction, in the unit of the scene.
 
-    The floor is the lowest height at which there is much level area: splats that are thin along the direction.
+    The floor is the lowest height at which there is much level area: splats that are thin along the direction. Where
+    most splats are round, and so none is level, it is the lowest height at which there are many.
 
     Args:
         splats: The scene.
@@ -110,11 +113,16 @@ def find_floor(splats: Splats, up: Floats, *, unit: float = 1.0, opacity: float 
     covariance = covariance_of(splats.scale, splats.rotation)
     along = np.einsum("i,nij,j->n", up, covariance.astype(np.float64), up)
     total = np.trace(covariance, axis1=1, axis2=2)
-    level = (along < 0.1 * total) & (splats.opacity >= opacity)
+    seen = splats.opacity >= opacity
+    level = (along < 0.1 * total) & seen
+    if not level.any():
+        round_ = (splats.scale.min(axis=1) > 0.5 * splats.scale.max(axis=1)) & seen
+        level = round_ if round_.sum() > _MOSTLY * seen.sum() else level
     height = splats.center[level].astype(np.float64) @ up
     if not len(height):
         what = "the height of the floor was not found: no splat is level"
-        raise BridgeError("bridge-file", what, "give the height of the floor, and check which axis is up")
+        fix = "check which axis is up (--up), or give the height of the floor: --height"
+        raise BridgeError("bridge-file", what, fix)
     area = splats.opacity[level] * np.minimum(total[level], 1.0)
     low, high = np.percentile(height, [0.5, 99.5])
     step = _FLOOR_BIN_M / unit

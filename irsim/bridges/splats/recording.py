@@ -51,9 +51,10 @@ class Recording:
         for number in robots:
             if name in (None, self.bodies[number].name):
                 return number
-        known = ", ".join(self.bodies[number].name for number in robots[:8]) or "none"
+        known = ", ".join(self.bodies[number].name for number in robots[:8])
+        known += f" and {len(robots) - 8} more" * (len(robots) > 8)
         what = f"run {self.run.id} has no robot {name!r}" if name is not None else f"run {self.run.id} has no robot"
-        raise BridgeError("bridge-mismatch", what, f"its robots are {known}")
+        raise BridgeError("bridge-mismatch", what, f"its robots are {known}" if robots else "record one with a robot")
 
 
 def open_recording(

@@ -105,3 +105,11 @@ def test_the_floor_is_the_lowest_large_level() -> None:
     assert find_floor(scene, np.array([0.0, 0, -1])) == pytest.approx(-2.0, abs=1e-6)
     with pytest.raises(BridgeError, match="no splat is level"):
         find_floor(scene, np.array([0.0, 1, 0]))
+
+
+def test_the_floor_of_a_scene_of_round_splats_is_where_many_are() -> None:
+    rng = np.random.default_rng(4)
+    walls = np.column_stack([rng.uniform(0, 5, (2000, 2)), rng.uniform(0.3, 2.8, 2000)])
+    planes = np.column_stack([rng.uniform(0, 5, (1800, 2)), np.repeat([0.3, 1.1, 2.8], [900, 100, 800])])
+    scene = balls([*walls.tolist(), *planes.tolist()])
+    assert find_floor(scene, np.array([0.0, 0, 1])) == pytest.approx(0.3, abs=0.03)

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
+import irsim
 from irsim.bridges.base import BridgeError
 from irsim.bridges.splats.preview import PreviewOptions, write_preview
 from irsim.cli.app import app
@@ -93,3 +94,10 @@ def test_the_command(site: Site, tmp_path: Path) -> None:
     done = CliRunner().invoke(app, [*common, "--set", "widht=40"])
     assert done.exit_code == 2
     assert "did you mean width" in done.output
+
+
+def test_a_run_without_robots_has_nobody_to_follow(site: Site, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    run = irsim.run(text="world: {width: 9, height: 9}", seed=1, steps=2, record=True)
+    with pytest.raises(BridgeError, match=r"has no robot\. Fix: record one with a robot"):
+        write_preview(site.scene, str(run.run_id), tmp_path / "picture.png")

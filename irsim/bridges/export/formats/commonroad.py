@@ -183,4 +183,4 @@ def _problem(agent: Agent, last_step: int, number: int) -> Any:
     return PlanningProblem(number, start, GoalRegion([goal]))
 
 
-FORMAT = Format("commonroad", ".xml", _write, libraries=("commonroad",), ranges=False, extra="scenarios")
+FORMAT = Format("commonroad", ".xml", _write, libraries=("commonroad",), ranges=False, extra="scenarios", scene=True)

@@ -35,4 +35,4 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     return notes
 
 
-FORMAT = Format("mjcf", ".xml", _write, ranges=False)
+FORMAT = Format("mjcf", ".xml", _write, ranges=False, scene=True)

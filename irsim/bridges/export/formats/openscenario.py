@@ -12,6 +12,7 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import XMLGenerator
@@ -106,6 +107,9 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     scene = recorded_scene(episode.run, episode.limits)
     options = episode.options or OpenScenarioOptions()
     assert isinstance(options, OpenScenarioOptions)
+    bodies = tuple(actor for actor in episode.actors if actor.name in scene.names)  # the map is none
+    maps = len(episode.actors) - len(bodies)
+    episode = replace(episode, actors=bodies)
     times, poses = _trajectories(episode)
     poses = _moved(poses, options)
     present = [np.isfinite(poses[:, column]).all(axis=1) for column in range(len(episode.actors))]
@@ -125,7 +129,8 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
                 _story(writer, episode, moving, times, poses, present)
                 with writer.element("StopTrigger"):
                     _after(writer, "end of the run", float(times[-1]))
-    return _notes(episode, shown, present, options)
+    notes = ["the map was left out: OpenSCENARIO has no grids"] if maps else []
+    return notes + _notes(episode, shown, present, options)
 
 
 def _notes(episode: Episode, shown: list[int], present: list[Any], options: OpenScenarioOptions) -> list[str]:

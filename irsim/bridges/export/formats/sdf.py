@@ -62,4 +62,4 @@ def _paths(scene: SceneDescription, time: Floats, pose: Floats) -> dict[str, Flo
     return found
 
 
-FORMAT = Format("sdf", "-gazebo", _write, folder=True, ranges=False)
+FORMAT = Format("sdf", "-gazebo", _write, folder=True, ranges=False, scene=True)

@@ -34,4 +34,6 @@ def _states(episode: Episode) -> Iterator[WorldState]:
         episode.progress(1)
 
 
-FORMAT = Format("usd", ".usda", _write, libraries=("pxr",), ranges=False, extra="usd", more_suffixes=(".usdc", ".usdz"))
+FORMAT = Format(
+    "usd", ".usda", _write, libraries=("pxr",), ranges=False, extra="usd", more_suffixes=(".usdc", ".usdz"), scene=True
+)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Ints, Triangles
 from irsim.bridges.maps.source import unusable
 from irsim.common.arrays import Floats
@@ -109,6 +110,8 @@ def read_roads(path: Path) -> Iterator[Road]:
             while block := file.read(1 << 20):
                 parser.feed(block)
         root: ET.Element = parser.close()
+    except BridgeError:
+        raise
     except ET.ParseError as error:
         raise unusable(path, f"it is damaged ({error})") from None
     except (LookupError, ValueError) as error:

@@ -5,24 +5,19 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from irsim.bridges.maps.kinds._usd_shapes import Collector, Refused
+
 __all__ = ["main"]
 
 _MEMORY = 12 * 1024**3
 """Address space of the process [bytes]."""
 _MAX_LAYERS = 5_000
-_CUBE = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
-"""Sides of a cube whose corner k has x, y, z from the bits of k, counterclockwise from outside."""
-
-
-class _Refused(Exception):
-    """The stage cannot be used; the second argument is the advice."""
 
 
 def main() -> None:
@@ -34,8 +29,8 @@ def main() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     try:
-        answer = _read(Path(request["file"]), Path(request["out"]), int(request["triangles"]))
-    except _Refused as refused:
+        answer = _read(request)
+    except Refused as refused:
         answer = dict(zip(("error", "fix"), refused.args, strict=False))
     except MemoryError:
         answer = {"error": "it does not fit into memory", "fix": "give a smaller stage"}
@@ -45,93 +40,33 @@ def main() -> None:
     os._exit(0)  # what the library does at its end can fail, and nothing is left to do
 
 
-def _read(path: Path, out: Path, most: int) -> dict[str, Any]:
+def _read(request: dict[str, Any]) -> dict[str, Any]:
     from pxr import Usd, UsdGeom
+
+    path = Path(request["file"])
 
     missing = _check_layers(path)
     stage = Usd.Stage.Open(str(path))
     if stage is None:
-        raise _Refused("it is damaged: no stage can be opened from it")
-    up = str(UsdGeom.GetStageUpAxis(stage))
-    scale = float(UsdGeom.GetStageMetersPerUnit(stage))
+        raise Refused("it is damaged: no stage can be opened from it")
+    up = str(UsdGeom.GetStageUpAxis(stage)) if request["up"] == "auto" else request["up"].upper()
+    scale = float(request["unit"] or UsdGeom.GetStageMetersPerUnit(stage))
     if not 1e-6 <= scale <= 1e6:
-        raise _Refused(f"its metersPerUnit is {scale:g}", "set metersPerUnit of the stage")
-    parts: list[np.ndarray] = []
-    total, left_out = 0, set()
-    cache = UsdGeom.XformCache(Usd.TimeCode.EarliestTime())
-    for prim in _visible(stage):
-        corners = _corners(prim, most - total)
-        if corners is None:
-            if prim.IsA(UsdGeom.Gprim) or prim.IsA(UsdGeom.PointInstancer):
-                left_out.add(str(prim.GetTypeName()))
-            continue
-        total += len(corners)
-        if total > most:
-            raise _Refused(f"it has more than {most:,} triangles", "simplify the stage")
-        matrix = np.array(cache.GetLocalToWorldTransform(prim))
-        with np.errstate(all="ignore"):
-            placed = corners @ matrix[:3, :3] + matrix[3, :3]
-        parts.append(placed[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else placed)
-    triangles = np.concatenate(parts) * scale if parts else np.zeros((0, 3, 3))
+        raise Refused(f"its metersPerUnit is {scale:g}", "set metersPerUnit of the stage")
+    collector = Collector(int(request["triangles"]))
+    triangles = collector.stage(stage) * scale
     if up == "Y":
         triangles = np.stack([triangles[..., 0], -triangles[..., 2], triangles[..., 1]], axis=-1)
-    np.savez(out, triangles=triangles)
-    notes = [f"prims of these types were left out: {', '.join(sorted(left_out))}"] if left_out else []
-    if missing:
+    np.savez(request["out"], triangles=triangles)
+    left_out = ", ".join(sorted(collector.left_out))
+    notes = [f"prims of these types were left out: {left_out}"] if left_out else []
+    if request["unit"] is None and not UsdGeom.StageHasAuthoredMetersPerUnit(stage):
+        notes.append(f"it does not say its unit, which is then {scale:g} m; --meters-per-unit gives another")
+    if len(missing) == 1:
+        notes.append(f"one of its layers was not found: '{missing[0][:150]}'")
+    elif missing:
         notes.append(f"{len(missing)} of its layers were not found, such as '{missing[0][:150]}'")
     return {"meters_per_unit": scale, "frame": "usd_yup" if up == "Y" else "usd", "notes": notes}
-
-
-def _visible(stage: Any) -> Iterator[Any]:
-    """Prims that are drawn, those of instances as well."""
-    from pxr import Usd, UsdGeom
-
-    prims = iter(Usd.PrimRange.Stage(stage, Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate)))
-    for prim in prims:
-        image = UsdGeom.Imageable(prim)
-        if not image:
-            continue
-        hidden = image.GetVisibilityAttr().Get(Usd.TimeCode.EarliestTime()) == UsdGeom.Tokens.invisible
-        if hidden or image.GetPurposeAttr().Get() in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy):
-            prims.PruneChildren()
-            continue
-        if prim.HasAuthoredMetadata("clips"):
-            raise _Refused(f"{prim.GetPath()} has value clips, which are other files", "flatten the stage")
-        yield prim
-
-
-def _corners(prim: Any, most: int) -> np.ndarray | None:
-    """(T, 3, 3) triangles of a mesh or a cube in its own frame; None for others."""
-    from pxr import Usd, UsdGeom
-
-    time = Usd.TimeCode.EarliestTime()
-    if prim.IsA(UsdGeom.Cube):
-        half = float(UsdGeom.Cube(prim).GetSizeAttr().Get(time)) / 2
-        ends = np.array([[half * (1 if k >> axis & 1 else -1) for axis in range(3)] for k in range(8)])
-        return np.array([[ends[k] for k in part] for a, b, c, d in _CUBE for part in ((a, b, c), (a, c, d))])
-    if not prim.IsA(UsdGeom.Mesh):
-        return None
-    mesh = UsdGeom.Mesh(prim)
-    values = [attr.Get(time) for attr in (mesh.GetPointsAttr(), mesh.GetFaceVertexCountsAttr())]
-    index = mesh.GetFaceVertexIndicesAttr().Get(time)
-    if index is None or any(value is None for value in values):
-        return np.zeros((0, 3, 3))
-    points = np.asarray(values[0], dtype=np.float64).reshape(-1, 3)
-    counts, index = np.asarray(values[1], dtype=np.int64), np.asarray(index, dtype=np.int64)
-    name = str(prim.GetPath())
-    if (counts < 0).any() or counts.sum() != len(index):
-        raise _Refused(f"the faces of {name} need {counts.sum():,} vertices, and {len(index):,} are named")
-    if len(index) and (index.min() < 0 or index.max() >= len(points)):
-        raise _Refused(f"a face of {name} names a vertex that it does not have")
-    triangles = np.maximum(counts - 2, 0)
-    if triangles.sum() > most:
-        raise _Refused("it has too many triangles", "simplify the stage")
-    face = np.repeat(np.arange(len(counts)), triangles)
-    step = np.arange(len(face)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
-    first = (np.cumsum(counts) - counts)[face]
-    corners: np.ndarray = points[np.stack([index[first], index[first + step + 1], index[first + step + 2]], axis=1)]
-    left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
-    return corners[:, ::-1] if left_handed else corners
 
 
 def _check_layers(path: Path) -> list[str]:
@@ -147,11 +82,11 @@ def _check_layers(path: Path) -> list[str]:
             continue
         met.add(name)
         if len(met) > _MAX_LAYERS:
-            raise _Refused(f"it is made of more than {_MAX_LAYERS:,} layers")
+            raise Refused(f"it is made of more than {_MAX_LAYERS:,} layers")
         layer = Sdf.Layer.FindOrOpen(name)
         if layer is None:
             if name == str(path):
-                raise _Refused("it is damaged: it cannot be opened")
+                raise Refused("it is damaged: it cannot be opened")
             missing.append(os.path.basename(name))
             continue  # the stage is composed without it
         for asset in filter(None, layer.GetCompositionAssetDependencies()):  # no name stands for the layer itself
@@ -167,7 +102,7 @@ def _check_reference(asset: str, target: str, root: Path, path: Path) -> None:
     if os.path.isabs(asset) or "://" in asset or not inside:
         shown = asset[:150]
         fix = "put all its files into one folder, or flatten the stage: usdcat --flatten"
-        raise _Refused(f"it refers to '{shown}', which is outside of its folder and is not read", fix)
+        raise Refused(f"it refers to '{shown}', which is outside of its folder and is not read", fix)
 
 
 if __name__ == "__main__":

@@ -59,7 +59,10 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     if upward < 0.1 * downward:
         triangles = np.ascontiguousarray(triangles[:, ::-1])
         notes.append("its surfaces face downward, so that all were turned around")
-    return Scene(_FRAMES[up], triangles, notes=notes)
+    unit = options.meters_per_unit or 1.0
+    if unit != 1.0:
+        triangles = triangles.astype(np.float64) * unit
+    return Scene(_FRAMES[up], triangles, meters_per_unit=unit, notes=notes)
 
 
 def _load(path: Path, suffix: str, resolver: Any, limits: ImportLimits) -> list[Triangles]:
@@ -133,4 +136,5 @@ KIND = Kind(
     accepts=_mesh_headers.may_be_mesh,
     read=read,
     libraries=("trimesh",),
+    unused=("opacity", "lanes"),
 )

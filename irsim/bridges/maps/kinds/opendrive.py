@@ -71,4 +71,5 @@ KIND = Kind(
     suffixes=(".xodr",),
     accepts=_may_be_roads,
     read=read,
+    unused=("slope", "up", "meters_per_unit", "opacity"),
 )

@@ -9,7 +9,7 @@ from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.ros_server import MapFileError
 from irsim.bridges.maps.source import OCCUPIED, UNKNOWN, Kind, Occupancy
-from irsim.components.maps._rosmap import ros_raster
+from irsim.components.maps._rosmap import read_meta, ros_raster
 from irsim.components.maps._site import MapProblem, MapSite
 from irsim.scenario.path_confinement import why_outside
 
@@ -31,13 +31,15 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     site = MapSite(folders=[Path()] if limits.root is None else [], refuse=refuse)
     try:
         raster = ros_raster(path, path.name, site, UNKNOWN)
+        picture = site.find(read_meta(path, path.name).image, beside=path.parent)
     except MapProblem as problem:
-        raise MapFileError(problem.code, problem.message, problem.fix) from None
+        fix = "correct the key image of the file" if problem.code == "map-not-found" else problem.fix
+        raise MapFileError(problem.code, problem.message, fix) from None
     assert raster.width is not None
     assert raster.origin is not None
     values = raster.values()
     grid = Grid(*raster.origin, raster.width / values.shape[0], *values.shape)
-    found = Occupancy(values, grid, "ros")
+    found = Occupancy(values, grid, "ros", parts=[picture])
     free = (values >= 0) & (values <= _HALF)
     if not free.any():
         return found
@@ -62,5 +64,18 @@ KIND = Kind(
     suffixes=(".yaml", ".yml"),
     accepts=lambda head: b"image" in head or b"resolution" in head,
     read=read,
+    unused=(
+        "resolution",
+        "headroom",
+        "slope",
+        "climb",
+        "up",
+        "level",
+        "height",
+        "meters_per_unit",
+        "opacity",
+        "bounds",
+        "lanes",
+    ),
     unknown="free",
 )

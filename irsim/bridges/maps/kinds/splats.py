@@ -33,9 +33,11 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     Raises:
         BridgeError: The file is damaged, nothing stands in the way, or there is no floor.
     """
+    if options.level:
+        raise BridgeError("bridge-file", "a map of splats has one level, 0", "give its floor with --height instead")
     splats = read_splats(path)
     up = "z" if options.up == "auto" else options.up
-    frame, unit = _FRAMES[up], options.meters_per_unit
+    frame, unit = _FRAMES[up], options.meters_per_unit or 1.0
     notes = []
     if options.up == "auto":
         notes += _doubts(level_shares(splats))
@@ -102,4 +104,5 @@ KIND = Kind(
     suffixes=(".ply",),
     accepts=_may_be_splats,
     read=read,
+    unused=("slope", "lanes"),
 )

@@ -40,11 +40,14 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     Raises:
         BridgeError: The stage is damaged, refers to places outside of its folder, or has no meshes.
     """
+    if options.up == "-y":
+        raise unusable(path, "y does not point down in stages of USD", "give --up y or z, or leave it out")
     if path.suffix.lower() == ".usdz":
         _check_archive(path, limits)
     with tempfile.TemporaryDirectory(prefix="irsim-usd-") as folder:
         out = Path(folder) / "stage.npz"
         request = {"file": os.path.abspath(path), "out": str(out), "triangles": limits.triangles}
+        request |= {"up": options.up, "unit": options.meters_per_unit}
         command = [sys.executable, "-m", "irsim.bridges.maps.kinds._usd_process"]
         try:
             done = subprocess.run(
@@ -110,4 +113,5 @@ KIND = Kind(
     read=read,
     extra="usd",
     libraries=("pxr",),
+    unused=("opacity", "lanes"),
 )
