@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.api.export_after import check_exports, export_all, kept_or_temporary
+from irsim.api.open_connections import allowed_bridges, connected_sentence
 from irsim.api.picture_notes import ended_before, extent_of, moved_view
 from irsim.api.read_input import policy_of_suite, read_input
 from irsim.api.take_snapshot import snapshot, snapshot_of
-from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
-from irsim.bridges.connect import connect, open_bridges
-from irsim.bridges.options import bridge_text, check_files, read_bridges
+from irsim.bridges.base import BridgeLostError
+from irsim.bridges.connect import connect
+from irsim.bridges.options import bridge_text, read_bridges
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
-from irsim.common.text import seconds
 from irsim.diagnostics.errors import ArgumentError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.driven import findings_under_policy
@@ -150,7 +150,7 @@ def run(
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     others = read_bridges(bridges)
     warnings = [*warnings, *(as_finding(found.diagnostic) for found in driven_without_goal(scenario, others))]
-    opened = _bridges([*scenario.bridges, *others], limits)
+    opened = allowed_bridges([*scenario.bridges, *others], limits)
     options = {
         "strict": strict,
         "imports": list(imports),
@@ -166,9 +166,7 @@ def run(
         recording(env, path, kept, horizon=horizon, options=options) as recorder,
     ):
         if connection is not None and connected is not None:
-            stops = " and stops the robots" if any(bridge.mode == "real" for bridge in opened) else ""
-            until = f"the run ends when all robots have arrived or stopped, or at {seconds(horizon * env.step_time)}"
-            connected(f"connected to {connection.peers()}; {until}; Ctrl-C ends it now{stops}")
+            connected(connected_sentence(connection, opened, horizon * env.step_time))
         if recorder is not None and recorded is not None and record is not False:
             recorded(recorder.run_id)
         files, lost = list[str](), None
@@ -207,22 +205,6 @@ def run(
                 result.run_id, result.artifacts = None, {}  # of a record that is deleted now
     env.end(ending_time=0.0)
     return result
-
-
-def _bridges(options: Sequence[Any], limits: Limits | None) -> list[Bridge]:
-    """The bridges of some options, not opened yet.
-
-    Raises:
-        BridgeError: They may not be opened here.
-    """
-    if options and not (limits or DEFAULT_LIMITS).bridges:
-        what = f"the scenario has bridges ({', '.join(str(one.name) for one in options)}), which are not opened here"
-        raise BridgeError(
-            "bridges-disabled", what, "leave out the key bridges, or start irsim-mcp with --enable-bridges"
-        )
-    if limits is not None and limits.root is not None:
-        check_files(options, Path(limits.root))
-    return open_bridges(options)
 
 
 def _opened(policy: Any, behavior: Any, limits: Limits | None) -> tuple[Policy | None, str | None]:
