@@ -128,6 +128,22 @@ GUIDES: dict[str, Guide] = {
         "irsim run hall.yaml --record && irsim export last --to usd -o hall.usdc",
         ("export", "export formats", "formats", "irsim export", "other programs", "recorded run as a file"),
     ),
+    "imports": Guide(
+        "maps and people of other programs as scenarios",
+        "`irsim map import FILE -o map.yaml` makes an occupancy grid and a scenario of a mesh (.glb, .gltf, .obj, "
+        ".ply, .stl), a navigation mesh of Habitat (.navmesh), a stage of OpenUSD (.usd; it is a format of exports, too), "
+        "roads of OpenDRIVE (.xodr), Gaussian splats (.ply) or a map of the ROS map server (.yaml); --level picks a "
+        "storey, --robot adds a robot, and map.bridge.json beside it leads back to the scene. `irsim bridge preview` and "
+        "`irsim bridge page` show a run among splats. `irsim bridge import-pedestrians` makes scenarios and suites of "
+        "recorded people (ETH, UCY, TrajNet), `irsim bridge import-bag` of scans and odometry in a bag of ROS. Pages: "
+        "bridges/ of the skill irsim-runner.",
+        "irsim map import flat.glb -o flat.yaml --robot && irsim run flat.yaml",
+        (
+            *("import", "map import", "mesh", "glb", "obj", "navmesh", "habitat", "hm3d", "usd", "opendrive", "ply"),
+            *("splats", "gaussian splats", "ros map", "import-pedestrians", "pedestrian data", "eth", "ucy", "trajnet"),
+            *("import-bag", "floor plan", "scan of a building"),
+        ),
+    ),
     "perturb": Guide(
         "starts that differ a little with each seed",
         "Does it still work when things start slightly differently? An option of `irsim run` and `irsim benchmark` "
