@@ -50,12 +50,16 @@ def refused(content: bytes, **limits: int) -> str:
     return caught.value.message
 
 
+FORMATS = ("archive", "old")
+"""Names of tests: archives have the time at which they were made inside, which differs between processes."""
+
+
 def both(body: bytes, raw: bytes = SIX, count: int = 6) -> list[bytes]:
     return [zip_file(body, {"0": raw}), old_file(body, {"0": (count, raw)})]
 
 
 @pytest.mark.parametrize("content", as_files({"a.weight": np.arange(6, dtype=np.float32).reshape(2, 3),
-                                              "a.bias": np.array([0.5, -1.0], dtype=np.float32)}))  # fmt: skip
+                                              "a.bias": np.array([0.5, -1.0], dtype=np.float32)}), ids=FORMATS)  # fmt: skip
 def test_a_state_dictionary_becomes_arrays_by_name(content: bytes) -> None:
     found = parse_torch(content, "net.pth")
     assert list(found) == ["a.weight", "a.bias"]
@@ -67,7 +71,9 @@ def test_a_state_dictionary_becomes_arrays_by_name(content: bytes) -> None:
 _INNER = module("Net", {"weight": parameter("0", [2, 2], offset=2, count=6)}, {})
 
 
-@pytest.mark.parametrize("content", both(module("Actor", {"log_std": parameter("0", [2], count=6)}, {"pi": _INNER})))
+@pytest.mark.parametrize(
+    "content", both(module("Actor", {"log_std": parameter("0", [2], count=6)}, {"pi": _INNER})), ids=FORMATS
+)
 def test_a_whole_module_of_a_class_that_exists_nowhere_has_the_names_of_its_state_dictionary(content: bytes) -> None:
     found = parse_torch(content, "net.pth")
     assert {key: array.tolist() for key, array in found.items()} == {"log_std": [0, 1], "pi.weight": [[2, 3], [4, 5]]}
@@ -171,7 +177,7 @@ def test_pickles_that_would_take_forever_are_refused() -> None:
     assert "operations" in refused(zip_file(b"N0" * 600_000 + b"N", {}))
 
 
-@pytest.mark.parametrize("content", as_files({"w": np.arange(6, dtype=np.float32)}))
+@pytest.mark.parametrize("content", as_files({"w": np.arange(6, dtype=np.float32)}), ids=FORMATS)
 def test_a_truncated_file_is_refused_wherever_it_ends(content: bytes) -> None:
     for end in range(0, len(content) - 1, 7):
         refused(content[:end])
