@@ -58,8 +58,13 @@ def both(body: bytes, raw: bytes = SIX, count: int = 6) -> list[bytes]:
     return [zip_file(body, {"0": raw}), old_file(body, {"0": (count, raw)})]
 
 
-@pytest.mark.parametrize("content", as_files({"a.weight": np.arange(6, dtype=np.float32).reshape(2, 3),
-                                              "a.bias": np.array([0.5, -1.0], dtype=np.float32)}), ids=FORMATS)  # fmt: skip
+@pytest.mark.parametrize(
+    "content",
+    as_files(
+        {"a.weight": np.arange(6, dtype=np.float32).reshape(2, 3), "a.bias": np.array([0.5, -1.0], dtype=np.float32)}
+    ),
+    ids=FORMATS,
+)
 def test_a_state_dictionary_becomes_arrays_by_name(content: bytes) -> None:
     found = parse_torch(content, "net.pth")
     assert list(found) == ["a.weight", "a.bias"]
