@@ -16,6 +16,7 @@ import irsim
 from irsim.bridges.base import BridgeError
 from irsim.bridges.mujoco.bridge import MujocoBridge, make
 from irsim.bridges.mujoco.report import MujocoReport
+from irsim.bridges.options import read_bridges
 from irsim.components.bridges.mujoco import Mujoco
 from tests.bridges.scenes import gallery, motion_of, state_of
 
@@ -296,8 +297,8 @@ def test_errors_say_what_to_write(tmp_path: Path) -> None:
         with pytest.raises(BridgeError, match=message):
             bridge.open(scene, start)
         bridge.close()
-    with pytest.raises(BridgeError, match=r"a report is a \.json file"):
-        make(Mujoco(report="x.sh"))
+    with pytest.raises(BridgeError, match=r"'x.sh' is not a valid value of 'report'.* Fix: .*report\.json"):
+        read_bridges(["{name: mujoco, report: x.sh}"])
     assert not list(tmp_path.iterdir())
 
 

@@ -48,9 +48,6 @@ class MujocoBridge(Bridge):
         self._report = MujocoReport()
         self._warnings: Counter[str] = Counter()
         self._noted = False
-        if options.report is not None and Path(options.report).suffix != ".json":
-            what = f"report: a report is a .json file, got {options.report!r}"
-            raise BridgeError("bridge-mismatch", what, "report: report.json")
 
     def open(self, scene: SceneDescription, start: WorldState) -> None:
         """Build the model, and place everything where the episode starts."""
