@@ -124,7 +124,8 @@ class Run:
     def notes(self) -> list[str]:
         """Notes on what was too large to be recorded, and of a finished run those of its bridges."""
         result = self.result
-        return omission_notes(self.meta) if result is None else result.notes
+        found = omission_notes(self.meta, None if result is None else result.steps)
+        return [*found, *(note for note in ([] if result is None else result.notes) if note not in found)]
 
     @property
     def extent(self) -> str:
