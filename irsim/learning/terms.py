@@ -16,6 +16,7 @@ from irsim.learning.moment import Moment
 from irsim.learning.result import Result
 from irsim.learning.rewards._options import RewardOptions
 from irsim.learning.threats import Threats
+from irsim.simulation.build import kernel_options
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
@@ -25,13 +26,7 @@ __all__ = ["PythonTerms", "weighted_terms"]
 
 def weighted_terms(terms: Sequence[RewardOptions]) -> list[tuple[Any, float]]:
     """Options for the core and weight of each term; None for those that Python computes."""
-    found = []
-    for term in terms:
-        feature = REWARDS.get(term.name)
-        kernel = None if feature is None else feature.kernel
-        options = None if kernel is None else kernel(**{name: getattr(term, name) for name in kernel.fields})
-        found.append((options, float(term.weight)))
-    return found
+    return [(kernel_options(REWARDS, term), float(term.weight)) for term in terms]
 
 
 class PythonTerms:

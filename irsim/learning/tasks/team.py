@@ -27,14 +27,12 @@ class Team:
         indices: (A,) their indices among the objects of a world.
         names: Their names.
         drive: Name of their drive.
-        controls: Number of its controls.
         action_width: Number of numbers of an action; 1 for the number of a choice.
     """
 
     indices: NDArray[np.int64]
     names: tuple[str, ...]
     drive: str
-    controls: int
     action_width: int
 
 
@@ -61,7 +59,7 @@ def team_of(task: Task, scenario: ResolvedScenario) -> Team:
         raise TaskError(f"the drive of {first.name!r} has {first.vel_dim} controls", "use a drive with at most three")
     drive = str(getattr(first.kinematics, "name", ""))
     names = tuple(records[i].name for i in chosen)
-    return Team(np.array(chosen, dtype=np.int64), names, drive, first.vel_dim, _action_width(task, first))
+    return Team(np.array(chosen, dtype=np.int64), names, drive, _action_width(task, first))
 
 
 def _named(words: list[str], records: Sequence[ObjectRecord], able: list[int]) -> list[int]:
