@@ -29,19 +29,23 @@ class EventRecord(Result):
         "line_crossing",
         "sight_start",
         "sight_end",
+        "contact_between_steps",
+        "passed_through",
     ]
     """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, ``overshoot`` when an
     object passes its goal within ``goal_threshold`` between two steps without arriving, ``zone_entry`` and
     ``zone_exit`` when a body begins and ceases to touch a region of ``world.zones``, ``line_crossing`` when a centre
-    crosses a line, ``sight_start`` and ``sight_end`` when another object comes into and goes out of a field of view."""
+    crosses a line, ``sight_start`` and ``sight_end`` when another object comes into and goes out of a field of view,
+    ``contact_between_steps`` when two objects touch within a step and are apart at its beginning and at its end, and
+    ``passed_through`` if the middle of one of them went through the other then."""
     time: float
-    """Simulated time [s]."""
+    """Simulated time [s]; of a contact between steps, within the step."""
     step: int
     """Steps executed; 0 is the initial state."""
     object: str
-    """Name of the object; in a collision, of the first of the two; of a sight, of the one that sees."""
+    """Name of the object; in a contact, of the first of the two; of a sight, of the one that sees."""
     partner: str | None
-    """Name of the other object in a collision, or of the object that is seen."""
+    """Name of the other object in a contact, or of the object that is seen."""
     x: float
     """Position of the object, or of the one that is seen; for a line, where it is crossed [m]."""
     y: float
@@ -50,6 +54,8 @@ class EventRecord(Result):
     """Name of the zone."""
     direction: Literal["left_to_right", "right_to_left"] | None = None
     """How a line is crossed, as seen from its first point towards its second."""
+    depth: float | None = None
+    """Deepest overlap within the step, of a contact between steps [m]."""
 
 
 class Left(Result):

@@ -1,4 +1,4 @@
-"""Events that the core records during a step: arrivals, waypoints, collisions, zones and fields of view."""
+"""Events that the core records during a step: arrivals, collisions, contacts between steps, zones, fields of view."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = [
+    "BETWEEN_STEPS",
     "SIGHTS",
     "Direction",
     "Event",
     "EventKind",
     "first_collisions",
     "first_events",
+    "is_between_steps_of",
     "is_collision_of",
     "partner_of",
     "passable_names",
@@ -32,12 +34,16 @@ EventKind = Literal[
     "line_crossing",
     "sight_start",
     "sight_end",
+    "contact_between_steps",
+    "passed_through",
 ]
 """Kinds of events; :class:`Event` says what they mean."""
 Direction = Literal["left_to_right", "right_to_left"]
 """Direction in which a line is crossed, as seen from its first point towards its second."""
 SIGHTS: tuple[EventKind, ...] = ("sight_start", "sight_end")
 """Kinds of events of fields of view."""
+BETWEEN_STEPS: tuple[EventKind, ...] = ("contact_between_steps", "passed_through")
+"""Kinds of contacts that begin and end within one step; a contact has one of them."""
 _CROSSINGS: dict[str, Direction] = {"crossing_to_right": "left_to_right", "crossing_to_left": "right_to_left"}
 """Names that the core gives the crossing of a line, by direction."""
 
@@ -57,15 +63,18 @@ class Event(NamedTuple):
             that can move begins or ceases to touch a region of ``world.zones``), ``line_crossing`` (its centre crosses
             a line of ``world.zones``), ``sight_start`` and ``sight_end`` (another object comes into, or goes out of,
             the field of view that the scenario gives the object with ``fov``; of static obstacles only those with tags
-            count).
-        time: Simulated time [s].
-        step: Number of executed steps at the event; 0 is the initial state.
-        object: Name of the object; for a collision, of the first of the two objects; for a sight, of the one that sees.
-        partner: Name of the second object of a collision, or of the object that is seen.
+            count), ``contact_between_steps`` (two objects that are apart at the beginning and at the end of a step
+            touch within it), ``passed_through`` (likewise, and the middle of one of them went through the other, as
+            a fast robot through a thin wall).
+        time: Simulated time [s]; of a contact between steps, when the two first touch within the step.
+        step: Number of executed steps at the event, with the step of the event itself; 0 is the initial state.
+        object: Name of the object; for a contact, of the first of the two objects; for a sight, of the one that sees.
+        partner: Name of the second object of a contact, or of the object that is seen.
         x, y: Position of the object, a point of the contact, the point at which the line is crossed, or the position
             of the object that is seen [m, world frame].
         zone: Name of the zone.
         direction: Direction in which the line is crossed, as seen from its first point towards its second.
+        depth: Deepest overlap of the two within the step, of a contact between steps [m].
     """
 
     kind: EventKind
@@ -77,6 +86,7 @@ class Event(NamedTuple):
     y: float
     zone: str | None = None
     direction: Direction | None = None
+    depth: float | None = None
 
 
 def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[Event]:
@@ -120,8 +130,16 @@ def partner_of(event: Event, name: str) -> str | None:
 
 def is_collision_of(event: Event, name: str, passable: set[str]) -> bool:
     """Whether an event is a collision of the object ``name`` with an object that is not in ``passable``."""
-    has_contact = event.kind == "collision" and name in (event.object, event.partner)
-    return has_contact and partner_of(event, name) not in passable
+    return event.kind == "collision" and _is_contact_of(event, name, passable)
+
+
+def is_between_steps_of(event: Event, name: str, passable: set[str]) -> bool:
+    """Whether an event is a contact between steps of ``name`` with an object that is not in ``passable``."""
+    return event.kind in BETWEEN_STEPS and _is_contact_of(event, name, passable)
+
+
+def _is_contact_of(event: Event, name: str, passable: set[str]) -> bool:
+    return name in (event.object, event.partner) and partner_of(event, name) not in passable
 
 
 def passable_names(simulation: Simulation) -> set[str]:
