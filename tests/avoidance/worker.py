@@ -1,0 +1,145 @@
+"""Runs groups of starts in the interpreter that has the simulator; needs that simulator, NumPy, PyYAML and Pillow only.
+
+python worker.py RESULTS [--share K/N] [--behaviors a,b]     appends a line to RESULTS for each group that is not in it
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import csv
+import logging
+import os
+import sys
+import tempfile
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parents[2]
+if __name__ == "__main__":
+    # The interpreter's own irsim comes first: the folder of this repository holds one, too.
+    sys.path[0] = tempfile.gettempdir()
+    import irsim
+
+    sys.path.append(str(ROOT))
+else:
+    import irsim
+
+from tests.avoidance.families import CELL_M, RADIUS_M, SIZE_M, THRESHOLD_M, Group, groups, layout, scenario  # noqa: E402
+from tests.avoidance.judge import Verdict, at_rest, judge, judge_end  # noqa: E402
+
+COLUMNS = ("behavior", "drive", "step", "family", "case", "spelling", "outcomes", "between", "seconds", "depths_um")
+Places = NDArray[np.float64]
+CHUNK = 10
+"""Steps between two looks of the judge, who sees every step of them."""
+
+
+def run(group: Group, start: int, folder: Path) -> Verdict:
+    """Run one start and judge it."""
+    scene = layout(group.case, start)
+    picture = _picture(group, folder) if group.spelling == "map" else ""
+    file = folder / "start.yaml"
+    file.write_text(yaml.safe_dump(scenario(group, start, picture), sort_keys=False), encoding="utf-8")
+    goals = [robot.goal for robot in scene.robots]
+    walls = [wall.outline() for wall in scene.walls]
+    steps = round(group.case.limit_s / group.dt)
+    rules: dict[str, Any] = {
+        "radius": RADIUS_M, "threshold": THRESHOLD_M, "dt": group.dt, "loop": group.case.loop,
+    }  # fmt: skip
+    motion = (_ours if hasattr(irsim, "batch") else _peer)(file, len(scene.robots))
+    path, begun = [next(motion)], 0
+    for k in range(1, steps + 1):
+        path.append(next(motion))
+        if k % CHUNK and k != steps:
+            continue
+        if at_rest(path, group.dt) or judge(path[begun:], goals, walls, **rules) is not None:
+            break
+        begun = k
+    motion.close()
+    return judge_end(path, goals, walls, **rules)
+
+
+def _ours(file: Path, count: int) -> Iterator[Places]:
+    """Positions of the robots, before and after each step."""
+    batch = irsim.batch(file, 1, seeds=[0], threads=1)
+    while True:
+        yield batch.pose[0, :count, :2].copy()
+        batch.step()
+
+
+def _peer(file: Path, count: int) -> Iterator[Places]:
+    """The same of another simulator."""
+    env = irsim.make(str(file), display=False, disable_all_plot=True, log_level="ERROR")
+    robots = env.robot_list
+    if len(robots) != count:
+        raise RuntimeError(f"{file.name} has {len(robots)} robots instead of {count}")
+    try:
+        while True:
+            yield np.array([robot.state[:2, 0] for robot in robots])
+            env.step()
+    finally:
+        env.end(0)
+
+
+def _picture(group: Group, folder: Path) -> str:
+    """Write the walls of a case as the picture of a map, black on white, and return its file."""
+    file = folder / f"{group.case.family} {group.case.name}.png".replace(" ", "-")
+    if not file.exists():
+        cells = round(SIZE_M / CELL_M)
+        grid = np.full((cells, cells), 255, dtype=np.uint8)  # rows from the top, columns along x
+        for wall in layout(group.case, 0).walls:
+            for x, y, length, width in wall.parts:
+                left, right = (wall.place[0] + x + side * length / 2 for side in (-1, 1))
+                low, high = (wall.place[1] + y + side * width / 2 for side in (-1, 1))
+                rows = slice(cells - round(high / CELL_M), cells - round(low / CELL_M))
+                grid[rows, round(left / CELL_M) : round(right / CELL_M)] = 0
+        Image.fromarray(grid).save(file)
+    return str(file)
+
+
+def line(group: Group, folder: Path) -> list[str]:
+    """The line of a reference: the outcomes, one letter each, and what else was counted, start by start."""
+    verdicts = [run(group, start, folder) for start in group.starts]
+    return [
+        *group.key,
+        "".join(verdict.outcome for verdict in verdicts),
+        " ".join(f"{verdict.between}" for verdict in verdicts),
+        " ".join(f"{verdict.seconds:g}" for verdict in verdicts),
+        " ".join(f"{verdict.depth_m * 1e6:.0f}" for verdict in verdicts),
+    ]
+
+
+def main(arguments: list[str]) -> None:
+    """Append the groups that a file of results lacks."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("results", type=Path)
+    parser.add_argument("--behaviors", default="rvo,sfm,orca")
+    parser.add_argument("--share", default="0/1", help="K/N: each N-th group, from the K-th")
+    given = parser.parse_args(arguments)
+    done = set()
+    if given.results.exists():
+        with given.results.open(encoding="utf-8", newline="") as opened:
+            done = {tuple(row[:6]) for row in csv.reader(opened)}
+    part, parts = map(int, given.share.split("/"))
+    wanted = [group for group in groups(tuple(given.behaviors.split(","))) if group.key not in done][part::parts]
+    with tempfile.TemporaryDirectory() as folder, given.results.open("a", encoding="utf-8", newline="") as opened:
+        writer = csv.writer(opened, lineterminator="\n")
+        for group in wanted:
+            with contextlib.redirect_stdout(None), contextlib.redirect_stderr(None):
+                row = line(group, Path(folder))
+            writer.writerow(row)
+            opened.flush()
+
+
+if __name__ == "__main__":
+    logging.disable(logging.CRITICAL)
+    warnings.simplefilter("ignore")
+    os.environ["MPLBACKEND"] = "Agg"
+    main(sys.argv[1:])
