@@ -695,6 +695,7 @@ class World:
     step_time: float
     collision_mode: int  # may be set at run time
     after_arrival: int  # 0: arrived only while at the goal, 1: stands still for good, 2: arrived for good
+    integration: int  # of drives, 0: Euler, 1: exact arcs
     extent: tuple[float, float, float, float]  # x0, y0, x1, y1 [m] of the box in which paths are planned; may be set
     def set_levels(self, levels: Sequence[Level], speeds: Sequence[Sequence[int]]) -> None:
         """Let scenes vary; a state draws those of its `level`. Call it before a state is made.
@@ -1185,9 +1186,9 @@ def remember_row(world: World, state: State, row: int) -> None:
 
 # Drives without a world
 def drive_step(
-    drive: _Options, state: Sequence[float], control: Sequence[float], dt: float
+    drive: _Options, state: Sequence[float], control: Sequence[float], dt: float, integration: int = ...
 ) -> tuple[list[float], list[float]]:
-    """State after one period, with as many rows as given (at least 3), and twist."""
+    """State after one period, with as many rows as given (at least 3), and twist; `integration` as in a world."""
 
 def drive_follow(
     drive: _Options,

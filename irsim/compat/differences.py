@@ -230,6 +230,7 @@ EXTENSIONS: dict[str, str] = {
     "bridges": "connections to other programs",
     "world.boundary": "walls at the edge of the world",
     "world.seed": "default seed",
+    "world.integration": "exact arcs within a step instead of Euler's law",
     "world.time_limit": "time horizon of a run",
     "world.description": "any text",
     "world.metadata": "any mapping",

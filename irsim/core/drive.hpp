@@ -13,6 +13,7 @@
 #pragma once
 
 #include "geometry/vec.hpp"
+#include "integration.hpp"
 
 namespace irsim {
 
@@ -20,10 +21,11 @@ namespace irsim {
 struct Motion {
   Pose& pose;      // x, y [m], theta [rad]; world frame
   double* extra;   // extra state rows, steering angle first
-  Vec3& twist;     // true vx, vy [m/s] and yaw rate [rad/s] of this period; world frame
+  Vec3& twist;     // true vx, vy [m/s] at the start of this period and yaw rate [rad/s]; world frame
   Vec2 direction;  // cosine and sine of the heading at the start
   Vec3 control;    // executed control, noise included
   double dt;       // [s]
+  Integration integration;
 };
 
 /// How sharply a drive that cannot move sideways turns toward a wanted velocity.
@@ -55,12 +57,19 @@ Vec3 constrain(const Options&, Vec3 control) {
   return control;
 }
 
-/// Translate by a body-frame velocity, and write the linear part of the twist.
-inline void translate(const Motion& m, Vec2 body_velocity) {
-  const Vec2 v = rotate(body_velocity, m.direction);
-  m.pose.x += v.x * m.dt;
-  m.pose.y += v.y * m.dt;
-  m.twist[0] = v.x, m.twist[1] = v.y;
+/// Translate by a body-frame velocity while turning at a yaw rate, both constant within the period, and write the
+/// twist.
+inline void translate(const Motion& m, Vec2 body_velocity, double yaw_rate) {
+  const Vec2 v = rotate(body_velocity, m.direction), way = displacement(v, yaw_rate, m.dt, m.integration);
+  m.pose.x += way.x;
+  m.pose.y += way.y;
+  m.twist = {{v.x, v.y, yaw_rate}};
+}
+
+/// Translate and turn.
+inline void move(const Motion& m, Vec2 body_velocity, double yaw_rate) {
+  translate(m, body_velocity, yaw_rate);
+  m.pose.theta = wrap(m.pose.theta + yaw_rate * m.dt);
 }
 
 /// Standard deviations of forward speed and yaw (or steering) rate, which grow with both (Thrun, Burgard, Fox

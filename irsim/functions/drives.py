@@ -19,12 +19,18 @@ __all__ = [
     "omni_kinematics",
 ]
 
+_INTEGRATIONS = {"euler": 0, "exact": 1}
 _DEFAULT_ALPHA = [0.03, 0.0, 0.0, 0.03]
 """Default noise coefficients of differential and Ackermann drives."""
 
 
 def differential_kinematics(
-    state: Floats, velocity: Floats, step_time: float, noise: bool = False, alpha: Sequence[float] | None = None
+    state: Floats,
+    velocity: Floats,
+    step_time: float,
+    noise: bool = False,
+    alpha: Sequence[float] | None = None,
+    integration: str = "euler",
 ) -> Floats:
     """Move a differential drive by one period.
 
@@ -34,17 +40,18 @@ def differential_kinematics(
         step_time: Period [s].
         noise: Add Gaussian noise to the velocity.
         alpha: Four coefficients of the variances of the noise.
+        integration: ``euler``, or ``exact`` for the arc of the velocity, as ``world.integration``.
 
     Returns:
         (3, 1) next state, heading in [-pi, pi).
 
     Raises:
         TypeError: An argument is not an array.
-        ValueError: An array has too few rows.
+        ValueError: An array has too few rows, or the integration is unknown.
     """
     _check(state=(state, 3), velocity=(velocity, 2))
     drive = core.DiffOptions(noise=False, alpha=_alpha(alpha, _DEFAULT_ALPHA, noise))
-    return _move(drive, state[:3], velocity[:2], step_time, noise)
+    return _move(drive, state[:3], velocity[:2], step_time, noise, integration)
 
 
 def ackermann_kinematics(
@@ -55,6 +62,7 @@ def ackermann_kinematics(
     alpha: Sequence[float] | None = None,
     mode: str = "steer",
     wheelbase: float = 1,
+    integration: str = "euler",
 ) -> Floats:
     """Move a car-like (Ackermann) drive by one period.
 
@@ -66,13 +74,14 @@ def ackermann_kinematics(
         alpha: Four coefficients of the variances of the noise.
         mode: ``steer`` takes a steering angle as the second control, ``angular`` its rate.
         wheelbase: Distance between the axles [m].
+        integration: ``euler``, or ``exact`` for the arc of the velocity, as ``world.integration``.
 
     Returns:
         (4, 1) next state.
 
     Raises:
         TypeError: An argument is not an array.
-        ValueError: An array has too few rows, or the mode is unknown.
+        ValueError: An array has too few rows, or the mode or the integration is unknown.
     """
     _check(state=(state, 4), velocity=(velocity, 2))
     if mode not in ("steer", "angular"):
@@ -81,7 +90,7 @@ def ackermann_kinematics(
     drive = core.AckerOptions(
         noise=False, alpha=coefficients, mode=mode, wheelbase=float(wheelbase), psi_max=float("inf")
     )
-    return _move(drive, state[:4], velocity[:2], step_time, noise)
+    return _move(drive, state[:4], velocity[:2], step_time, noise, integration)
 
 
 def omni_kinematics(
@@ -105,11 +114,16 @@ def omni_kinematics(
     """
     _check(state=(state, 3), velocity=(velocity, 2))
     drive = core.OmniOptions(noise=False, alpha=_alpha(alpha, [0.03] * 2, noise))
-    return _move(drive, state[:3], velocity[:2], step_time, noise)
+    return _move(drive, state[:3], velocity[:2], step_time, noise, "euler")
 
 
 def omni_angular_kinematics(
-    state: Floats, velocity: Floats, step_time: float, noise: bool = False, alpha: Sequence[float] | None = None
+    state: Floats,
+    velocity: Floats,
+    step_time: float,
+    noise: bool = False,
+    alpha: Sequence[float] | None = None,
+    integration: str = "euler",
 ) -> Floats:
     """Move a holonomic drive that can also turn by one period.
 
@@ -119,17 +133,18 @@ def omni_angular_kinematics(
         step_time: Period [s].
         noise: Add Gaussian noise to the velocity.
         alpha: Variance of the noise of each of the three velocities.
+        integration: ``euler``, or ``exact`` for the arc of the velocity, as ``world.integration``.
 
     Returns:
         (3, 1) next state.
 
     Raises:
         TypeError: An argument is not an array.
-        ValueError: An array has too few rows.
+        ValueError: An array has too few rows, or the integration is unknown.
     """
     _check(state=(state, 3), velocity=(velocity, 3))
     drive = core.OmniAngularOptions(noise=False, alpha=_alpha(alpha, [0.03] * 3, noise))
-    return _move(drive, state[:3], velocity[:3], step_time, noise)
+    return _move(drive, state[:3], velocity[:3], step_time, noise, integration)
 
 
 def _check(**arrays: tuple[Any, int]) -> None:
@@ -148,14 +163,15 @@ def _alpha(given: Sequence[float] | None, default: list[float], noise: bool) -> 
     return [float(value) for value in given[: len(default)]]
 
 
-def _move(drive: Any, state: Floats, velocity: Floats, step_time: float, noise: bool) -> Floats:
+def _move(drive: Any, state: Floats, velocity: Floats, step_time: float, noise: bool, integration: str) -> Floats:
+    if integration not in _INTEGRATIONS:
+        raise ValueError(f"unknown integration {integration!r}: choose euler or exact")
     control = np.asarray(velocity, dtype=np.float64).reshape(-1)
     if noise:
         sigma = np.array(core.drive_deviation(drive, control.tolist()))[: control.size]
         control = control + current_rng().normal(0.0, sigma)
-    after, _ = core.drive_step(
-        drive, np.asarray(state, dtype=np.float64).reshape(-1).tolist(), control.tolist(), step_time
-    )
+    before = np.asarray(state, dtype=np.float64).reshape(-1).tolist()
+    after, _ = core.drive_step(drive, before, control.tolist(), step_time, _INTEGRATIONS[integration])
     return np.array(after)[:, None]
 
 

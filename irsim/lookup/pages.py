@@ -86,7 +86,7 @@ def _kinematics(source: _Source) -> str:
     orders = plain_table(("name", "controls, in this order", "rows of `state`"), rows)
     intro = (
         "`vel_min`, `vel_max`, `acce` and `velocity` have one number per control, as do the actions that a program "
-        "passes to `env.step`."
+        "passes to `env.step`. `world.integration` says how a drive moves within a step, and how accurate that is."
     )
     return (
         f"`kinematics: {{name: …}}`, how an object moves.\n\n{orders}\n{intro}\n\n{_components(source, 'kinematics')}"

@@ -112,9 +112,11 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
         options: Any = self.record.kinematics
         if options is None:
             return KinematicsFactory.create_kinematics("static")
-        return KinematicsFactory.create_kinematics(
+        handler = KinematicsFactory.create_kinematics(
             options.name, options.noise, options.alpha, options.mode, self.record.wheelbase, self.role, options.tau
         )
+        handler.integration = self._simulation.scenario.world.integration
+        return handler
 
     @property
     def gf(self) -> Any:

@@ -12,7 +12,7 @@ import pytest
 
 import irsim
 from irsim.diagnostics.errors import BehaviorError
-from irsim.lib import KinematicsFactory, KinematicsHandler, register_kinematics
+from irsim.lib import KinematicsFactory, KinematicsHandler, differential_kinematics, register_kinematics
 
 Make = Callable[..., irsim.Env]
 
@@ -225,10 +225,12 @@ def test_names_are_registered_once() -> None:
     assert KinematicsFactory.create_kinematics("unicycle", gain=3.0).gain == 3.0  # type: ignore[attr-defined]
 
 
+@pytest.mark.parametrize("integration", ["euler", "exact"])
 @pytest.mark.parametrize("name", ["diff", "acker", "omni", "omni_angular"])
-def test_handlers_of_built_in_drives_move_like_the_engine(make: Make, name: str) -> None:
+def test_handlers_of_built_in_drives_move_like_the_engine(make: Make, name: str, integration: str) -> None:
     controls = [0.7, 0.3, 0.4][: 3 if name == "omni_angular" else 2]
-    env = make(f"robot: {{kinematics: {{name: {name}}}, state: [2, 2, 0.3, 0.1]}}")
+    text = f"robot: {{kinematics: {{name: {name}}}, state: [2, 2, 0.3, 0.1]}}"
+    env = make(f"world: {{integration: {integration}}}\n{text}")
     handler = env.robot.kf
     assert handler is not None
     state = np.array(env.robot.state)
@@ -238,6 +240,20 @@ def test_handlers_of_built_in_drives_move_like_the_engine(make: Make, name: str)
     assert handler.velocity_to_xy(env.robot.state, column) == pytest.approx(env.robot.velocity_xy, abs=1e-12)
     assert handler.compute_max_speed(env.robot.vel_max) == pytest.approx(env.robot.max_speed)
     assert handler.compute_heading(env.robot.state, column) == pytest.approx(env.robot.heading)
+
+
+def test_a_drive_learns_how_the_scenario_integrates(make: Make) -> None:
+    @register_kinematics("arcs")
+    class Arcs(KinematicsHandler):
+        def step(self, state: Any, velocity: Any, step_time: float) -> Any:
+            return differential_kinematics(state, velocity, step_time, integration=self.integration)
+
+    for integration in ("euler", "exact"):
+        text = "world: {integration: %s}\nrobot: {kinematics: {name: %s}, state: [2, 2, 0.3]}"
+        envs = [make(text % (integration, name)) for name in ("arcs", "diff")]
+        for env in envs:
+            env.step([0.9, 0.8])
+        assert envs[0].robot.state == pytest.approx(envs[1].robot.state, abs=1e-15)
 
 
 def test_objects_with_it_come_and_go(make: Make) -> None:

@@ -46,6 +46,7 @@ def test_known_numbers(function: Any, arguments: tuple[Any, ...], expected: list
         (ackermann_kinematics, (STATE, TWO, 0.1), ValueError),
         (ackermann_kinematics, (CAR, TWO, 0.1, False, None, "sideways"), ValueError),
         (omni_angular_kinematics, (STATE, TWO, 0.1), ValueError),
+        (differential_kinematics, (STATE, TWO, 0.1, False, None, "rk4"), ValueError),
     ],
 )
 def test_wrong_shapes_are_refused(function: Any, arguments: tuple[Any, ...], error: type[Exception]) -> None:

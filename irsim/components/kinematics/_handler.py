@@ -39,6 +39,8 @@ class KinematicsHandler(ABC):
         default_mass: Mass if the scenario gives none [kg].
         translation_rows, yaw_rate_row: Which control rows are speeds [m/s] and which is the yaw rate, for contacts.
         tau: Lag of the drive in ``collision_mode: contact`` [s]; None is the world's.
+        integration: ``world.integration`` of the scenario, ``euler`` or ``exact``, for :meth:`step` of a drive that
+            turns. The functions of ``irsim.functions`` take it as an argument.
     """
 
     action_dim: ClassVar[int] = 2
@@ -57,6 +59,7 @@ class KinematicsHandler(ABC):
     translation_rows: ClassVar[tuple[int, ...]] = (0,)
     yaw_rate_row: ClassVar[int | None] = None
     tau: float | None = None
+    integration: str = "euler"
 
     def __init__(self, name: str, noise: bool = False, alpha: Sequence[float] | None = None) -> None:
         self.name = name
@@ -162,11 +165,12 @@ def _options_of(name: str, handler: type[KinematicsHandler]) -> type[CustomKinem
     return made
 
 
-def construct(options: Any) -> KinematicsHandler:
+def construct(options: Any, integration: str = "euler") -> KinematicsHandler:
     """The handler of one object.
 
     Args:
         options: The options of its drive.
+        integration: ``world.integration`` of the scenario.
 
     Raises:
         TypeError: The constructor does not accept a key of the mapping.
@@ -178,4 +182,5 @@ def construct(options: Any) -> KinematicsHandler:
     extra = {key: value for key, value in given.items() if key not in ("name", "noise", "alpha", "tau")}
     handler: KinematicsHandler = maker(options.name, options.noise, given.get("alpha"), **extra)
     handler.tau = options.tau
+    handler.integration = integration
     return handler

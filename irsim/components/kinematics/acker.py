@@ -17,7 +17,8 @@ class Acker(KinematicsOptions):
     """Ackermann steering: controls are forward speed and steering angle, or its rate.
 
     The fourth state row is the steering angle. The reference point is the middle of the rear axle; a missing wheelbase
-    counts as 1 m.
+    counts as 1 m. In each step it drives straight ahead and then turns, or it drives the arc of its control: see
+    `world.integration`. The steering angle changes at the end of the step, so that it acts on the next one.
     """
 
     state_rows: ClassVar[tuple[str, ...]] = ("x", "y", "theta", "steer")

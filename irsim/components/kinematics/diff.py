@@ -13,7 +13,10 @@ from irsim.options.units import Number
 
 
 class Diff(KinematicsOptions):
-    """Differential drive: controls are forward speed and yaw rate."""
+    """Differential drive: controls are forward speed and yaw rate.
+
+    In each step it drives straight ahead and then turns, or it drives the arc of its control: see `world.integration`.
+    """
 
     speeds: ClassVar[int] = 1
 

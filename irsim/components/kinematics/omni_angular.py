@@ -15,6 +15,8 @@ from irsim.options.units import Number
 class OmniAngular(KinematicsOptions):
     """Omnidirectional base with rotation: controls are forward and lateral speed in the body frame, and yaw rate.
 
+    In each step it drives straight and then turns, or it drives the arc of its control: see `world.integration`.
+
     With `dash` it turns its front to the goal while it drives, and at the goal to the heading that the goal gives.
     """
 

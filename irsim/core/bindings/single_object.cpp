@@ -32,11 +32,13 @@ Vec3 control_of(const Numbers& values) {
   return out;
 }
 
-std::pair<Numbers, Numbers> drive_step(const Drive& drive, const Numbers& state, const Numbers& control, double dt) {
+std::pair<Numbers, Numbers> drive_step(const Drive& drive, const Numbers& state, const Numbers& control, double dt,
+                                       int integration) {
   LoneObject object(state);
   Vec3 twist;
   with(drive, [&](const auto& options) {
-    run(options, Motion{object.pose, object.extra.data(), twist, object.direction, control_of(control), dt});
+    run(options, Motion{object.pose, object.extra.data(), twist, object.direction, control_of(control), dt,
+                        static_cast<Integration>(integration)});
   });
   Numbers out{object.pose.x, object.pose.y, object.pose.theta};
   out.insert(out.end(), object.extra.begin(), object.extra.begin() + static_cast<std::ptrdiff_t>(state.size() - 3));
@@ -104,7 +106,8 @@ void bind_object(nb::module_& m) {
   bind_phase(m, "integrate_row", [](W world, State& s, int w, int i) { integrate(world, s, w, i); });
   bind_phase(m, "remember_row", [](W world, State& s, int w, int i) { remember(s, w * world.objects + i); });
   const Turning defaults;
-  m.def("drive_step", &drive_step, nb::arg("drive"), nb::arg("state"), nb::arg("control"), nb::arg("dt"));
+  m.def("drive_step", &drive_step, nb::arg("drive"), nb::arg("state"), nb::arg("control"), nb::arg("dt"),
+        nb::arg("integration") = static_cast<int>(kEuler));
   m.def("drive_follow", &drive_follow, nb::arg("drive"), nb::arg("state"), nb::arg("velocity"),
         nb::arg("min_speed") = defaults.min_speed, nb::arg("tolerance") = defaults.tolerance,
         nb::arg("guarantee_time") = defaults.guarantee_time, nb::arg("max_rate") = defaults.max_rate);

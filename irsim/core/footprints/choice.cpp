@@ -59,7 +59,8 @@ double room_with(FootprintSelf& self, Vec3 control) {
   const double* extra = &state.extra[static_cast<std::size_t>(self.row) * state.extra_rows];
   self.crowd.extra.assign(extra, extra + state.extra_rows);
   with(world.drive[self.object], [&](const auto& drive) {
-    run(drive, Motion{pose, self.crowd.extra.data(), twist, self.heading, limited(self, control), world.step_time});
+    run(drive, Motion{pose, self.crowd.extra.data(), twist, self.heading, limited(self, control), world.step_time,
+                      world.integration});
   });
   const Vec2 shift = pose.position() - now.position(), turn = unit(pose.theta - now.theta);
   double room = self.crowd.cell.room(self.hull, self.position, shift, turn);

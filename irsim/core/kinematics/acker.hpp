@@ -23,10 +23,8 @@ struct AckerOptions {
 
 inline void acker(const AckerOptions& options, const Motion& m) {
   const double wheelbase = options.wheelbase > 0.0 ? options.wheelbase : 1.0;
-  const double yaw_rate = m.control[0] * std::tan(m.extra[0]) / wheelbase;
-  translate(m, {m.control[0], 0.0});
-  m.pose.theta = wrap(m.pose.theta + yaw_rate * m.dt);
-  m.twist[2] = yaw_rate;
+  move(m, {m.control[0], 0.0}, m.control[0] * std::tan(m.extra[0]) / wheelbase);
+  // The wheels turn at the end of the period, whatever the integration.
   const double psi = options.mode == Steering::steer ? m.control[1] : m.extra[0] + m.control[1] * m.dt;
   m.extra[0] = clip(psi, -options.psi_max, options.psi_max);
 }

@@ -14,11 +14,7 @@ struct DiffOptions {
   }
 };
 
-inline void diff(const DiffOptions&, const Motion& m) {
-  translate(m, {m.control[0], 0.0});
-  m.pose.theta = wrap(m.pose.theta + m.control[1] * m.dt);
-  m.twist[2] = m.control[1];
-}
+inline void diff(const DiffOptions&, const Motion& m) { move(m, {m.control[0], 0.0}, m.control[1]); }
 
 inline Rows rows(const DiffOptions&) { return {1, 1}; }
 

@@ -14,10 +14,7 @@ struct OmniOptions {
   }
 };
 
-inline void omni(const OmniOptions&, const Motion& m) {
-  translate(m, {m.control[0], m.control[1]});
-  m.twist[2] = 0.0;
-}
+inline void omni(const OmniOptions&, const Motion& m) { translate(m, {m.control[0], m.control[1]}, 0.0); }
 
 inline Rows rows(const OmniOptions&) { return {2, -1}; }
 

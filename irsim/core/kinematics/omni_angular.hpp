@@ -15,9 +15,7 @@ struct OmniAngularOptions {
 };
 
 inline void omni_angular(const OmniAngularOptions&, const Motion& m) {
-  translate(m, {m.control[0], m.control[1]});
-  m.pose.theta = wrap(m.pose.theta + m.control[2] * m.dt);
-  m.twist[2] = m.control[2];
+  move(m, {m.control[0], m.control[1]}, m.control[2]);
 }
 
 inline Rows rows(const OmniAngularOptions&) { return {2, 2}; }

@@ -56,7 +56,7 @@ void integrate(const World& world, State& state, int w, int object) {
       for (int c = 0; c < 3; ++c) u[c] += sigma[c] * normals[c];
     }
     run(drive, Motion{state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows], state.twist[row],
-                      state.heading(row), u, world.step_time});
+                      state.heading(row), u, world.step_time, world.integration});
     Pose& pose = state.pose[row];
     pose.theta = into_range(pose.theta, world.angle_low[object], world.angle_high[object]);
   });

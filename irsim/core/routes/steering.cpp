@@ -166,7 +166,8 @@ bool Follower::clear_after(const Vec3& command) {
     if (k > 0 && !moves) return true;
     with(world_.drive[object_], [&](const auto& drive) {
       control = constrain(drive, control);
-      run(drive, Motion{pose, work_.extra.data(), twist, unit(pose.theta), control, world_.step_time});
+      run(drive,
+          Motion{pose, work_.extra.data(), twist, unit(pose.theta), control, world_.step_time, world_.integration});
     });
     if (!clear_at(pose)) return false;
     wanted = {};

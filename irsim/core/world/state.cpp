@@ -303,7 +303,7 @@ Vec2 velocity_of_control(const World& world, const State& state, int row, Vec3 c
     Pose pose = state.pose[row];
     const double* extra = &state.extra[static_cast<std::size_t>(row) * state.extra_rows];
     scratch.assign(extra, extra + state.extra_rows);
-    run(drive, Motion{pose, scratch.data(), twist, state.heading(row), control, 0.0});
+    run(drive, Motion{pose, scratch.data(), twist, state.heading(row), control, 0.0, world.integration});
   });
   return {twist[0], twist[1]};
 }

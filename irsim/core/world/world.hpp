@@ -66,9 +66,10 @@ struct World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  double step_time;                // [s]
-  int collision_mode;              // CollisionMode
-  int after_arrival = 0;           // AfterArrival
+  double step_time;       // [s]
+  int collision_mode;     // CollisionMode
+  int after_arrival = 0;  // AfterArrival
+  Integration integration = kEuler;
   double gravity;                  // [m/s^2]
   std::array<double, 4> extent{};  // x0, y0, x1, y1 [m]: paths are planned within this box
   int copies;

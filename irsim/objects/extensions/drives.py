@@ -97,7 +97,9 @@ class PythonDrives:
             for index in self.objects:
                 key = world, records[index].id
                 if anew or key not in self._handlers:
-                    self._handlers[key] = construct(records[index].kinematics)
+                    self._handlers[key] = construct(
+                        records[index].kinematics, self._simulation.scenario.world.integration
+                    )
                 if records[index].vel_dim > _CORE_CONTROLS and (anew or key not in self._wide):
                     self._wide[key] = Wide(records[index])
 

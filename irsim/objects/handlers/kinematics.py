@@ -40,7 +40,7 @@ class DifferentialKinematics(KinematicsHandler):
 
     def step(self, state: Floats, velocity: Floats, step_time: float) -> Floats:
         """Return the state after one time step, (3, 1)."""
-        return differential_kinematics(state, velocity, step_time, self.noise, self.alpha)
+        return differential_kinematics(state, velocity, step_time, self.noise, self.alpha, self.integration)
 
 
 class AckermannKinematics(KinematicsHandler):
@@ -65,7 +65,9 @@ class AckermannKinematics(KinematicsHandler):
 
     def step(self, state: Floats, velocity: Floats, step_time: float) -> Floats:
         """Return the state after one time step, (4, 1)."""
-        return ackermann_kinematics(state, velocity, step_time, self.noise, self.alpha, self.mode, self.wheelbase)
+        return ackermann_kinematics(
+            state, velocity, step_time, self.noise, self.alpha, self.mode, self.wheelbase, self.integration
+        )
 
 
 class OmniKinematics(KinematicsHandler):
@@ -114,7 +116,7 @@ class OmniAngularKinematics(OmniKinematics):
 
     def step(self, state: Floats, velocity: Floats, step_time: float) -> Floats:
         """Return the state after one time step, (3, 1)."""
-        return omni_angular_kinematics(state, velocity, step_time, self.noise, self.alpha)
+        return omni_angular_kinematics(state, velocity, step_time, self.noise, self.alpha, self.integration)
 
     def velocity_from_xy(self, state: Floats, velocity_xy: Floats) -> Floats:
         """Return the control that produces a world-frame velocity without rotation, (3, 1)."""

@@ -240,7 +240,8 @@ def _circles_goal(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     radius = wheelbase / math.tan(min(high, -low))
     if math.dist((x, y), goal[:2]) > 2 * radius:
         return
-    least, step = math.inf, speed * context.scenario.world.step_time
+    world = context.scenario.world
+    least, step, exact = math.inf, speed * world.step_time, world.integration == "exact"
     if _MAX_TURNS * 2 * math.pi * radius > _MAX_STEPS * step:
         return
     steps = math.ceil(_MAX_TURNS * 2 * math.pi * radius / step)
@@ -250,8 +251,10 @@ def _circles_goal(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         if least < record.goal_threshold:
             return
         error = math.remainder(math.atan2(goal[1] - y, goal[0] - x) - theta, 2 * math.pi)
-        x, y = x + step * math.cos(theta), y + step * math.sin(theta)
-        theta += step * math.tan(steering) / wheelbase
+        turn = step * math.tan(steering) / wheelbase
+        half, chord = (turn / 2, step * math.sin(turn / 2) / (turn / 2)) if exact and turn else (0.0, step)
+        x, y = x + chord * math.cos(theta + half), y + chord * math.sin(theta + half)
+        theta += turn
         steering = min(max(error, low), high)
     towards = math.atan2(goal[1] - record.state[1], goal[0] - record.state[0])
     yield warning(

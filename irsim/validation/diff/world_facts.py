@@ -23,9 +23,9 @@ __all__ = ["describe_world"]
 _DECIMALS = 9
 """Decimals of the numbers in a description."""
 _WORLD = (
-    "width", "height", "offset", "step_time", "sample_time", "time_limit", "control_mode", "collision_mode",
-    "after_arrival", "step_mode", "boundary", "seed", "obstacle_map", "mdownsample", "fog_map", "fog_map_resolution",
-    "zones",
+    "width", "height", "offset", "step_time", "integration", "sample_time", "time_limit", "control_mode",
+    "collision_mode", "after_arrival", "step_mode", "boundary", "seed", "obstacle_map", "mdownsample", "fog_map",
+    "fog_map_resolution", "zones",
 )  # fmt: skip
 _RECORD = (
     "role", "group", "static", "unobstructed", "goal_threshold", "arrive_mode", "wander", "loop", "target_roles",
