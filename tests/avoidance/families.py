@@ -218,6 +218,10 @@ def _cases() -> Iterator[Case]:
     for degrees in (45, 90, 135):
         yield Case("crossing", f"{degrees}", lambda _, d=degrees: _crossing(d), 30)
     yield Case("crossing", "3x3", lambda _: _streams(), 30)
+    for size in (0.5, 1.0, 2.0, 3.0):
+        yield Case("box", f"{size}", lambda _, s=size: _box(s), 30, spellings=BOXES)
+    for count in SIZES:
+        yield Case("circle", f"{count}", lambda _, n=count: _circle(n, 6), 30, ring=6)
     for aside in (0.0, 0.15, 0.3):
         yield Case("overtaking", f"{aside}", lambda _, a=aside: _overtaking(a), 40)
     yield Case("doorway", "0.8 alone", lambda _: _door(0.8, (_one(0.3),)), 30, spellings=LINES)
@@ -228,12 +232,8 @@ def _cases() -> Iterator[Case]:
     yield Case("corridor", "2.0 two", lambda _: _corridor(2.0, two), 30, spellings=LINES)
     box = _rectangle(10, 10.1, 1, 1)
     yield Case("corridor", "3.0 box", lambda _: _corridor(3.0, (_one(0.0, 5),), box), 30, spellings=LINES)
-    for size in (0.5, 1.0, 2.0, 3.0):
-        yield Case("box", f"{size}", lambda _, s=size: _box(s), 30, spellings=BOXES)
     for size, opens in ((0.5, "away"), (1.0, "away"), (2.0, "away"), (3.0, "away"), (2.0, "toward")):
         yield Case("ell", f"{size} {opens}", lambda _, s=size, o=opens: _ell(s, o), 30, spellings=ELLS)
-    for count in SIZES:
-        yield Case("circle", f"{count}", lambda _, n=count: _circle(n, 6), 30, ring=6)
     yield Case("random", "10", lambda k: _random(10, 9, k), 30, drawn=True)
     for count in SIZES:
         yield Case("loop", f"{count}", lambda _, n=count: _circle(n, 4), 20, jittered=20, loop=True, ring=4)
@@ -268,8 +268,8 @@ def groups(behaviors: tuple[str, ...] = BEHAVIORS) -> list[Group]:
     """All groups of starts, in the order in which they are run."""
     return [
         Group(behavior, drive, dt, case, spelling)
-        for dt in STEPS_S
         for case in CASES
+        for dt in STEPS_S
         for spelling in case.spellings
         for behavior in behaviors
         for drive in DRIVES

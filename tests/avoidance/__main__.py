@@ -1,0 +1,116 @@
+"""Compare how robots avoid each other and walls with ir-sim 2.12: ``python -m tests.avoidance``.
+
+Without options, the starts of `families.py` are run and compared with the kept reference of ir-sim 2.12. ``--write``
+keeps ours as a reference, too: do so after a change that is meant to change motion. ``--peer PYTHON`` runs those starts
+of ir-sim 2.12 that its reference lacks; all of them take half an hour of processor time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from tests.avoidance.comparison import Pool, exact_losses, pools, unequal_spellings
+from tests.avoidance.families import BEHAVIORS, PEER_BEHAVIORS
+from tests.avoidance.results import FOLDER, Key, Outcomes, read, write
+
+WORKER = Path(__file__).with_name("worker.py")
+OURS, PEER = FOLDER / "ours.csv", FOLDER / "peer.csv"
+QUIET = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
+
+
+def run(python: str, behaviors: tuple[str, ...], known: Path, jobs: int, *options: str) -> dict[Key, Outcomes]:
+    """Run in several processes the groups that a file lacks, and return all."""
+    with tempfile.TemporaryDirectory() as folder:
+        parts = [Path(folder) / f"{k}.csv" for k in range(jobs)]
+        processes = []
+        for k, part in enumerate(parts):
+            part.write_text(known.read_text(encoding="utf-8") if known.exists() else "", encoding="utf-8")
+            command = [python, str(WORKER), str(part), "--behaviors", ",".join(behaviors), "--share", f"{k}/{jobs}"]
+            processes.append(subprocess.Popen([*command, *options], env={**os.environ, **QUIET}))
+        failed = [process.wait() for process in processes]
+        found = read(parts)
+    if any(failed):
+        raise SystemExit(f"{WORKER.name} failed with {python}")
+    return found
+
+
+def table(counted: dict[tuple[str, ...], Pool], head: str) -> str:
+    """A table in Markdown of pooled starts."""
+    columns = (
+        f"{head} | starts | ours | 2.12 | difference, points (95 %) | only 2.12 | contacts | 2.12 | between steps"
+        " | 2.12 | s | 2.12"
+    )
+    lines = [f"| {columns} |", "|" + "---|" * (columns.count("|") + 1)]
+    for name, pool in counted.items():
+        point, low, high = pool.interval
+        both = len(pool.seconds) or 1
+        mine, theirs = (sum(pair[side] for pair in pool.seconds) / both for side in (0, 1))
+        cells = (
+            *name, pool.starts, f"{100 * pool.ours / pool.starts:.1f} %", f"{100 * pool.peer / pool.starts:.1f} %",
+            f"{point:+.1f} ({low:+.1f} to {high:+.1f})", pool.only_peer, pool.contacts, pool.peer_contacts,
+            pool.between, pool.peer_between, f"{mine:.1f}", f"{theirs:.1f}",
+        )  # fmt: skip
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
+    return "\n".join(lines)
+
+
+def report(ours: dict[Key, Outcomes], peer: dict[Key, Outcomes]) -> str:
+    """All tables."""
+    names: list[tuple[str, Callable[[Key], tuple[str, ...]]]] = [
+        ("behavior | drive", lambda key: key[:2]),
+        ("behavior | drive | step", lambda key: key[:3]),
+        ("behavior | drive | family", lambda key: (*key[:2], key[3])),
+    ]
+    missing = sum(key[0] in PEER_BEHAVIORS and key not in peer for key in ours)
+    parts = [f"{missing} lines of 2.12 are missing." if missing else "Every line of 2.12 is there."]
+    parts += [table(pools(ours, peer, name), head) for head, name in names]
+    alone = {key: mine for key, mine in ours.items() if key[0] not in PEER_BEHAVIORS}
+    parts.append("Ours only:\n\n" + _alone(alone))
+    lost = [f"- {' '.join(key)}: {what}" for key, what in exact_losses(ours, peer)]
+    parts.append(f"Exact starts that 2.12 solves and we do not ({len(lost)}):\n\n" + "\n".join(lost))
+    unequal = list(unequal_spellings(ours))
+    lines = [f"- {' '.join(key)}: {count} of {of}" for key, _, count, of in unequal]
+    parts.append(f"Walls whose spelling matters, by starts ({len(unequal)}):\n\n" + "\n".join(lines))
+    return "\n\n".join(parts)
+
+
+def _alone(ours: dict[Key, Outcomes]) -> str:
+    counted = pools(ours, ours, lambda key: (*key[:2], key[3]))
+    lines = ["| behavior | drive | family | starts | solved | contacts | between steps |", "|" + "---|" * 7]
+    for name, pool in counted.items():
+        cells = (*name, pool.starts, f"{100 * pool.ours / pool.starts:.1f} %", pool.contacts, pool.between)
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
+    return "\n".join(lines)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run what is missing and print the tables."""
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.avoidance", description="Compare avoidance with ir-sim 2.12."
+    )
+    parser.add_argument("--peer", help="interpreter with PyPI's ir-sim 2.12 and pyrvo: run what its reference lacks")
+    parser.add_argument("--write", action="store_true", help="keep our results as the reference")
+    parser.add_argument("--kept", action="store_true", help="print the tables of the kept references; run nothing")
+    parser.add_argument("--jobs", type=int, default=2, help="processes (default: 2)")
+    given = parser.parse_args(arguments)
+    FOLDER.mkdir(exist_ok=True)
+    if given.peer:
+        write(PEER, run(given.peer, PEER_BEHAVIORS, PEER, given.jobs))
+    if given.kept:
+        ours = read([OURS])
+    else:
+        ours = run(sys.executable, BEHAVIORS, Path(os.devnull), given.jobs)
+        if given.write:
+            write(OURS, ours)
+    print(report(ours, read([PEER])))
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
