@@ -1198,8 +1198,13 @@ def drive_follow(
     tolerance: float = ...,
     guarantee_time: float = ...,
     max_rate: float = ...,
+    acce: float = ...,
+    dt: float = ...,
 ) -> list[float]:
-    """Three controls (surplus ones zero) with which a drive realises a world-frame velocity [m/s]."""
+    """Three controls (surplus ones zero) with which a drive realises a world-frame velocity [m/s].
+
+    `acce`: limit of changes of the turn rate [rad/s^2], with which turns of periods of `dt` [s] end at the heading.
+    """
 
 def drive_deviation(drive: _Options, control: Sequence[float]) -> list[float]:
     """Standard deviations of the motion noise of three controls."""

@@ -35,6 +35,8 @@ struct Turning {
   double guarantee_time = 0.2;     // time in which a heading error is to be removed [s]
   double max_rate = 1.5;           // largest turn rate [rad/s]
   double max_forward = kInfinity;  // largest speed along the present heading [m/s]
+  double acce = kInfinity;         // largest change of the turn rate [rad/s^2]
+  double dt = 0.0;                 // period, which counts if `acce` is finite [s]
 };
 
 /// A wanted world-frame velocity [m/s] and what a drive needs to know to realise it.
@@ -45,6 +47,23 @@ struct Wish {
   Vec2 direction;  // cosine and sine of the heading
   Turning turning;
 };
+
+/// The largest speed with which an object may move on for one period, so that it then stops within what is left without
+/// going beyond it: its speed changes by at most `acce * dt` per period. Infinite without such a limit.
+///
+/// With v = (n + f) * acce * dt, n whole and 0 <= f < 1, this period and the n after it, each slower by `acce * dt`,
+/// take the object (n + 1) * (n / 2 + f) * acce * dt^2 far. So an object that asks for this speed in every period never
+/// gets beyond its mark, unless it is too fast for that already.
+///
+/// Args:
+///   left: Distance to the mark, at least 0 [m], or [rad] of a turn.
+///   acce: Largest change of the speed [m/s^2] or [rad/s^2]; 0 counts as no limit.
+///   dt: Period [s].
+inline double speed_to_stop_within(double left, double acce, double dt) {
+  if (!(acce > 0.0) || !std::isfinite(acce) || !std::isfinite(left)) return kInfinity;
+  const double change = acce * dt, n = std::floor(-0.5 + std::sqrt(0.25 + 2.0 * left / (change * dt)));
+  return left / (dt * (n + 1.0)) + 0.5 * n * change;
+}
 
 /// What the components of a control mean.
 struct Rows {
@@ -92,9 +111,11 @@ inline ForwardWish forward_wish(const Wish& wish) {
   return {ahead, std::fabs(error) < wish.turning.tolerance ? 0.0 : error};
 }
 
-/// The turn rate that removes a heading error in `guarantee_time`, capped.
+/// The turn rate that removes a heading error in `guarantee_time`, capped, from which the turn can stop at the wanted
+/// heading.
 inline double turn_rate(double error, const Turning& turning) {
-  return clip(error / turning.guarantee_time, -turning.max_rate, turning.max_rate);
+  const double most = std::min(turning.max_rate, speed_to_stop_within(std::fabs(error), turning.acce, turning.dt));
+  return clip(error / turning.guarantee_time, -most, most);
 }
 
 }  // namespace irsim

@@ -121,11 +121,23 @@ def sfm(o: Any, view: View, dt: float, companions: Sequence[tuple[np.ndarray, fl
 def forward(velocity: np.ndarray, theta: float, *, tolerance: float, guarantee_time: float, max_rate: float) -> tuple:
     """Forward speed, heading error and yaw rate for a wanted velocity (reference: 5.4)."""
     speed = float(np.hypot(*velocity))
-    if speed <= 0.02:  # who must still turn, because the rate cannot change faster, does so in a stop, too
-        return 0.0, 0.0, float(np.clip(0.0, -max_rate, max_rate))
+    if speed <= 0.02:
+        return 0.0, 0.0, 0.0
     error = -wrap(theta - math.atan2(velocity[1], velocity[0]))
     kept = 0.0 if abs(error) < tolerance else error
     return max(0.0, speed * math.cos(error)), kept, float(np.clip(kept / guarantee_time, -max_rate, max_rate))
+
+
+def stopping_rate(left: float, acce: float, dt: float) -> float:
+    """The fastest turn for one period after which a turn that slows down by acce * dt per period ends in time."""
+    if math.isinf(acce):
+        return math.inf
+    low, high = 0.0, left / dt
+    for _ in range(100):
+        rate = (low + high) / 2
+        turns = np.arange(rate, 0.0, -acce * dt).sum() * dt
+        low, high = (rate, high) if turns <= left else (low, rate)
+    return low
 
 
 def time_to_line(view: View, a: np.ndarray, b: np.ndarray, w: np.ndarray) -> float:

@@ -66,7 +66,11 @@ class Crowd:
                 "extra": [rng.uniform(-0.5, 0.5)],
                 "vel_max": top,
                 "vel_min": -top,
-                "acce": rng.uniform(0.5, 30, 3),
+                "acce": [
+                    math.inf,
+                    math.inf if drive.startswith("omni") else rng.uniform(0.5, 30),
+                    rng.uniform(0.5, 30),
+                ],
                 "goals": [self._pose()],
                 "target_roles": int(rng.choice([0, 0, 1, 2])),
                 **more,
@@ -128,11 +132,14 @@ class Crowd:
         if drive.startswith("omni"):
             return np.array([*(rotation(-theta) @ velocity), 0.0])
         speed, error, rate = oracle.forward(velocity, theta, **turning)
+        acce = float(spec["acce"][1])
         if drive == "diff":
-            return np.array([min(speed, fastest), rate, 0.0])
+            most = oracle.stopping_rate(abs(error), acce, self.dt)
+            return np.array([min(speed, fastest), np.clip(rate, -most, most), 0.0])
         if error != 0.0:
             speed = max(speed, 0.2 * float(np.hypot(*velocity)))
         if drive == "steer":
             return np.array([min(speed, fastest), error, 0.0])
-        rate = (np.clip(error, -PI / 4, PI / 4) - spec["extra"][0]) / turning["guarantee_time"]
-        return np.array([min(speed, fastest), np.clip(rate, -turning["max_rate"], turning["max_rate"]), 0.0])
+        left = np.clip(error, -PI / 4, PI / 4) - spec["extra"][0]
+        most = min(turning["max_rate"], oracle.stopping_rate(abs(left), acce, self.dt))
+        return np.array([min(speed, fastest), np.clip(left / turning["guarantee_time"], -most, most), 0.0])

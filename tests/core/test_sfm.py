@@ -51,9 +51,7 @@ def walker(**overrides: Any) -> core.ObjectSpec:
 
 
 def turning(crowd: Crowd, i: int) -> dict[str, float]:
-    spec = crowd.specs[i]
-    limit = min(spec["vel_max"][1], spec["control"][1] + spec["acce"][1] * crowd.dt)
-    return {"tolerance": 0.02, "guarantee_time": crowd.dt, "max_rate": limit}
+    return {"tolerance": 0.02, "guarantee_time": crowd.dt, "max_rate": crowd.specs[i]["vel_max"][1]}
 
 
 @pytest.mark.parametrize("drive", DRIVES)

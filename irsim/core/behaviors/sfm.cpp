@@ -171,8 +171,7 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
     Turning turning;
     turning.tolerance = kTolerance;
     turning.guarantee_time = dt;
-    turning.max_rate = std::min(decision.state.vel_max[ego.row][1],
-                                decision.state.control[ego.row][1] + decision.state.acce[ego.row][1] * dt);
+    turning.max_rate = decision.state.vel_max[ego.row][1];
     intents[k] = Intent::of_velocity(velocity, turning);
   }
 }

@@ -46,10 +46,10 @@ std::pair<Numbers, Numbers> drive_step(const Drive& drive, const Numbers& state,
 }
 
 Numbers drive_follow(const Drive& drive, const Numbers& state, const Numbers& velocity, double min_speed,
-                     double tolerance, double guarantee_time, double max_rate) {
+                     double tolerance, double guarantee_time, double max_rate, double acce, double dt) {
   const LoneObject object(state);
   if (velocity.size() != 2) throw nb::value_error("a velocity must have two numbers");
-  const Turning turning{min_speed, tolerance, guarantee_time, max_rate};
+  const Turning turning{min_speed, tolerance, guarantee_time, max_rate, kInfinity, acce, dt};
   Vec3 control;
   with(drive, [&](const auto& options) {
     control =
@@ -110,7 +110,8 @@ void bind_object(nb::module_& m) {
         nb::arg("integration") = static_cast<int>(kEuler));
   m.def("drive_follow", &drive_follow, nb::arg("drive"), nb::arg("state"), nb::arg("velocity"),
         nb::arg("min_speed") = defaults.min_speed, nb::arg("tolerance") = defaults.tolerance,
-        nb::arg("guarantee_time") = defaults.guarantee_time, nb::arg("max_rate") = defaults.max_rate);
+        nb::arg("guarantee_time") = defaults.guarantee_time, nb::arg("max_rate") = defaults.max_rate,
+        nb::arg("acce") = defaults.acce, nb::arg("dt") = defaults.dt);
   m.def("drive_deviation", &drive_deviation, nb::arg("drive"), nb::arg("control"));
 }
 

@@ -24,12 +24,7 @@ void face_goal(const World& world, const State& state, int row, int object, Vec3
   const double error = wrap(goal.theta - state.pose[row].theta), dt = world.step_time;
   const double turn = std::fabs(control[2]) * dt, enough = std::sqrt(threshold * threshold - gap * gap);
   if (turn > kRestingTurn && turn <= std::fabs(error) + enough) return;
-  const double acce = state.acce[row][2];
-  double rate = std::fabs(error) / dt;
-  if (std::isfinite(acce) && acce > 0.0) {  // the turn must be able to stop at the wanted heading
-    const double change = acce * dt;
-    rate = std::min(rate, -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce * std::fabs(error)));
-  }
+  const double left = std::fabs(error), rate = std::min(left / dt, speed_to_stop_within(left, state.acce[row][2], dt));
   control[2] = error > 0.0 ? rate : -rate;
 }
 
@@ -76,8 +71,10 @@ void command_velocity(const World& world, State& state, int w, int object, Vec2 
   face_goal(world, state, w * world.objects + object, object, command);
 }
 
-Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& turning) {
+Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& wanted) {
   const int row = w * world.objects + object;
+  Turning turning = wanted;
+  turning.acce = state.acce[row][1], turning.dt = world.step_time;
   const Wish wish{velocity, state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows],
                   state.heading(row), turning};
   Vec3 control{

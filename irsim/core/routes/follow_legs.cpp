@@ -70,13 +70,8 @@ bool Follower::slow_down_on_leg(Vec3& u) {
 }
 
 double Follower::stopping_speed(double left, int control, double most) const {
-  const double acce = state_.acce[row_][control];
-  double speed = std::min(most, left / world_.step_time);
-  if (std::isfinite(acce) && acce > 0.0) {
-    const double change = acce * world_.step_time;
-    speed = std::min(speed, -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce * left));
-  }
-  return std::max(speed, 0.0);
+  const double dt = world_.step_time, stopping = speed_to_stop_within(left, state_.acce[row_][control], dt);
+  return std::max(std::min({most, left / dt, stopping}), 0.0);
 }
 
 double Follower::top_speed(int way) const {

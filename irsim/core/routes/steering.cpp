@@ -32,11 +32,7 @@ void Follower::steer_to_corner(Vec3& u) {
   with(world_.drive[object_], [&](const auto& drive) {
     using Drive = std::decay_t<decltype(drive)>;
     if constexpr (std::is_same_v<Drive, DiffOptions>) {
-      double rate = std::min(std::fabs(top[1]), std::fabs(error) / world_.step_time);
-      if (std::isfinite(acce[1]) && acce[1] > 0.0) {  // the turn must be able to stop at the wanted heading
-        const double change = acce[1] * world_.step_time;
-        rate = std::min(rate, -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce[1] * std::fabs(error)));
-      }
+      const double rate = stopping_speed(std::fabs(error), 1, std::fabs(top[1]));
       u[1] = error > 0.0 ? rate : -rate;
       u[0] = std::fabs(error) > kMaxHeadingError ? 0.0 : std::min(u[0], most);
     } else if constexpr (std::is_same_v<Drive, OmniOptions> || std::is_same_v<Drive, OmniAngularOptions>) {
