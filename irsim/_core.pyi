@@ -766,6 +766,7 @@ class State:
     appeared: NDArray[
         np.int64
     ]  # (R,) step in which the object came into the world; -1 before, -2 minus that step afterwards
+    between_steps: NDArray[np.int32]  # (R,) contacts of the episode between two steps, with nothing touched at either
     infeasible: NDArray[np.int32]  # (R,) steps of the episode in which no velocity avoided every collision
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)
@@ -797,8 +798,14 @@ class State:
         """Events since the last reset except the first `start`: (kind, step, object, partner or -1, x, y).
 
         The kind is "arrival", "waypoint", "collision", "no_path", "overshoot", "zone_entry", "zone_exit",
-        "crossing_to_right", "crossing_to_left", "sight_start" or "sight_end". Objects are given by their number, zones
-        by their index in place of the partner. Who sees is the object, who is seen is the partner.
+        "crossing_to_right", "crossing_to_left", "sight_start", "sight_end", "contact_between_steps" or
+        "passed_through". Objects are given by their number, zones by their index in place of the partner. Who sees is
+        the object, who is seen is the partner.
+        """
+    def moments(self, world: int, start: int = 0) -> list[tuple[float, float]]:
+        """When each of these events happened within its step (0 its beginning, 1 its end), and the deepest overlap [m].
+
+        The overlap is 0 unless the event is a contact between steps.
         """
     def collision_pairs(self, world: int) -> NDArray[np.int32]:
         """(P, 2) sorted pairs i < j whose closed shapes intersect now, including `unobstructed` ones."""

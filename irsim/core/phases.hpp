@@ -23,6 +23,13 @@ void sense(const World& world, State& state, int w, Workspace& work);
 /// Log who enters, leaves or crosses a zone, and who comes into or goes out of a watched field of view.
 void watch(const World& world, State& state, int w, Workspace& work);
 
+/// Find the contacts of a pair of objects a < b within the step, and keep it in `Scene::meetings`. They are apart at
+/// its end.
+void meet(const World& world, State& state, int w, int a, int b);
+/// Log the meetings of the step, and count them for each object.
+void log_meetings(const World& world, State& state, int w);
+/// The motion of an object in this step, to its present pose.
+Stride stride_of(const World& world, const State& state, int w, int object);
 /// Place the geometry of the moving objects at their present poses.
 void place_moving(const World& world, State& state, int w);
 /// One period. With `external` the caller has moved the objects already.

@@ -49,6 +49,8 @@ class Batch:
         goal: (n, N, 3) present goals: x, y [m], heading [rad], world frame; NaN for objects without a goal, and for
             the heading of goals without one.
         arrived, collided, stopped: (n, N) uint8 flags.
+        between_steps: (n, N) number of contacts of the episode between two steps, in which the object touched something
+            that it touched at neither end of the step.
         infeasible: (n, N) number of steps of the episode in which the behavior (`orca`, `avocado`) found no velocity
             that avoids all objects.
         ranges: (n, B) ranges of all lidars of a world, one after another [m].
@@ -86,6 +88,7 @@ class Batch:
         self.arrived = simulation.arrived.reshape(n, objects)
         self.collided = simulation.collided.reshape(n, objects)
         self.stopped = simulation.stopped.reshape(n, objects)
+        self.between_steps = simulation.between_steps.reshape(n, objects)
         self.infeasible = simulation.infeasible.reshape(n, objects)
         self.ranges = simulation.ranges.reshape(n, simulation.world.beams_per_world)
         self.explored = simulation.state.explored

@@ -100,12 +100,18 @@ def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[
     zones = simulation.scenario.world.zones
     step_time = float(simulation.scenario.world.step_time)
     found = []
-    for kind, step, first, second, x, y in simulation.state.events(world, start):
+    state = simulation.state
+    moments = state.moments(world, start) if state.between_steps.any() else None
+    for number, (kind, step, first, second, x, y) in enumerate(state.events(world, start)):
         time, name = step * step_time, simulation.names[first]
         if kind in _CROSSINGS:
             found.append(Event("line_crossing", time, step, name, None, x, y, zones[second].name, _CROSSINGS[kind]))
         elif kind in ("zone_entry", "zone_exit"):
             found.append(Event(kind, time, step, name, None, x, y, zones[second].name))  # type: ignore[arg-type]
+        elif kind in BETWEEN_STEPS:
+            when, depth = state.moments(world, start + number)[0] if moments is None else moments[number]
+            time = (step - 1 + when) * step_time
+            found.append(Event(kind, time, step, name, simulation.names[second], x, y, depth=depth))
         else:
             partner = simulation.names[second] if second >= 0 else None
             found.append(Event(kind, time, step, name, partner, x, y))  # type: ignore[arg-type]

@@ -56,6 +56,8 @@ class Simulation:
         start_step: (R,) steps for which an object stands still at its start. appeared: -1 while it is not in the world.
         scans: (owner, first beam, number of beams) of each native sensor of a world.
         velocity_slices: (first row, number of rows) of each native sensor in the measured velocities.
+        between_steps: (R,) number of contacts of the episode between two steps, in which the object touched something
+            that it touched at neither end of the step.
         infeasible: (R,) number of steps in which the behavior found no collision-free velocity (`orca`, `avocado`).
         ids: (N + 1,) id of each object of a world; the last entry, -1, stands for no object.
         names: Id -> name of every object that is or was in the simulation.
@@ -123,6 +125,7 @@ class Simulation:
         self.goal, self.radius = state.goal, state.radius
         self.pace, self.start_step, self.appeared = state.pace, state.start_step, state.appeared
         self.infeasible, self.count = state.infeasible, state.count
+        self.between_steps = state.between_steps
         self.ranges, self.hits, self.valid = state.ranges, state.hits, state.valid
         self.scans, self.velocity_slices = world.scans(), world.velocity_slices()
         self._first_scan: dict[int, int] = {}

@@ -176,6 +176,7 @@ def everything(state: core.State) -> dict[str, np.ndarray]:
         "arrived",
         "collided",
         "stopped",
+        "between_steps",
         "radius",
         "goal",
     )

@@ -64,6 +64,7 @@ void BoundState::expose() {
   start_step = view<std::int64_t>(state.start_step.memory, {rows});
   appeared = view<std::int64_t>(state.appeared.memory, {rows});
   infeasible = view<std::int32_t>(state.infeasible.memory, {rows});
+  between_steps = view<std::int32_t>(state.between_steps.memory, {rows});
   goal = view<double>(state.goal.memory, {rows, 3});
   ranges = view<double>(state.ranges.memory, {beams});
   hits = view<std::int32_t>(state.hits.memory, {beams});

@@ -139,6 +139,14 @@ nb::object events(const BoundState& self, int w, std::size_t start) {
   return out;
 }
 
+nb::object moments(const BoundState& self, int w, std::size_t start) {
+  self.check_world(w);
+  nb::list out;
+  const std::vector<Event>& all = self.state.scenes[w].events;
+  for (std::size_t k = start; k < all.size(); ++k) out.append(nb::make_tuple(all[k].when, all[k].depth));
+  return out;
+}
+
 nb::object collision_pairs(const BoundState& self, int w) {
   self.check_world(w);
   std::vector<std::int32_t> out;
@@ -199,6 +207,7 @@ void bind_state(nb::module_& m) {
       .def_ro("start_step", &S::start_step)
       .def_ro("appeared", &S::appeared)
       .def_ro("infeasible", &S::infeasible)
+      .def_ro("between_steps", &S::between_steps)
       .def_ro("goal", &S::goal)
       .def_ro("ranges", &S::ranges)
       .def_ro("hits", &S::hits)
@@ -249,6 +258,7 @@ void bind_state(nb::module_& m) {
           },
           nb::arg("world"))
       .def("events", &events, nb::arg("world"), nb::arg("start") = 0)
+      .def("moments", &moments, nb::arg("world"), nb::arg("start") = 0)
       .def("collision_pairs", &collision_pairs, nb::arg("world"))
       .def("contacts", &contacts, nb::arg("world"))
       .def("goals", &goals_of, nb::arg("row"))

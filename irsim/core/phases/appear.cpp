@@ -60,7 +60,7 @@ void appear(const World& world, State& state, int w) {
     if (!recorded && !present.fits(i, place)) continue;
     present.add(i, place);
     state.pose[row] = place;
-    state.before[row] = state.pose[row].position();
+    state.before[row] = state.pose[row];
     state.appeared[row] = state.count[w];
     walls = walls || world.is_static[i];
   }

@@ -61,8 +61,8 @@ void arrive(const World& world, State& state, int w) {
   const int first = w * world.objects;
   for (int i = 0; i < world.objects; ++i) {
     const int row = first + i;
-    const Vec2 from = state.before[row];
-    state.before[row] = state.pose[row].position();
+    const Vec2 from = state.before[row].position();
+    state.before[row] = state.pose[row];
     if (std::isnan(state.goal[row].x)) {
       state.arrived[row] = 0;
       continue;

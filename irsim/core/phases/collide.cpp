@@ -7,27 +7,53 @@
 namespace irsim {
 namespace {
 
+/// A box that holds a moving object throughout the step.
+Box box_of_step(const World& world, const State& state, int w, int object) {
+  const Scene& scene = state.scenes[w];
+  const Shapes& shapes = *scene.shapes;
+  const Box& end = scene.moving.boxes[shapes.placed[object].object];
+  const Pose &from = state.before[w * world.objects + object], &to = state.pose[w * world.objects + object];
+  const double x = from.x - to.x, y = from.y - to.y;
+  Box box{end.x0 + std::min(x, 0.0), end.y0 + std::min(y, 0.0), end.x1 + std::max(x, 0.0), end.y1 + std::max(y, 0.0)};
+  if (from.theta == to.theta) return box;
+  const Vec2 centre = shapes.centre[object];
+  const bool is_disc =
+      centre.x == 0.0 && centre.y == 0.0 && shapes.parts[shapes.body[object].part].kind == Kind::circle;
+  const double turn = std::fabs(stride_of(world, state, w, object).turn);
+  double wide =
+      is_disc ? 0.0 : std::min(turn, 2.0) * (std::fabs(centre.x) + std::fabs(centre.y) + shapes.radius[object]);
+  return {box.x0 - wide, box.y0 - wide, box.x1 + wide, box.y1 + wide};
+}
+
+/// Find the pairs that touch now, and those that touched since the last evaluation.
 void find_pairs(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
   const Shapes& shapes = *scene.shapes;
   const Fixed& fixed = *scene.fixed;
+  const bool moved = scene.in_motion;
   std::vector<Pair>& pairs = scene.pairs;
   pairs.assign(fixed.pairs.begin(), fixed.pairs.end());
+  scene.meetings.clear();
+  const auto examine = [&](int i, int j, const Footprint& a, const Footprint& b) {
+    if (a.box.meets(b.box) && touch(a, b)) {
+      pairs.emplace_back(std::min(i, j), std::max(i, j));
+    } else if (moved) {
+      meet(world, state, w, std::min(i, j), std::max(i, j));
+    }
+  };
+  const auto box = [&](int i) {
+    return moved ? box_of_step(world, state, w, i) : scene.moving.boxes[shapes.placed[i].object];
+  };
   if (!world.fixed_objects.empty()) {
     for (const int i : world.moving) {
       const Footprint body = scene.moving.footprint(shapes, i);
-      fixed.grid.query(body.box, [&](int j) {
-        if (touch(body, fixed.outlines.footprint(shapes, j))) pairs.emplace_back(std::min(i, j), std::max(i, j));
-      });
+      fixed.grid.query(box(i), [&](int j) { examine(i, j, body, fixed.outlines.footprint(shapes, j)); });
     }
   }
   if (world.moving.size() > 1) {
-    scene.sweep.pairs([&](int i) { return scene.moving.boxes[shapes.placed[i].object]; },
-                      [&](int i, int j) {
-                        if (touch(scene.moving.footprint(shapes, i), scene.moving.footprint(shapes, j))) {
-                          pairs.emplace_back(std::min(i, j), std::max(i, j));
-                        }
-                      });
+    scene.sweep.pairs(box, [&](int i, int j) {
+      examine(i, j, scene.moving.footprint(shapes, i), scene.moving.footprint(shapes, j));
+    });
   }
   if (pairs.size() > 1) std::sort(pairs.begin(), pairs.end());
 }
@@ -71,6 +97,7 @@ void collide(const World& world, State& state, int w) {
   std::swap(scene.pairs, scene.previous_pairs);
   place_moving(world, state, w);
   find_pairs(world, state, w);
+  scene.in_motion = false;
   const int first = w * world.objects;
   std::uint8_t* collided = state.collided.data + first;
   std::fill(collided, collided + world.objects, std::uint8_t{0});
@@ -79,6 +106,7 @@ void collide(const World& world, State& state, int w) {
     if (!world.unobstructed[i]) collided[j] = 1;
   }
   log_contacts(world, state, w);
+  log_meetings(world, state, w);
   for (int i = 0; i < world.objects; ++i) {
     const bool stops =
         world.collision_mode == kStop || (world.collision_mode == kUnobstructedObstacles && world.is_robot[i]);

@@ -1,4 +1,6 @@
 // Limits and kinematics.
+#include <algorithm>
+
 #include "contact/respond.hpp"
 #include "phases.hpp"
 
@@ -64,7 +66,8 @@ void integrate(const World& world, State& state, int w, int object) {
 
 void integrate(const World& world, State& state, int w) {
   const int first = w * world.objects;
-  for (int row = first; row < first + world.objects; ++row) state.before[row] = state.pose[row].position();
+  std::copy_n(&state.pose[first], world.objects, &state.before[first]);
+  state.scenes[w].in_motion = true;
   for (int i = 0; i < world.objects; ++i) integrate(world, state, w, i);
 }
 

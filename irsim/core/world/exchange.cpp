@@ -24,6 +24,7 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.stopped[row] = from.stopped[old_row];
   to.goals[row] = from.goals[old_row];
   to.infeasible[row] = from.infeasible[old_row];
+  to.between_steps[row] = from.between_steps[old_row];
   to.pace[row] = from.pace[old_row];
   to.takes_part[row] = from.takes_part[old_row];
   to.size_scale[row] = from.size_scale[old_row];

@@ -8,6 +8,7 @@
 #include "collision/grid.hpp"
 #include "collision/points.hpp"
 #include "collision/sweep.hpp"
+#include "collision/swept.hpp"
 #include "contact/contact.hpp"
 #include "geometry/shapes.hpp"
 #include "orca/obstacles.hpp"
@@ -42,11 +43,14 @@ enum class EventKind {
   crossing_to_right,  // of a line, from its left side to its right
   crossing_to_left,
   sight_start,
-  sight_end
+  sight_end,
+  contact_between_steps,  // of two objects that are apart at both ends of the step
+  passed_through          // likewise, and the middle of one went through the other
 };
 constexpr const char* kEventNames[] = {"arrival",          "waypoint",    "collision", "no_path",
                                        "overshoot",        "zone_entry",  "zone_exit", "crossing_to_right",
-                                       "crossing_to_left", "sight_start", "sight_end"};
+                                       "crossing_to_left", "sight_start", "sight_end", "contact_between_steps",
+                                       "passed_through"};
 
 struct Event {
   EventKind kind;
@@ -54,6 +58,17 @@ struct Event {
   int object;   // World::number; who sees, if it is about a sight
   int partner;  // World::number of the other of a collision, or of whom is seen; index of a zone; otherwise -1
   double x, y;
+  double when = 1.0;   // time within the step: 0 its beginning, 1 its end
+  double depth = 0.0;  // deepest overlap within the step [m]; 0 unless it is about a contact between steps
+};
+
+/// Two objects a < b that touch between two steps and are apart at both.
+struct Meeting {
+  int a, b;
+  double when;  // time of the first contact within the step: 0 its beginning, 1 its end
+  Vec2 where;
+  double depth;  // deepest overlap [m]
+  bool through;  // whether the middle of one went through the other
 };
 
 struct Scene {
@@ -66,6 +81,10 @@ struct Scene {
   std::shared_ptr<const Bodies> bodies;     // rigid bodies of `shapes`; null until they are needed
   std::vector<Contact> contacts;            // contacts of the last step, in the order in which they were found
   Watched watched;
+  bool in_motion = false;         // whether the objects have moved from `State::before` since the last evaluation
+  std::vector<Meeting> meetings;  // of the last step, sorted by objects
+  Outlines trial;                 // moving objects at poses within the step
+  SweptBuffers swept;
 };
 
 }  // namespace irsim

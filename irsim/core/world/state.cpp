@@ -88,6 +88,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       noise_scale(rows, 1.0),
       latency(rows),
       infeasible(rows),
+      between_steps(rows),
       goal(rows, {kNone, kNone, kNone}),
       ranges(static_cast<std::size_t>(worlds) * world.beams_per_world),
       beam_angles(static_cast<std::size_t>(worlds) * world.beams_per_world),
@@ -167,7 +168,7 @@ void restart_row(const World& world, State& state, int row) {
   state.appeared[row] = 0;
   if (!state.takes_part[row] || state.count[w] < world.specs[i].appear_step) leave_world(state, row);
   std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
-  state.before[row] = state.pose[row].position();
+  state.before[row] = state.pose[row];
   state.control[row] = state.start_step[row] > 0 ? Vec3{} : state.initial_control[row];
   state.twist[row] = state.command[row] = {};
   state.commanded[row] = {};
@@ -176,7 +177,7 @@ void restart_row(const World& world, State& state, int row) {
   state.touching[row] = 0;
   state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
   state.radius[row] = state.scenes[w].shapes->radius[i];
-  state.infeasible[row] = 0;
+  state.infeasible[row] = state.between_steps[row] = 0;
   state.goal_draws[row] = 0;
   if (!state.routes.empty()) state.routes[row] = {};
   if (!state.opinions.empty()) state.opinions[row] = {};
@@ -196,6 +197,7 @@ void restart(const World& world, State& state, int w, Workspace& work) {
   state.count[w] = 0;
   scene.events.clear();
   scene.pairs.clear();
+  scene.in_motion = false;
   if (world.fog) std::fill_n(state.explored.data + w * world.fog->cells(), world.fog->cells(), std::uint8_t{0});
   scene.contacts.clear();
   for (int i = 0; i < world.objects; ++i) restart_row(world, state, w * world.objects + i);

@@ -64,9 +64,10 @@ struct State {
   // what varies between scenes, see world/variation.hpp
   Array<std::uint8_t> takes_part;  // 0: the object is absent in this scene
   Array<double> size_scale, speed_scale, acceleration_scale, noise_scale;
-  Array<std::int32_t> latency;     // steps after which the caller is asked to execute an action
-  Array<std::int32_t> infeasible;  // steps of this episode in which no velocity avoided every collision
-  Array<Goal> goal;                // head of the queue; x is NaN without a goal
+  Array<std::int32_t> latency;        // steps after which the caller is asked to execute an action
+  Array<std::int32_t> infeasible;     // steps of this episode in which no velocity avoided every collision
+  Array<std::int32_t> between_steps;  // contacts of this episode between two steps, with nothing touched at either
+  Array<Goal> goal;                   // head of the queue; x is NaN without a goal
   // (W * beams_per_world,)
   Array<double> ranges, beam_angles;
   Array<std::int32_t> hits;
@@ -89,7 +90,7 @@ struct State {
   std::vector<Opinions> opinions;         // (R,), empty if no object runs `avocado`
   std::vector<Detour> detours;            // (R,), empty if no object runs `footprint_orca`
   std::vector<std::uint32_t> goal_draws;  // (R,) wander goals drawn in this episode
-  std::vector<Vec2> before;               // (R,) positions at the beginning of the step
+  std::vector<Pose> before;               // (R,) poses at the beginning of the step
   std::vector<std::uint8_t> overshot;     // (R,) whether an overshoot of the present goal was reported
   std::vector<Pose> initial_pose;         // (R,)
   std::vector<double> initial_extra;

@@ -31,6 +31,8 @@ _MAX_EVENTS = 4000
 """Number of events that the page shows."""
 _RANKS = {
     "collision": 0,
+    "passed_through": 0,
+    "contact_between_steps": 0,
     "no_path": 1,
     "overshoot": 2,
     "arrival": 3,
