@@ -16,7 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tests.avoidance.comparison import Pool, exact_losses, pools, unequal_spellings
-from tests.avoidance.families import BEHAVIORS, PEER_BEHAVIORS
+from tests.avoidance.families import BEHAVIORS, PEER_BEHAVIORS, groups
 from tests.avoidance.results import FOLDER, Key, Outcomes, read, write
 
 WORKER = Path(__file__).with_name("worker.py")
@@ -67,17 +67,31 @@ def report(ours: dict[Key, Outcomes], peer: dict[Key, Outcomes]) -> str:
         ("behavior | drive | step", lambda key: key[:3]),
         ("behavior | drive | family", lambda key: (*key[:2], key[3])),
     ]
-    missing = sum(key[0] in PEER_BEHAVIORS and key not in peer for key in ours)
-    parts = [f"{missing} lines of 2.12 are missing." if missing else "Every line of 2.12 is there."]
+    wanted = sum(len(group.starts) for group in groups(PEER_BEHAVIORS))
+    there = sum(len(theirs.letters) for theirs in peer.values())
+    parts = [f"The reference of 2.12 has {there} of {wanted} starts; the tables compare those that both have."]
     parts += [table(pools(ours, peer, name), head) for head, name in names]
     alone = {key: mine for key, mine in ours.items() if key[0] not in PEER_BEHAVIORS}
     parts.append("Ours only:\n\n" + _alone(alone))
-    lost = [f"- {' '.join(key)}: {what}" for key, what in exact_losses(ours, peer)]
-    parts.append(f"Exact starts that 2.12 solves and we do not ({len(lost)}):\n\n" + "\n".join(lost))
-    unequal = list(unequal_spellings(ours))
-    lines = [f"- {' '.join(key)}: {count} of {of}" for key, _, count, of in unequal]
-    parts.append(f"Walls whose spelling matters, by starts ({len(unequal)}):\n\n" + "\n".join(lines))
+    lost = exact_losses(ours, peer)
+    parts.append(f"Exact starts that 2.12 solves and we do not ({len(lost)}):\n\n" + _list_losses(lost))
+    unequal = unequal_spellings(ours)
+    total, of = (sum(count[side] for count in unequal.values()) for side in (0, 1))
+    lines = [f"- {' '.join(name)}: {count} of {starts}" for name, (count, starts) in unequal.items() if count]
+    parts.append(
+        f"Starts that end otherwise than with the same wall as a polygon ({total} of {of}):\n\n" + "\n".join(lines)
+    )
     return "\n\n".join(parts)
+
+
+def _list_losses(lost: list[tuple[Key, str]]) -> str:
+    """A line for each behavior, drive and family: its cases, spellings and steps."""
+    lines: dict[tuple[str, ...], list[str]] = {}
+    for key, what in lost:
+        lines.setdefault((key[0], key[1], key[3]), []).append(
+            f"{' '.join(filter(None, key[4:]))} at {key[2]} s ({what})"
+        )
+    return "\n".join(f"- {' '.join(name)}: {', '.join(cases)}" for name, cases in lines.items())
 
 
 def _alone(ours: dict[Key, Outcomes]) -> str:

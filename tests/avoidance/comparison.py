@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from tests.avoidance.families import CASES
@@ -73,7 +73,7 @@ def pools(
     counted: dict[tuple[str, ...], Pool] = defaultdict(Pool)
     for key, mine in ours.items():
         if (theirs := peer.get(key)) is not None:
-            for start in range(len(mine.letters)):
+            for start in range(min(len(mine.letters), len(theirs.letters))):
                 counted[name(key)].add(mine, theirs, start)
     return dict(counted)
 
@@ -88,22 +88,25 @@ def exact_losses(ours: dict[Key, Outcomes], peer: dict[Key, Outcomes]) -> list[t
     return lost
 
 
-def unequal_spellings(ours: dict[Key, Outcomes]) -> Iterable[tuple[Key, str, int, int]]:
-    """Groups whose outcomes or times differ from those of the same walls as polygons.
+def unequal_spellings(ours: dict[Key, Outcomes]) -> dict[tuple[str, ...], tuple[int, int]]:
+    """How often the spelling of a wall matters: the outcome, contacts, or the time of an arrival or a contact differ.
 
-    Yields:
-        The group, starts that differ, and starts compared.
+    Returns:
+        For each behavior, drive, family and spelling: starts that end otherwise, and starts compared.
     """
+    counted: dict[tuple[str, ...], tuple[int, int]] = {}
     for key, mine in ours.items():
         first = ours.get((*key[:5], "polygon"))
         if first is None or key[5] in ("", "polygon"):
             continue
+        name = (key[0], key[1], key[3], key[5])
+        unequal, of = counted.get(name, (0, 0))
         count = min(len(mine.letters), len(first.letters))
-        unequal = [
-            k
-            for k in range(count)
-            if (mine.letters[k], mine.between[k], mine.seconds[k])
-            != (first.letters[k], first.between[k], first.seconds[k])
-        ]
-        if unequal:
-            yield key, key[5], len(unequal), count
+        counted[name] = unequal + sum(_differ(mine, first, k) for k in range(count)), of + count
+    return counted
+
+
+def _differ(one: Outcomes, other: Outcomes, start: int) -> bool:
+    if one.letters[start] != other.letters[start] or one.between[start] != other.between[start]:
+        return True
+    return one.letters[start] != "t" and one.seconds[start] != other.seconds[start]

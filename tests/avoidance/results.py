@@ -44,14 +44,15 @@ class Outcomes:
 
 
 def read(files: Iterable[Path]) -> dict[Key, Outcomes]:
-    """The lines of several files; a later file replaces lines of an earlier one."""
+    """The lines of several files; of two lines of a group the one with more starts counts."""
     found: dict[Key, Outcomes] = {}
     for file in files:
         with file.open(encoding="utf-8", newline="") as opened:
             for row in csv.reader(opened):
-                if row[0] != COLUMNS[0]:
+                key = tuple(row[:6])
+                if row[0] != COLUMNS[0] and (key not in found or len(found[key].letters) < len(row[6])):
                     between, seconds = tuple(map(int, row[7].split())), tuple(map(float, row[8].split()))
-                    found[tuple(row[:6])] = Outcomes(row[6], between, seconds, tuple(row))
+                    found[key] = Outcomes(row[6], between, seconds, tuple(row))
     return found
 
 

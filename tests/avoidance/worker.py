@@ -1,6 +1,6 @@
 """Runs groups of starts in the interpreter that has the simulator; needs that simulator, NumPy, PyYAML and Pillow only.
 
-python worker.py RESULTS [--share K/N] [--behaviors a,b]     appends a line to RESULTS for each group that is not in it
+python worker.py RESULTS [--share K/N] [--behaviors a,b]     appends lines to RESULTS for groups that are not in it
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import os
 import sys
 import tempfile
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -110,41 +110,52 @@ def _picture(group: Group, folder: Path) -> str:
     return str(file)
 
 
-def line(group: Group, folder: Path, starts: int | None = None) -> list[str]:
-    """The line of a reference: the outcomes, one letter each, and what else was counted, start by start."""
-    verdicts = [run(group, start, folder) for start in group.starts[:starts]]
-    return [
-        *group.key,
-        "".join(verdict.outcome for verdict in verdicts),
-        " ".join(f"{verdict.between}" for verdict in verdicts),
-        " ".join(f"{verdict.seconds:g}" for verdict in verdicts),
-        " ".join(f"{verdict.depth_m * 1e6:.0f}" for verdict in verdicts),
+def line(group: Group, folder: Path, starts: int | None = None, known: Sequence[str] = ()) -> list[str]:
+    """The line of a reference: the outcomes, one letter each, and what else was counted, start by start.
+
+    Args:
+        group: What is run.
+        folder: Folder for its files.
+        starts: Number of starts, from the exact one on; None for all.
+        known: A line with the first of these starts, which are not run again.
+    """
+    begun = len(known[6]) if known else 0
+    verdicts = [run(group, start, folder) for start in group.starts[begun:starts]]
+    counted = [
+        [f"{verdict.between}" for verdict in verdicts],
+        [f"{verdict.seconds:g}" for verdict in verdicts],
+        [f"{verdict.depth_m * 1e6:.0f}" for verdict in verdicts],
     ]
+    before = [text.split() for text in known[7:]] if known else [[], [], []]
+    letters = (known[6] if known else "") + "".join(verdict.outcome for verdict in verdicts)
+    return [*group.key, letters, *(" ".join(old + new) for old, new in zip(before, counted, strict=True))]
 
 
 def main(arguments: list[str]) -> None:
-    """Append the groups that a file of results lacks."""
+    """Append lines for the groups of which a file of results has no line, or one with fewer starts."""
     parser = argparse.ArgumentParser()
     parser.add_argument("results", type=Path)
     parser.add_argument("--behaviors", default="rvo,sfm,orca")
     parser.add_argument("--share", default="0/1", help="K/N: each N-th group, from the K-th")
     parser.add_argument("--starts", type=int, help="the first starts of each group only: 1 for the exact ones")
     given = parser.parse_args(arguments)
-    done = set()
+    known: dict[tuple[str, ...], list[str]] = {}
     if given.results.exists():
         with given.results.open(encoding="utf-8", newline="") as opened:
-            done = {tuple(row[:6]) for row in csv.reader(opened)}
+            known = {tuple(row[:6]): row for row in csv.reader(opened)}
     part, parts = map(int, given.share.split("/"))
-    wanted = [group for group in groups(tuple(given.behaviors.split(","))) if group.key not in done][part::parts]
     with (
         tempfile.TemporaryDirectory() as folder,
         given.results.open("a", encoding="utf-8", newline="") as opened,
         open(os.devnull, "w", encoding="utf-8") as silence,
     ):
         writer = csv.writer(opened, lineterminator="\n")
-        for group in wanted:
+        for group in groups(tuple(given.behaviors.split(",")))[part::parts]:
+            before = known.get(group.key, [])
+            if before and len(before[6]) >= len(group.starts[: given.starts]):
+                continue
             with contextlib.redirect_stdout(silence), contextlib.redirect_stderr(silence):
-                row = line(group, Path(folder), given.starts)
+                row = line(group, Path(folder), given.starts, before)
             writer.writerow(row)
             opened.flush()
 
