@@ -181,7 +181,8 @@ GUIDES: dict[str, Guide] = {
         "arrived robots stay where they are (after_arrival: freeze): it knows true outlines, goes round what stands, "
         "and robots that all run it did not touch in 10,000 episodes. For the others each moving object counts as the "
         "circle around its footprint: a car of 1.8 x 0.9 m as a disc of radius 1.01 m about the middle of its body. "
-        "orca respects speed and turn rate but not acce; rvo turns at most at 1.5 rad/s and respects no acce either. "
+        "orca, avocado, rvo and sfm respect speed, turn rate and acce: with acce they brake in time before walls and "
+        "each other, whatever their horizons (10 random robots, acce: [1, 4], 200 scenes: no collision). "
         "With walls, set timeHorizonObst of orca to 1 to 2 s. Robots that have arrived also give way, and return to "
         "their goals.",
         "behavior: {name: follow, local: {name: orca}}",

@@ -18,9 +18,9 @@ class Avocado(BehaviorOptions):
     It forms an opinion of every moving object near it: one that does not react gets out of nothing, so the robot makes
     more of the change of velocity that avoids it, and less for one that gives way. `orca` is told who gives way;
     this is for people and robots whose behavior is unknown. An opinion starts neutral, which is the half that `orca`
-    makes, and is forgotten when the other is no longer among those considered. Walls, limits of speed and turning, cars
-    and the goal are as in `orca`, and so are dead ends: for a way round walls, use `follow` with `avocado` as its
-    `local`. Its weak noise breaks exact symmetry, and follows the seed.
+    makes, and is forgotten when the other is no longer among those considered. Walls, limits of speed and turning,
+    `acce`, cars and the goal are as in `orca`, and so are dead ends: for a way round walls, use `follow` with `avocado`
+    as its `local`. Its weak noise breaks exact symmetry, and follows the seed.
     """
 
     in_group: ClassVar[bool] = True

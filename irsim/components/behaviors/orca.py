@@ -16,10 +16,10 @@ class Orca(BehaviorOptions):
     """Take half of the smallest change of velocity that avoids every collision, and leave the rest to the other.
 
     It makes the whole change for moving objects that run no kind of orca, and never drives into static ones.
-    It respects walls, the largest speed and turn rate and the steering of a car, but not `acce`; every object counts as
-    the circle round its footprint, even a long rectangle. Robots that have arrived still give way: they leave their
-    goals and come back. It does not get out of dead ends: to find a way round walls, use `follow` with `orca` as its
-    `local`.
+    It respects walls, limits of speed and turning, the steering of a car, and `acce`: it brakes in time before walls
+    and others, whatever its horizons. Every object counts as the circle round its footprint, even a long rectangle.
+    Robots that have arrived still give way: they leave their goals and come back. It does not get out of dead ends: to
+    find a way round walls, use `follow` with `orca` as its `local`.
     """
 
     in_group: ClassVar[bool] = True

@@ -16,8 +16,8 @@ class Rvo(BehaviorOptions):
     """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
 
     Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second. It turns
-    at most at 1.5 rad/s, whatever `vel_max` allows, and ignores the `acce` of the object. It does not get out of dead
-    ends.
+    at most at 1.5 rad/s, whatever `vel_max` allows, and with `acce` brakes in time before walls and others. It does not
+    get out of dead ends.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {

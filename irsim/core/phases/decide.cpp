@@ -1,6 +1,7 @@
 // Goals of objects that have arrived are renewed, then behaviors choose commands.
 #include <algorithm>
 
+#include "braking/brake_in_time.hpp"
 #include "phases.hpp"
 #include "routes/route.hpp"
 #include "world/features.hpp"
@@ -42,10 +43,11 @@ void run_behavior(const World& world, State& state, int w, const BehaviorGroup& 
     state.infeasible[first + object] += intent.infeasible;
     if (intent.kind == Intent::velocity_world) {
       command_velocity(world, state, w, object, intent.velocity, intent.turning);
-      continue;
+    } else {
+      state.command[first + object] = intent.control;
+      face_goal(world, state, first + object, object, state.command[first + object]);
     }
-    state.command[first + object] = intent.control;
-    face_goal(world, state, first + object, object, state.command[first + object]);
+    brake_in_time(decision, k, state.command[first + object]);
   }
 }
 
@@ -85,7 +87,7 @@ Vec3 control_for(const World& world, const State& state, int w, int object, Vec2
 
 void decide(const World& world, State& state, int w, Workspace& work) {
   const int first = w * world.objects;
-  work.neighbors.known = work.orca.known = false;
+  work.neighbors.known = work.orca.known = work.stops.known = false;
   for (const int i : world.moving) {
     const int row = first + i;
     if (state.stopped[row]) continue;
@@ -104,7 +106,7 @@ void decide(const World& world, State& state, int w, Workspace& work) {
 }
 
 void decide(const World& world, State& state, int w, Workspace& work, int object) {
-  work.neighbors.known = work.orca.known = false;
+  work.neighbors.known = work.orca.known = work.stops.known = false;
   state.command[w * world.objects + object] = {};
   find_routes(world, state, w, work, object);
   for (const BehaviorGroup& group : world.behaviors) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "braking/stops.hpp"
 #include "contact/contact.hpp"
 #include "orca/crowd.hpp"
 #include "orca/opinions.hpp"
@@ -51,6 +52,7 @@ struct Workspace {
   SearchMemory search;            // memory of planners
   Outlines ghost;                 // outline of an object at a pose that is tried
   std::vector<Side> sides;        // lines that an object on a route must not cross
+  Stops stops;
 };
 
 }  // namespace irsim

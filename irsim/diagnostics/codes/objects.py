@@ -232,6 +232,13 @@ OBJECTS: dict[str, Code] = {
         " thick together can pass to the other side without a collision. Example: 20 m/s × 0.1 s = 2 m against a "
         "wall of 0.1 m; lower step_time, or the speed: limits are in m/s.",
     ),
+    "brakes-too-late": Code(
+        "a horizon shorter than it takes to brake",
+        "Behaviors look a time horizon ahead, and with `acce` a robot takes a while to stop: speed / acce. If that is "
+        "longer than the horizon, it brakes as hard as it can as soon as it sees what is ahead, and stands close to it "
+        "instead of going round. Example: 1.2 m/s at 1 m/s^2 takes 1.2 s and 0.72 m; timeHorizonObst: 0.5 is too "
+        "short, timeHorizonObst: 1.8 leaves time to decide.",
+    ),
     "region-left": Code(
         "start or goal outside the region of follow",
         "Under `within` the path of `follow` stays in a region. To a goal outside it there is no path, and the object "

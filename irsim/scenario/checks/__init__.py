@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from irsim.scenario.checks import (
     behaviors,
+    braking,
     bridges,
     files,
     goals,
@@ -52,6 +53,7 @@ _FAMILIES = (
     motion,
     tunneling,
     symmetry,
+    braking,
     sensors,
     units,
     files,

@@ -1,0 +1,44 @@
+"""The hint that a horizon is shorter than the time in which a robot brakes."""
+
+from __future__ import annotations
+
+import pytest
+
+import irsim
+
+BRAKES = (
+    "world: {width: 20, height: 20}\nrobot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, "
+    "state: [1, 5, 0], goal: [18, 5], vel_max: [1.2, 2], vel_min: [0, -2], "
+)
+SHELF = "\nobstacle: {shape: {name: rectangle, length: 2, width: 1}, state: [9, 5, 0]}"
+
+
+@pytest.mark.parametrize(
+    ("more", "says", "fix"),
+    [
+        ("acce: [1, 4], behavior: {name: footprint_orca}}" + SHELF,
+         "1.2 m/s at 1 m/s^2 in 1.2 s and 0.72 m, but footprint_orca looks 0.5 s ahead at what stands",
+         "timeHorizonObst: 1.8"),
+        ("acce: [1, 4], number: 2, distribution: {name: random}, behavior: {name: orca, timeHorizon: 1}}" + SHELF,
+         "but orca looks 1 s ahead at what moves", "timeHorizon: 1.8"),
+        ("acce: [1, 4], number: 2, distribution: {name: random}, "
+         "behavior: {name: follow, local: {name: orca, timeHorizon: 1, timeHorizonObst: 0.5}}}" + SHELF,
+         "but orca looks 1 s ahead at what moves", "timeHorizon: 1.8"),
+        ("acce: [1, 4], behavior: {name: rvo, vxmax: 1.2, vymax: 1.2}}" + SHELF,
+         "but rvo looks 1 s ahead at walls", "orca with timeHorizonObst: 1.8, or at most 1 m/s"),
+        ("acce: [1, 4], behavior: {name: orca}}" + SHELF, None, None),
+        ("acce: [4, 4], behavior: {name: footprint_orca}}" + SHELF, None, None),
+        ("behavior: {name: footprint_orca}}" + SHELF, None, None),
+        ("acce: [1, 4], behavior: {name: footprint_orca}}", None, None),
+        ("acce: [1, 4], behavior: {name: footprint_orca, maxSpeed: 0.4}}" + SHELF, None, None),
+    ],
+)  # fmt: skip
+def test_horizons_shorter_than_braking_are_named(more: str, says: str | None, fix: str | None) -> None:
+    found = [one for one in irsim.validate(text=BRAKES + more).findings if one.code == "brakes-too-late"]
+    if says is None:
+        assert not found
+        return
+    assert len(found) == 1
+    assert found[0].severity == "hint"
+    assert says in found[0].message
+    assert found[0].fix == fix
