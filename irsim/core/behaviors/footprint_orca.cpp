@@ -11,8 +11,6 @@
 namespace irsim {
 namespace {
 
-constexpr double kLeastGap = 0.005;          // part of a gap that stays free [m]
-constexpr double kLeastStandingGap = 0.001;  // gap that is kept from what stands [m]
 constexpr double kOutlineDistance = 0.5;     // gap of bounding circles from which these stand for outlines [m]
 constexpr double kRestingSpeed = 0.1;        // an arrived object that is slower rests [m/s]
 constexpr double kStrangerDistance = 0.1;    // distance kept in addition from movers that do something else [m]
@@ -37,6 +35,7 @@ void fill_crowd(const Decision& decision, const OrcaCrowd& all, FootprintCrowd& 
     const int row = decision.first_row + i;
     crowd.hulls.add(shapes, i, state.pose[row].position(), state.heading(row));
   }
+  fill_reaches(decision, all, crowd);
   for (std::size_t m = 0; m < world.moving.size(); ++m) {
     const int i = world.moving[m], row = decision.first_row + i;
     const bool rests = state.arrived[row] && squared(all.movers[m].velocity) < kRestingSpeed * kRestingSpeed;
@@ -55,6 +54,7 @@ FootprintSelf self_of(const FootprintOrcaOptions& options, const Decision& decis
   const Vec3& top = state.vel_max[row];
   const bool slides = std::holds_alternative<OmniOptions>(drive) || std::holds_alternative<OmniAngularOptions>(drive);
   const double own = slides ? std::min(top[0], top[1]) : top[0];
+  const double reach = norm(shapes.centre[i]) + shapes.radius[i];
   const bool turns = !slides && !std::holds_alternative<AckerOptions>(drive);
   return {options,
           decision,
@@ -71,7 +71,8 @@ FootprintSelf self_of(const FootprintOrcaOptions& options, const Decision& decis
           turns ? std::max(0.0, top[1]) : 0.0,
           slides,
           !slides && options.backward && state.vel_min[row][0] < 0.0,
-          norm(shapes.centre[i]) + shapes.radius[i]};
+          reach,
+          {world, state, row, i, reach, crowd.extra}};
 }
 
 /// Find the static obstacles near an object: threats, and blockers of its way.
@@ -89,7 +90,8 @@ void meet_static(FootprintSelf& self) {
   std::vector<int>& found = crowd.others;
   found.clear();
   const Vec2 centre = self.all.movers[self.mover].position;
-  obstacles.near(box_around(centre, kWayReach), [&](int k) {
+  const double radius = self.all.movers[self.mover].radius, range = self.limits().range + radius;
+  obstacles.near(box_around(centre, std::max(kWayReach, range)), [&](int k) {
     const int object = k < edges ? obstacles.edges[k].object : obstacles.discs[k - edges].object;
     if (object < 0 || sees_role(world, self.object, object)) found.push_back(k);
   });
@@ -102,19 +104,22 @@ void meet_static(FootprintSelf& self) {
     }
   }
   const double horizon = self.options.timeHorizonObst;
-  const double reach = horizon * self.speed + 2.0 * self.stride() + self.all.movers[self.mover].radius;
+  const double reach = horizon * self.speed + 2.0 * self.stride() + radius;
   for (int n = 0; n < crowd.walls.count(); ++n) {
     const Hull wall = crowd.walls[n];
     const Vec2 a = wall.corner[0], b = wall.corner[wall.count - 1];
     crowd.blockers.push_back({wall, (a + b) * 0.5, 0.5 * norm(b - a) + wall.round});
     const int k = found[n];
-    if (k < edges && !obstacles.edges[k].faces(centre)) continue;
-    if (norm(nearest_on_segment(a, b, centre) - centre) - wall.round >= reach) continue;
-    Threat threat{{}, 1.0, {}, horizon, true};
-    const Separation apart = cone_of(self.hull, wall, self.options.safe_distance, false, crowd.faces, threat.cone);
-    crowd.threats.push_back(threat);
-    if (apart.gap < 2.0 * self.stride())
-      crowd.cell.fixtures.push_back({wall, std::min(kLeastStandingGap, apart.gap), {}});
+    const bool faces = k >= edges || obstacles.edges[k].faces(centre);
+    const double distance = norm(nearest_on_segment(a, b, centre) - centre) - wall.round;
+    if (faces && distance < reach) {
+      Threat threat{{}, 1.0, {}, horizon, true};
+      const Separation apart = cone_of(self.hull, wall, self.options.safe_distance, false, crowd.faces, threat.cone);
+      crowd.threats.push_back(threat);
+      bound_by_wall(self, wall, apart);
+    } else if (distance < range && self.limits().glides) {  // it may get round a corner until it stands
+      bound_by_wall(self, wall, separation(self.hull, wall));
+    }
   }
 }
 
@@ -137,47 +142,67 @@ void find_others(FootprintSelf& self, OrcaCrowd& all) {
   likely = others;
 }
 
-/// Meet a mover: a threat, and a border if it is near.
-void meet_mover(FootprintSelf& self, int m) {
+Meeting meet(const FootprintSelf& self, int m) {
   const World& world = self.world();
-  const OrcaCrowd& all = self.all;
-  FootprintCrowd& crowd = self.crowd;
-  const int theirs = all.group[m], other = self.decision.first_row + world.moving[m];
+  const int theirs = self.all.group[m], other = self.decision.first_row + world.moving[m];
   const bool standing = self.state().stopped[other] != 0;
   const bool mutual =
-      theirs >= 0 && (theirs == all.member_of[self.mover] || sees_role(world, world.moving[m], self.object));
+      theirs >= 0 && (theirs == self.all.member_of[self.mover] || sees_role(world, world.moving[m], self.object));
   const bool alike = mutual && std::holds_alternative<FootprintOrcaOptions>(world.behaviors[theirs].behavior);
-  const Vec2 moves = standing ? Vec2{} : all.movers[m].velocity;
-  const double gain = mutual ? 2.0 : 1.0;
-  const bool strange = !standing && !alike;
+  return {m, standing, mutual, alike, standing ? Vec2{} : self.all.movers[m].velocity};
+}
+
+/// Meet a mover that the object avoids: a threat, and a border if it is near.
+void meet_mover(FootprintSelf& self, int m) {
+  const OrcaCrowd& all = self.all;
+  FootprintCrowd& crowd = self.crowd;
+  const World& world = self.world();
+  const Meeting meeting = meet(self, m);
+  const double gain = meeting.mutual ? 2.0 : 1.0;
+  const bool strange = !meeting.standing && !meeting.alike;
   const double margin = self.options.safe_distance + (strange ? kStrangerDistance : 0.0);
   const double horizon =
-      standing ? self.options.timeHorizonObst : self.options.timeHorizon * (strange ? kStrangerHorizons : 1.0);
-  Threat threat{{}, gain, self.velocity * (gain - 1.0) + moves, horizon, standing};
+      meeting.standing ? self.options.timeHorizonObst : self.options.timeHorizon * (strange ? kStrangerHorizons : 1.0);
+  Threat threat{{}, gain, self.velocity * (gain - 1.0) + meeting.moves, horizon, meeting.standing};
   const Shapes& shapes = *self.state().scenes[self.decision.w()].shapes;
   const Vec2 offset = all.movers[m].position - all.movers[self.mover].position;
   const double radii = shapes.radius[self.object] + shapes.radius[world.moving[m]] + margin;
-  const double gap = norm(offset) - radii, stride = 2.0 * self.stride() + norm(moves) * world.step_time;
-  if (gap > horizon * (gain * self.speed + norm(threat.base))) return;
+  const double gap = norm(offset) - radii, stride = 2.0 * self.stride() + norm(meeting.moves) * world.step_time;
+  if (gap > horizon * (gain * self.speed + norm(threat.base))) return bound_by_mover(self, meeting, nullptr);
   // Circles stand for bodies that are far, and for those whose way is not known as long as they do not overlap.
   const bool discs = strange ? gap > 0.0 : gap > std::max(kOutlineDistance, stride);
-  const Hull body = crowd.hulls[m];
-  Separation apart{{}, gap};
   if (discs) {
     cone_of(offset, radii, crowd.faces, threat.cone);
-  } else {
-    apart = cone_of(self.hull, body, margin, m < self.mover, crowd.faces, threat.cone);
+    crowd.threats.push_back(threat);
+    return bound_by_mover(self, meeting, nullptr);
   }
+  const Separation apart = cone_of(self.hull, crowd.hulls[m], margin, m < self.mover, crowd.faces, threat.cone);
   crowd.threats.push_back(threat);
-  if (apart.gap > 2.0 * stride) return;
-  if (standing) {
-    crowd.cell.fixtures.push_back({body, std::min(kLeastStandingGap, apart.gap), {}});
-  } else if (!alike) {
-    crowd.cell.fixtures.push_back({body, kLeastGap, moves * world.step_time});
-  } else {
-    const double own = std::max(0.0, -dot(apart.axis, self.velocity)), toward = std::max(0.0, dot(apart.axis, moves));
-    crowd.cell.borders.push_back(border(self.hull, apart, own, toward, kLeastGap));
-  }
+  bound_by_mover(self, meeting, &apart);
+}
+
+/// Bound the cell by movers that the object does not avoid because others are nearer, but could touch.
+void meet_reachable(FootprintSelf& self, OrcaCrowd& all) {
+  const World& world = self.world();
+  FootprintCrowd& crowd = self.crowd;
+  std::vector<int>& others = crowd.others;
+  const double reach =
+      self.limits().range + all.movers[self.mover].radius + crowd.widest + kStrangerDistance;
+  const int most = static_cast<int>(all.movers.size()) - 1;
+  const bool cut = static_cast<int>(others.size()) == std::min(self.options.maxNeighbors, most);
+  const Vec2 centre = all.movers[self.mover].position;
+  const double known = cut && !others.empty() ? norm(all.movers[others.back()].position - centre)
+                       : cut                  ? 0.0
+                                              : self.options.neighborDist;
+  if (known >= reach || static_cast<int>(others.size()) == most) return;
+  const int group = all.member_of[self.mover];
+  if (static_cast<int>(all.neighbors.size()) < most) all.neighbors.resize(most);
+  const auto seen = [&](int m) {
+    return m != self.mover && (all.member_of[m] == group || sees_role(world, self.object, world.moving[m])) &&
+           std::find(others.begin(), others.end(), m) == others.end();
+  };
+  const int count = all.nearest.find(centre, reach, most, {}, seen, all.neighbors.data());
+  for (int k = 0; k < count; ++k) bound_by_mover(self, meet(self, all.neighbors[k].index), nullptr);
 }
 
 }  // namespace
@@ -195,6 +220,7 @@ void footprint_orca(const FootprintOrcaOptions& options, const Decision& decisio
     meet_static(self);
     find_others(self, all);
     for (const int m : outlines.others) meet_mover(self, m);
+    meet_reachable(self, all);
     intents[k] = best_intent(self, wanted_velocity(self));
   }
 }

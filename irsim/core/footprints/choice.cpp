@@ -26,49 +26,30 @@ constexpr double kRoot = 0.86602540378443865;  // cosine of 30 degrees
 constexpr Vec2 kDirections[] = {{1.0, 0.0}, {kRoot, -0.5},  {kRoot, 0.5},  {0.5, -kRoot},  {0.5, kRoot},  {0.0, -1.0},
                                 {0.0, 1.0}, {-0.5, -kRoot}, {-0.5, kRoot}, {-kRoot, -0.5}, {-kRoot, 0.5}, {-1.0, 0.0}};
 
-/// A control, and how far the object stays within its cell with it.
+/// A control, and how far the object keeps off others with it.
 struct Trial {
   Vec3 control;
   Vec2 velocity;
   double room = -kInfinity;
 };
 
-/// The control that the limits of the object leave of a wanted one.
-Vec3 limited(const FootprintSelf& self, Vec3 wanted) {
-  const World& world = self.world();
-  const State& state = self.state();
-  const Vec3& now = state.control[self.row];
-  Vec3 next;
-  for (int c = 0; c < 3; ++c) {
-    const double change = state.acce[self.row][c] * world.step_time;
-    next[c] = clip(wanted[c], std::max(state.vel_min[self.row][c], now[c] - change),
-                   std::min(state.vel_max[self.row][c], now[c] + change));
-  }
-  with(world.drive[self.object], [&](const auto& drive) { next = constrain(drive, next); });
-  return next;
+/// The smallest amount by which the object keeps its distance from strangers with a control; minus infinity if the step
+/// and the stop after it leave its cell, or touch what stands [m].
+double room_with(FootprintSelf& self, Vec3 control) {
+  FootprintCrowd& crowd = self.crowd;
+  if (crowd.cell.empty()) return kInfinity;
+  self.ahead.step_and_stop(self.ahead.limited(control), crowd.way);
+  const CellBody body{self.hull, self.position};
+  return crowd.cell.holds(body, crowd.way) ? crowd.cell.room(body, crowd.way) : -kInfinity;
 }
 
-/// How far the object stays within its cell, at the end of the step and after it has braked.
-double room_with(FootprintSelf& self, Vec3 control) {
-  if (self.crowd.cell.empty()) return kInfinity;
-  const World& world = self.world();
-  const State& state = self.state();
-  const Pose now = state.pose[self.row];
-  Pose pose = now;
-  Vec3 twist;
-  const double* extra = &state.extra[static_cast<std::size_t>(self.row) * state.extra_rows];
-  self.crowd.extra.assign(extra, extra + state.extra_rows);
-  with(world.drive[self.object], [&](const auto& drive) {
-    run(drive, Motion{pose, self.crowd.extra.data(), twist, self.heading, limited(self, control), world.step_time,
-                      world.integration});
-  });
-  const Vec2 shift = pose.position() - now.position(), turn = unit(pose.theta - now.theta);
-  double room = self.crowd.cell.room(self.hull, self.position, shift, turn);
-  const double brake = state.acce[self.row][0];
-  if (room < 0.0 || !std::isfinite(brake) || !(brake > 0.0)) return room;
-  const double speed = norm(shift) / world.step_time;
-  const Vec2 rest = shift * (1.0 + 0.5 * speed / (brake * world.step_time));
-  return std::min(room, self.crowd.cell.room(self.hull, self.position, rest, turn));
+/// The same for braking. It is always within the cell: the border of two bodies runs between the hulls of their stops,
+/// and the control before was taken only because the stop after it is free.
+double room_of_stop(FootprintSelf& self) {
+  FootprintCrowd& crowd = self.crowd;
+  if (crowd.cell.empty()) return kInfinity;
+  self.ahead.step_and_stop(self.ahead.limited(self.ahead.braking()), crowd.way);
+  return crowd.cell.room({self.hull, self.position}, crowd.way);
 }
 
 /// Forward or backward, and the heading error that is left.
@@ -104,6 +85,13 @@ Vec3 steered(const FootprintSelf& self, const AckerOptions& car, double speed, d
   return {{speed, car.mode == Steering::steer ? target : (target - psi) / dt, 0.0}};
 }
 
+/// The largest turn rate from which a turn still ends at an angle [rad/s].
+double rate_to_stop_within(double angle, double acce, double dt) {
+  if (!std::isfinite(acce) || !(acce > 0.0)) return kInfinity;
+  const double change = acce * dt;
+  return -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce * angle);
+}
+
 /// The control with which the object takes up a velocity.
 Vec3 control_toward(const FootprintSelf& self, Vec2 velocity) {
   const World& world = self.world();
@@ -114,7 +102,8 @@ Vec3 control_toward(const FootprintSelf& self, Vec2 velocity) {
   if (std::holds_alternative<DiffOptions>(drive)) {
     if (speed < kMinSpeed) return {};
     const Course course = course_to(self, velocity);
-    const double most = state.vel_max[self.row][1];
+    const double most =
+        std::min(state.vel_max[self.row][1], rate_to_stop_within(std::fabs(course.error), state.acce[self.row][1], dt));
     return {{course.sign * speed * std::max(0.0, std::cos(course.error)), clip(course.error / dt, -most, most), 0.0}};
   }
   const Turning turning{kMinSpeed, 0.0, dt, state.vel_max[self.row][1], kInfinity};
@@ -143,6 +132,11 @@ class BestVelocity {
     const Vec2 velocity = self_.heading * speed;
     const double cost = cost_of(velocity);
     if (cost < cost_) offer(velocity, {{speed, 0.0, 0.0}}, cost);
+  }
+  /// The same for braking as hard as possible.
+  void consider_stop() {
+    const double cost = cost_of({});
+    if (cost < cost_) keep({self_.ahead.braking(), {}, room_of_stop(self_)}, cost);
   }
   /// Turn or move a little toward the wanted direction, if the object would stand otherwise: a body that is wedged
   /// between others gets free in small steps.
@@ -181,11 +175,13 @@ class BestVelocity {
     return self_.reverses ? std::fabs(cosine) : cosine;
   }
   void offer(Vec2 velocity, Vec3 control, double cost) {
-    const double room = room_with(self_, control);
-    if (room >= 0.0) {
-      best_ = {control, velocity, room}, cost_ = cost;
-    } else if (room > best_.room && best_.room < 0.0) {
-      best_ = {control, velocity, room};
+    keep({control, velocity, room_with(self_, control)}, cost);
+  }
+  void keep(const Trial& trial, double cost) {
+    if (trial.room >= 0.0) {
+      best_ = trial, cost_ = cost;
+    } else if (trial.room > best_.room && best_.room < 0.0) {
+      best_ = trial;
     }
   }
 
@@ -234,7 +230,7 @@ Intent best_intent(FootprintSelf& self, Vec2 wanted) {
       if (self.reverses) choice.consider_straight(-share * self.speed);
     }
   }
-  choice.consider({});
+  choice.consider_stop();
   choice.inch();
   return choice.intent();
 }

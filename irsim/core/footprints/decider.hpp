@@ -20,12 +20,30 @@ struct FootprintSelf {
   bool slides;       // whether it can move sideways
   bool reverses;     // whether it may drive backward
   double reach;      // distance of its outermost point from its position [m]
+  Ahead ahead;
 
   const World& world() const { return decision.world; }
   const State& state() const { return decision.state; }
   /// Largest distance that a point of it moves in a step [m].
   double stride() const { return (speed + turn_rate * reach) * world().step_time; }
+  const MoverReach& limits() const { return crowd.reaches[mover]; }
 };
+
+/// What an object knows of another mover.
+struct Meeting {
+  int mover;
+  bool standing, mutual, alike;  // alike: both decide with `footprint_orca` and see each other
+  Vec2 moves;                    // its velocity [m/s]
+};
+
+/// Fill the part of the crowd that says how far movers get until they stand.
+void fill_reaches(const Decision& decision, const OrcaCrowd& all, FootprintCrowd& crowd);
+
+/// Bound the cell of an object by a mover, if either can reach the other. `apart`: of their hulls, if it is known.
+void bound_by_mover(FootprintSelf& self, const Meeting& meeting, const Separation* apart);
+
+/// Bound the cell by a static body, if the object can reach it.
+void bound_by_wall(FootprintSelf& self, const Hull& wall, const Separation& apart);
 
 /// The velocity that an object wants: to its goal, on a way round what stands [m/s].
 Vec2 wanted_velocity(FootprintSelf& self);

@@ -1,32 +1,133 @@
 #include "footprints/free_cells.hpp"
 
+#include <cmath>
+
 namespace irsim {
 namespace {
 
 constexpr double kEvenSpeed = 0.3;  // speed added to those of both bodies, so that none is left without room [m/s]
+constexpr int kHalvings = 4;        // of a part of a way whose chord does not tell whether it is free
+
+bool crosses(const Border& border, const CellBody& body, const Manoeuvre& way) {
+  const Hull& hull = body.hull;
+  const double now = hull.least(border.axis) - hull.round - border.limit;
+  const double least = std::max(0.0, way.bulge - border.reserve);
+  if (now - way.travel >= least) return false;
+  const double base = hull.round + border.limit - dot(border.axis, body.position);
+  for (std::size_t k = 1; k < way.places.size(); ++k) {
+    const Place& place = way.places[k];
+    const Vec2 axis = unrotate(border.axis, place.turn);
+    double room = kInfinity;
+    for (int c = 0; c < hull.count; ++c) room = std::min(room, dot(axis, hull.corner[c] - body.position));
+    room += dot(border.axis, place.shift) - base;
+    if (room < least) return true;
+  }
+  return false;
+}
+
+/// A body on its way past a fixture, seen from this.
+class Passage {
+ public:
+  Passage(const CellBody& body, const FreeCell::Fixture& fixture, const Manoeuvre& way, std::vector<Vec2>& memory)
+      : body_(body), fixture_(fixture), bulge_(way.bulge), memory_(memory) {
+    memory_.resize(4 * static_cast<std::size_t>(body.hull.count));
+  }
+
+  /// The smallest amount by which it keeps the distance; the search ends where this is negative.
+  double room(const Manoeuvre& way) {
+    double room = fixture_.now - fixture_.gap, left = room - bulge_;  // way that is free for certain
+    bool known = false;                                               // whether `before_` is the place before
+    for (std::size_t k = 1; k < way.places.size(); ++k) {
+      const Place &from = way.places[k - 1], &to = way.places[k];
+      const double travel = to.travel + norm(fixture_.shift) * (to.share - from.share);
+      if (travel <= left) {
+        left -= travel, known = false;
+        continue;
+      }
+      if (!known) {
+        before_ = look(from, 0);
+        left = before_.gap - fixture_.gap - bulge_;
+        if (travel <= left) {
+          left -= travel;
+          continue;
+        }
+      }
+      const Separation after = look(to, 1);
+      room = std::min(room, after.gap - fixture_.gap);
+      if (room < 0.0) return room;
+      if (fixture_.gap > 0.0 && !is_free(from, before_.axis, to, after.axis, kHalvings)) return -bulge_ - fixture_.gap;
+      before_ = after, known = true;
+      left = after.gap - fixture_.gap - bulge_;
+    }
+    return room;
+  }
+
+ private:
+  /// The body at a place, moved by what the fixture has moved until then: corners, then normals.
+  Hull at(const Place& place, int slot) {
+    const Hull& hull = body_.hull;
+    Vec2* corners = memory_.data() + static_cast<std::size_t>(2 * slot) * hull.count;
+    Vec2* normals = corners + hull.count;
+    const Vec2 to = body_.position + place.shift - fixture_.shift * place.share;
+    for (int k = 0; k < hull.count; ++k) corners[k] = to + rotate(hull.corner[k] - body_.position, place.turn);
+    for (int k = 0; k < hull.count; ++k) normals[k] = rotate(hull.normal[k], place.turn);
+    return {corners, normals, hull.count, hull.round};
+  }
+  Separation look(const Place& place, int slot) { return separation(at(place, slot), fixture_.hull); }
+
+  /// Distance of a place from the fixture along an axis [m].
+  double gap_along(Vec2 axis, const Place& place) const {
+    const Hull& hull = body_.hull;
+    const Vec2 turned = unrotate(axis, place.turn);
+    double least = kInfinity;
+    for (int c = 0; c < hull.count; ++c) least = std::min(least, dot(turned, hull.corner[c] - body_.position));
+    least += dot(axis, body_.position + place.shift - fixture_.shift * place.share);
+    return least + fixture_.hull.least(axis * -1.0) - hull.round - fixture_.hull.round;
+  }
+
+  /// Whether one line separates both ends of a part from the fixture, and so all between them.
+  bool is_free(const Place& from, Vec2 first, const Place& to, Vec2 last, int halvings) {
+    const double least = 0.5 * fixture_.gap + bulge_;
+    if (gap_along(first, from) >= least && gap_along(first, to) >= least) return true;
+    if (gap_along(last, from) >= least && gap_along(last, to) >= least) return true;
+    if (halvings == 0) return false;
+    const double angle = 0.5 * (from.angle + to.angle);
+    const Place middle{(from.shift + to.shift) * 0.5, angle, unit(angle), 0.5 * (from.share + to.share), 0.0};
+    const Separation there = look(middle, 1);
+    return there.gap >= least && is_free(from, first, middle, there.axis, halvings - 1) &&
+           is_free(middle, there.axis, to, last, halvings - 1);
+  }
+
+  const CellBody& body_;
+  const FreeCell::Fixture& fixture_;
+  const double bulge_;
+  std::vector<Vec2>& memory_;
+  Separation before_{};
+};
 
 }  // namespace
 
-Border border(const Hull& body, const Separation& apart, double own, double other, double margin) {
+Border border(const Hull& stop, const Separation& apart, double own, double other, double margin) {
   const double share = (kEvenSpeed + own) / (2.0 * kEvenSpeed + own + other);
-  return {apart.axis, body.least(apart.axis) - share * std::max(0.0, apart.gap - margin)};
+  const double least = stop.least(apart.axis) - stop.round;
+  return {apart.axis, least - share * std::max(0.0, apart.gap - margin),
+          0.5 * std::min(margin, std::max(0.0, apart.gap))};
 }
 
-double FreeCell::room(const Hull& body, Vec2 place, Vec2 shift, Vec2 turn) {
-  double room = kInfinity;
-  if (empty()) return room;
-  const std::size_t count = body.count;
-  moved.resize(3 * count);
-  const Vec2 to = place + shift;
-  for (std::size_t k = 0; k < count; ++k) moved[k] = to + rotate(body.corner[k] - place, turn);
-  const Hull there{moved.data(), moved.data() + count, body.count, body.round};
-  for (const Border& one : borders) room = std::min(room, there.least(one.axis) - one.limit);
-  if (room < 0.0 || fixtures.empty()) return room;
-  for (std::size_t k = 0; k < count; ++k) moved[count + k] = rotate(body.normal[k], turn);
+bool FreeCell::holds(const CellBody& body, const Manoeuvre& way) {
+  for (const Border& one : borders) {
+    if (crosses(one, body, way)) return false;
+  }
   for (const Fixture& one : fixtures) {
-    for (std::size_t k = 0; k < count; ++k) moved[2 * count + k] = moved[k] - one.shift;
-    const Hull relative{moved.data() + 2 * count, moved.data() + count, body.count, body.round};
-    room = std::min(room, separation(relative, one.hull).gap - one.gap);
+    if (one.stands && Passage(body, one, way, moved).room(way) < 0.0) return false;
+  }
+  return true;
+}
+
+double FreeCell::room(const CellBody& body, const Manoeuvre& way) {
+  double room = kInfinity;
+  for (const Fixture& one : fixtures) {
+    if (!one.stands) room = std::min(room, Passage(body, one, way, moved).room(way));
   }
   return room;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "footprints/manoeuvres.hpp"
+
 namespace irsim {
 namespace {
 
@@ -21,10 +23,13 @@ bool is_convex(const std::vector<Vec2>& points) {
   return rounds == 1;
 }
 
-/// Replace points by the corners of their hull, counter-clockwise (Andrew's monotone chain).
-void make_hull(std::vector<Vec2>& points) {
+constexpr double kSamePoint = 1e-6;  // corners of hulls that are nearer to each other are one [m]
+
+/// Replace points by the corners of their hull, counter-clockwise (Andrew's monotone chain). `hull` is scratch memory.
+void make_hull(std::vector<Vec2>& points, std::vector<Vec2>& hull, double same = 0.0) {
   std::sort(points.begin(), points.end(), [](Vec2 a, Vec2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-  std::vector<Vec2> hull;
+  hull.clear();
+  const double same2 = same * same;
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t first = hull.size();
     for (const Vec2 p : points) {
@@ -35,8 +40,15 @@ void make_hull(std::vector<Vec2>& points) {
     hull.pop_back();
     std::reverse(points.begin(), points.end());
   }
+  if (same > 0.0) {
+    std::size_t kept = 0;
+    for (const Vec2 p : hull) {
+      if (kept == 0 || (squared(p - hull[kept - 1]) > same2 && squared(p - hull[0]) > same2)) hull[kept++] = p;
+    }
+    hull.resize(kept);
+  }
   if (!hull.empty())
-    points = std::move(hull);
+    points.swap(hull);
   else
     points.resize(1);
 }
@@ -66,7 +78,7 @@ void Hulls::add(const Shapes& shapes, int object, Vec2 position, Vec2 direction)
         points_.push_back(vertices[part.first] + unit(kTurn * k / kCircleCorners) * reach);
     }
     if (parts == 1 && shapes.parts[body.part].turn < 0.0) std::reverse(points_.begin(), points_.end());
-    if (!is_convex(points_)) make_hull(points_);
+    if (!is_convex(points_)) make_hull(points_, scratch_);
   }
   for (const Vec2 p : points_) corners_.push_back(position + rotate(p, direction));
   close(slot.first, round);
@@ -85,6 +97,19 @@ void Hulls::add(Vec2 centre, double radius) {
   slots_.push_back({first, 0, 0.0});
   corners_.push_back(centre);
   close(first, radius);
+}
+
+void Hulls::add(const Hull& body, Vec2 position, const Manoeuvre& manoeuvre) {
+  const int first = static_cast<int>(corners_.size());
+  slots_.push_back({first, 0, 0.0});
+  points_.clear();
+  for (const Place& place : manoeuvre.places) {
+    const Vec2 there = position + place.shift;
+    for (int k = 0; k < body.count; ++k) points_.push_back(there + rotate(body.corner[k] - position, place.turn));
+  }
+  make_hull(points_, scratch_, kSamePoint);
+  corners_.insert(corners_.end(), points_.begin(), points_.end());
+  close(first, body.round + manoeuvre.bulge + kSamePoint);
 }
 
 void Hulls::close(int first, double round) {

@@ -7,6 +7,8 @@
 
 namespace irsim {
 
+struct Manoeuvre;
+
 /// A convex polygon with rounded corners, world frame: all points within `round` [m] of the polygon. One corner makes a
 /// disc, two make a capsule. Edge k leads from corner k to the next one, counter-clockwise.
 struct Hull {
@@ -34,6 +36,8 @@ class Hulls {
   void add(Vec2 a, Vec2 b);
   /// Add a disc.
   void add(Vec2 centre, double radius);
+  /// Add the hull of all places of a body that is at `position`.
+  void add(const Hull& body, Vec2 position, const Manoeuvre& manoeuvre);
   int count() const { return static_cast<int>(slots_.size()); }
   Hull operator[](int k) const {
     const Slot& s = slots_[k];
@@ -48,7 +52,7 @@ class Hulls {
   void close(int first, double round);
 
   std::vector<Slot> slots_;
-  std::vector<Vec2> corners_, normals_, points_;
+  std::vector<Vec2> corners_, normals_, points_, scratch_;
 };
 
 /// How two hulls are apart.
@@ -81,5 +85,12 @@ void for_axes(const Hull& a, const Hull& b, Visit&& visit) {
 }
 
 Separation separation(const Hull& a, const Hull& b);
+
+/// The same, computed as if the bodies were swapped: whoever looks at both the other way round finds the same axis to the
+/// last bit.
+inline Separation mirrored_separation(const Hull& a, const Hull& b) {
+  const Separation apart = separation(b, a);
+  return {apart.axis * -1.0, apart.gap};
+}
 
 }  // namespace irsim
