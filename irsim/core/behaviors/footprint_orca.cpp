@@ -11,12 +11,12 @@
 namespace irsim {
 namespace {
 
-constexpr double kOutlineDistance = 0.5;     // gap of bounding circles from which these stand for outlines [m]
-constexpr double kRestingSpeed = 0.1;        // an arrived object that is slower rests [m/s]
-constexpr double kStrangerDistance = 0.1;    // distance kept in addition from movers that do something else [m]
-constexpr double kStrangerHorizons = 2.0;    // time horizon for them, in those of the options
-constexpr double kWayReach = 5.0;            // half the side of the box in which static obstacles block a way [m]
-constexpr double kRestingReach = 10.0;       // farther bodies that rest do not block a way [m]
+constexpr double kOutlineDistance = 0.5;   // gap of bounding circles from which these stand for outlines [m]
+constexpr double kRestingSpeed = 0.1;      // an arrived object that is slower rests [m/s]
+constexpr double kStrangerDistance = 0.1;  // distance kept in addition from movers that do something else [m]
+constexpr double kStrangerHorizons = 2.0;  // time horizon for them, in those of the options
+constexpr double kWayReach = 5.0;          // half the side of the box in which static obstacles block a way [m]
+constexpr double kRestingReach = 10.0;     // farther bodies that rest do not block a way [m]
 
 bool sees_role(const World& world, int viewer, int other) {
   const int wanted = world.target_roles[viewer];
@@ -186,8 +186,7 @@ void meet_reachable(FootprintSelf& self, OrcaCrowd& all) {
   const World& world = self.world();
   FootprintCrowd& crowd = self.crowd;
   std::vector<int>& others = crowd.others;
-  const double reach =
-      self.limits().range + all.movers[self.mover].radius + crowd.widest + kStrangerDistance;
+  const double reach = self.limits().range + all.movers[self.mover].radius + crowd.widest + kStrangerDistance;
   const int most = static_cast<int>(all.movers.size()) - 1;
   const bool cut = static_cast<int>(others.size()) == std::min(self.options.maxNeighbors, most);
   const Vec2 centre = all.movers[self.mover].position;

@@ -66,13 +66,12 @@ void bound_by_mover(FootprintSelf& self, const Meeting& meeting, const Separatio
     const Hull own = mine.stop < 0 ? self.hull : crowd.stops[mine.stop];
     const Hull other = its.stop < 0 ? body : crowd.stops[its.stop];
     const bool bodies = mine.stop < 0 && its.stop < 0 && apart;
-    const Separation rest = bodies                        ? *apart
+    const Separation rest = bodies                       ? *apart
                             : meeting.mover < self.mover ? mirrored_separation(own, other)
-                                                          : separation(own, other);
+                                                         : separation(own, other);
     if (rest.gap > reach) return;
     const double toward = std::max(0.0, dot(rest.axis, meeting.moves));
-    crowd.cell.borders.push_back(
-        border(own, rest, std::max(0.0, -dot(rest.axis, self.velocity)), toward, kLeastGap));
+    crowd.cell.borders.push_back(border(own, rest, std::max(0.0, -dot(rest.axis, self.velocity)), toward, kLeastGap));
     return;
   }
   const Vec2 shift = meeting.moves * self.world().step_time;

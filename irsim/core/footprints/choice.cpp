@@ -174,9 +174,7 @@ class BestVelocity {
     const double cosine = dot(heading, ahead_);
     return self_.reverses ? std::fabs(cosine) : cosine;
   }
-  void offer(Vec2 velocity, Vec3 control, double cost) {
-    keep({control, velocity, room_with(self_, control)}, cost);
-  }
+  void offer(Vec2 velocity, Vec3 control, double cost) { keep({control, velocity, room_with(self_, control)}, cost); }
   void keep(const Trial& trial, double cost) {
     if (trial.room >= 0.0) {
       best_ = trial, cost_ = cost;

@@ -18,9 +18,9 @@ struct Border {
 /// The border between two bodies that both stay in their own space.
 ///
 /// They divide the gap between the hulls of their stops along the axis that both find, in proportion to their speeds
-/// toward each other, which both know. Each may use its part however it moves, as in buffered Voronoi cells (Zhou, Wang,
-/// Bandyopadhyay, Schwager: Fast, on-line collision avoidance for dynamic vehicles using buffered Voronoi cells, 2017),
-/// and each can always stop in its part.
+/// toward each other, which both know. Each may use its part however it moves, as in buffered Voronoi cells (Zhou,
+/// Wang, Bandyopadhyay, Schwager: Fast, on-line collision avoidance for dynamic vehicles using buffered Voronoi cells,
+/// 2017), and each can always stop in its part.
 ///
 /// Args:
 ///   stop: The hull of all places until the body has stopped, if it brakes now.

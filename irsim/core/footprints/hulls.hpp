@@ -86,8 +86,8 @@ void for_axes(const Hull& a, const Hull& b, Visit&& visit) {
 
 Separation separation(const Hull& a, const Hull& b);
 
-/// The same, computed as if the bodies were swapped: whoever looks at both the other way round finds the same axis to the
-/// last bit.
+/// The same, computed as if the bodies were swapped: whoever looks at both the other way round finds the same axis to
+/// the last bit.
 inline Separation mirrored_separation(const Hull& a, const Hull& b) {
   const Separation apart = separation(b, a);
   return {apart.axis * -1.0, apart.gap};

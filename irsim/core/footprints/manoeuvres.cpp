@@ -57,32 +57,23 @@ class Run {
         dt_(ahead.world.step_time),
         out_(out) {
     const double* rows = &ahead.state.extra[static_cast<std::size_t>(ahead.row) * ahead.state.extra_rows];
-    ahead.extra.resize(2 * ahead.state.extra_rows);
-    std::copy_n(rows, ahead.state.extra_rows, ahead.extra.begin());
+    ahead.extra.assign(rows, rows + ahead.state.extra_rows);
     out.clear();
   }
 
   void step(Vec3 control, bool now) {
     const Pose before = pose_;
-    const Vec2 ahead = heading_;
-    const int rows = ahead_.state.extra_rows;
-    double* extra = ahead_.extra.data();
-    std::copy_n(extra, rows, extra + rows);
     Vec3 twist;
-    advance(pose_, extra, twist, ahead, control, 1.0);
+    with(drive_, [&](const auto& drive) {
+      run(drive, Motion{pose_, ahead_.extra.data(), twist, heading_, control, dt_, ahead_.world.integration});
+    });
     const double angle = twist[2] * dt_;
     const int parts = std::clamp(static_cast<int>(std::ceil(std::fabs(angle) / kCoarseTurn)), 1, kMostParts);
     double way = 0.0;
     for (int k = 1; k <= parts; ++k) {
-      Pose there = pose_;
-      if (k < parts) {
-        there = before;
-        double* part = extra + rows;
-        const double first = rows > 0 ? part[0] : 0.0;
-        advance(there, part, twist, ahead, control, static_cast<double>(k) / parts);
-        if (rows > 0) part[0] = first;
-      }
-      way = add(there.position() - from_.position(), turned_ + angle * k / parts, now ? double(k) / parts : 1.0);
+      const double share = static_cast<double>(k) / parts;
+      const Pose there = k == parts ? pose_ : pose_at(before, twist, dt_ * share, ahead_.world.integration);
+      way = add(there.position() - from_.position(), turned_ + angle * share, now ? share : 1.0);
     }
     turned_ += angle;
     if (angle != 0.0) heading_ = rotate(start_, out_.places.back().turn);
@@ -113,10 +104,6 @@ class Run {
   }
 
  private:
-  void advance(Pose& pose, double* extra, Vec3& twist, Vec2 heading, Vec3 control, double share) const {
-    with(drive_, [&](const auto& drive) { run(drive, Motion{pose, extra, twist, heading, control, dt_ * share, ahead_.world.integration}); });
-  }
-
   /// Append a place; returns the way from the place before [m].
   double add(Vec2 shift, double angle, double share) {
     const Place& last = out_.places.back();
@@ -148,8 +135,7 @@ class Run {
     const Vec3& acce = ahead_.state.acce[ahead_.row];
     Vec2 way{stopping_way(control[0], acce[0] * dt_, dt_), 0.0};
     if (kind_.travel > 1) way.y = stopping_way(control[1], acce[1] * dt_, dt_);
-    if (way.x != 0.0 || way.y != 0.0)
-      add(pose_.position() - from_.position() + rotate(way, heading_), turned_, 1.0);
+    if (way.x != 0.0 || way.y != 0.0) add(pose_.position() - from_.position() + rotate(way, heading_), turned_, 1.0);
   }
 
   const Ahead& ahead_;
