@@ -142,7 +142,7 @@ void find_others(FootprintSelf& self, OrcaCrowd& all) {
   likely = others;
 }
 
-Meeting meet(const FootprintSelf& self, int m) {
+Encounter meet(const FootprintSelf& self, int m) {
   const World& world = self.world();
   const int theirs = self.all.group[m], other = self.decision.first_row + world.moving[m];
   const bool standing = self.state().stopped[other] != 0;
@@ -157,28 +157,28 @@ void meet_mover(FootprintSelf& self, int m) {
   const OrcaCrowd& all = self.all;
   FootprintCrowd& crowd = self.crowd;
   const World& world = self.world();
-  const Meeting meeting = meet(self, m);
-  const double gain = meeting.mutual ? 2.0 : 1.0;
-  const bool strange = !meeting.standing && !meeting.alike;
+  const Encounter encounter = meet(self, m);
+  const double gain = encounter.mutual ? 2.0 : 1.0;
+  const bool strange = !encounter.standing && !encounter.alike;
   const double margin = self.options.safe_distance + (strange ? kStrangerDistance : 0.0);
-  const double horizon =
-      meeting.standing ? self.options.timeHorizonObst : self.options.timeHorizon * (strange ? kStrangerHorizons : 1.0);
-  Threat threat{{}, gain, self.velocity * (gain - 1.0) + meeting.moves, horizon, meeting.standing};
+  const double horizon = encounter.standing ? self.options.timeHorizonObst
+                                            : self.options.timeHorizon * (strange ? kStrangerHorizons : 1.0);
+  Threat threat{{}, gain, self.velocity * (gain - 1.0) + encounter.moves, horizon, encounter.standing};
   const Shapes& shapes = *self.state().scenes[self.decision.w()].shapes;
   const Vec2 offset = all.movers[m].position - all.movers[self.mover].position;
   const double radii = shapes.radius[self.object] + shapes.radius[world.moving[m]] + margin;
-  const double gap = norm(offset) - radii, stride = 2.0 * self.stride() + norm(meeting.moves) * world.step_time;
-  if (gap > horizon * (gain * self.speed + norm(threat.base))) return bound_by_mover(self, meeting, nullptr);
+  const double gap = norm(offset) - radii, stride = 2.0 * self.stride() + norm(encounter.moves) * world.step_time;
+  if (gap > horizon * (gain * self.speed + norm(threat.base))) return bound_by_mover(self, encounter, nullptr);
   // Circles stand for bodies that are far, and for those whose way is not known as long as they do not overlap.
   const bool discs = strange ? gap > 0.0 : gap > std::max(kOutlineDistance, stride);
   if (discs) {
     cone_of(offset, radii, crowd.faces, threat.cone);
     crowd.threats.push_back(threat);
-    return bound_by_mover(self, meeting, nullptr);
+    return bound_by_mover(self, encounter, nullptr);
   }
   const Separation apart = cone_of(self.hull, crowd.hulls[m], margin, m < self.mover, crowd.faces, threat.cone);
   crowd.threats.push_back(threat);
-  bound_by_mover(self, meeting, &apart);
+  bound_by_mover(self, encounter, &apart);
 }
 
 /// Bound the cell by movers that the object does not avoid because others are nearer, but could touch.

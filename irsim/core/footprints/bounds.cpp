@@ -52,34 +52,34 @@ void fill_reaches(const Decision& decision, const OrcaCrowd& all, FootprintCrowd
   }
 }
 
-void bound_by_mover(FootprintSelf& self, const Meeting& meeting, const Separation* apart) {
+void bound_by_mover(FootprintSelf& self, const Encounter& encounter, const Separation* apart) {
   FootprintCrowd& crowd = self.crowd;
   const State& state = self.state();
-  const MoverReach &mine = self.limits(), &its = crowd.reaches[meeting.mover];
+  const MoverReach &mine = self.limits(), &its = crowd.reaches[encounter.mover];
   const Shapes& shapes = *state.scenes[self.decision.w()].shapes;
-  const int object = self.world().moving[meeting.mover], row = self.decision.first_row + object;
+  const int object = self.world().moving[encounter.mover], row = self.decision.first_row + object;
   const double distance = norm(its.centre - mine.centre);
-  const Hull body = crowd.hulls[meeting.mover];
-  if (meeting.alike && !meeting.standing) {
+  const Hull body = crowd.hulls[encounter.mover];
+  if (encounter.alike && !encounter.standing) {
     const double reach = mine.play + its.play + kLeastGap;
     if (distance - mine.radius - its.radius > reach) return;
     const Hull own = mine.stop < 0 ? self.hull : crowd.stops[mine.stop];
     const Hull other = its.stop < 0 ? body : crowd.stops[its.stop];
     const bool bodies = mine.stop < 0 && its.stop < 0 && apart;
-    const Separation rest = bodies                       ? *apart
-                            : meeting.mover < self.mover ? mirrored_separation(own, other)
-                                                         : separation(own, other);
+    const Separation rest = bodies                         ? *apart
+                            : encounter.mover < self.mover ? mirrored_separation(own, other)
+                                                           : separation(own, other);
     if (rest.gap > reach) return;
-    const double toward = std::max(0.0, dot(rest.axis, meeting.moves));
+    const double toward = std::max(0.0, dot(rest.axis, encounter.moves));
     crowd.cell.borders.push_back(border(own, rest, std::max(0.0, -dot(rest.axis, self.velocity)), toward, kLeastGap));
     return;
   }
-  const Vec2 shift = meeting.moves * self.world().step_time;
+  const Vec2 shift = encounter.moves * self.world().step_time;
   const double reach = mine.range + norm(shift) + kLeastGap;
   if (distance - shapes.radius[self.object] - shapes.radius[object] > reach) return;
   const double gap = apart ? apart->gap : separation(self.hull, body).gap;
   if (gap > reach) return;
-  const bool stands = meeting.standing || state.waits(row);
+  const bool stands = encounter.standing || state.waits(row);
   const double least = stands ? std::min(kLeastStandingGap, gap) : kLeastGap;
   crowd.cell.fixtures.push_back({body, least, gap, shift, stands});
 }

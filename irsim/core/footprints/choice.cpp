@@ -85,13 +85,6 @@ Vec3 steered(const FootprintSelf& self, const AckerOptions& car, double speed, d
   return {{speed, car.mode == Steering::steer ? target : (target - psi) / dt, 0.0}};
 }
 
-/// The largest turn rate from which a turn still ends at an angle [rad/s].
-double rate_to_stop_within(double angle, double acce, double dt) {
-  if (!std::isfinite(acce) || !(acce > 0.0)) return kInfinity;
-  const double change = acce * dt;
-  return -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce * angle);
-}
-
 /// The control with which the object takes up a velocity.
 Vec3 control_toward(const FootprintSelf& self, Vec2 velocity) {
   const World& world = self.world();
@@ -102,8 +95,8 @@ Vec3 control_toward(const FootprintSelf& self, Vec2 velocity) {
   if (std::holds_alternative<DiffOptions>(drive)) {
     if (speed < kMinSpeed) return {};
     const Course course = course_to(self, velocity);
-    const double most =
-        std::min(state.vel_max[self.row][1], rate_to_stop_within(std::fabs(course.error), state.acce[self.row][1], dt));
+    const double most = std::min(state.vel_max[self.row][1],
+                                 speed_to_stop_within(std::fabs(course.error), state.acce[self.row][1], dt));
     return {{course.sign * speed * std::max(0.0, std::cos(course.error)), clip(course.error / dt, -most, most), 0.0}};
   }
   const Turning turning{kMinSpeed, 0.0, dt, state.vel_max[self.row][1], kInfinity};

@@ -30,7 +30,7 @@ struct FootprintSelf {
 };
 
 /// What an object knows of another mover.
-struct Meeting {
+struct Encounter {
   int mover;
   bool standing, mutual, alike;  // alike: both decide with `footprint_orca` and see each other
   Vec2 moves;                    // its velocity [m/s]
@@ -40,7 +40,7 @@ struct Meeting {
 void fill_reaches(const Decision& decision, const OrcaCrowd& all, FootprintCrowd& crowd);
 
 /// Bound the cell of an object by a mover, if either can reach the other. `apart`: of their hulls, if it is known.
-void bound_by_mover(FootprintSelf& self, const Meeting& meeting, const Separation* apart);
+void bound_by_mover(FootprintSelf& self, const Encounter& encounter, const Separation* apart);
 
 /// Bound the cell by a static body, if the object can reach it.
 void bound_by_wall(FootprintSelf& self, const Hull& wall, const Separation& apart);
