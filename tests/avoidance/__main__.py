@@ -21,6 +21,8 @@ from tests.avoidance.results import FOLDER, Key, Outcomes, read, write
 
 WORKER = Path(__file__).with_name("worker.py")
 OURS, PEER = FOLDER / "ours.csv", FOLDER / "peer.csv"
+PASSES = (1, 6, 11, 21, 51)
+"""Starts of each group that are run before those after them; what a pass found is kept if the next one is interrupted."""
 QUIET = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
 
 
@@ -115,7 +117,8 @@ def main(arguments: list[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     FOLDER.mkdir(exist_ok=True)
     if given.peer:
-        write(PEER, run(given.peer, PEER_BEHAVIORS, PEER, given.jobs))
+        for starts in PASSES:
+            write(PEER, run(given.peer, PEER_BEHAVIORS, PEER, given.jobs, "--starts", str(starts)))
     if given.kept:
         ours = read([OURS])
     else:

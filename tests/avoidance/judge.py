@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["STILL_S", "TOUCH_M", "Verdict", "at_rest", "clearances", "judge", "judge_end"]
+__all__ = ["STILL_S", "TOUCH_M", "Judge", "Verdict", "at_ends", "at_rest", "within_steps"]
 
 Floats = NDArray[np.float64]
 
@@ -52,50 +52,56 @@ class Verdict:
         return self.outcome == "c" or self.between > 0
 
 
-def judge(
-    places: Any, goals: Any, walls: list[Any], *, radius: float, threshold: float, dt: float, loop: bool = False
-) -> Verdict | None:
-    """Judge the steps so far.
+@dataclass(frozen=True)
+class Judge:
+    """Judges the episodes of one start.
 
-    Args:
-        places: (T + 1, N, 2) positions at the start and after each of T steps [m].
+    Attributes:
         goals: (N, 2) where each robot wants to go [m].
         walls: (K, 2) corners of each solid outline [m].
         radius: Radius of every robot [m].
         threshold: A robot nearer to its goal than this has arrived [m].
         dt: Length of a step [s].
         loop: Whether robots turn round at their goals and go on until the time limit.
-
-    Returns:
-        The outcome; None where there is none yet.
     """
-    path = np.asarray(places, dtype=np.float64)
-    ends, within = clearances(path, walls, radius)
-    first = np.flatnonzero((ends < -TOUCH_M).any(axis=1))
-    near = np.hypot(*np.moveaxis(path - np.asarray(goals, dtype=np.float64), 2, 0)) < threshold
-    done = np.flatnonzero(near.all(axis=1)) if not loop else np.zeros(0, dtype=np.intp)
-    last = min([*first[:1].tolist(), *done[:1].tolist()], default=None)
-    if last is None:
-        return None
-    outcome = "c" if first.size and first[0] == last else "a"
-    return _verdict(outcome, last, ends, within, dt)
 
+    goals: Any
+    walls: list[Any]
+    radius: float
+    threshold: float
+    dt: float
+    loop: bool = False
 
-def judge_end(
-    places: Any, goals: Any, walls: list[Any], *, radius: float, threshold: float, dt: float, loop: bool = False
-) -> Verdict:
-    """Judge an episode whose time is up; arguments as for :func:`judge`."""
-    early = judge(places, goals, walls, radius=radius, threshold=threshold, dt=dt, loop=loop)
-    if early is not None:
-        return early
-    path = np.asarray(places, dtype=np.float64)
-    ends, within = clearances(path, walls, radius)
-    steps, outcome = len(path) - 1, "t"
-    if loop:
-        near = np.hypot(*np.moveaxis(path - np.asarray(goals, dtype=np.float64), 2, 0)) < threshold
-        if near.any(axis=0).all() and not at_rest(path, dt):
+    def ended(self, places: Any) -> bool:
+        """Whether somebody touches something at one of these moments, or all have arrived; (T, N, 2) positions [m]."""
+        path = np.asarray(places, dtype=np.float64)
+        if at_ends(path, self.walls, self.radius).min(initial=np.inf) < -TOUCH_M:
+            return True
+        return not self.loop and bool(self._near(path).all(axis=1).any())
+
+    def verdict(self, places: Any) -> Verdict:
+        """Judge an episode that has ended, or whose time is up.
+
+        Args:
+            places: (T + 1, N, 2) positions at the start and after each of T steps [m].
+        """
+        path = np.asarray(places, dtype=np.float64)
+        ends, within = at_ends(path, self.walls, self.radius), within_steps(path, self.walls, self.radius)
+        near = self._near(path)
+        touched = np.flatnonzero((ends < -TOUCH_M).any(axis=1))[:1].tolist()
+        done = np.flatnonzero(near.all(axis=1))[:1].tolist() if not self.loop else []
+        last, outcome = len(path) - 1, "t"
+        if touched and (not done or touched[0] <= done[0]):
+            last, outcome = touched[0], "c"
+        elif done:
+            last, outcome = done[0], "a"
+        elif self.loop and near.any(axis=0).all() and not at_rest(path, self.dt):
             outcome = "a"
-    return _verdict(outcome, steps, ends, within, dt)
+        return _verdict(outcome, last, ends, within, self.dt)
+
+    def _near(self, path: Floats) -> NDArray[np.bool_]:
+        off = path - np.asarray(self.goals, dtype=np.float64)
+        return np.asarray(np.hypot(off[..., 0], off[..., 1]) < self.threshold)
 
 
 def _verdict(outcome: str, last: int, ends: Floats, within: Floats, dt: float) -> Verdict:
@@ -109,40 +115,53 @@ def _verdict(outcome: str, last: int, ends: Floats, within: Floats, dt: float) -
 
 def at_rest(places: Any, dt: float) -> bool:
     """Whether nobody has moved by a millimetre for a while."""
-    path = np.asarray(places, dtype=np.float64)
     steps = round(STILL_S / dt)
-    if len(path) <= steps:
+    if len(places) <= steps:
         return False
-    recent = path[-steps - 1 :]
+    recent = np.asarray(places[-steps - 1 :], dtype=np.float64)
     return bool((np.ptp(recent, axis=0) < 1e-3).all())
 
 
-def clearances(path: Floats, walls: list[Any], radius: float) -> tuple[Floats, Floats]:
+def at_ends(path: Floats, walls: list[Any], radius: float) -> Floats:
     """Distances between outlines, negative where they overlap.
 
     Args:
-        path: (T + 1, N, 2) positions [m].
+        path: (T, N, 2) positions [m].
         walls: (K, 2) corners of each solid outline [m].
         radius: Radius of every robot [m].
 
     Returns:
-        (T + 1, P) at the ends of steps and (T, P) the least within each step, for all pairs of robots, then for each
-        robot and edge of a wall.
+        (T, P) for all pairs of robots, then for each robot and each edge of a wall.
     """
-    count = path.shape[1]
-    i, j = np.triu_indices(count, 1)
+    i, j = np.triu_indices(path.shape[1], 1)
     apart = path[:, i] - path[:, j]
-    ends, within = [np.hypot(apart[..., 0], apart[..., 1]) - 2 * radius], [_nearest_origin(apart) - 2 * radius]
-    for corners in walls:
-        ring = np.asarray(corners, dtype=np.float64)
-        for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-            ends.append(_to_edge(path, a, b) - radius)
-            within.append(_chord_to_edge(path, a, b) - radius)
-    return np.concatenate(ends, axis=1), np.concatenate(within, axis=1)
+    pairs = np.hypot(apart[..., 0], apart[..., 1]) - 2 * radius
+    if not walls:
+        return np.asarray(pairs)
+    a, b = _edges(walls)
+    return np.concatenate([pairs, _flat(_to_edges(path[:, :, None], a, b)) - radius], axis=1)
+
+
+def within_steps(path: Floats, walls: list[Any], radius: float) -> Floats:
+    """The least of these distances within each step: (T + 1, N, 2) positions → (T, P)."""
+    i, j = np.triu_indices(path.shape[1], 1)
+    pairs = _nearest_origin(path[:, i] - path[:, j]) - 2 * radius
+    if not walls:
+        return pairs
+    return np.concatenate([pairs, _flat(_chords_to_edges(path[:, :, None], *_edges(walls))) - radius], axis=1)
+
+
+def _edges(walls: list[Any]) -> tuple[Floats, Floats]:
+    rings = [np.asarray(corners, dtype=np.float64) for corners in walls]
+    return np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
+
+
+def _flat(values: Floats) -> Floats:
+    return values.reshape(len(values), -1)
 
 
 def _nearest_origin(points: Floats) -> Floats:
-    """Least distance of the origin from each chord between successive points: (T + 1, P, 2) → (T, P)."""
+    """Least distance of the origin from each chord between successive points: (T + 1, …, 2) → (T, …)."""
     start, way = points[:-1], np.diff(points, axis=0)
     square = (way * way).sum(axis=-1)
     share = np.clip(-(start * way).sum(axis=-1) / np.where(square > 0, square, 1.0), 0.0, 1.0)
@@ -150,24 +169,23 @@ def _nearest_origin(points: Floats) -> Floats:
     return np.asarray(np.hypot(nearest[..., 0], nearest[..., 1]))
 
 
-def _to_edge(points: Floats, a: Floats, b: Floats) -> Floats:
-    """Distance of points from a segment: (…, 2) → (…)."""
+def _to_edges(points: Floats, a: Floats, b: Floats) -> Floats:
+    """Distance of points from segments: (T, N, 1, 2) → (T, N, E)."""
     way = b - a
-    share = np.clip(((points - a) @ way) / (way @ way), 0.0, 1.0)
+    share = np.clip(((points - a) * way).sum(axis=-1) / (way * way).sum(axis=-1), 0.0, 1.0)
     off = points - (a + share[..., None] * way)
     return np.asarray(np.hypot(off[..., 0], off[..., 1]))
 
 
-def _chord_to_edge(path: Floats, a: Floats, b: Floats) -> Floats:
-    """Distance of each chord of each robot from a segment; 0 where they cross: (T + 1, N, 2) → (T, N)."""
-    start, end = path[:-1], path[1:]
-    ends = np.minimum(_to_edge(start, a, b), _to_edge(end, a, b))
+def _chords_to_edges(path: Floats, a: Floats, b: Floats) -> Floats:
+    """Distance of each chord of each robot from each segment; 0 where they cross: (T + 1, N, 1, 2) → (T, N, E)."""
+    ends = _to_edges(path, a, b)
     corners = np.minimum(_nearest_origin(path - a), _nearest_origin(path - b))
-    way = end - start
+    start, end = path[:-1], path[1:]
+    way, edge = end - start, b - a
 
     def side(u: Floats, v: Floats) -> Floats:
         return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
 
-    edge = b - a
     crossed = (side(start - a, edge) * side(end - a, edge) < 0) & (side(way, a - start) * side(way, b - start) < 0)
-    return np.where(crossed, 0.0, np.minimum(ends, corners))
+    return np.where(crossed, 0.0, np.minimum(np.minimum(ends[:-1], ends[1:]), corners))

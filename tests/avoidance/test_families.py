@@ -14,7 +14,7 @@ import yaml
 
 import irsim
 from tests.avoidance.families import CASES, CELL_M, RADIUS_M, SIZE_M, Case, Group, groups, layout, scenario
-from tests.avoidance.judge import clearances
+from tests.avoidance.judge import at_ends
 from tests.avoidance.worker import write_start
 
 FIXED = "d1c4a84c8e3fef085d15c97fc832347f7f05223625fac33ead0911140538d527"
@@ -52,7 +52,7 @@ def test_nobody_touches_anything_at_start_or_goal(case: Case) -> None:
         scene = layout(case, start)
         walls = [wall.outline() for wall in scene.walls]
         for places in ([r.start for r in scene.robots], [r.goal for r in scene.robots]):
-            ends, _ = clearances(np.array([places]), walls, RADIUS_M)
+            ends = at_ends(np.array([places]), walls, RADIUS_M)
             assert ends.min(initial=1.0) > 0.05
             assert all(RADIUS_M < value < SIZE_M - RADIUS_M for place in places for value in place)
             assert not any(shapely.Polygon(ring).contains(shapely.Point(at)) for ring in walls for at in places)

@@ -15,7 +15,6 @@ import tempfile
 import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import yaml
@@ -33,11 +32,12 @@ else:
     import irsim
 
 from tests.avoidance.families import CELL_M, RADIUS_M, SIZE_M, THRESHOLD_M, Group, groups, layout, scenario  # noqa: E402
-from tests.avoidance.judge import Verdict, at_rest, judge, judge_end  # noqa: E402
+from tests.avoidance.judge import Judge, Verdict, at_rest  # noqa: E402
 
 COLUMNS = ("behavior", "drive", "step", "family", "case", "spelling", "outcomes", "between", "seconds", "depths_um")
 DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 Places = NDArray[np.float64]
+OURS = hasattr(irsim, "batch")
 CHUNK = 10
 """Steps between two looks of the judge, who sees every step of them."""
 
@@ -45,23 +45,26 @@ CHUNK = 10
 def run(group: Group, start: int, folder: Path) -> Verdict:
     """Run one start and judge it."""
     scene, file = layout(group.case, start), write_start(group, start, folder)
-    goals = [robot.goal for robot in scene.robots]
-    walls = [wall.outline() for wall in scene.walls]
+    judge = Judge(
+        goals=[robot.goal for robot in scene.robots],
+        walls=[wall.outline() for wall in scene.walls],
+        radius=RADIUS_M,
+        threshold=THRESHOLD_M,
+        dt=group.dt,
+        loop=group.case.loop,
+    )
     steps = round(group.case.limit_s / group.dt)
-    rules: dict[str, Any] = {
-        "radius": RADIUS_M, "threshold": THRESHOLD_M, "dt": group.dt, "loop": group.case.loop,
-    }  # fmt: skip
-    motion = (_ours if hasattr(irsim, "batch") else _peer)(file, len(scene.robots))
+    motion = (_ours if OURS else _peer)(file, len(scene.robots))
     path, begun = [next(motion)], 0
     for k in range(1, steps + 1):
         path.append(next(motion))
         if k % CHUNK and k != steps:
             continue
-        if at_rest(path, group.dt) or judge(path[begun:], goals, walls, **rules) is not None:
+        if judge.ended(path[begun:]) or at_rest(path, group.dt):
             break
         begun = k
     motion.close()
-    return judge_end(path, goals, walls, **rules)
+    return judge.verdict(path)
 
 
 def write_start(group: Group, start: int, folder: Path) -> Path:
