@@ -22,7 +22,7 @@ from tests.avoidance.results import FOLDER, Key, Outcomes, read, write
 WORKER = Path(__file__).with_name("worker.py")
 OURS, PEER = FOLDER / "ours.csv", FOLDER / "peer.csv"
 PASSES = (1, 6, 11, 21, 51)
-"""Starts of each group that are run before those after them; what a pass found is kept if the next one is interrupted."""
+"""Starts of each group that come before all others; what one pass found is kept if the next is interrupted."""
 QUIET = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg"}
 
 
