@@ -79,10 +79,11 @@ def requested_plans(env: Env, overlays: Collection[Overlay] | None) -> list[Plan
 
 
 def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[PlannedPath]) -> Extra:
-    """A function that draws the overlays that no plot key switches."""
+    """A function that draws the overlays that no plot key switches, and contacts within a step, which always show."""
     from irsim.graphics.scene.palette import Palette
     from irsim.graphics.scene.scene import Scene
     from irsim.graphics.scene.zones import draw_zones
+    from irsim.rendering.between_steps import draw_between_steps
     from irsim.rendering.clearance_map import draw_clearance
     from irsim.rendering.planned_paths import draw_plans
 
@@ -92,6 +93,8 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
         if overlays is None or "zones" in overlays:
             draw_zones(env.scenario.world.zones, Palette().zone, scene.extent).add_to(scene)
         draw_plans(scene, ways)
+        if env.simulation.between_steps.any():
+            draw_between_steps(scene, env.simulation, env.events)
 
     return add
 

@@ -37,6 +37,9 @@ def _episodes_with(episodes: Sequence[EpisodeRow]) -> dict[str, list[EpisodeRow]
         "human_contacts": [episode for episode in episodes if episode.human_contacts > 0],
         "left": [episode for episode in episodes if episode.left],
         "jumped": [episode for episode in episodes if episode.jumped],
+        "contacts_between_steps": [
+            episode for episode in episodes if (episode.metrics.get("contacts_between_steps") or 0.0) > 0.0
+        ],
         "seen": [episode for episode in episodes if (episode.metrics.get("seen_ratio") or 0.0) > 0.0],
         LOST: [episode for episode in episodes if episode.lost],
         CROWDED: [episode for episode in episodes if episode.outcome == CROWDED],
@@ -57,6 +60,7 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
     """
     found, seeds_of = list[str](), incident_seeds(episodes)
     words = {
+        "contacts_between_steps": "robots touched something between steps in",
         "human_contacts": "contacts between people in",
         "left": "objects left the world in",
         "jumped": "objects jumped over their goal in",

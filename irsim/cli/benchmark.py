@@ -26,6 +26,8 @@ _COLUMNS = (
     ("spl", "spl", 2),
     ("distance_to_human_min", "human m", 2),
 )
+_BETWEEN = ("contacts_between_steps", "between", 2)
+"""The column that a table has if a robot touched something between two steps."""
 _DIFFERENCES = (
     *((name, name, "") for name in ("success", "collision", "timeout")),
     ("time_to_goal", "time", " s"),
@@ -180,6 +182,8 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     columns = list(_COLUMNS[: 1 if width < _MEDIUM_WIDTH else 3 if width < _FULL_WIDTH else 4])
     if not any(row.metrics["distance_to_human_min"].n for row in result.rows):
         columns = [column for column in columns if column[1] != "human m"]
+    if any(row.metrics[_BETWEEN[0]].mean for row in result.rows):
+        columns.append(_BETWEEN)
     shown = ["time_to_goal", *(key for key, *_ in columns)]
     table = Table(box=None, pad_edge=False, header_style="dim")
     table.add_column("scenario", no_wrap=True)
@@ -221,6 +225,8 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
         legend += "; (5): only 5 of the n episodes have this value"
     if any(heading == "human m" for _, heading, _ in columns):
         legend += "; human m: smallest distance to a human"
+    if _BETWEEN in columns:
+        legend += "; between: contacts of a robot within a step, which no end of a step shows"
     out.print(Text(legend, "dim"))
     summaries = {row.scenario for row in result.rows if is_summary(row.scenario)} or {
         row.scenario for row in result.rows[-1:]

@@ -19,6 +19,8 @@ MAX_ROWS = 20
 """Default number of rows of a table."""
 MAX_CSV_TEXT_LENGTH = 200
 """Longer texts are cut off in comma-separated values [characters]."""
+_FULL_WIDTH = 120
+"""Width of a table that is no terminal's [characters]."""
 
 
 def inspect(
@@ -31,9 +33,9 @@ def inspect(
     view: Annotated[
         str,
         typer.Option(
-            help="rows: states step by step; collisions: objects that touched; closest: smallest distances between "
-            "objects, edge to edge; speeds: path length, speed (forward below 0 means backwards), turn rate; zones: "
-            "who entered a region or crossed a line of world.zones; sight: who saw whom (fov)."
+            help="rows: states step by step; collisions: objects that touched, also within a step; closest: smallest "
+            "distances between objects, edge to edge; speeds: path length, speed (forward below 0 means backwards), "
+            "turn rate; zones: who entered a region or crossed a line of world.zones; sight: who saw whom (fov)."
         ),
     ] = "rows",
     robot: Annotated[
@@ -169,12 +171,14 @@ def _show(table: RunTable, out: object) -> None:
         out.print(f"reason: {clean(table.lost, 400)}")
     for note in table.notes:
         out.print(f"note: {clean(note, 200)}", style="yellow")
+    if not out.is_terminal:
+        out.width = max(out.width, _FULL_WIDTH)
     shown = Table(box=None, pad_edge=False, header_style="dim")
     for column in table.columns:
         shown.add_column(
             column,
             overflow="fold",
-            no_wrap=column == "what",
+            no_wrap=column in ("what", "kind"),
             justify="left"
             if column in ("robot", "object", "partner", "to", "kind", "status", "zone", "what", "observer", "seen")
             else "right",

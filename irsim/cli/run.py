@@ -192,7 +192,8 @@ def _table(result: RunResult) -> object:
     table = Table(box=None, pad_edge=False, header_style="dim")
     for heading in ("robot", "outcome"):
         table.add_column(heading)
-    for heading in ("arrived", "travelled", "to goal", "collisions"):
+    between = any(robot.contacts_between_steps for robot in result.robots)
+    for heading in ("arrived", "travelled", "to goal", "collisions", *["between steps"] * between):
         table.add_column(heading, justify="right")
     for robot in result.robots[:MAX_ROBOTS_SHOWN]:
         table.add_row(
@@ -202,5 +203,6 @@ def _table(result: RunResult) -> object:
             f"{robot.path_length:.1f} m",
             "-" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m",
             str(robot.collision_count),
+            *[Text(str(robot.contacts_between_steps), "red" if robot.contacts_between_steps else "dim")] * between,
         )
     return table

@@ -13,7 +13,7 @@ from irsim.objects.actions import assign_actions
 from irsim.objects.base import SimObject
 from irsim.simulation.active_env import use
 from irsim.simulation.episode_recorder import EpisodeRecorder
-from irsim.simulation.events import read_events
+from irsim.simulation.events import BETWEEN_STEPS, Event, read_events
 from irsim.simulation.trace import Rollout, record_rollout
 
 __all__ = ["advance", "done", "log_collisions", "pause", "refresh", "resume", "rollout", "step"]
@@ -165,13 +165,15 @@ def resume(env: EnvState) -> None:
 
 
 def log_collisions(env: EnvState) -> None:
-    """Log the collisions of robots that have not been logged yet."""
+    """Log the collisions of robots, and their contacts between steps, that have not been logged yet."""
     env._events_seen = env._simulation.state.event_count
     if env.logger.level > LEVELS["WARNING"]:
         return
     events = read_events(env._simulation, start=env._events_logged)
     env._events_logged += len(events)
     for event in events:
+        if event.kind in BETWEEN_STEPS:
+            _log_between_steps(env, event)
         if event.kind != "collision":
             continue
         pair = [event.object, event.partner]
@@ -180,3 +182,11 @@ def log_collisions(env: EnvState) -> None:
             if view is not None and view.role == "robot" and view.collision:
                 state = [round(float(v), 3) for v in view.state[:, 0]]
                 env.logger.warning(f"{name} collided with {other} at state {state}")
+
+
+def _log_between_steps(env: EnvState, event: Event) -> None:
+    views = [get_object_by_name(env, str(name)) for name in (event.object, event.partner)]
+    if any(view is not None and view.role == "robot" for view in views):
+        what = "passed through" if event.kind == "passed_through" else "touched"
+        place = f"at {event.time:.3f} s near ({event.x:.2f}, {event.y:.2f})"
+        env.logger.warning(f"{event.object} {what} {event.partner} between two steps {place}")

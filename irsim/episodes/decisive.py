@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from irsim.episodes.between_steps import BetweenSteps
 from irsim.episodes.explanation import first_collision, has_one_end
 from irsim.episodes.stalling import stalled_step
 from irsim.episodes.stuck import find_circling, find_obstruction, no_progress_since
@@ -27,6 +28,7 @@ def decisive_step(
     env: Env,
     robots: Sequence[RobotResult],
     hits: Sequence[Event],
+    between: BetweenSteps,
     events: Sequence[Event],
     parked: Sequence[str],
     held: Mapping[str, Event],
@@ -37,13 +39,18 @@ def decisive_step(
         env: The environment after the last step.
         robots: Results of the robots.
         hits: Collisions of robots.
+        between: Contacts between steps.
         events: All events.
         parked: Robots that cannot arrive.
         held: Moving obstacles that a collision has stopped, from :func:`irsim.episodes.stuck.find_jammed`.
     """
+    lost = {robot.name for robot in robots if robot.outcome != "success"}
+    through = [e.step for e in between.of_robots if e.kind == "passed_through" and lost & {e.object, str(e.partner)}]
     first = first_collision({robot.name for robot in robots if robot.outcome == "collision"}, hits)
     if first is not None:
-        return first.step
+        return min([first.step, *through])
+    if through:
+        return through[0]
     late = [robot.name for robot in robots if robot.outcome == "timeout" and robot.name not in parked]
     views = {view.name: view for view in env.robot_list}
     steps = [step for name in late[:_MAX_ROBOTS] if (step := _end_of_progress(env, views[name], events, held))]

@@ -61,7 +61,9 @@ def closeness_message(robots: Sequence[RobotResult]) -> str | None:
     names = [
         (robot.name, robot.nearest_called)
         for robot in robots
-        if robot.min_clearance is not None and 0 <= robot.min_clearance < _CLOSE and robot.collision_count == 0
+        if robot.min_clearance is not None
+        and 0 <= robot.min_clearance < _CLOSE
+        and robot.collision_count == robot.contacts_between_steps == 0
     ]
     if not names:
         return None

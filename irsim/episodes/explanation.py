@@ -9,6 +9,7 @@ import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
 from irsim.episodes.appearances import absence, appearances_message, is_absent
+from irsim.episodes.between_steps import BetweenSteps, between_steps_message, others_between_steps_message
 from irsim.episodes.detours import closeness_message, shunting_message
 from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
 from irsim.episodes.out_of_bounds import exits_message
@@ -57,6 +58,7 @@ def summary_message(
     env: Env,
     robots: list[RobotResult],
     hits: Sequence[Event],
+    between: BetweenSteps,
     driven: str | None,
     parked: Sequence[str],
     held: dict[str, Event],
@@ -66,8 +68,10 @@ def summary_message(
     nearest: Mapping[str, float],
     zones: Mapping[str, ZoneResult],
 ) -> str:
-    """Say which robots arrived, the first collision, and what else happened to objects."""
-    parts = [_arrivals_message(robots, env.sim_time, parked)]
+    """Say what was touched between steps, which robots arrived, the first collision, and what else happened."""
+    failed = any(robot.outcome != "success" for robot in robots)  # then the reason has the advice
+    parts = list(filter(None, [between_steps_message(env, between, hits, brief=failed)]))
+    parts.append(_arrivals_message(robots, env.sim_time, parked))
     parts += filter(None, [_waiting_message(env), appearances_message(env)])
     if hit := _first_collision_message(env.scenario, {robot.name for robot in robots}, hits):
         parts.append(hit + _standing_message(env, {robot.name for robot in robots}, hits))
@@ -90,6 +94,8 @@ def summary_message(
     said = bool(held) or incidents.human_contacts[:1] == list(hits[:1])
     if touched := contacts_message(incidents.human_contacts, brief=said):
         parts.append(touched)
+    if among := others_between_steps_message(between):
+        parts.append(among)
     if jam := jam_message(env.simulation, held):
         parts.append(jam)
     if stand := others_standing_message(env, events):
@@ -223,15 +229,16 @@ def reason_message(
     env: Env,
     robots: list[RobotResult],
     hits: Sequence[Event],
+    between: BetweenSteps,
     events: Sequence[Event],
     source: HorizonSource,
     parked: Sequence[str],
     held: dict[str, Event],
 ) -> str:
-    """Say why an episode failed: the first collision, and what the robots that did not arrive were doing."""
+    """Say why an episode failed: contacts between steps, the first collision, and what late robots were doing."""
     if not robots:
         return "there are no robots"
-    reasons = []
+    reasons = list(filter(None, [between_steps_message(env, between, hits)]))
     collided = {robot.name for robot in robots if robot.outcome == "collision"}
     if hit := _first_collision_message(env.scenario, collided, hits):
         others = len(collided) - 1
@@ -247,7 +254,7 @@ def reason_message(
     if still := [robot for robot in robots if robot.outcome == "timeout" and robot.name in parked]:
         names = listed([quoted(robot.name) for robot in still], _MAX_NAMED)
         reasons.append(f"{names} {'is' if len(still) == 1 else 'are'} parked (cannot move, no goal written)")
-        if len(reasons) == 1:
+        if not (hit or late):
             reasons.append(f"the run ended at {seconds(env.sim_time)} ({_LIMIT_SOURCES[source]})")
     return "; ".join(reasons)
 

@@ -15,6 +15,7 @@ from irsim.common.arrays import Floats
 from irsim.common.text import clean
 from irsim.common.version import version
 from irsim.diagnostics.errors import CodedError
+from irsim.episodes.between_steps import BetweenSteps, find_between_steps
 from irsim.episodes.decisive import decisive_step, nearest_to_goals
 from irsim.episodes.explanation import has_one_end, reason_message, summary_message
 from irsim.episodes.incidents import find_incidents
@@ -26,7 +27,7 @@ from irsim.episodes.watching import goal_visibility, watched_metrics, zone_resul
 from irsim.results.findings import Finding
 from irsim.results.run import EventRecord, HorizonSource, Left, RobotResult, RunResult
 from irsim.scenario.resolve.randomness import random_parts
-from irsim.simulation.events import SIGHTS, Event, first_events, passable_names
+from irsim.simulation.events import BETWEEN_STEPS, SIGHTS, Event, first_events, passable_names
 from irsim.simulation.explored import explored_share
 from irsim.simulation.history import all_poses
 from irsim.simulation.outcome import robot_outcomes
@@ -85,7 +86,8 @@ def run_result(
     listed = _without_repeats(env.scenario, events)
     held = find_jammed(env.simulation, events)
     parked = [record.name for record in env.scenario.robots() if env.scenario.is_parked(record)]
-    robots = _robots(env, events, counts, parked)
+    between = find_between_steps(events, {view.name for view in env.robot_list}, passable_names(env.simulation))
+    robots = _robots(env, events, counts, between, parked)
     left, incidents = _exits(env), find_incidents(env.scenario.objects, events)
     zones = zone_results(env, events)
     ends = [robot.outcome for robot in robots]
@@ -104,11 +106,12 @@ def run_result(
     because: str | None = None
     if outcome != "success":
         ended = None if lost is None else f"{lost.message}; the run ended"
-        because = ended or reason_message(env, robots, hits, events, source, parked, held)
+        because = ended or reason_message(env, robots, hits, between, events, source, parked, held)
     summary = summary_message(
         env,
         robots,
         hits,
+        between,
         _driven_by(behavior, policy),
         parked,
         held,
@@ -132,7 +135,7 @@ def run_result(
         reason=because,
         lost=None if lost is None else lost.message,
         lost_code=None if lost is None else _lost_code(lost),
-        decisive_step=decisive_step(env, robots, hits, events, parked, held),
+        decisive_step=decisive_step(env, robots, hits, between, events, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
         time_limit=horizon * env.step_time,
@@ -144,6 +147,7 @@ def run_result(
         jumped=list(incidents.jumps)[:MAX_LISTED_EXITS],
         explored=explored_share(env.simulation),
         human_contacts=len(incidents.human_contacts),
+        contacts_between_steps=len(between),
         zones=zones,
         events=[EventRecord(**event._asdict()) for event in _first(listed)],
         event_count=len(listed),
@@ -154,7 +158,9 @@ def run_result(
     )
 
 
-def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequence[str]) -> list[RobotResult]:
+def _robots(
+    env: Env, events: list[Event], counts: Counter[str], between: BetweenSteps, parked: Sequence[str]
+) -> list[RobotResult]:
     outcomes = robot_outcomes(env.simulation, events=events)
     arrivals = first_events(events, "arrival")
     robots = []
@@ -174,6 +180,8 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
                 outcome="timeout" if ended == "running" else ended,
                 time_to_goal=None if arrival is None else arrival.time,
                 collision_count=counts[view.name],
+                contacts_between_steps=between.counts[view.name],
+                passed_through=between.passed.get(view.name, []),
                 infeasible_steps=int(env.simulation.infeasible[view.row]) or None,
                 path_length=_path_length(env, view.row),
                 distance_to_goal=None if goal is None else math.dist(goal[:2, 0], place[:2]),
@@ -276,13 +284,13 @@ def _without_repeats(scenario: ResolvedScenario, events: Sequence[Event]) -> lis
 
 
 def _first(events: list[Event]) -> list[Event]:
-    """The events that a result lists; if there are too many, those of sights are left out first."""
-    room = _MAX_EVENTS - sum(event.kind not in SIGHTS for event in events)
-    kept = []
-    for event in events:
-        if event.kind in SIGHTS:
-            room -= 1
-            if room < 0:
-                continue
-        kept.append(event)
-    return kept[:_MAX_EVENTS]
+    """The events that a result lists, in order: if there are too many, contacts between steps stay and sights go first.
+
+    Within a rank the first events stay.
+    """
+    ranks = sorted(range(len(events)), key=lambda place: _rank(events[place].kind))  # a stable sort
+    return [events[place] for place in sorted(ranks[:_MAX_EVENTS])]
+
+
+def _rank(kind: str) -> int:
+    return 0 if kind in BETWEEN_STEPS else 2 if kind in SIGHTS else 1

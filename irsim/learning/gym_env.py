@@ -28,6 +28,8 @@ RENDER_MODES = ("rgb_array", "human")
 class Env(gymnasium.Env[NDArray[np.float32], Any]):  # type: ignore[misc] # types of an extra are not read
     """A task with one learner.
 
+    The info of a step has ``arrived``, ``collided``, ``is_success``, and ``contacts_between_steps``: the number of
+    contacts of the episode so far that began and ended within one step.
     ``reset(seed=s)`` starts the first scene of the seed s; each further ``reset()`` starts the next one.
 
     Args:
@@ -154,6 +156,10 @@ def frames_per_second(worlds: AnyWorlds) -> int:
 
 
 def facts(result: Result, slot: int) -> dict[str, Any]:
-    """What a step has led to for one learner: whether it arrived, which is its success, and whether it collided."""
+    """What a step has led to for one learner: whether it arrived, which is its success, and whether it collided.
+
+    ``contacts_between_steps`` is the number of those of its episode so far, see :class:`irsim.learning.result.Result`.
+    """
     arrived, collided = bool(result.arrived.reshape(-1)[slot]), bool(result.collided.reshape(-1)[slot])
-    return {"arrived": arrived, "collided": collided, "is_success": arrived}
+    between = int(result.contacts_between_steps.reshape(-1)[slot])
+    return {"arrived": arrived, "collided": collided, "is_success": arrived, "contacts_between_steps": between}

@@ -25,6 +25,8 @@ class Result:
         over: (n,) whether the world is over, so that it has to be reset.
         arrived, collided: (n, A) whether the learner arrived or began to collide in this step.
         terms: (T, n, A) terms of the reward times their weights, in the order of the task.
+        contacts_between_steps: (n, A) number of contacts of the learner in its episode that began and ended within one
+            step; with ``world.contacts: step_end`` they are no collisions.
     """
 
     reward: Floats
@@ -35,6 +37,7 @@ class Result:
     arrived: NDArray[np.bool_]
     collided: NDArray[np.bool_]
     terms: Floats
+    contacts_between_steps: NDArray[np.int32]
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,8 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
 
     A slot waits when its episode is over before that of its world: it earns nothing, and :attr:`active` is False.
     Facts of whole episodes come in ``infos[slot]["episode"]``: ``r``, ``l`` and ``is_success``, as
-    :class:`stable_baselines3.common.monitor.Monitor` has them.
+    :class:`stable_baselines3.common.monitor.Monitor` has them, and in ``infos[slot]["contacts_between_steps"]``: the
+    number of contacts of the episode that began and ended within one step.
 
     Args:
         task: The task: its file, its data, or a task that was read.
@@ -101,6 +102,7 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
             episode = {"r": float(self._return[slot]), "l": int(self._length[slot])}
             success = bool(result.arrived.reshape(-1)[slot])
             infos[slot] |= {"episode": episode, "is_success": success, "TimeLimit.truncated": bool(truncated[slot])}
+            infos[slot]["contacts_between_steps"] = int(result.contacts_between_steps.reshape(-1)[slot])
         for slot in np.flatnonzero(done).tolist():
             infos[slot]["terminal_observation"] = (step.last if over[slot] else step.seen)[slot].copy()
         self._length[done], self._return[done] = 0, 0.0

@@ -40,6 +40,8 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
     With one learner in each world, slot i is bit for bit what :class:`irsim.learning.Env` is with its seed. With more,
     the episode of a learner may be over before that of its world. Its slot then waits: the reward is 0,
     ``info["active"]`` is False, and the flag ``truncated`` says in which step the world is over, too.
+    ``info["contacts_between_steps"]`` has the number of contacts of each slot's episode so far that began and ended
+    within one step, in the last step of an episode those of the whole episode.
 
     Args:
         task: The task: its file, its data, or a task that was read.
@@ -154,7 +156,9 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         waiting = ~info["active"] & np.repeat(over, worlds.learners)
         truncated = truncated | waiting
         if self._mode is AutoresetMode.NEXT_STEP and before.any():  # for these worlds, the step did not count
-            info["active"] |= np.repeat(before, worlds.learners) & worlds.present.reshape(-1)
+            begun = np.repeat(before, worlds.learners)
+            info["active"] |= begun & worlds.present.reshape(-1)
+            info["contacts_between_steps"][begun] = 0
         if self._mode is AutoresetMode.SAME_STEP and over.any():
             info |= _final(step.last, np.flatnonzero(np.repeat(over, worlds.learners)))
             over[:] = False
@@ -223,7 +227,9 @@ def _info(result: Result) -> dict[str, Any]:
     """Facts of a step as arrays of one entry for each slot."""
     arrived = result.arrived.reshape(-1)
     active = result.active.reshape(-1).copy()
-    return {"arrived": arrived, "collided": result.collided.reshape(-1), "is_success": arrived, "active": active}
+    between = result.contacts_between_steps.reshape(-1)
+    facts = {"arrived": arrived, "collided": result.collided.reshape(-1), "is_success": arrived, "active": active}
+    return facts | {"contacts_between_steps": between}
 
 
 def _final(seen: NDArray[np.float32], slots: NDArray[np.int64]) -> dict[str, Any]:

@@ -290,20 +290,25 @@ class Worlds:
         world, state, velocities = simulation.world, simulation.state, self._meaning.returns == "velocity"
         wanted = None if numbers is None else self._wanted(numbers)
         if seen is not None and not terms and not simulation.in_python:  # all in one loop of the core
-            result = Result(
-                *stepper.step(world, state, wanted, velocities, eyes.looking, eyes.native, seen, self._threads)
-            )
+            found = stepper.step(world, state, wanted, velocities, eyes.looking, eyes.native, seen, self._threads)
+            result = Result(*(*found, self._contacts_between_steps()))
             eyes.complete(self.rows, seen)
             return result
         stepper.begin(world, state, wanted, velocities)
         terms.look()
         simulation.step()
-        result = Result(*stepper.end(world, state, self._threads))
+        found = stepper.end(world, state, self._threads)
+        result = Result(*(*found, self._contacts_between_steps()))
         if terms:
             result = terms.add(result, self.present)
         if seen is not None:
             eyes.observe(self.rows, seen)
         return result
+
+    def _contacts_between_steps(self) -> NDArray[np.int32]:
+        """(n, A) number of such contacts of each learner in the present episode."""
+        counts: NDArray[np.int32] = self._simulation.between_steps[self.rows]
+        return counts.reshape(self.n, self.learners)
 
     # actions ----------------------------------------------------------------------------------------------------------
     def read(self, actions: Any) -> Floats | None:

@@ -291,13 +291,19 @@ GUIDES: dict[str, Guide] = {
         "steps given, else world.time_limit, else the longest time that a robot needs for the straight lines between "
         "its goals at top speed, times 4, and at least 30 s. success: every robot arrived without a collision; "
         "collision: a robot was stopped by a collision, or arrived after one; timeout: any other end (where "
-        "collision_mode lets robots drive on, contacts are only counted). Contacts are reported when they begin. The "
-        "summary also counts contacts between people, objects that left the world, and those that jumped over their "
-        "goal: passed it within goal_threshold between two steps (event overshoot) and never arrived. In a benchmark, "
-        "a seed without room for an object is placement-crowded and counts in no rate. "
+        "collision_mode lets robots drive on, contacts are only counted). Contacts are reported when they begin, and "
+        "judged at the ends of steps: two objects that touch within a step and are apart at both ends have an event "
+        "contact_between_steps, or passed_through. The summary, and after a failure the reason, begins with the first "
+        "of a robot; world.contacts: swept makes them collisions. The summary also counts contacts between people, "
+        "objects that left the world, and those that jumped over their goal: passed it within goal_threshold between "
+        "two steps (event overshoot) and never arrived. In a benchmark, a seed without room for an object is "
+        "placement-crowded and counts in no rate. "
         "Object names are numbered through, robots first: obstacle_3 in a file with one robot is the third obstacle; "
         "pictures shorten it to o3.",
         None,
-        ("outcome", "success", "timeout", "time limit", "default time limit", "horizon"),
+        (
+            *("outcome", "success", "timeout", "time limit", "default time limit", "horizon"),
+            *("contact between steps", "passed through", "tunnel"),
+        ),
     ),
 }

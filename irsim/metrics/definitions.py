@@ -132,6 +132,13 @@ def _extras() -> tuple[Metric, ...]:
         extra("freezing_time", "s", "time in such stalls", better="less"),
         extra("min_clearance", "m", "smallest distance to anything that can be hit, surface to surface", "min", "more"),
         extra(
+            "contacts_between_steps",
+            "count",
+            "contacts that began and ended within one step, before it arrived; collisions only with world.contacts: "
+            "swept",
+            better="less",
+        ),
+        extra(
             "human_collisions_by_robot", "count", "of those with humans, where it went faster to the contact, or both"
         ),
         extra("human_collisions_by_human", "count", "of those with humans, where the human did, or both"),

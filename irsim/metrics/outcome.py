@@ -15,6 +15,8 @@ def outcome_metrics(track: Track) -> dict[str, float]:
       contacts.
     - ``collision_count``: contacts that began (at least one step without before), per unordered pair, until it arrived;
       ``wall_``, ``agent_``, ``human_collisions`` of them by partner. ``collision_steps``: steps in contact.
+    - ``contacts_between_steps``: contacts, per unordered pair, with nothing touched at either end of the step, until it
+      arrived; ``collision_count`` has them, too, only where ``world.contacts: swept`` makes them collisions.
     - ``timeout``: neither arrived nor stopped by a collision at the end; a contact after which the robot drives on
       (``world.collision_mode``) counts as a contact, not as the end.
     - ``time_to_goal`` [s]: time of the first arrival; NaN without one.
@@ -29,6 +31,7 @@ def outcome_metrics(track: Track) -> dict[str, float]:
         "wall_collisions": float(len(kinds) - agents - humans),
         "agent_collisions": float(agents),
         "human_collisions": float(humans),
+        "contacts_between_steps": float(track.between_steps),
         "timeout": float(track.arrival is None and not (kinds and track.stopped)),
         "time_to_goal": float("nan") if track.arrival is None else track.arrival * track.step_time,
     }

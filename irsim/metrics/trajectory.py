@@ -41,6 +41,7 @@ class Track:
         distance: (K, 3) distance [m] to the nearest robot, human, static object (see ``Clearance``).
         arrival: Step of the first arrival, None if it never arrived.
         collisions: Contacts up to the arrival, each with the kind of the partner (see :mod:`irsim.metrics.roles`).
+        between_steps: Number of contacts up to the arrival that began and ended within one step.
         control: (K - 1, C) controls executed in each step.
         limits: (C,) greatest magnitude of each control.
         outside: (K,) whether its position is outside the world.
@@ -65,6 +66,7 @@ class Track:
     distance: Floats
     arrival: int | None
     collisions: tuple[tuple[Event, int], ...]
+    between_steps: int
     control: Floats
     limits: Floats
     outside: NDArray[np.bool_]
@@ -149,7 +151,7 @@ def tracks(
         top_speeds: Top speeds of the robots [m/s].
     """
     from irsim.metrics.clearances import static_distance
-    from irsim.simulation.events import first_events, is_collision_of, partner_of
+    from irsim.simulation.events import BETWEEN_STEPS, first_events, is_between_steps_of, is_collision_of, partner_of
 
     scenario = simulation.scenario
     records = scenario.objects
@@ -157,6 +159,7 @@ def tracks(
     passable = {record.name for record in records if record.unobstructed}
     number = {name: index for index, name in enumerate(trace.names)}
     arrivals = first_events(events, "arrival")
+    brief = [event for event in events if event.kind in BETWEEN_STEPS]
     humans = np.flatnonzero(kinds == HUMAN)
     beside = static_distance(trace.pose, simulation, humans.tolist())
     first = int(trace.step[0])
@@ -192,6 +195,10 @@ def tracks(
                 distance=distances.distance[rows, place],
                 arrival=arrival,
                 collisions=tuple(hits),
+                between_steps=sum(
+                    is_between_steps_of(event, name, passable) and (arrival is None or event.step <= arrival)
+                    for event in brief
+                ),
                 control=trace.control[rows, robot, : record.vel_dim][1:],
                 limits=np.maximum(*np.abs(simulation.limits(robot))),
                 outside=(x < x0) | (x > x1) | (y < y0) | (y > y1),

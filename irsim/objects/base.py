@@ -282,6 +282,11 @@ class SimObject:
         return bool(self._simulation.collided[self.row])
 
     @property
+    def contacts_between_steps(self) -> int:
+        """Number of contacts of the episode that began and ended within one step, so that ``collision`` tells none."""
+        return int(self._simulation.between_steps[self.row])
+
+    @property
     def stop_flag(self) -> bool:
         """Whether the collision mode has stopped the object; may be set, until the next step evaluates it again."""
         return bool(self._simulation.stopped[self.row])

@@ -75,7 +75,8 @@ class BenchmarkRow(Result):
     """Number of episodes by failing robot and kind of failure, the ten most frequent: ``'car': timeout``; empty for
     ``(all)``."""
     incidents: dict[str, int] = Field(default_factory=dict)
-    """Number of episodes with what outcomes do not say: ``human_contacts`` (people touched each other), ``left`` (an
+    """Number of episodes with what outcomes do not say: ``contacts_between_steps`` (a robot touched something within a
+    step and at neither end of it, before it arrived), ``human_contacts`` (people touched each other), ``left`` (an
     object left the world), ``jumped`` (one jumped over its goal), ``seen`` (a robot was in the ``fov`` of another
     object), ``policy-lost`` (the policy could not go on); and ``placement-crowded``, the number of seeds without room,
     which are not among ``episodes``. Only those above 0."""

@@ -79,6 +79,11 @@ class RobotResult(Result):
     """Time of first arrival [s]; None when it never arrived."""
     collision_count: int
     """Number of contacts that began."""
+    contacts_between_steps: int = 0
+    """Number of contacts that began and ended within one step; they decide ``outcome`` only with ``world.contacts:
+    swept``."""
+    passed_through: list[str] = Field(default_factory=list)
+    """The first ten objects that it passed through between two steps, or that passed through it."""
     infeasible_steps: int | None = None
     """Steps in which its behavior found no velocity that avoids all others (only ``orca`` and ``avocado`` report this);
     None if there were none."""
@@ -87,8 +92,8 @@ class RobotResult(Result):
     distance_to_goal: float | None
     """Distance to the present goal at the end [m]; None without a goal."""
     min_clearance: float | None = None
-    """Smallest distance, edge to edge, to anything it could hit, until it arrived [m]; negative: overlap; None if
-    there is nothing to hit, and in runs of more than two million poses."""
+    """Smallest distance, edge to edge, to anything it could hit, at the end of any step until it arrived [m]; negative:
+    overlap; None if there is nothing to hit, and in runs of more than two million poses."""
     nearest: str | None = None
     """Name of that nearest object."""
     nearest_called: str | None = None
@@ -153,17 +158,20 @@ class RunResult(Result):
     """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``, also if the run
     ended early because something was ``lost``."""
     summary: str
-    """One sentence: which robots arrived, which did not, and why."""
+    """One sentence: which robots arrived, which did not, and why. It begins with the first contact between steps of a
+    robot, if there was one that did not count as a collision."""
     reason: str | None = None
-    """Why the run failed: the first collision, and what robots that did not arrive were doing; None on success."""
+    """Why the run failed: contacts between steps, the first collision, and what robots that did not arrive were doing;
+    None on success."""
     lost: str | None = None
     """Why the policy, or the program at the other end of a bridge, could not go on, which ended the run early; None
     otherwise. Only policies in other processes are lost."""
     lost_code: Literal["bridge-lost", "policy-lost"] | None = None
     """Which of the two was lost; None if neither was."""
     decisive_step: int | None = None
-    """Step that decided the outcome: of the first collision of a robot, or in which the first robot that did not arrive
-    ceased to make progress; None on success, and if such robots moved on until the end."""
+    """Step that decided the outcome: of the first collision of a robot, or in which one without success passed through
+    something between two steps, or in which the first robot that did not arrive ceased to make progress; None on
+    success, and if such robots moved on until the end."""
     steps: int
     """Number of executed steps."""
     sim_time: float
@@ -187,11 +195,13 @@ class RunResult(Result):
     without `fog_map`."""
     human_contacts: int = 0
     """Number of contacts that began between two people: moving obstacles, or objects tagged ``pedestrian``."""
+    contacts_between_steps: int = 0
+    """Number of contacts of any two objects that began and ended within one step; ``events`` has the first ones."""
     zones: dict[str, ZoneResult] = Field(default_factory=dict)
     """What happened in each zone of ``world.zones``, by its name."""
     events: list[EventRecord]
     """The first events, in order; repeated arrivals of an object at the same goal count once. If there are too many,
-    ``sight_start`` and ``sight_end`` are left out first."""
+    ``sight_start`` and ``sight_end`` are left out first, and contacts between steps last."""
     event_count: int
     """Number of such events."""
     warnings: list[Finding]

@@ -54,6 +54,8 @@ class DryRun(Result):
     """Robots that reached their last goal."""
     collisions: list[EventRecord]
     """The first collisions, in order."""
+    contacts_between_steps: list[EventRecord] = Field(default_factory=list)
+    """The first contacts of robots that began and ended within one step, in order."""
     stuck: list[Stuck]
     """The first stuck robots; ``summary`` has their number."""
     left: list[Left]

@@ -21,6 +21,7 @@ from irsim.runs.selection import chosen_objects
 from irsim.runs.tables import Cell, Field, Question, Table, paged, rounded
 from irsim.runs.watching import sight_empty_message, sight_view, zone_view, zones_empty_message
 from irsim.scenario.limits import Limits
+from irsim.simulation.events import BETWEEN_STEPS
 from irsim.simulation.trace import Trace
 
 __all__ = ["FIELDS", "VIEWS", "Field", "View", "inspect_run"]
@@ -30,6 +31,8 @@ FIELDS: tuple[Field, ...] = get_args(Field)
 _SHOWN: tuple[Field, ...] = ("x", "y", "heading", "speed", "goal_distance", "status")
 _MIN_SPEED = 1e-3
 """Speed [m/s] below which an object stands still."""
+_CONTACTS = ("collision", *BETWEEN_STEPS)
+"""Kinds of events of the view ``collisions``."""
 _NOT_RECORDED = "not recorded"
 _MAX_PARTNERS = 5
 """Number of objects of each kind that ``closest`` lists for one object."""
@@ -53,9 +56,11 @@ def inspect_run(
 
     Args:
         run: Id of the run, its folder, or ``last``.
-        view: ``rows``: positions and more, step by step; ``collisions``: objects in contact, with place and speeds;
+        view: ``rows``: positions and more, step by step; ``collisions``: contacts, with place and speeds, and of those
+            that begin and end within one step (the kinds ``contact_between_steps`` and ``passed_through``) the deepest
+            overlap;
             ``closest``: the closest approaches of each robot to the nearest five robots, humans and static objects,
-            with time and place, as distances between footprints (negative: overlap);
+            with time and place, as distances between footprints at the ends of steps (negative: overlap);
             ``speeds``: path length and speeds of each robot and its longest stop, until it arrived (or of all requested
             steps if they begin after its arrival). ``speed`` is a magnitude, never negative;
             ``min_forward_speed`` is the velocity along the heading, negative where the robot drove backwards (None for
@@ -217,22 +222,24 @@ def _cells(asked: Question, field: Field, row: int, index: int, controls: int) -
 
 
 def _collisions(asked: Question) -> Table:
-    """Beginnings of contacts, with the speeds of both objects just before."""
+    """Beginnings of contacts, also of those within a step, with the speeds of both objects just before."""
     trace = asked.trace
     steps = asked.steps
     chosen = {trace.names[index] for index in asked.objects}
     events = [
         event
         for event in asked.run.events
-        if event.kind == "collision" and steps[0] <= event.step <= steps[1] and chosen & {event.object, event.partner}
+        if event.kind in _CONTACTS and steps[0] <= event.step <= steps[1] and chosen & {event.object, event.partner}
     ]
     rows: list[list[Cell]] = []
     for event in events:
         row = event.step - int(trace.step[0])
         before = [_speed_before(trace, name, row) for name in (event.object, event.partner)]
         place = [rounded(event.x), rounded(event.y)]
-        rows.append([event.step, rounded(event.time), event.object, event.partner, *place, *before])
-    columns = ["step", "time", "object", "partner", "x", "y", "speed", "partner_speed"]
+        depth = None if event.depth is None else rounded(event.depth)
+        moment: list[Cell] = [event.step, rounded(event.time), event.object, event.partner]
+        rows.append([*moment, *place, *before, event.kind, depth])
+    columns = ["step", "time", "object", "partner", "x", "y", "speed", "partner_speed", "kind", "depth"]
     return paged(asked, columns, rows)
 
 

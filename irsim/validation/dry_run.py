@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from irsim.common.text import seconds
 from irsim.env import Env
+from irsim.episodes.between_steps import between_steps_message, find_between_steps
 from irsim.episodes.episode import horizon_of
 from irsim.episodes.explanation import has_one_end, others_arrived_message
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, exits_message, find_exits
@@ -137,6 +138,7 @@ def _summarise(
     robots = [index for index, item in enumerate(scenario.objects) if item.role == "robot"]
     names = {scenario.objects[index].name for index in robots}
     hits = [e for e in events if any(is_collision_of(e, name, passable) for name in names)]
+    between = find_between_steps(events, names, passable)
     arrived = list(dict.fromkeys(e.object for e in events if e.kind == "arrival" and e.object in names))
     parked = [record.name for record in scenario.robots() if scenario.is_parked(record)]
     held = find_jammed(env.simulation, events)
@@ -159,6 +161,7 @@ def _summarise(
         summary="; ".join(
             [
                 _progress_message(trace, len(robots), arrived, parked, ended, cut),
+                *filter(None, [between_steps_message(env, between, hits)]),
                 *_problem_messages(hits, stuck, count),
                 *filter(
                     None,
@@ -172,9 +175,8 @@ def _summarise(
             ]
         ),
         arrived=arrived,
-        collisions=[
-            EventRecord(**{key: getattr(e, key) for key in EventRecord.model_fields}) for e in hits[:_MAX_LISTED]
-        ],
+        collisions=[EventRecord(**e._asdict()) for e in hits[:_MAX_LISTED]],
+        contacts_between_steps=[EventRecord(**e._asdict()) for e in between.of_robots[:_MAX_LISTED]],
         stuck=[*stuck, *waiting][:_MAX_LISTED],
         left=left[:MAX_LISTED_EXITS],
         parked=parked,

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from irsim.cli.app import app
 from irsim.results.run import RunResult
+from tests.api.test_between_steps import scene as tunnel
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
 
 pytestmark = pytest.mark.anyio
@@ -117,7 +118,8 @@ async def test_command_line_and_server_say_the_same(workspace: Path, monkeypatch
         if isinstance(value, list):
             return [rounded(item) for item in value]
         if isinstance(value, dict):
-            return {key: rounded(item) for key, item in value.items() if item is not None}
+            empty = (("contacts_between_steps", 0), ("passed_through", []))
+            return {key: rounded(v) for key, v in value.items() if v is not None and (key, v) not in empty}
         return value
 
     same = {"outcome", "reason", "summary", "seed", "steps", "sim_time", "time_limit", "time_limit_from", "robots"}
@@ -270,3 +272,39 @@ async def test_steps_without_a_way_to_avoid_everybody_say_whether_that_mattered(
     async with connected(empty) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": POCKET.format(goal=goal), "seed": 0})
     assert re.search(rf"in \d+ steps no velocity avoided everybody, {said}", text_of(result))
+
+
+async def test_a_success_that_passed_a_wall_is_told_and_not_trusted(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        run = await client.call_tool("run_episode", {"scenario_yaml": tunnel()})
+        data, text = data_of(run), text_of(run)
+        table = data_of(await client.call_tool("inspect_run", {"run_id": data["run_id"], "view": "collisions"}))
+        many = await client.call_tool("benchmark", {"scenarios": [tunnel()], "seeds": 1})
+        tried = await client.call_tool("validate_scenario", {"scenario_yaml": tunnel(), "simulate": True})
+    assert text.splitlines()[0].startswith("success: 'runner' passed through 'board' between two steps at 2.31 s")
+    assert data["incidents"] == {"contacts_between_steps": 2}
+    [runner] = data["robots"]
+    assert (runner["contacts_between_steps"], runner["passed_through"]) == (2, ["board"])
+    assert "2 contacts between steps (passed through 'board')" in text
+    assert "passed_through of 'runner' with 'board'" in text
+    assert [event["kind"] for event in data["events"]] == ["contact_between_steps", "passed_through", "arrival"]
+    assert data["next"].startswith("Do not trust this success: a robot touched something between two steps; ")
+    assert "world.contacts: swept" in data["next"]
+    assert [row[table["columns"].index("kind")] for row in table["rows"]] == ["contact_between_steps", "passed_through"]
+    assert "robots touched something between steps in 1 of 1 episodes (seed 0)" in text_of(many).splitlines()[0]
+    assert data_of(many)["rows"][0]["incidents"] == {"contacts_between_steps": 1}
+    assert "passed through 'board' between two steps" in text_of(tried)
+
+
+async def test_of_many_events_contacts_between_steps_are_listed(workspace: Path) -> None:
+    others = "".join(
+        f"\n  - {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.1}}, state: [{x}, 0.5], "
+        f"goal: [{x}, 1], behavior: {{name: dash}}}}"
+        for x in range(1, 12)
+    )
+    text = tunnel().replace("obstacle:", "obstacle:" + others)
+    async with connected(workspace) as client:
+        data = data_of(await client.call_tool("run_episode", {"scenario_yaml": text}))
+    kinds = [event["kind"] for event in data["events"]]
+    assert (len(kinds), data["event_count"]) == (10, 14)
+    assert {"contact_between_steps", "passed_through"} <= set(kinds)

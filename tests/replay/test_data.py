@@ -8,6 +8,7 @@ import pytest
 import irsim.runs.replay.data as packing
 from irsim.bundled.templates import names
 from irsim.runs import Run, RunError, open_run
+from tests.api.test_between_steps import scene as tunnel
 from tests.replay.conftest import HOSTILE, recorded, scene
 from tests.replay.reading import unpacked
 
@@ -140,3 +141,24 @@ def test_every_template(workspace: Path, name: str) -> None:
     np.testing.assert_allclose(poses_of(head, columns)[:, :, :2][there], recorded_poses[there], atol=2e-3)
     if head["grid"] is not None:
         assert int(columns["cells"].sum()) == int(np.prod(head["grid"]["cells"]))
+
+
+def test_contacts_between_steps_have_their_time_within_the_step(workspace: Path) -> None:
+    run = recorded(tunnel())
+    head, _ = unpacked(packing.pack_run(run).data)
+    number = run.names.index
+    graze, through, arrival = head["events"]
+    assert graze[:4] == [14, "contact_between_steps", number("runner"), number("post")]
+    assert graze[6:] == ["", pytest.approx(1.32, abs=1e-3)]
+    assert through[:4] == [24, "passed_through", number("runner"), number("board")]
+    assert through[6:] == ["", pytest.approx(2.3133, abs=1e-3)]
+    assert len(arrival) == 6
+
+
+def test_contacts_between_steps_are_among_the_most_important_events(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(packing, "_MAX_EVENTS", 2)
+    head, _ = unpacked(packing.pack_run(recorded(tunnel())).data)
+    assert [event[1] for event in head["events"]] == ["contact_between_steps", "passed_through"]
+    assert head["left_out"] == {"arrival": 1}

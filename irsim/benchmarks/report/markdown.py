@@ -32,6 +32,8 @@ _SOMETIMES = (
     ("seen_ratio", "seen"), ("time_in_zone", "in zones [s]"), ("zone_crossings", "crossings of zones"),
 )  # fmt: skip
 """(key, heading) of columns that a table has if a row has a value."""
+_ABOVE_ZERO = (("contacts_between_steps", "between steps"),)
+"""(key, heading) of columns that a table has if a row has a value other than 0."""
 _DIFFERENCES = (
     ("success", "success"), ("collision", "collision"), ("timeout", "timeout"), ("time_to_goal", "time [s]"),
     ("path_length", "path [m]"),
@@ -116,8 +118,11 @@ def about_of(result: BenchmarkResult) -> list[str]:
 
 
 def columns_of(result: BenchmarkResult) -> list[tuple[str, str]]:
-    """Key and heading of the columns of the table: those of people, zones and views only if a row has a value."""
+    """Key and heading of the columns of the table: some only if a row has a value, or one other than 0."""
     used = [(key, text) for key, text in _SOMETIMES if any(_has(row.metrics.get(key)) for row in result.rows)]
+    used += [
+        (key, text) for key, text in _ABOVE_ZERO if any(_is_above_zero(row.metrics.get(key)) for row in result.rows)
+    ]
     return [*_COLUMNS, *used]
 
 
@@ -159,6 +164,10 @@ def cells_of(row: BenchmarkRow, columns: Sequence[tuple[str, str]] = _COLUMNS) -
 
 def _has(found: Estimate | None) -> bool:
     return found is not None and found.n > 0
+
+
+def _is_above_zero(found: Estimate | None) -> bool:
+    return found is not None and bool(found.mean)
 
 
 def _share(found: Proportion) -> str:

@@ -69,6 +69,7 @@ _COLUMNS = (
     Column("arrived", "flag", "Whether it has arrived"),
     Column("collided", "flag", "Whether it touches an object that blocks it"),
     Column("stopped", "flag", "Whether a collision keeps it from moving"),
+    Column("between_steps", "flag", "Whether it touched something within the step that led here, at neither end of it"),
 )
 
 
@@ -117,6 +118,7 @@ def _cells(episode: Episode, block: Block, columns: Sequence[Column]) -> dict[st
         "arrived": trace.arrived.ravel(),
         "collided": trace.collided.ravel(),
         "stopped": trace.stopped.ravel(),
+        "between_steps": block.between_steps.ravel(),
     }
     for names, values in (
         (("x", "y", "theta"), trace.pose),

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
@@ -17,6 +18,7 @@ from irsim.options.registry import KINEMATICS, SENSORS
 from irsim.runs.files import RunError, unreadable
 from irsim.runs.reading import Run
 from irsim.scenario.limits import Limits
+from irsim.simulation.events import BETWEEN_STEPS
 from irsim.simulation.trace import Trace
 
 __all__ = ["CHOICES", "Actor", "Block", "Episode", "Lidar", "open_episode"]
@@ -129,11 +131,13 @@ class Block:
         velocity: (T, M, 3) mean velocity in the world frame [m/s] and yaw rate [rad/s] during the step that led to
             each row; NaN in the first row of a run.
         heading_before: (T, M) heading before that step [rad]; in the first row of a run the present one.
+        between_steps: (T, M) whether it touched something within that step, and at neither end of it.
     """
 
     trace: Trace
     velocity: Floats
     heading_before: Floats
+    between_steps: NDArray[np.bool_]
 
     @property
     def body_velocity(self) -> Floats:
@@ -216,8 +220,29 @@ class Episode:
                 velocity[0] = math.nan
             before = trace.pose[-1:].copy()
             trace.goal[:, aimless] = math.nan
-            yield Block(trace, velocity, led[:, :, 2])
+            yield Block(trace, velocity, led[:, :, 2], self._between_steps(trace))
             self.progress(len(trace))
+
+    @cached_property
+    def _contacts(self) -> NDArray[np.int64]:
+        """(C, 2) step and position of the actor of each of its contacts between steps."""
+        place = {actor.name: position for position, actor in enumerate(self.actors)}
+        found = [
+            (event.step, place[name])
+            for event in self.run.events
+            if event.kind in BETWEEN_STEPS
+            for name in (event.object, event.partner)
+            if name in place
+        ]
+        return np.array(found, dtype=np.int64).reshape(-1, 2)
+
+    def _between_steps(self, trace: Trace) -> NDArray[np.bool_]:
+        """(T, M) whether an actor touched something within the step that led to a row."""
+        found = np.zeros((len(trace), len(self.actors)), dtype=bool)
+        row, position = self._contacts[:, 0] - int(trace.step[0]), self._contacts[:, 1]
+        here = (row >= 0) & (row < len(trace))
+        found[row[here], position[here]] = True
+        return found
 
     @property
     def facts(self) -> dict[str, Any]:

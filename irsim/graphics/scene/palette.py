@@ -36,6 +36,7 @@ class Palette:
         fmcw_zero_velocity, fmcw_positive_velocity, fmcw_negative_velocity: Doppler beams whose target keeps its
             distance, recedes, approaches.
         zone: Lines and areas of `world.zones`.
+        contact: Contacts within a step.
         marker: Points of ``draw_points``.
         path: Lines of ``draw_trajectory`` and ``draw_box``.
         quiver: Arrows of ``draw_quiver``.
@@ -55,6 +56,7 @@ class Palette:
     fmcw_positive_velocity: str = _RED
     fmcw_negative_velocity: str = _BLUE
     zone: str = _PURPLE
+    contact: str = _RED
     marker: str = _PINK
     path: str = _BLUE
     quiver: str = "k"

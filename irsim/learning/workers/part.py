@@ -32,6 +32,7 @@ def layout_of(worlds: Worlds, n: int, parts: int) -> list[ArrayLayout]:
         ArrayLayout("last", (slots, worlds.eyes.size), "f4"),
         ArrayLayout("reward", (n, learners), "f8"),
         ArrayLayout("terms", (len(worlds.task.reward), n, learners), "f8", axis=1),
+        ArrayLayout("contacts_between_steps", (n, learners), "i4"),
         ArrayLayout("over", (n,), "?"),
         ArrayLayout("mask", (n,), "?"),
         ArrayLayout("seeds", (n,), "u8"),

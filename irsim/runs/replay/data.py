@@ -18,7 +18,7 @@ from irsim.runs.reading import Run
 from irsim.runs.replay.columns import Columns, changes, folded, quantised
 from irsim.runs.replay.drawing import page_grid, page_objects, page_zones
 from irsim.scenario.limits import Limits
-from irsim.simulation.events import Event
+from irsim.simulation.events import BETWEEN_STEPS, Event
 from irsim.simulation.trace import Trace
 
 __all__ = ["Packed", "pack_run"]
@@ -233,7 +233,10 @@ def _ending(run: Run) -> dict[str, Any]:
 
 
 def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, Any]:
-    """Events as [step, kind, object, partner or -1, x, y, zone if any], and how many there are and are left out."""
+    """Events as [step, kind, object, partner or -1, x, y], and how many there are and are left out.
+
+    There are further values: the zone, if any; of a contact between steps an empty zone and the time within the step.
+    """
     number = {name: row for row, name in enumerate(trace.names)}
     last = int(trace.step[-1])
     events = [event for event in run.events if event.step <= last and event.object in number]
@@ -273,8 +276,10 @@ def _most_important(events: list[Event], robots: Container[str]) -> list[Event]:
     return [events[place] for place in sorted(chosen)]
 
 
-def _where(event: Event) -> list[str]:
-    """The zone of an event, and the direction in which a line is crossed; empty for other events."""
+def _where(event: Event) -> list[Any]:
+    """The zone of an event and the direction in which a line is crossed, or the time within the step; else nothing."""
+    if event.kind in BETWEEN_STEPS:
+        return ["", round(event.time, 6)]
     if event.zone is None:
         return []
     way = "" if event.direction is None else f" ({event.direction.replace('_', ' ')})"

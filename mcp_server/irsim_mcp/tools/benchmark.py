@@ -45,7 +45,7 @@ _SHARES = ("success", "collision", "timeout")
 """Outcomes whose shares a row has."""
 _METRICS = ("time_to_goal",)
 """Metrics of a row."""
-_DETAILED = (*_METRICS, "path_length", "velocity_avg", "spl", "min_clearance")
+_DETAILED = (*_METRICS, "path_length", "velocity_avg", "spl", "min_clearance", "contacts_between_steps")
 """Metrics of a detailed row."""
 _SOMETIMES = ("distance_to_human_min", "time_in_zone", "zone_crossings", "seen_ratio")
 """Metrics that a row has if they are defined anywhere."""

@@ -8,7 +8,8 @@ from mcp.server.mcpserver import Context
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.common.text import clean
+from irsim.common.text import clean, listed
+from irsim.simulation.events import BETWEEN_STEPS
 from irsim_mcp.json_answer import Found, json_answer
 from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_SEED, MAX_STEPS
 from irsim_mcp.progress import reporter
@@ -20,11 +21,11 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Episode", "tool"]
 
 _DESCRIPTION = """
-    Simulate one episode, until every robot has arrived or stopped, or time is up. Outcome is success (every robot
-    reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit what,
-    where and when, and how far robots were from their goals. Also returns robots (unsuccessful first), first events,
-    a run_id, kept for 24 hours. Next: after a failure the
-    call that `next` has, change the scenario and run again; after a success try other seeds if anything is random.
+    Simulate an episode, until every robot has arrived or stopped, or time is up. Outcome is success (every robot
+    reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit or passed
+    through what, where, when, and how far robots were from goals. Returns robots (unsuccessful first), first events, a
+    run_id, kept for 24 hours. Next: after a failure the call that `next` has, change the scenario and run again; after
+    success try other seeds if anything is random.
 """
 _LOST = {"bridge-lost": "program of a bridge", "policy-lost": "policy"}
 """What was lost, by its code."""
@@ -51,7 +52,7 @@ _WATCHED = {
 class Robot(BaseModel):
     """Result of one robot; lengths in m, times in s."""
 
-    model_config = ConfigDict(extra="allow")  # and those of _WATCHED that are defined
+    model_config = ConfigDict(extra="allow")  # and those of _WATCHED, _places and _between_steps that are defined
 
     name: str
     outcome: str
@@ -201,8 +202,9 @@ def _episode(found: dict[str, Any], detailed: bool, given: str) -> Episode:
 
 
 def _incidents(found: dict[str, Any]) -> dict[str, Any]:
-    """What happened besides outcomes: contacts between people, objects that left the world or jumped over goals."""
+    """What happened besides outcomes: contacts between steps or people, objects that left the world or jumped goals."""
     incidents: dict[str, Any] = {
+        "contacts_between_steps": found["contacts_between_steps"],
         "human_contacts": found["human_contacts"],
         "left": [clean(item["name"]) for item in found["left"]],
         "jumped": [clean(name) for name in found["jumped"]],
@@ -211,16 +213,22 @@ def _incidents(found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _chosen(found: dict[str, Any], detailed: bool, most: int) -> list[dict[str, Any]]:
-    """The first events in order; a concise result prefers those of robots, and leaves out sights first."""
+    """The first events in order.
+
+    A concise result prefers contacts between steps, then those of robots, and leaves out sights first.
+    """
     events: list[dict[str, Any]] = found["events"]
     if detailed:
         return events[:most]
     robots = {robot["name"] for robot in found["robots"]}
     important = [event for event in events if event["kind"] != "waypoint"]
     sights = ("sight_start", "sight_end")
-    kept = sorted(
-        important, key=lambda event: (event["kind"] in sights, not robots & {event["object"], event["partner"]})
-    )[:most]
+
+    def rank(event: dict[str, Any]) -> tuple[bool, bool, bool]:
+        kind, of_robot = event["kind"], bool(robots & {event["object"], event["partner"]})
+        return kind not in BETWEEN_STEPS, kind in sights, not of_robot
+
+    kept = sorted(important, key=rank)[:most]
     kept += [event for event in events if event["kind"] == "waypoint"][: most - len(kept)]
     return sorted(kept, key=lambda event: int(event["step"]))  # a stable sort keeps the order within a step
 
@@ -244,6 +252,7 @@ def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
         pose=[_rounded(value) for value in robot["pose"]] if detailed else None,
         **{key: _rounded(robot[key]) for key in _shown(detailed) if robot[key] is not None},
         **_places(robot),
+        **_between_steps(robot),
     )
 
 
@@ -257,6 +266,13 @@ def _places(robot: dict[str, Any]) -> dict[str, Any]:
     if robot["heading_error"] is not None:
         found["heading_error"] = _rounded(robot["heading_error"])
     return found
+
+
+def _between_steps(robot: dict[str, Any]) -> dict[str, Any]:
+    """Its contacts within a step, if there were any."""
+    through = [clean(name) for name in robot["passed_through"]]
+    found = {"contacts_between_steps": robot["contacts_between_steps"], "passed_through": through}
+    return {key: value for key, value in found.items() if value}
 
 
 def _shown(detailed: bool) -> list[str]:
@@ -281,6 +297,10 @@ def _advice(found: dict[str, Any], given: str) -> str:
         again = f"run_episode {given}" + (f" seed={found['seed']}" if found["random"] else "")
         return f"The {_LOST[found['lost_code']]} was lost: start it again, then {again}."
     held = set(found["jammed"])
+    if found["outcome"] == "success" and not held and any(r["contacts_between_steps"] for r in found["robots"]):
+        again = f"lower step_time, or set world.contacts: swept, and run_episode {given} again"
+        look = f" after inspect_run{run} view=collisions" if found["run_id"] is not None else ""
+        return f"Do not trust this success: a robot touched something between two steps; {again}{look}."
     if found["outcome"] == "success" and not held:
         name = given.removeprefix("scenario_path=")
         more = f"; try other seeds with benchmark scenarios=[{name!r}]" if found["random"] else ""
@@ -324,7 +344,7 @@ def _text(episode: Episode) -> str:
     if episode.events:
         lines.append(f"Events ({len(episode.events)} of {episode.event_count}):")
     for event in episode.events:
-        link = " with" if event.kind == "collision" else ":"
+        link = " with" if event.kind in ("collision", *BETWEEN_STEPS) else ":"
         partner = "" if event.partner is None else f"{link} {event.partner!r}"
         place = f"({event.x:g}, {event.y:g})"
         lines.append(f"- {event.time:g} s, step {event.step}: {event.kind} of {event.object!r}{partner} at {place}")
@@ -351,10 +371,14 @@ def _robot_text(robot: Robot) -> str:
             near = f"overlapped {other} by {-robot.min_clearance:g} m when they collided"
         facts.append(near + at)
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
+    if count := getattr(robot, "contacts_between_steps", 0):
+        passed = [repr(name) for name in getattr(robot, "passed_through", [])]
+        through = f" (passed through {listed(passed, 3)})" if passed else ""
+        facts.append(f"{count} contact{'s' * (count != 1)} between steps{through}")
     if robot.infeasible_steps is not None:
         many = f"{robot.infeasible_steps} step{'s' * (robot.infeasible_steps != 1)}"
         end = "but it touched nothing, so that did no harm"
-        if robot.collision_count:
+        if robot.collision_count or count:
             end = "and it did touch something: more room or slower others would help it"
         facts.append(f"in {many} no velocity avoided everybody, {end}")
     if robot.path_length is not None:

@@ -162,7 +162,7 @@ def _dry_run_has_problems(found: dict[str, Any]) -> bool:
 
 def _concerns(tried: dict[str, Any]) -> bool:
     """Whether something happened in a dry run that is hardly intended."""
-    return any(tried[key] for key in ("collisions", "stuck", "jammed", "left"))
+    return any(tried[key] for key in ("collisions", "contacts_between_steps", "stuck", "jammed", "left"))
 
 
 def _dry_run_text(found: dict[str, Any] | None, detailed: bool) -> str | None:

@@ -28,7 +28,7 @@ MORE = """
     distance_to_human_min stl barn_score crowdnav_reward min_clearance explored
 """.split()  # noqa: SIM905
 LESS = """
-    collision_count collision_steps wall_collisions agent_collisions human_collisions timeout
+    collision_count collision_steps wall_collisions agent_collisions human_collisions contacts_between_steps timeout
     failure_to_progress stalled_time time_to_goal path_length acceleration_avg acceleration_max jerk_avg
     jerk_max personal_space_intrusion_ratio min_distance_to_goal final_distance_to_goal
     cumulative_heading_change path_irregularity path_efficiency curvature roughness angle_over_length

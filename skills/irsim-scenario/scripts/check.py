@@ -9,7 +9,8 @@
 have.
 
 Exits with 0 if nothing needs attention, 1 if the scenario has errors, 2 if an argument is invalid, 3 if the scenario is
-valid but something needs attention: warnings, hints, collisions, robots that are stuck or leave, lost comments.
+valid but something needs attention: warnings, hints, collisions, contacts between steps, robots that are stuck or
+leave, lost comments.
 """
 
 from __future__ import annotations
@@ -67,7 +68,9 @@ def find_remarks(report: Any) -> list[str]:
         if not finding.in_base
     ]
     tried, changes = report.dry_run, report.changes
-    if tried is not None and (tried.collisions or tried.stuck or tried.left or tried.jammed):
+    if tried is not None and (
+        tried.collisions or tried.contacts_between_steps or tried.stuck or tried.left or tried.jammed
+    ):
         remarks.append(f"tried: {tried.summary}")
     if changes is not None and changes.same:
         remarks.append("nothing differs from the base")

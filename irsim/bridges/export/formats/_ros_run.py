@@ -16,7 +16,7 @@ from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.names import nanoseconds, ros_names
 from irsim.common.arrays import Floats
 from irsim.runs.initial_scene import initial_scene
-from irsim.simulation.events import Event
+from irsim.simulation.events import BETWEEN_STEPS, Event
 from irsim.simulation.trace import Trace
 
 __all__ = ["Bag", "write_run"]
@@ -205,5 +205,5 @@ def _log(messages: Messages, stamp: int, event: Event) -> Any:
     zone = "" if event.zone is None else f" of {event.zone}"
     way = "" if event.direction is None else f" {event.direction.replace('_', ' ')}"
     text = f"{event.kind}{partner}{zone}{way} at x {event.x:.3f} y {event.y:.3f}"
-    level = _WARN if event.kind in ("collision", "no_path") else _INFO
+    level = _WARN if event.kind in ("collision", "no_path", *BETWEEN_STEPS) else _INFO
     return messages("rcl_interfaces", "Log")(messages.time(stamp), level, event.object, text, "", "", 0)

@@ -14,7 +14,8 @@ Row t of the observations is the state before action t:
 
 Actions are the controls that the drive executed, in the units of the scenario, after its limits. The reward is 1 for
 arriving, -1 for each contact that begins, else 0. Infos are ``step``, ``time`` [s], the ``goal`` in the world frame,
-and the flags ``arrived``, ``collided`` and ``stopped``. Each episode has run, robot, seed and scenario as metadata.
+and the flags ``arrived``, ``collided``, ``stopped`` and ``between_steps``: whether it touched something within the step
+and at neither end of it, which costs no reward. Each episode has run, robot, seed and scenario as metadata.
 """
 
 from __future__ import annotations
@@ -194,6 +195,7 @@ def _buffer(learner: _Learner, block: Block, last: int) -> dict[str, Any] | None
             "arrived": trace.arrived[part, column],
             "collided": touching,
             "stopped": trace.stopped[part, column],
+            "between_steps": block.between_steps[part, column],
         },
     }
 

@@ -1,8 +1,9 @@
 """``npz``: arrays by name for NumPy, with one row per step and one column per object.
 
 The arrays are ``step`` and ``time`` (T,), ``pose``, ``velocity``, ``control`` and ``goal`` (T, N, 3), the flags
-``arrived``, ``collided`` and ``stopped`` (T, N), ``ranges/<object>/<number>`` (T, beams), ``names`` and ``roles`` (N,),
-and ``about``, a JSON text with the units, and with the scenario, seed, versions, result and objects of the run.
+``arrived``, ``collided``, ``stopped`` and ``between_steps`` (T, N), which says whether an object touched something
+within the step and at neither end of it, ``ranges/<object>/<number>`` (T, beams), ``names`` and ``roles`` (N,), and
+``about``, a JSON text with the units, and with the scenario, seed, versions, result and objects of the run.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ _TRACE: Mapping[str, Callable[[Block], NDArray[Any]]] = {
     "arrived": lambda block: block.trace.arrived,
     "collided": lambda block: block.trace.collided,
     "stopped": lambda block: block.trace.stopped,
+    "between_steps": lambda block: block.between_steps,
 }
 
 

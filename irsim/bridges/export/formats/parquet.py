@@ -2,9 +2,10 @@
 
 Its columns are ``run``, ``step``, ``time``, ``name``, ``role``, the pose ``x``, ``y``, ``theta``, the velocity ``vx``,
 ``vy``, ``yaw_rate``, ``speed``, the executed controls ``control_0``, …, the present goal ``goal_x``, ``goal_y``,
-``goal_theta``, ``goal_distance``, the flags ``arrived``, ``collided``, ``stopped``, and a list of ranges ``ranges_0``,
-… for each lidar of an object. Numbers that do not exist are null: velocities and controls at the start, goals of
-objects without one, controls that only other drives have, scans that were not recorded.
+``goal_theta``, ``goal_distance``, the flags ``arrived``, ``collided``, ``stopped`` and ``between_steps`` (it touched
+something within the step, at neither end of it), and a list of ranges ``ranges_0``, … for each lidar of an object.
+Numbers that do not exist are null: velocities and controls at the start, goals of objects without one, controls that
+only other drives have, scans that were not recorded.
 
 The metadata of each field are ``unit`` and ``description``; those of the file are ``irsim`` (version that wrote it) and
 ``irsim.runs``, a JSON list with the scenario, seed, versions, step time, options, result and objects of each run.

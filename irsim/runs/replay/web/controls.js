@@ -72,8 +72,8 @@ export function listen(player, actions) {
   }
 
   function beside(way) {
-    const { run, shown } = player, row = Math.floor(shown.at + 1e-6);
-    const found = way > 0 ? run.events.find((e) => e.row > row) : run.events.findLast((e) => e.row < row);
+    const { events } = player.run, { at } = player.shown;
+    const found = way > 0 ? events.find((e) => e.row > at + 1e-6) : events.findLast((e) => e.row < at - 1e-6);
     if (found) goToEvent(found);
   }
 

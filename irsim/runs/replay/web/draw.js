@@ -3,6 +3,7 @@
 import { inMetres, toPixels, toWorld } from "./camera.js";
 import { cellImage } from "./cells.js";
 import { opposite, rgbOf, seen } from "./colors.js";
+import { drawContacts } from "./contacts.js";
 import { makeLayer, showLayer, showTrails } from "./layer.js";
 import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, isAbsent, isMover, poseAt, rowOfTime, waits } from "./run.js";
 import { scanAt } from "./scan.js";
@@ -41,6 +42,7 @@ export function drawFrame(context, drawing, run, shown, camera, colors, ratio, m
   if (shown.goals) drawGoals(context, run, shown, camera, colors, ratio);
   if (shown.lidar && shown.robot >= 0) drawScans(context, drawing, run, shown, camera, colors, ratio);
   for (const object of run.movers) drawBody(context, run, object, at, shown, camera, colors, ratio);
+  drawContacts(context, run, at, camera, colors, ratio);
   if (shown.names) drawNames(context, run, at, camera, colors, ratio);
   drawScale(context, camera, colors, ratio);
   return whole;

@@ -88,12 +88,12 @@ export function showMoment(player) {
   clock.firstChild.textContent = seconds(time);
   clock.lastChild.textContent = ` / ${seconds(run.time[run.rows - 1])} · step ${step}`;
   setTerms($("values"), shown.robot >= 0 ? valuesOf(run, shown.robot, shown.at) : []);
-  markCurrent(player, row);
+  markCurrent(player, shown.at + 1e-6);
 }
 
 /** The last event so far is marked in the list, and brought into view when it changes. */
-function markCurrent(player, row) {
-  const { events } = player.run, place = eventsUntil(events, row) - 1;
+function markCurrent(player, at) {
+  const { events } = player.run, place = eventsUntil(events, at) - 1;
   const off = place - player.listedFrom, beyond = (off < 0 && player.listedFrom > 0) || off >= LISTED;
   if (beyond) listEvents(player, Math.max(0, Math.min(events.length - LISTED, place - LISTED / 2)));
   const button = player.listed[place - player.listedFrom] ?? null;
@@ -110,11 +110,11 @@ function markCurrent(player, row) {
   }
 }
 
-function eventsUntil(events, row) {
+function eventsUntil(events, at) {
   let low = 0, high = events.length;
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (events[middle].row <= row) low = middle + 1;
+    if (events[middle].row <= at) low = middle + 1;
     else high = middle;
   }
   return low;

@@ -42,11 +42,15 @@ export function makeRun({ head, columns }) {
     if (!run.lidars.has(lidar.object)) run.lidars.set(lidar.object, []);
     run.lidars.get(lidar.object).push(lidar);
   }
-  run.events = head.events.map(([step, kind, object, partner, x, y, where = ""]) => ({
-    row: rowOfStep(run, step), time: step * head.step_time, step, kind, object, partner, x, y, where,
-  }));
+  run.events = head.events.map(([step, kind, object, partner, x, y, where = "", within]) => ({
+    row: within === undefined ? rowOfStep(run, step) : rowOfTime(run, within), // within a step: between two rows
+    time: within ?? step * head.step_time, step, kind, object, partner, x, y, where,
+  })).sort((one, other) => one.row - other.row);
   return run;
 }
+
+/** Whether an event is a contact that begins and ends within one step. */
+export const isBetweenSteps = ({ kind }) => kind === "passed_through" || kind === "contact_between_steps";
 
 const scaled = (values, quantum) => Float32Array.from(values, (value) => value * quantum);
 

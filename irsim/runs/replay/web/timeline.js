@@ -1,6 +1,7 @@
 // Events as marks over the scrubber: click one to go there.
 
 import { $ } from "./dom.js";
+import { isBetweenSteps } from "./run.js";
 import { eventWords, ofRobot, seconds } from "./words.js";
 
 const ROOMY = 7; // pixels per event
@@ -14,7 +15,7 @@ export function drawMarks(run, colors, ratio) {
   canvas.height = Math.round(height * ratio);
   const context = canvas.getContext("2d");
   context.scale(ratio, ratio);
-  const order = { waypoint: 0, arrival: 1, collision: 2 }, drawn = new Set();
+  const order = { waypoint: 0, arrival: 1, contact_between_steps: 2, passed_through: 3, collision: 4 }, drawn = new Set();
   const crowded = run.events.length > width / ROOMY;
   for (const event of [...run.events].sort((a, b) => (order[a.kind] ?? 0) - (order[b.kind] ?? 0))) {
     const x = placeOf(run, event.row, width), y = height / 2 + 1, place = `${Math.round(x)} ${event.kind}`;
@@ -22,10 +23,16 @@ export function drawMarks(run, colors, ratio) {
     drawn.add(place);
     context.globalAlpha = ofRobot(run, event) ? 1 : 0.45;
     context.beginPath();
-    if (event.kind === "collision") {
-      context.fillStyle = colors.danger;
+    if (event.kind === "collision" || isBetweenSteps(event)) {
+      context.fillStyle = context.strokeStyle = colors.danger;
+      context.lineWidth = 1.5;
       if (crowded) context.rect(x - 0.75, y - 6, 1.5, 5);
       else for (const [dx, dy] of [[0, -6], [5, 0], [0, 6], [-5, 0]]) context.lineTo(x + dx, y + dy);
+      if (!crowded && isBetweenSteps(event)) { // hollow: by default it counts as no collision
+        context.closePath();
+        context.stroke();
+        continue;
+      }
     } else {
       context.fillStyle = event.kind === "arrival" ? colors.good : colors.muted;
       if (crowded) context.rect(x - 0.75, y + 1, 1.5, event.kind === "arrival" ? 5 : 3);
@@ -39,7 +46,7 @@ export function drawMarks(run, colors, ratio) {
 function eventNear(run, x, width) {
   let best = null, nearest = NEAR;
   for (const event of run.events) {
-    const away = Math.abs(placeOf(run, event.row, width) - x) - (event.kind === "collision" ? 0.5 : 0);
+    const away = Math.abs(placeOf(run, event.row, width) - x) - (event.kind === "collision" || isBetweenSteps(event) ? 0.5 : 0);
     if (away < nearest) {
       nearest = away;
       best = event;

@@ -10,7 +10,8 @@ const KINDS = {
 const MANY_OF = {
   collision: "collisions", arrival: "arrivals", waypoint: "waypoints", no_path: "searches without a way",
   overshoot: "jumps over goals", zone_entry: "zones entered", zone_exit: "zones left", line_crossing: "lines crossed",
-  sight_start: "sights begun", sight_end: "sights ended",
+  sight_start: "sights begun", sight_end: "sights ended", contact_between_steps: "contacts between steps",
+  passed_through: "passages through something",
 };
 
 export const manyWords = (kind) => MANY_OF[kind] ?? kind;
@@ -20,7 +21,10 @@ export const seconds = (value) => `${value.toFixed(Math.abs(value) < 1000 ? 2 : 
 
 export function eventWords(run, { kind, object, partner, where }) {
   const name = run.objects[object].name, whom = partner >= 0 ? ` ${run.objects[partner].name}` : where && ` ${where}`;
-  return kind === "collision" ? `${name} hits${whom || " something"}` : `${name} ${KINDS[kind] ?? kind}${whom}`;
+  if (kind === "collision") return `${name} hits${whom || " something"}`;
+  if (kind === "passed_through") return `${name} passes through${whom} between two steps`;
+  if (kind === "contact_between_steps") return `${name} touches${whom} between two steps`;
+  return `${name} ${KINDS[kind] ?? kind}${whom}`;
 }
 
 /** Whether a robot takes part in an event. */
