@@ -23,11 +23,11 @@ from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
 if __name__ == "__main__":
-    # The interpreter's own irsim comes first: the folder of this repository holds one, too.
+    # The interpreter's own irsim is imported first: the folder of this repository holds one, too.
     sys.path[0] = tempfile.gettempdir()
     import irsim
 
-    sys.path.append(str(ROOT))
+    sys.path.insert(0, str(ROOT))
 else:
     import irsim
 
