@@ -44,7 +44,7 @@ class AvocadoOptions(_Options):
         timeHorizonObst: float,
         maxSpeed: float | None,
         approach_time: float | None,
-        sidestep: float,
+        sidestep: float | None,
         safe_radius: float | None,
         forgetting: float,
         own_weight: float,
@@ -82,7 +82,7 @@ class OrcaOptions(_Options):
         timeHorizonObst: float,
         maxSpeed: float | None,
         approach_time: float | None,
-        sidestep: float,
+        sidestep: float | None,
         safe_radius: float,
         responsibility: float | None,
     ) -> None: ...
@@ -102,7 +102,8 @@ class RvoOptions(_Options):
         factor: float,
         mode: str,
         neighbor_threshold: float,
-        sidestep: float,
+        sidestep: float | None,
+        turning: str,
     ) -> None: ...
 
 class SfmOptions(_Options):
@@ -121,7 +122,7 @@ class SfmOptions(_Options):
         n_angular: float,
         n_velocity: float,
         safety_radius: float,
-        sidestep: float,
+        sidestep: float | None,
         social_groups: Sequence[Sequence[int]] | None,
         force_factor_coherence: float,
         force_factor_group_repulsion: float,

@@ -134,6 +134,20 @@ DIFFERENCES: dict[str, Difference] = {
         "goal, also with the other behaviors",
         "a robot at its goal should arrive",
     ),
+    "D25": Difference(
+        "mirror-image scenes, such as two that meet head-on or a circle swap, are resolved by the order in which "
+        "objects move; `sfm` takes the side of a rounding error",
+        "all objects decide on one snapshot (D1); of two that are each other's mirror images and whose ways meet, both "
+        "keep to their right under `rvo`, `sfm`, `orca` and `avocado`, in any order of the file. `sidestep: 0` is the "
+        "law without this rule",
+        "the circle swap that works there works here",
+    ),
+    "D27": Difference(
+        "under `rvo`, `diff` ignores heading errors below 0.1 rad and turns at most at 1.5 rad/s",
+        "while it avoids something it makes each turn at once, as fast as its own limit allows; `turning: fixed` is "
+        "the law of 2.12",
+        "robots that swap places over and over touched each other, however well they chose their velocities",
+    ),
     "format-3": Difference(
         "`obstacle: {…}` joins group 0 and follows its group behavior",
         "the same, with a warning; the map is in no group",
@@ -208,9 +222,9 @@ KEY_DIFFERENCES: dict[str, str] = {
     "behavior.wander": "format-18",
     "behavior.range_low": "format-18",
     "behavior.range_high": "format-18",
-    "behavior.rvo": "D1, D6",
-    "behavior.sfm": "D1, D6",
-    "behavior.orca": "D6, D11",
+    "behavior.rvo": "D1, D6, D25, D27",
+    "behavior.sfm": "D1, D6, D25",
+    "behavior.orca": "D6, D11, D25",
 }
 """Key -> ids: ``world.KEY``, ``entry.KEY`` of robots and obstacles, ``behavior.KEY``."""
 
@@ -240,6 +254,10 @@ EXTENSIONS: dict[str, str] = {
     "entry.waypoints": "several goals in order, with fewer brackets than in `goal`",
     "entry.fov_occlusion": "hidden objects are not seen",
     "behavior.follow": "plan a path and follow it with a local behavior",
+    "behavior.rvo.sidestep": "a side on which to pass, or the law of ties (D25)",
+    "behavior.rvo.turning": "turns of the drive while it avoids something (D27)",
+    "behavior.sfm.sidestep": "a side on which to pass, or the law of ties (D25)",
+    "behavior.orca.sidestep": "a side on which to pass, or the law of ties (D25)",
     "kinematics.acker.psi_max": "largest steering angle",
     "map.ros": "maps of ROS map_server",
 }

@@ -97,7 +97,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "placement-crowded": ("robot: {number: 62, distribution: {name: random, min_distance: 1.2}}", "robot: {number: 20, distribution: {name: random, min_distance: 1.2}}"),
     "heading-not-reached": ("robot: {goal: [9, 9, 1.57], arrive_mode: state}", "robot: {goal: [9, 9, 1.57], arrive_mode: state, kinematics: {name: omni_angular}}"),
     "steering-limit": ("robot: {kinematics: {name: acker, wheelbase: 0.3}, vel_max: [1, 30], vel_min: [-1, -30]}", "robot: {kinematics: {name: acker, wheelbase: 0.3}, vel_max: [1, 0.5236], vel_min: [-1, -0.5236]}"),
-    "exact-symmetry": ("robot: {number: 2, state: [[1, 5, 0], [9, 5, 0]], goal: [[9, 5], [1, 5]], behavior: {name: orca}}", "robot: {number: 2, state: [[1, 5, 0], [9, 5, 0]], goal: [[9, 5], [1, 5]], behavior: {name: orca, sidestep: 10}}"),
+    "exact-symmetry": ("robot: {number: 2, kinematics: {name: omni}, state: [[1, 5, 0], [9, 5, 0]], goal: [[9, 5], [1, 5]], behavior: {name: orca, sidestep: 0}}", "robot: {number: 2, kinematics: {name: omni}, state: [[1, 5, 0], [9, 5, 0]], goal: [[9, 5], [1, 5]], behavior: {name: orca}}"),
     "brakes-too-late": ("robot: {vel_max: [1.2, 2], vel_min: [0, -2], acce: [1, 4], behavior: {name: orca, timeHorizonObst: 0.5}}\nobstacle: {shape: {name: rectangle, length: 2, width: 1}, state: [5, 5, 0]}", "robot: {vel_max: [1.2, 2], vel_min: [0, -2], acce: [1, 4], behavior: {name: orca, timeHorizonObst: 1.8}}\nobstacle: {shape: {name: rectangle, length: 2, width: 1}, state: [5, 5, 0]}"),
     "static-behavior": ("robot: {static: true, behavior: {name: dash}}", "robot: {static: true, behavior: null}"),
     "no-speed": ("robot: {vel_max: [0, 1], vel_min: [0, -1]}", "robot: {vel_max: [1, 1], vel_min: [-1, -1]}"),

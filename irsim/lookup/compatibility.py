@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from irsim.compat.changed_scenes import CHANGED_SCENES
 from irsim.compat.differences import ABSENT, DIFFERENCES, EXTENSIONS, FEATURES, KEY_DIFFERENCES, NAME_DIFFERENCES
 from irsim.compat.names import reference_names
 from irsim.lookup.schema_walk import Node, mappings
@@ -18,6 +19,11 @@ _INTRO = (
     "of irsim, which do not change the meaning of existing files."
 )
 
+_SCENES = (
+    "These scenes of irsim itself moved in another way before the difference. All other templates, and all scenes and "
+    "decisions recorded from 2.12, move as before."
+)
+
 
 def page(schema: Node) -> str:
     """Return the page as Markdown.
@@ -26,11 +32,13 @@ def page(schema: Node) -> str:
         schema: JSON Schema of the language.
     """
     ids = [(f"`{name}`", one.theirs, one.ours, one.why) for name, one in DIFFERENCES.items()]
+    scenes = [(f"`{place}`", one.difference, one.why) for place, one in CHANGED_SCENES.items()]
     parts = [
         "# Compatibility with IR-SIM 2.12",
         "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->",
         _INTRO,
         "## Intended differences\n\n" + plain_table(("id", "IR-SIM 2.12", "irsim", "why"), ids),
+        f"## Scenes that move otherwise\n\n{_SCENES}\n\n" + plain_table(("scene", "id", "why"), scenes),
         "## Keys of scenarios\n\n" + plain_table(("key", "compared with 2.12"), _keys(schema)),
     ]
     parts += [

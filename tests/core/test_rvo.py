@@ -25,6 +25,7 @@ DEFAULTS: dict[str, Any] = {
     "mode": "rvo",
     "neighbor_threshold": 3.0,
     "sidestep": 0.0,
+    "turning": "fixed",
 }
 TURNING = {"tolerance": 0.1, "guarantee_time": 0.2, "max_rate": 1.5}
 

@@ -21,18 +21,29 @@ def pair(behavior: str, starts: str, goals: str, tops: tuple[float, float] = (1.
 
 
 @pytest.mark.parametrize("behavior", ["name: orca", "name: rvo", "name: sfm", "name: follow, local: {name: orca}"])
-def test_head_on_is_reported_until_a_side_is_chosen(behavior: str) -> None:
+def test_head_on_is_reported_only_where_ties_are_left(behavior: str) -> None:
     places = "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]"
-    assert "exact-symmetry" in codes(pair(behavior, *places))
-    chosen = behavior.replace("{name: orca}", "{name: orca, sidestep: 10}")
-    chosen = chosen if chosen != behavior else f"{behavior}, sidestep: 10"
-    assert "exact-symmetry" not in codes(pair(chosen, *places))
+    assert "exact-symmetry" not in codes(pair(behavior, *places))
+    for angle in (0, 10):
+        chosen = behavior.replace("{name: orca}", f"{{name: orca, sidestep: {angle}}}")
+        chosen = chosen if chosen != behavior else f"{behavior}, sidestep: {angle}"
+        assert ("exact-symmetry" in codes(pair(chosen, *places))) == (angle == 0)
 
 
 def test_the_noise_of_avocado_chooses_a_side() -> None:
     places = "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]"
-    assert "exact-symmetry" not in codes(pair("name: avocado", *places))
-    assert "exact-symmetry" in codes(pair("name: avocado, noise: 0", *places))
+    assert "exact-symmetry" not in codes(pair("name: avocado, sidestep: 0", *places))
+    assert "exact-symmetry" in codes(pair("name: avocado, noise: 0, sidestep: 0", *places))
+
+
+@pytest.mark.parametrize("law", ["rvo", "sfm"])
+def test_cars_that_would_not_pass_are_told_of_the_behavior_that_does(law: str) -> None:
+    text = pair(f"name: {law}", "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]").replace("omni", "acker")
+    [finding] = [one for one in irsim.validate(text=text).findings if one.code == "exact-symmetry"]
+    assert "use 'orca'" in (finding.fix or "")
+    cured = text.replace(f"name: {law}", "name: orca")
+    assert "exact-symmetry" not in codes(cured)
+    assert irsim.run(text=cured, seed=0).outcome == "success"
 
 
 def test_ways_beside_each_other_are_not_reported() -> None:
@@ -51,8 +62,9 @@ def test_behind_a_slower_one_is_reported_only_if_it_catches_up() -> None:
     [
         ("name: orca", "trails it", "trails"),
         ("name: follow, local: {name: orca}", "trails it", "trails"),
-        ("name: follow, local: {name: sfm}", "trails it", "trails"),
-        ("name: sfm", "drives into it", "collides"),
+        ("name: follow, local: {name: sfm}", None, "passes"),
+        ("name: sfm", None, "passes"),
+        ("name: sfm, sidestep: 0", "drives into it", "collides"),
         ("name: rvo", None, "passes"),
         ("name: follow, local: {name: rvo}", None, "passes"),
     ],
@@ -101,11 +113,12 @@ def test_the_summary_says_how_long_a_car_shunted_at_its_goal() -> None:
 
 @pytest.mark.parametrize("count", [3, 4, 5])
 @pytest.mark.parametrize("behavior", ["name: orca", "name: rvo", "name: sfm"])
-def test_a_ring_is_reported_once_until_a_side_is_chosen(behavior: str, count: int) -> None:
+def test_a_ring_whose_ties_are_left_is_reported_once(behavior: str, count: int) -> None:
     text = (
         f"world: {{width: 12, height: 12}}\nrobot:\n  - {{number: {count}, kinematics: {{name: omni}}, "
         "distribution: {name: circle, center: [6, 6], radius: 4}, vel_max: [1, 1], vel_min: [-1, -1], "
         "shape: {name: circle, radius: 0.25}, behavior: {BEHAVIOR}}\n"
     )
-    assert codes(text.replace("BEHAVIOR", behavior)).count("exact-symmetry") == 1
+    assert "exact-symmetry" not in codes(text.replace("BEHAVIOR", behavior))
+    assert codes(text.replace("BEHAVIOR", f"{behavior}, sidestep: 0")).count("exact-symmetry") == 1
     assert "exact-symmetry" not in codes(text.replace("BEHAVIOR", f"{behavior}, sidestep: 10"))

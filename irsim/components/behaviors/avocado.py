@@ -53,8 +53,8 @@ class Avocado(BehaviorOptions):
     """Largest speed; null is what the object can reach in every direction."""
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
     """As in `orca`; null is full speed."""
-    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
-    """As in `orca`, but no further for slow objects; 0 is off."""
+    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
+    """As in `orca`: null breaks ties only."""
     forgetting: Annotated[Hertz, Field(gt=0)] = 2.0
     """Rate at which an opinion goes to what attention and evidence say, and to neutral without attention: `d` of the
     paper."""

@@ -46,11 +46,12 @@ class Orca(BehaviorOptions):
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
     """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
     speed."""
-    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
+    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
     """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
     turns by this angle to the right, to the left if negative, and further, up to 90 degrees, the slower the object
-    drives. 10 breaks exact symmetry: trailing a slower one, stopping when two meet head-on, a ring that locks up. 0 is
-    off."""
+    drives. 10 passes a slower one straight ahead. null only breaks ties: of two that are each other's mirror images,
+    such as two that meet head-on, both pass on their right. 0 leaves ties as they are: the two brake, and may stand for
+    ever."""
 
 
 BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

@@ -15,9 +15,9 @@ from irsim.options.units import Degrees, Meters, MetersPerSecond, Number
 class Rvo(BehaviorOptions):
     """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
 
-    Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second. It turns
-    at most at 1.5 rad/s, whatever `vel_max` allows, and with `acce` brakes in time before walls and others. It does not
-    get out of dead ends.
+    Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second. While
+    it avoids nothing, or with `turning: fixed`, it turns at most at 1.5 rad/s, whatever `vel_max` allows. With `acce`
+    it brakes in time before walls and others. It does not get out of dead ends.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -37,8 +37,11 @@ class Rvo(BehaviorOptions):
     """Share of the avoidance taken: half (`rvo`), all (`vo`), or half on one side and all on the other (`hrvo`)."""
     neighbor_threshold: Annotated[Meters, Field(gt=0)] = 3.0
     """Objects and walls farther away are ignored; linestrings are never ignored."""
-    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
-    """As in `orca`: 10 breaks exact symmetry, 0 is off."""
+    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
+    """As in `orca`: null breaks ties only, 0 is the law of IR-SIM."""
+    turning: Literal["limit", "fixed"] = "limit"
+    """How a drive that cannot move sideways turns while it avoids something: `limit` at once, as fast as `vel_max`
+    allows; `fixed` as in IR-SIM, which ignores heading errors below 0.1 rad and turns at most at 1.5 rad/s."""
 
 
 BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

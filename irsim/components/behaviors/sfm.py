@@ -50,8 +50,8 @@ class Sfm(BehaviorOptions):
     """Sharpness of the braking part of the interaction."""
     safety_radius: Annotated[Meters, Field(ge=0)] = 0.0
     """Margin added to the radius of each object in the interaction."""
-    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] = 0.0
-    """As in `orca`: 10 breaks exact symmetry, 0 is off."""
+    sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
+    """As in `orca`: null breaks ties only, also with an object straight ahead; 0 leaves them."""
     social_groups: list[list[Annotated[Integer, Field(ge=0)]]] | None = None
     """As group behavior: lists of the indices of members that walk together; each index at most once."""
     force_factor_coherence: Number = 2.0

@@ -3,6 +3,7 @@
 #include "rvo/velocity_obstacles.hpp"
 #include "surroundings/ego.hpp"
 #include "surroundings/sidestep.hpp"
+#include "surroundings/ties.hpp"
 
 namespace irsim {
 namespace {
@@ -11,6 +12,7 @@ constexpr double kSpacing = 0.05;     // spacing of the search grid [m/s]
 constexpr double kMinLength = 1e-6;   // shorter segments are skipped [m]
 constexpr double kThinAngle = 0.01;   // replaces an angle of zero in the apex of hrvo [rad]
 constexpr double kWallHorizon = 1.0;  // walls that would be reached sooner block a velocity [s]
+constexpr double kSameSample = 1e-9;  // two squared distances of samples differ by more [m^2/s^2]
 constexpr double kMinRolling = 0.2;   // smallest share of the speed at which drives roll while they turn
 
 /// The apex of the cone of a disc. `sine` and `cosine` are those of half its angle.
@@ -52,7 +54,9 @@ void add_line(const Ego& ego, Vec2 a, Vec2 b, VelocityObstacles& obstacles) {
   obstacles.stretches.push_back({a, (b - a) * (1.0 / length), length, ego.radius});
 }
 
-void look_around(const RvoOptions& options, const Decision& decision, const Ego& ego, VelocityObstacles& obstacles) {
+/// Collect everything to avoid. Returns whether the ego and another object are mirror images of each other.
+bool look_around(const RvoOptions& options, const Decision& decision, const Ego& ego, VelocityObstacles& obstacles) {
+  bool meets = false;
   obstacles.clear();
   obstacles.horizon = kWallHorizon;
   const double room = ego.route != nullptr ? ego.route->wall_radius : ego.radius;  // distance to keep from walls [m]
@@ -65,6 +69,7 @@ void look_around(const RvoOptions& options, const Decision& decision, const Ego&
     const bool stands = decision.world.is_static[disc.object];
     if (ego.route == nullptr || !stands) {
       add_disc(options, ego, disc, obstacles);
+      if (!options.sidestep && !meets) meets = tied(decision, ego, disc, options.neighbor_threshold, kTieSpeed);
     } else if (!decision.world.unobstructed[disc.object]) {
       bar(disc.centre, disc.centre, room + disc.radius);
     }
@@ -80,6 +85,7 @@ void look_around(const RvoOptions& options, const Decision& decision, const Ego&
   }
   for_moving_lines(decision, ego, [&](Vec2 a, Vec2 b) { add_line(ego, a, b, obstacles); });
   for_facing_walls(decision, ego, reach, [&](const Wall& wall) { bar(wall.a, wall.b, room); });
+  return meets;
 }
 
 /// Samples about a speed; only the nearest limit if the speed exceeds it by more than the window.
@@ -107,8 +113,24 @@ double free_speed(const VelocityObstacles& obstacles, Vec2 velocity, Vec2 headin
   return speed;
 }
 
-Intent turning_intent(const VelocityObstacles& obstacles, const Ego& ego, Vec2 velocity, Vec2 heading) {
+/// Whether the chosen velocity is not the sample nearest to the wanted one.
+bool avoids(const Axis& x, const Axis& y, Vec2 chosen, Vec2 wanted) {
+  const Vec2 nearest{x.at(x.nearest(wanted.x)), y.at(y.nearest(wanted.y))};
+  return squared(chosen - wanted) > squared(nearest - wanted) + kSameSample;
+}
+
+/// How a drive turns to a velocity that avoids something. The next step would ask for the same turn again, so a small
+/// one is made, too, and none takes longer than the drive needs.
+Turning sharp_turning(const Decision& decision, const Ego& ego) {
   Turning turning;
+  turning.tolerance = 0.0;
+  turning.guarantee_time = decision.world.step_time;
+  turning.max_rate = decision.state.vel_max[ego.row][1];
+  return turning;
+}
+
+Intent turning_intent(const VelocityObstacles& obstacles, const Ego& ego, Vec2 velocity, Vec2 heading,
+                      Turning turning) {
   if (ego.route != nullptr) turning.tolerance = 0.0;  // nearly parallel to a wall still ends in the wall
   if (norm(velocity) <= turning.min_speed) {
     const bool alone = obstacles.cones.empty();
@@ -125,16 +147,18 @@ void rvo(const RvoOptions& options, const Decision& decision, Intent* intents) {
   VelocityObstacles& obstacles = decision.work.velocity_obstacles;
   for (int k = 0; k < decision.count; ++k) {
     Ego ego = ego_of(decision, k);
-    ego.desired = sidestepped(decision, k, ego.desired, options.sidestep);
-    look_around(options, decision, ego, obstacles);
+    ego.desired = sidestepped(decision, k, ego.desired, options.sidestep.value_or(0.0));
+    if (look_around(options, decision, ego, obstacles)) ego.desired = keep_right(ego.desired, kTieTurn);
     const Vec2 v = ego.velocity;
     const Axis x = window(v.x, options.acce, options.vxmax * ego.pace);
     const Axis y = window(v.y, options.acce, options.vymax * ego.pace);
     const Vec2 velocity = best_sample(obstacles, x, y, ego.desired, options.factor);
+    const bool sharp = options.turning == RvoTurning::limit && avoids(x, y, velocity, ego.desired);
+    const Turning turning = sharp ? sharp_turning(decision, ego) : Turning{};
     const bool sideways =
         std::visit([](const auto& drive) { return moves_sideways(drive); }, decision.world.drive[ego.id]);
     intents[k] = sideways ? Intent::of_velocity(velocity)
-                          : turning_intent(obstacles, ego, velocity, decision.state.heading(ego.row));
+                          : turning_intent(obstacles, ego, velocity, decision.state.heading(ego.row), turning);
   }
 }
 

@@ -3,12 +3,17 @@
 // reciprocal velocity obstacle" (2011).
 #pragma once
 
+#include <optional>
+
 #include "decision.hpp"
 #include "fields.hpp"
 
 namespace irsim {
 
 enum class Avoidance { rvo, hrvo, vo };
+/// How a drive that cannot move sideways turns while it avoids something: at once, as fast as its own limit allows, or
+/// at fixed rates, as in IR-SIM.
+enum class RvoTurning { limit, fixed };
 
 struct RvoOptions {
   double vxmax, vymax;  // bounds of the search, world axes [m/s]
@@ -16,13 +21,16 @@ struct RvoOptions {
   double factor;        // weight of the time to collision if every velocity is blocked
   Avoidance mode;
   double neighbor_threshold;  // reach within which objects are avoided [m]
-  double sidestep;            // angle to the right of the wanted velocity while something moving is ahead [degrees]
+  // angle to the right of the wanted velocity while something moving is ahead [degrees]; none: only ties are broken
+  std::optional<double> sidestep;
+  RvoTurning turning;
 
   static constexpr auto fields() {
     using R = RvoOptions;
     return std::make_tuple(field("vxmax", &R::vxmax), field("vymax", &R::vymax), field("acce", &R::acce),
                            field("factor", &R::factor), choice("mode", &R::mode, "rvo", "hrvo", "vo"),
-                           field("neighbor_threshold", &R::neighbor_threshold), field("sidestep", &R::sidestep));
+                           field("neighbor_threshold", &R::neighbor_threshold), field("sidestep", &R::sidestep),
+                           choice("turning", &R::turning, "limit", "fixed"));
   }
 };
 

@@ -3,6 +3,7 @@
 #include "geometry/predicates.hpp"
 #include "surroundings/ego.hpp"
 #include "surroundings/sidestep.hpp"
+#include "surroundings/ties.hpp"
 
 namespace irsim {
 namespace {
@@ -27,12 +28,15 @@ Vec2 social_force(const SfmOptions& o, const Decision& decision, int k, const Eg
   for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& other) {
     if (ego.route != nullptr && world.is_static[other.object]) return;
     if (mutual.knows(other.object)) return;
+    if (!o.sidestep && !mutual.both_tied(other.object) && tied(decision, ego, other, o.neighbor_threshold, kTieSpeed)) {
+      mutual.tie(other.object);
+    }
     forces.add(other.centre - ego.position, ego.velocity - other.velocity);
     // Others see the ego where it sees itself: its origin is the centre of its disc, or they know its origin.
     const Vec2 origin = decision.state.pose[decision.first_row + other.object].position();
     mutual.expect(other.object, same(other.centre, origin));
   });
-  forces.compute(o);
+  forces.compute(o, ego.velocity);
   const bool centred = decision.grouped || same(near.discs[scene.shapes->placed[ego.id].object].centre, ego.position);
   return mutual.sum(ego.id, centred, forces);
 }
@@ -152,11 +156,12 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
   decision.work.mutual_forces.begin(decision.objects, decision.count, world.objects);
   for (int k = 0; k < decision.count; ++k) {
     Ego ego = ego_of(decision, k);
-    ego.desired = sidestepped(decision, k, ego.desired, options.sidestep);
+    ego.desired = sidestepped(decision, k, ego.desired, options.sidestep.value_or(0.0));
+    const Vec2 social = social_force(options, decision, k, ego);
+    if (decision.work.mutual_forces.tied()) ego.desired = keep_right(ego.desired, kTieTurn);
     const double speed = norm(ego.desired);
     const double most = options.vmax * ego.pace;
     const Vec2 desired = speed > 0.0 ? ego.desired * (most / speed) : Vec2{};
-    const Vec2 social = social_force(options, decision, k, ego);
     const Vec2 force = (desired - ego.velocity) * (options.force_factor_desired / options.relaxation_time) +
                        social * options.force_factor_social +
                        obstacle_force(options, decision, ego) * options.force_factor_obstacle +

@@ -19,7 +19,8 @@ struct SfmOptions {
   double sigma_obstacle;  // decay length of the force of walls [m]
   double lambda_importance, gamma, n_angular, n_velocity;
   double safety_radius;  // [m]
-  double sidestep;       // angle to the right of the wanted velocity while something moving is ahead [degrees]
+  // angle to the right of the wanted velocity while something moving is ahead [degrees]; none: only ties are broken
+  std::optional<double> sidestep;
   // forces between members of a group behavior
   std::optional<std::vector<std::vector<int>>> social_groups;  // indices in Decision::members
   double force_factor_coherence, force_factor_group_repulsion;

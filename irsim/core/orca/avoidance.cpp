@@ -9,6 +9,8 @@
 #include "orca/obstacles.hpp"
 #include "routes/right_of_way.hpp"
 #include "surroundings/sidestep.hpp"
+#include "surroundings/ties.hpp"
+#include "world/features.hpp"
 #include "world/spec.hpp"
 
 namespace irsim {
@@ -21,6 +23,9 @@ constexpr double kStuckShare = 0.1;          // a car below this share of its wa
 constexpr double kBackingShare = 0.3;        // share of its speed at which a car wants to back up
 constexpr double kMaxBackingSteering = 0.5;  // largest steering angle of a car that backs up [rad]
 constexpr double kMinCarShare = 0.2;    // smallest share of a wanted speed, because a car turns only while it rolls
+constexpr double kLeanSpeed = 1e-7;     // velocities of a mirrored pair differ by less [m/s]
+constexpr double kLeanShare = 0.2;      // what one of a mirrored pair takes over from the share of the other
+constexpr double kLeanTurn = 15.0;      // turn of the wanted velocity where a pair is on one line [degrees]
 constexpr double kParallelSine = 1e-9;  // a smaller sine of the angle between a heading and a line is a rounding error
 
 /// Largest speed [m/s] in every direction, or forward for drives that cannot move sideways.
@@ -190,13 +195,36 @@ bool avoid_discs(const World& world, const State& state, int w, int self, int ot
   return true;
 }
 
-/// Add half-planes of the nearest movers.
-void avoid_movers(const OrcaSettings& options, const World& world, const State& state, int w, int self,
+/// Whether objects of a behavior break ties: the share that one of a pair takes over is left to it by the other.
+bool breaks_ties(const Behavior& behavior) {
+  if (const auto* orca = std::get_if<OrcaOptions>(&behavior)) return !orca->sidestep && !orca->responsibility;
+  const auto* avocado = std::get_if<AvocadoOptions>(&behavior);
+  return avocado != nullptr && !avocado->sidestep;
+}
+
+/// The share that an object takes over from another one of `all` if their motion is mirrored: some of that for one on
+/// its right, less than nothing for one on its left. `on_line` is set if the other one is on neither side.
+double lean(const World& world, const State& state, int w, const OrcaCrowd& all, int self, int m, double speed,
+            bool& on_line) {
+  if (!breaks_ties(world.behaviors[all.group[m]].behavior)) return 0.0;
+  const int first = w * world.objects;
+  const OrcaAgent &agent = all.movers[self], &other = all.movers[m];
+  const std::optional<double> side =
+      mirrored(state, {first + world.moving[self], first + world.moving[m], agent.velocity, other.velocity, speed,
+                       agent.radius + other.radius, kLeanSpeed});
+  if (!side) return 0.0;
+  if (std::fabs(*side) > kParallelSine) return *side < 0.0 ? kLeanShare : -kLeanShare;
+  on_line = true;
+  return 0.0;
+}
+
+/// Add half-planes of the nearest movers. Returns whether the object and one of them meet head-on, on one line.
+bool avoid_movers(const OrcaSettings& options, const World& world, const State& state, int w, int self, double speed,
                   Reciprocity* reciprocity, OrcaCrowd& all) {
   const int object = world.moving[self], group = all.member_of[self];
   const OrcaAgent& agent = all.movers[self];
   const int most = std::min(options.maxNeighbors, static_cast<int>(all.movers.size()) - 1);
-  if (most <= 0) return;
+  if (most <= 0) return false;
   if (static_cast<int>(all.neighbors.size()) < most) all.neighbors.resize(most);
   const auto seen = [&](int m) {
     return m != self && (all.member_of[m] == group || targets_role(world, object, world.moving[m]));
@@ -205,6 +233,8 @@ void avoid_movers(const OrcaSettings& options, const World& world, const State& 
   const int count = all.nearest.find(agent.position, options.neighborDist, most, before, seen, all.neighbors.data());
   before.clear();
   for (int k = 0; k < count; ++k) before.push_back(all.neighbors[k].index);
+  const bool breaks = group >= 0 && breaks_ties(world.behaviors[group].behavior);
+  bool on_line = false;
   for (const int m : before) {
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
     // not give way.
@@ -217,6 +247,10 @@ void avoid_movers(const OrcaSettings& options, const World& world, const State& 
       share = reciprocity->share(m, taken);
       other = &taken;
     }
+    const OrcaAgent& there = all.movers[m];
+    if (breaks && mutual &&
+        may_mirror(there.position - agent.position, agent.velocity + there.velocity, options.neighborDist, kLeanSpeed))
+      share = clip(share + lean(world, state, w, all, self, m, speed, on_line), 0.0, 1.0);
     if (mutual && !state.routes.empty()) {
       const Precedence order = precedence(world, state, w, object, world.moving[m]);
       if (order == Precedence::first) continue;
@@ -228,6 +262,7 @@ void avoid_movers(const OrcaSettings& options, const World& world, const State& 
       continue;
     avoid_agent(agent, *other, share, options.timeHorizon, world.step_time, self < m, all.planes.emplace_back());
   }
+  return on_line;
 }
 
 }  // namespace
@@ -243,8 +278,8 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
     const OrcaAgent& agent = all.movers[self];
     const double speed = top_speed(options, world, state, row, i);
     all.planes.clear();
-    Vec2 preferred =
-        sidestepped(decision, k, preferred_velocity(options, world, state, row, i, speed), options.sidestep);
+    Vec2 preferred = sidestepped(decision, k, preferred_velocity(options, world, state, row, i, speed),
+                                 options.sidestep.value_or(0.0));
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
     if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
     if (const Route* route = state.route_of(row)) {  // a route already avoids static objects
@@ -255,7 +290,9 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
     }
     const int hard = static_cast<int>(all.planes.size());
     if (reciprocity != nullptr) reciprocity->begin(k, self);
-    avoid_movers(options, world, state, decision.w(), self, reciprocity, all);
+    if (avoid_movers(options, world, state, decision.w(), self, speed, reciprocity, all)) {
+      preferred = keep_right(preferred, kLeanTurn);
+    }
     Vec2 velocity;
     const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
                                       all.scratch, velocity);

@@ -14,7 +14,8 @@ struct OrcaSettings {
   double timeHorizonObst;               // time horizon for walls and static circles [s]
   std::optional<double> maxSpeed;       // [m/s]; none: the limit of the object
   std::optional<double> approach_time;  // time constant of slowing down at the goal [s]; none: full speed
-  double sidestep;  // angle to the right of the wanted velocity while something moving is ahead [degrees]
+  // angle to the right of the wanted velocity while something moving is ahead [degrees]; none: only ties are broken
+  std::optional<double> sidestep;
   // share of a change of velocity, without a `Reciprocity`; none: half for objects that give way, else all
   std::optional<double> responsibility;
 

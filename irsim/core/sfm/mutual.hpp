@@ -1,6 +1,7 @@
 // Forces between objects that decide together: each pair is computed once.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "geometry/vec.hpp"
@@ -17,6 +18,7 @@ class MutualForces {
     if (static_cast<int>(forces_.size()) < count) forces_.resize(count);
     if (static_cast<int>(seen_.size()) < total) seen_.resize(total);
     place_.assign(total, -1);
+    tied_.assign(count, 0);
     for (int k = 0; k < count; ++k) {
       place_[objects[k]] = k;
       forces_[k].clear();
@@ -36,6 +38,16 @@ class MutualForces {
   }
   /// The force of `from` will be known at last. `centred`: whether the object sees `from` at its origin.
   void expect(int from, bool centred) { see(from).centred = centred; }
+
+  /// The object that decides and `other` are mirror images of each other; `other` need not find out by itself.
+  void tie(int other) {
+    tied_[deciding_] = 1;
+    if (place_[other] >= 0) tied_[place_[other]] = 1;
+  }
+  /// Whether both are known to be mirror images of others, so that nothing is left to find out.
+  bool both_tied(int other) const { return tied_[deciding_] && (place_[other] < 0 || tied_[place_[other]]); }
+  /// Whether the object that decides is a mirror image of another one.
+  bool tied() const { return tied_[deciding_] != 0; }
 
   /// Sum of all forces in the order of the calls; `computed` are the expected ones. Those that others need are kept.
   /// `centred`: whether others see the object, `self`, at its origin.
@@ -76,6 +88,7 @@ class MutualForces {
     return seen;
   }
 
+  std::vector<std::uint8_t> tied_;          // (count,)
   std::vector<int> place_;                  // (total,) index in the decision; -1: the object does not decide in it
   std::vector<std::vector<Force>> forces_;  // (count,) by ascending `from`
   std::vector<Seen> seen_;                  // in the order of the calls

@@ -8,7 +8,14 @@ namespace {
 constexpr double kSamePlace = 1e-6;  // two objects this close have no direction between them, and so no force [m]
 constexpr double kStraight = 1e-12;  // smaller angles are rounding errors of an object straight ahead [rad]
 
+constexpr double kOnLine = 1e-9;  // products of a distance and a speed below this are rounding errors [m^2/s]
+
 }  // namespace
+
+bool SocialForces::meets(std::size_t k, Vec2 velocity) const {
+  const Vec2 way{way_x_[k], way_y_[k]}, faster{faster_x_[k], faster_y_[k]};
+  return dot(faster, way) > kOnLine && std::fabs(cross(velocity, way)) <= kOnLine;
+}
 
 void SocialForces::clear(std::size_t most) {
   count_ = 0;
@@ -18,7 +25,7 @@ void SocialForces::clear(std::size_t most) {
     column->resize(most);
 }
 
-void SocialForces::compute(const SfmOptions& o) {
+void SocialForces::compute(const SfmOptions& o, Vec2 velocity) {
   const double *way_x = way_x_.data(), *way_y = way_y_.data();
   const double *faster_x = faster_x_.data(), *faster_y = faster_y_.data();
   double *along_x = along_x_.data(), *along_y = along_y_.data(), *sine = sine_.data(), *cosine = cosine_.data();
@@ -49,7 +56,8 @@ void SocialForces::compute(const SfmOptions& o) {
     }
     const double angle = angle_[k];
     const double braking = o.n_velocity * reaches[k] * angle, turning = o.n_angular * reaches[k] * angle;
-    const double sign = angle > kStraight ? 1.0 : angle < -kStraight ? -1.0 : 0.0;
+    // Straight ahead neither side is nearer: two that approach each other on one line both take the right.
+    const double sign = angle > kStraight ? 1.0 : angle < -kStraight ? -1.0 : !o.sidestep && meets(k, velocity);
     const double f_velocity = -std::exp(decay[k] - braking * braking);
     const double f_angular = -sign * std::exp(decay[k] - turning * turning);
     const Vec2 along{along_x[k], along_y[k]};

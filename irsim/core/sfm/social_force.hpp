@@ -20,8 +20,9 @@ class SocialForces {
     faster_x_[count_] = faster.x, faster_y_[count_] = faster.y;
     ++count_;
   }
-  /// Compute the forces: a braking part against the interaction vector and a sideways part.
-  void compute(const SfmOptions& options);
+  /// Compute the forces: a braking part against the interaction vector and a sideways part. `velocity`: of the object
+  /// [m/s].
+  void compute(const SfmOptions& options, Vec2 velocity);
 
   std::size_t count() const { return count_; }
   Vec2 force(std::size_t k) const { return {force_x_[k], force_y_[k]}; }
@@ -31,6 +32,9 @@ class SocialForces {
   bool mutual(std::size_t k) const { return sine_[k] > 0.0 || sine_[k] < 0.0; }
 
  private:
+  /// Whether the object and a disc straight ahead of its interaction vector come nearer to each other along one line.
+  bool meets(std::size_t k, Vec2 velocity) const;
+
   std::size_t count_ = 0;
   std::vector<double> way_x_, way_y_, faster_x_, faster_y_;
   std::vector<double> distance_, length_;  // of `way`; of the interaction vector

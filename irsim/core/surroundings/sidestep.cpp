@@ -1,12 +1,11 @@
 #include "surroundings/sidestep.hpp"
 
-#include "surroundings/ego.hpp"
+#include "surroundings/ties.hpp"
 
 namespace irsim {
 namespace {
 
 constexpr double kLookAhead = 10.0;  // objects farther ahead are not in the way [m]
-constexpr double kLaneMargin = 0.1;  // margin on either side of the lane [m]
 constexpr double kSlow = 0.3;        // share of the wanted speed below which an object turns further
 constexpr double kMostTurn = 90.0;   // angle at a stand [degrees]
 

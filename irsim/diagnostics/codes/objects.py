@@ -296,10 +296,10 @@ OBJECTS: dict[str, Code] = {
     ),
     "exact-symmetry": Code(
         "starts too symmetric to pass each other",
-        "orca, rvo, sfm and avocado without noise choose no side by themselves. Where two objects meet exactly "
-        "head-on both brake and may stand for ever (under sfm they touch), and one straight behind a slower one "
-        "trails it (under sfm it runs into it; rvo passes). 'sidestep: 10' makes them pass on the right. Example: "
-        "behavior: {name: orca, sidestep: 10}.",
+        "One with orca, or with avocado without noise, straight behind a slower one trails it; 'sidestep: 10' makes it "
+        "pass on the right. Two that meet head-on, or a ring, pass on their right by themselves, except with "
+        "'sidestep: 0', the law of IR-SIM, and except for cars under rvo and sfm and rings of 16 and more under sfm: "
+        "use orca there. Example: behavior: {name: orca, sidestep: 10}.",
     ),
     "vel-min-default": Code(
         "vel_min keeps its default", "Raising vel_max alone leaves vel_min at -1 for each component."

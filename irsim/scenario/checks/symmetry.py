@@ -15,9 +15,13 @@ from irsim.scenario.resolve.body_size import top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _SIDESTEPPING = ("orca", "avocado", "rvo", "sfm")
-"""Behaviors with the key ``sidestep``."""
-_PASSING = ("rvo",)
-"""Those of them that pass a slower object straight ahead all the same."""
+"""Behaviors with the key ``sidestep``. By default they break ties between two that are each other's mirror images."""
+_PASSING = ("rvo", "sfm")
+"""Those of them that pass a slower object straight ahead all the same; `sfm` only where it breaks ties."""
+_NOT_FOR_CARS = ("rvo", "sfm")
+"""Those of them that choose velocities which a car cannot take up, whatever side they choose."""
+_CROWDED = 16
+"""Social forces push rings of so many, and more, into each other in their middle."""
 _ANGLE = 10.0
 """Angle that is proposed [degrees]."""
 _OFF_LINE = 0.01
@@ -50,28 +54,52 @@ def _findings(context: Context) -> Iterator[Finding]:
     if not 1 < len(records) <= _MOST:
         return
     for ring in _rings(records):
+        if not _meets_badly(ring[0], len(ring)):
+            continue
         end = "touch or stand" if _options(ring[0]).name == "sfm" else "brake, and may stand there for ever"
         what = f"meets {len(ring) - 1} others in the middle of their ways, all at the same time: they {end}"
-        yield _finding(context, ring[0], what)
+        yield _finding(context, ring[0], what, _cure(ring[0]))
     for ways in _lines(records):
         for a, b in itertools.pairwise(sorted(ways, key=lambda way: way.start)):
             if b.start == a.start:
                 continue
             if a.end > a.start and b.end < b.start and a.end > b.end:
-                yield _finding(context, a.record, f"meets '{b.record.name}' exactly head-on: {_effect(a.record)}")
+                if _meets_badly(a.record, 2):
+                    what = f"meets '{b.record.name}' exactly head-on: {_effect(a.record)}"
+                    yield _finding(context, a.record, what, _cure(a.record))
                 continue
             behind, ahead = (a, b) if a.end > a.start and b.end > b.start else (b, a)
-            passes = _options(behind.record).name in _PASSING
+            name = _options(behind.record).name
+            passes = name in _PASSING and (name != "sfm" or not _keeps_ties(behind.record))
             if (a.end > a.start) == (b.end > b.start) and not passes and _catches_up(behind, ahead):
                 end = "drives into" if _pushes(behind.record) else "trails"
                 what = f"starts straight behind '{ahead.record.name}', which is slower: it {end} it instead of passing"
-                yield _finding(context, behind.record, what)
+                yield _finding(context, behind.record, what, "sidestep")
 
 
 def _needs_side(record: ObjectRecord) -> bool:
     options = _options(record)
-    chooses = getattr(options, "sidestep", 0.0) != 0.0 or getattr(options, "noise", 0.0) > 0.0
+    chooses = bool(getattr(options, "sidestep", None)) or getattr(options, "noise", 0.0) > 0.0
     return getattr(options, "name", "") in _SIDESTEPPING and not chooses
+
+
+def _keeps_ties(record: ObjectRecord) -> bool:
+    """Whether it leaves ties as they are, as in IR-SIM."""
+    return getattr(_options(record), "sidestep", None) == 0
+
+
+def _meets_badly(record: ObjectRecord, count: int) -> bool:
+    """Whether so many that meet at one point brake for ever, or touch."""
+    return _keeps_ties(record) or _is_car(record) or (_options(record).name == "sfm" and count >= _CROWDED)
+
+
+def _is_car(record: ObjectRecord) -> bool:
+    return _options(record).name in _NOT_FOR_CARS and getattr(record.kinematics, "name", "") == "acker"
+
+
+def _cure(record: ObjectRecord) -> str:
+    """What lets such objects pass: a side, the default of ``sidestep``, or another behavior."""
+    return "default" if _keeps_ties(record) and not _is_car(record) else "orca"
 
 
 def _options(record: ObjectRecord) -> Any:
@@ -131,16 +159,18 @@ def _effect(record: ObjectRecord) -> str:
     return "both brake, and may stand there for ever"
 
 
-def _finding(context: Context, record: ObjectRecord, what: str) -> Finding:
+def _finding(context: Context, record: ObjectRecord, what: str, cure: str) -> Finding:
     key = "behavior" if record.group_behavior is None else "group_behavior"
     path = context.entry_path(record, key)
     inner = "local" if hasattr(getattr(record, key), "local") else None
     where = (*path, inner) if inner else path
     name = _options(record).name
-    return warning(
-        "exact-symmetry",
-        where if inner else path,
-        f"'{record.name}' {what}",
-        fix=f"add 'sidestep: {_ANGLE:g}' to {name}, or move a start or a goal aside by its radius",
-        edit=Edit("add", (*where, "sidestep"), _ANGLE, safe=False),
-    )
+    key_path = (*where, "sidestep")
+    if cure == "orca":
+        fix, edit = f"use 'orca' instead of {name}", None
+    elif cure == "default":
+        fix, edit = f"remove 'sidestep: 0' from {name}", Edit("remove", key_path, safe=False)
+    else:
+        fix = f"add 'sidestep: {_ANGLE:g}' to {name}, or move a start or a goal aside by its radius"
+        edit = Edit("replace" if _keeps_ties(record) else "add", key_path, _ANGLE, safe=False)
+    return warning("exact-symmetry", where if inner else path, f"'{record.name}' {what}", fix=fix, edit=edit)

@@ -1,0 +1,37 @@
+#include "surroundings/ties.hpp"
+
+#include "world/state.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kDirection = 1e-7;  // largest difference of mirrored directions to the goals
+constexpr double kArrived = 0.1;     // objects nearer to their goal than this have no direction [m]
+constexpr double kHorizon = 10.0;    // ways that meet later do not matter yet [s]
+
+/// Whether b is the mirror image of a about a line across the unit vector `n`.
+bool mirrors(Vec2 a, Vec2 b, Vec2 n, double tolerance) {
+  return std::fabs(dot(a + b, n)) <= tolerance && std::fabs(cross(n, a - b)) <= tolerance;
+}
+
+}  // namespace
+
+std::optional<double> mirrored(const State& state, const MirrorPair& pair) {
+  const Vec2 here = state.pose[pair.row].position(), there = state.pose[pair.other].position();
+  const Vec2 offset = there - here;
+  const double gap = norm(offset);
+  if (!(gap > 0.0)) return std::nullopt;
+  const Vec2 n = offset * (1.0 / gap);
+  if (!mirrors(pair.velocity, pair.its_velocity, n, pair.tolerance)) return std::nullopt;
+  const Vec2 way = state.destination(pair.row).position() - here;
+  const Vec2 its_way = state.destination(pair.other).position() - there;
+  const double far = norm(way), its_far = norm(its_way);
+  if (!(far > kArrived && its_far > kArrived)) return std::nullopt;
+  const Vec2 ahead = way * (1.0 / far);
+  if (!mirrors(ahead, its_way * (1.0 / its_far), n, kDirection)) return std::nullopt;
+  const double closing = 2.0 * dot(ahead, n);  // per metre that both move: mirrored ways meet midway
+  const bool meet = closing * kHorizon * pair.speed > gap && gap - closing * std::min(far, its_far) < pair.lane;
+  return meet ? std::optional<double>(cross(ahead, n)) : std::nullopt;
+}
+
+}  // namespace irsim

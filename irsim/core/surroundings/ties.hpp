@@ -1,0 +1,57 @@
+// Ties: two objects whose motion is each other's mirror image about the line midway between them. Whatever one of them
+// does to pass, the other does as well, so that neither passes. Both then prefer their own right, which is decided by
+// their bodies alone: neither ids nor the order of the file matter, and where nothing is mirrored nothing changes.
+#pragma once
+
+#include <optional>
+
+#include "surroundings/ego.hpp"
+
+namespace irsim {
+
+constexpr double kTieTurn = 10.0;    // turn of a wanted velocity that breaks a tie [degrees]
+constexpr double kTieSpeed = 0.11;   // velocities of a mirrored pair differ by less: two steps of the grid of rvo [m/s]
+constexpr double kLaneMargin = 0.1;  // margin on either side of the lane of two objects [m]
+
+/// Two objects, the second one seen from the first, world frame.
+struct MirrorPair {
+  int row, other;               // rows of the state
+  Vec2 velocity, its_velocity;  // [m/s]
+  double speed;                 // at which the first one wants to move [m/s]
+  double lane;                  // distance of the origins below which the objects are in each other's way [m]
+  double tolerance;             // for the velocities [m/s]
+};
+
+/// Whether two velocities may be those of a mirrored pair: their sum has no part along the line through both. This is
+/// the cheap half of the test, without a root.
+///
+/// Args:
+///   offset: From one object to the other, not longer than `reach` [m].
+///   sum: Of both velocities [m/s].
+///   tolerance: For the part along the line, at this reach [m/s].
+inline bool may_mirror(Vec2 offset, Vec2 sum, double reach, double tolerance) {
+  return std::fabs(dot(sum, offset)) <= tolerance * reach;
+}
+
+/// The sine of the angle from the way of the first object of a mirrored pair to the other one, positive on the left;
+/// nothing if the objects are no mirror images or their ways do not meet.
+///
+/// Velocities and directions to the goals must mirror each other. Two that stand without a goal, two that drive side by
+/// side, and one that follows another are no such pair.
+std::optional<double> mirrored(const State& state, const MirrorPair& pair);
+
+/// Whether the ego and another object, within `reach` [m], are a mirrored pair; `tolerance` is that for the velocities.
+inline bool tied(const Decision& decision, const Ego& ego, const Disc& other, double reach, double tolerance) {
+  const int row = decision.first_row + other.object;
+  const Vec2 offset = decision.state.pose[row].position() - ego.position;
+  if (!may_mirror(offset, ego.velocity + other.velocity, reach, tolerance)) return false;
+  if (decision.world.is_static[other.object]) return false;
+  const double lane = ego.radius + other.radius + kPadding + kLaneMargin;
+  return mirrored(decision.state, {ego.row, row, ego.velocity, other.velocity, norm(ego.desired), lane, tolerance})
+      .has_value();
+}
+
+/// A wanted velocity turned to the right by an angle [degrees].
+inline Vec2 keep_right(Vec2 wanted, double angle) { return rotate(wanted, unit(-angle * (kPi / 180.0))); }
+
+}  // namespace irsim

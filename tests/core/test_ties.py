@@ -1,0 +1,251 @@
+"""Ties: two whose motion is mirrored pass on the right, whatever their drive, and nothing else changes."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+import irsim
+from irsim.api import read_scenario
+from irsim.compat.changed_scenes import CHANGED_SCENES
+from tests.core.test_sidestep import LOCALS, RING
+
+LAWS = ("rvo", "sfm", "orca", "avocado, noise: 0")
+DRIVES = ("diff", "omni")
+OLD = {"rvo": "rvo, sidestep: 0, turning: fixed", "sfm": "sfm, sidestep: 0", "orca": "orca, sidestep: 0"}
+Place = tuple[float, float]
+
+
+def scene(law: str, drive: str, starts: Sequence[Place], goals: Sequence[Place], key: str = "behavior") -> str:
+    """Robots that face their goals. `law` is what follows the name of a behavior, too."""
+    headings = [math.atan2(g[1] - s[1], g[0] - s[0]) for s, g in zip(starts, goals, strict=True)]
+    robots = {
+        "number": len(starts),
+        "distribution": {"name": "manual"},
+        "state": [[*s, heading] for s, heading in zip(starts, headings, strict=True)],
+        "goal": [list(g) for g in goals],
+        "kinematics": {"name": drive},
+        "shape": {"name": "circle", "radius": 0.2},
+        "goal_threshold": 0.2,
+        key: yaml.safe_load(f"{{name: {law}}}"),
+    }
+    return yaml.safe_dump({"world": {"width": 20, "height": 20, "time_limit": 90}, "robot": [robots]})
+
+
+def motion(text: str, steps: int) -> np.ndarray:
+    """Poses after every step, shape (steps, robots, 3)."""
+    scenario, _ = read_scenario(text=text, strict=False)
+    batch = irsim.batch(scenario, 1, seeds=[0])
+    poses = []
+    for _ in range(steps):
+        batch.step()
+        poses.append(batch.pose[0].copy())
+    return np.asarray(poses)
+
+
+def test_ties_are_broken_alike_in_every_world_of_a_batch() -> None:
+    scenario, _ = read_scenario(text=circle("rvo", "diff", 8), strict=False)
+    batch = irsim.batch(scenario, 3, seeds=[0, 0, 0], threads=2)
+    for _ in range(80):
+        batch.step()
+    alone = motion(circle("rvo", "diff", 8), 80)[-1]
+    assert all(np.array_equal(pose, alone) for pose in batch.pose)
+
+
+def head_on(law: str, drive: str, degrees: float, key: str = "behavior") -> str:
+    x, y = 6 * math.cos(math.radians(degrees)), 6 * math.sin(math.radians(degrees))
+    ends = [(10 - x, 10 - y), (10 + x, 10 + y)]
+    return scene(law, drive, ends, ends[::-1], key)
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 90, 135])
+@pytest.mark.parametrize("drive", [*DRIVES, "omni_angular"])
+@pytest.mark.parametrize("law", LAWS)
+def test_two_that_meet_head_on_pass(law: str, drive: str, degrees: float) -> None:
+    result = irsim.run(text=head_on(law, drive, degrees), seed=0)
+    assert result.outcome == "success", result.reason
+    assert max(robot.time_to_goal or math.inf for robot in result.robots) < 14
+
+
+@pytest.mark.parametrize("law", ["orca", "avocado, noise: 0"])
+def test_cars_that_meet_head_on_pass(law: str) -> None:
+    assert irsim.run(text=head_on(law, "acker", 30), seed=0).outcome == "success"
+
+
+@pytest.mark.parametrize("law", ["orca", "sfm"])
+def test_members_of_a_group_pass_as_well(law: str) -> None:
+    assert irsim.run(text=head_on(law, "omni", 0, "group_behavior"), seed=0).outcome == "success"
+
+
+@pytest.mark.parametrize("law", OLD)
+def test_both_pass_on_their_right(law: str) -> None:
+    path = motion(head_on(law, "omni", 0), 60)
+    assert path[:, 0, 1].min() < 9.95
+    assert path[:, 1, 1].max() > 10.05
+
+
+@pytest.mark.parametrize("law", OLD)
+def test_a_sidestep_of_zero_leaves_ties(law: str) -> None:
+    assert irsim.run(text=head_on(OLD[law], "omni", 0), seed=0).outcome != "success"
+
+
+def circle(law: str, drive: str, count: int) -> str:
+    world = {"width": 20, "height": 20, "time_limit": 90}
+    text = scene(law, drive, [(10, 10)], [(1, 1)])
+    [robot] = yaml.safe_load(text)["robot"]
+    for key in ("state", "goal"):
+        del robot[key]
+    robot |= {"number": count, "distribution": {"name": "circle", "radius": 6, "center": [10, 10]}}
+    return yaml.safe_dump({"world": world, "robot": [robot]})
+
+
+@pytest.mark.parametrize("count", [3, 4, 8])
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("law", OLD)
+def test_a_circle_swaps(law: str, drive: str, count: int) -> None:
+    result = irsim.run(text=circle(law, drive, count), seed=0)
+    assert result.outcome == "success", result.reason
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [2, 5, 6, 10, 16])
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("law", OLD)
+def test_circles_of_other_sizes_swap(law: str, drive: str, count: int) -> None:
+    result = irsim.run(text=circle(law, drive, count), seed=0)
+    expected = "collision" if law == "sfm" and count == 16 else "success"  # forces cannot keep so many apart
+    assert result.outcome == expected, result.reason
+
+
+LOOP = """
+world: {{width: {size}, height: {size}, step_time: 0.1, collision_mode: stop, time_limit: 60}}
+robot:
+  - number: {count}
+    distribution: {{name: circle, radius: {radius}, center: [{middle}, {middle}]}}
+    kinematics: {{name: diff}}
+    shape: {{name: circle, radius: 0.2}}
+    behavior: {{name: rvo, vxmax: 1.0, vymax: 1.0, acce: 1.0, factor: 2.0, neighbor_threshold: 5.0, loop: true}}
+    vel_min: [-3, -3]
+    vel_max: [3, 3]
+    goal_threshold: 0.2
+"""
+
+
+@pytest.mark.parametrize(
+    ("count", "radius"), [(10, 4), pytest.param(50, 12, marks=pytest.mark.slow)]
+)  # the second circle has about the distances of the first one
+def test_a_looped_swap_goes_on_for_a_minute_without_a_contact(count: int, radius: float) -> None:
+    text = LOOP.format(count=count, radius=radius, size=2 * radius + 2, middle=radius + 1)
+    result = irsim.run(text=text, seed=0)
+    assert not [event for event in result.events if event.kind == "collision"]
+
+
+@pytest.mark.parametrize("law", OLD)
+def test_the_order_of_the_file_does_not_matter(law: str) -> None:
+    angles = [math.tau * k / 5 for k in range(5)]
+    starts = [(10 + 4 * math.cos(a), 10 + 4 * math.sin(a)) for a in angles]
+    goals = [(20 - x, 20 - y) for x, y in starts]
+    order = [3, 0, 4, 2, 1]
+    here = motion(scene(law, "omni", starts, goals), 50)
+    there = motion(scene(law, "omni", [starts[k] for k in order], [goals[k] for k in order]), 50)
+    assert np.allclose(here[:, order], there, atol=1e-6)
+
+
+@pytest.mark.parametrize("law", ["sfm", "orca"])
+def test_a_scene_that_is_turned_moves_as_before(law: str) -> None:
+    first, turned = motion(head_on(law, "omni", 0), 100), motion(head_on(law, "omni", 90), 100)
+    offset = first[..., :2] - 10
+    assert np.allclose(np.stack([-offset[..., 1], offset[..., 0]], -1), turned[..., :2] - 10, atol=1e-6)
+
+
+NO_TIES = {
+    "side by side": ([(2, 9), (2, 10)], [(16, 9), (16, 10)]),
+    "side by side, slightly inwards": ([(2, 9), (2, 11)], [(16, 9.5), (16, 10.5)]),
+    "apart": ([(8, 10), (12, 10)], [(2, 10), (18, 10)]),
+    "convoy": ([(2, 10), (3.5, 10), (5, 10)], [(15, 10), (16.5, 10), (18, 10)]),
+    "resting": ([(9, 10), (11, 10)], [(9, 10), (11, 10)]),
+    "crossing, one later": ([(4, 10), (10, 4.6)], [(16, 10), (10, 16)]),
+}
+
+
+@pytest.mark.parametrize("case", NO_TIES)
+@pytest.mark.parametrize("law", OLD)
+def test_where_nothing_is_mirrored_nothing_changes(law: str, case: str) -> None:
+    ours, theirs = (motion(scene(one, "omni", *NO_TIES[case]), 60) for one in (law, OLD[law]))
+    assert np.array_equal(ours, theirs)
+
+
+RANDOM = """
+world: {{width: 12, height: 12, time_limit: 40}}
+robot:
+  - number: 10
+    distribution: {{name: random, range_low: [1, 1, -3.14], range_high: [11, 11, 3.14]}}
+    kinematics: {{name: {drive}}}
+    shape: {{name: circle, radius: 0.2}}
+    behavior: {{name: {law}}}
+    goal_threshold: 0.2
+"""
+
+
+@pytest.mark.parametrize("seeds", [range(5), pytest.param(range(5, 50), marks=pytest.mark.slow)])
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("law", OLD)
+def test_random_scenes_move_as_before(law: str, drive: str, seeds: range) -> None:
+    new = f"{law}, turning: fixed" if law == "rvo" else law
+    for seed in seeds:
+        ends = [
+            [robot.pose for robot in irsim.run(text=RANDOM.format(law=one, drive=drive), seed=seed).robots]
+            for one in (new, OLD[law])
+        ]
+        assert ends[0] == ends[1]
+
+
+def with_old_law(document: Any) -> Any:
+    """A scenario whose behaviors follow the law without ties, where they say nothing else."""
+    if isinstance(document, list):
+        return [with_old_law(item) for item in document]
+    if not isinstance(document, dict):
+        return document
+    copied = {key: with_old_law(value) for key, value in document.items()}
+    for key in ("behavior", "group_behavior", "local"):
+        options = copied.get(key)
+        if isinstance(options, dict) and options.get("name") in (*OLD, "avocado"):
+            options.setdefault("sidestep", 0)
+            if options["name"] == "rvo":
+                options.setdefault("turning", "fixed")
+    return copied
+
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.slow
+def test_the_scenes_that_changed_are_those_of_the_published_list(tmp_path: Path) -> None:
+    changed = []
+    for path in [*ROOT.glob("templates/*/scenario.yaml"), *ROOT.glob("tests/parity/scenarios/*.yaml")]:
+        document = yaml.safe_load(path.read_text())
+        old = with_old_law(document)
+        if old == document:
+            continue
+        folder = tmp_path / path.parent.name
+        shutil.copytree(path.parent, folder, dirs_exist_ok=True)
+        runs = []
+        for one in (document, old):
+            (folder / "other.yaml").write_text(yaml.safe_dump(one))
+            runs.append(irsim.run(folder / "other.yaml", seed=3, steps=300))
+        if [robot.pose for robot in runs[0].robots] != [robot.pose for robot in runs[1].robots]:
+            changed.append(path.parent.relative_to(ROOT).as_posix())
+    assert sorted(changed) == sorted(CHANGED_SCENES)
+
+
+@pytest.mark.parametrize("law", LOCALS)
+def test_a_ring_opens_without_a_side_being_given(law: str) -> None:
+    text = RING.format(count=5, drive="diff", turn=2, behavior=LOCALS[law])
+    assert irsim.run(text=text, seed=0).outcome == "success"
