@@ -50,14 +50,14 @@ PEOPLE = """
     goal_threshold: 0.3
     behavior: {name: orca, neighborDist: 5, maxNeighbors: 10, timeHorizon: 2, safe_radius: 0.02}
 """
-_REPLAYED = ([[0.5, 2.0], [9.5, 3.0]], [[9.5, 5.2], [0.5, 4.6]], [[4.0, 9.5], [5.2, 0.5]], [[8.0, 0.5], [7.2, 9.5]])
+_REPLAYED = ([[-2, 2], [12, 3]], [[12, 5.2], [-2, 4.6]], [[4, 12], [5.2, -2]], [[8, -2], [7.2, 12]])
 REPLAYED = "".join(
     f"""
   - {{kinematics: {{name: omni}}, tags: [pedestrian], shape: {{name: circle, radius: 0.25}},
-     behavior: {{name: replay, times: [{2 * k}, {2 * k + 9}], poses: {way}}}}}"""
+     behavior: {{name: replay, times: [{2 * k}, {2 * k + 14}], poses: {way}}}}}"""
     for k, way in enumerate(_REPLAYED)
 )
-"""People who walk on at 1 m/s whatever happens."""
+"""People who come from outside and walk on at 1 m/s whatever happens."""
 
 
 @dataclass(frozen=True)

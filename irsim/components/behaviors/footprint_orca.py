@@ -15,9 +15,10 @@ from irsim.options.units import Bool, Count, Meters, MetersPerSecond, Seconds
 class FootprintOrca(BehaviorOptions):
     """Avoid others by their true outlines instead of circles, and go round what stands: for dense crowds of robots.
 
-    Robots that all run it do not touch if drives are exact and `acce` lets them brake. It plans a way
-    round robots that stand and static obstacles, at most 4 m aside; without progress it tries random
-    directions. Arrived robots make room and come back. Around larger walls use it as the `local` of `follow`.
+    Robots that all run it do not touch, nor what stands, if drives are exact: within `acce` each can always stop
+    where no other may be. It plans a way round robots that stand and static obstacles, at most 4 m aside; without
+    progress it tries random directions. Arrived robots make room and come back. Around larger walls use it as the
+    `local` of `follow`.
     """
 
     in_group: ClassVar[bool] = True
@@ -28,11 +29,11 @@ class FootprintOrca(BehaviorOptions):
     neighborDist: Annotated[Meters, Field(gt=0)] = 5.0
     """Moving objects farther away are ignored."""
     maxNeighbors: Count = 8
-    """Number of moving objects considered, nearest first."""
+    """Number of moving objects that choose its velocity, nearest first; it touches none of the others."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 1.5
     """Time horizon for moving objects; twice this for those of other behaviors."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 0.5
-    """Time horizon for walls and all that has stopped."""
+    """Time horizon for walls and all that has stopped; it brakes in time with any."""
     safe_distance: Annotated[Meters, Field(ge=0)] = 0.02
     """Distance kept where there is room; 0.1 m more from movers of other behaviors."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None

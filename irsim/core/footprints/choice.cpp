@@ -19,6 +19,9 @@ constexpr double kStopWeight = 0.3;      // cost of standing, besides the way th
 constexpr double kKeepDirection = 0.3;   // angle beyond a right angle before forward and backward are swapped [rad]
 constexpr double kMinCarShare = 0.3;     // smallest share of a wanted speed of a car, which turns only while it rolls
 
+constexpr double kMostSteering = 0.25 * kPi;  // largest steering angle that is used [rad]
+constexpr double kOutside = 0.05;             // how far outside the turning circles of a car its goal must be then [m]
+
 constexpr double kLeastGain = 1e-6;  // smaller gains of a small step are rounding errors
 
 constexpr double kRoot = 0.86602540378443865;  // cosine of 30 degrees
@@ -63,15 +66,33 @@ Course course_to(const FootprintSelf& self, Vec2 velocity) {
   return std::fabs(error) > limit ? Course{-1.0, wrap(error + kPi)} : Course{1.0, error};
 }
 
+/// Whether a car must drive away from its goal first, and forward (1) or backward (-1): no arc leads to places well
+/// inside its turning circles. 0 if it need not.
+double leaves_goal(const FootprintSelf& self, const AckerOptions& car, double wheelbase) {
+  const State& state = self.state();
+  double steering = std::min(car.psi_max, kMostSteering);
+  if (car.mode == Steering::steer) steering = std::min(steering, state.vel_max[self.row][1]);
+  if (!(steering > 0.0) || std::isnan(state.goal[self.row].x)) return 0.0;
+  const double radius = wheelbase / std::tan(steering);
+  const Vec2 goal = unrotate(state.destination(self.row).position() - self.position, self.heading);
+  const double inside = radius - norm({goal.x, std::fabs(goal.y) - radius});
+  const double away = goal.x < 0.0 || !self.reverses ? 1.0 : -1.0;
+  const bool leaving = state.control[self.row][0] * away > 0.0;
+  return inside > (leaving ? -kOutside : 0.5 * self.world().goal_threshold[self.object]) ? away : 0.0;
+}
+
 Vec3 car_control(const FootprintSelf& self, const AckerOptions& car, Vec2 velocity) {
   const State& state = self.state();
   const double psi = state.extra[static_cast<std::size_t>(self.row) * state.extra_rows];
   const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0, dt = self.world().step_time;
   const double speed = norm(velocity);
   if (speed < kMinSpeed) return {{0.0, car.mode == Steering::steer ? psi : 0.0, 0.0}};
+  const double away = self.limits().glides ? leaves_goal(self, car, wheelbase) : 0.0;
+  if (away != 0.0)
+    return {{away * speed, car.mode == Steering::steer ? 0.0 : -psi / dt, 0.0}};
   const Course course = course_to(self, velocity);
   const double rolls = course.sign * speed * std::max(kMinCarShare, std::cos(course.error));
-  const double target = clip(std::atan(course.error * wheelbase / (rolls * 2.0 * dt)), -0.25 * kPi, 0.25 * kPi);
+  const double target = clip(std::atan(course.error * wheelbase / (rolls * 2.0 * dt)), -kMostSteering, kMostSteering);
   return {{rolls, car.mode == Steering::steer ? target : (target - psi) / dt, 0.0}};
 }
 
@@ -80,7 +101,7 @@ Vec3 steered(const FootprintSelf& self, const AckerOptions& car, double speed, d
   constexpr double kSteps = 5.0;
   const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0, dt = self.world().step_time;
   const double psi = self.state().extra[static_cast<std::size_t>(self.row) * self.state().extra_rows];
-  const double target = clip(steering, -0.25 * kPi, 0.25 * kPi);
+  const double target = clip(steering, -kMostSteering, kMostSteering);
   angle = kSteps * speed * dt * std::tan(target) / wheelbase;
   return {{speed, car.mode == Steering::steer ? target : (target - psi) / dt, 0.0}};
 }
@@ -207,6 +228,7 @@ class BestVelocity {
 }  // namespace
 
 Intent best_intent(FootprintSelf& self, Vec2 wanted) {
+  self.crowd.way.stepwise = self.crowd.cell.has_strangers();
   BestVelocity choice(self, wanted);
   choice.consider(wanted);
   if (choice.is_perfect()) return choice.intent();

@@ -39,7 +39,7 @@ class Passage {
     bool known = false;                                               // whether `before_` is the place before
     for (std::size_t k = 1; k < way.places.size(); ++k) {
       const Place &from = way.places[k - 1], &to = way.places[k];
-      const double travel = to.travel + norm(fixture_.shift) * (to.share - from.share);
+      const double travel = to.travel + norm(fixture_.shift) * (to.time - from.time);
       if (travel <= left) {
         left -= travel, known = false;
         continue;
@@ -68,7 +68,7 @@ class Passage {
     const Hull& hull = body_.hull;
     Vec2* corners = memory_.data() + static_cast<std::size_t>(2 * slot) * hull.count;
     Vec2* normals = corners + hull.count;
-    const Vec2 to = body_.position + place.shift - fixture_.shift * place.share;
+    const Vec2 to = body_.position + place.shift - fixture_.shift * place.time;
     for (int k = 0; k < hull.count; ++k) corners[k] = to + rotate(hull.corner[k] - body_.position, place.turn);
     for (int k = 0; k < hull.count; ++k) normals[k] = rotate(hull.normal[k], place.turn);
     return {corners, normals, hull.count, hull.round};
@@ -81,7 +81,7 @@ class Passage {
     const Vec2 turned = unrotate(axis, place.turn);
     double least = kInfinity;
     for (int c = 0; c < hull.count; ++c) least = std::min(least, dot(turned, hull.corner[c] - body_.position));
-    least += dot(axis, body_.position + place.shift - fixture_.shift * place.share);
+    least += dot(axis, body_.position + place.shift - fixture_.shift * place.time);
     return least + fixture_.hull.least(axis * -1.0) - hull.round - fixture_.hull.round;
   }
 
@@ -92,7 +92,7 @@ class Passage {
     if (gap_along(last, from) >= least && gap_along(last, to) >= least) return true;
     if (halvings == 0) return false;
     const double angle = 0.5 * (from.angle + to.angle);
-    const Place middle{(from.shift + to.shift) * 0.5, angle, unit(angle), 0.5 * (from.share + to.share), 0.0};
+    const Place middle{(from.shift + to.shift) * 0.5, angle, unit(angle), 0.5 * (from.time + to.time), 0.0};
     const Separation there = look(middle, 1);
     return there.gap >= least && is_free(from, first, middle, there.axis, halvings - 1) &&
            is_free(middle, there.axis, to, last, halvings - 1);

@@ -61,7 +61,7 @@ class Run {
     out.clear();
   }
 
-  void step(Vec3 control, bool now) {
+  void step(Vec3 control) {
     const Pose before = pose_;
     Vec3 twist;
     with(drive_, [&](const auto& drive) {
@@ -73,9 +73,9 @@ class Run {
     for (int k = 1; k <= parts; ++k) {
       const double share = static_cast<double>(k) / parts;
       const Pose there = k == parts ? pose_ : pose_at(before, twist, dt_ * share, ahead_.world.integration);
-      way = add(there.position() - from_.position(), turned_ + angle * share, now ? share : 1.0);
+      way = add(there.position() - from_.position(), turned_ + angle * share, steps_ + share);
     }
-    turned_ += angle;
+    turned_ += angle, ++steps_;
     if (angle != 0.0) heading_ = rotate(start_, out_.places.back().turn);
     const double part = std::fabs(angle) / parts;
     const double arc = ahead_.world.integration == kExact ? way : 0.0;
@@ -85,7 +85,7 @@ class Run {
   void stop(Vec3 control) {
     const Vec3& acce = ahead_.state.acce[ahead_.row];
     for (int k = 0; k < kMostSteps; ++k) {
-      if (is_straight(control)) return go_straight(control);
+      if (!out_.stepwise && is_straight(control)) return go_straight(control);
       for (int c = 0; c < 3; ++c) {
         const double change = acce[c] * dt_;
         if (c == 1 && kind_.car && kind_.car->mode == Steering::steer) {
@@ -96,7 +96,7 @@ class Run {
         if (std::fabs(control[c]) < kStill) control[c] = 0.0;
       }
       if (stands(control)) return;
-      step(control, false);
+      step(control);
     }
     double left = 0.0;
     for (int c = 0; c < kind_.travel; ++c) left += std::fabs(stopping_way(control[c], acce[c] * dt_, dt_));
@@ -105,12 +105,12 @@ class Run {
 
  private:
   /// Append a place; returns the way from the place before [m].
-  double add(Vec2 shift, double angle, double share) {
+  double add(Vec2 shift, double angle, double time) {
     const Place& last = out_.places.back();
     const double turn = angle - last.angle, way = norm(shift - last.shift);
     const double travel = way * (1.0 + kArc * turn * turn) + ahead_.reach * std::fabs(turn);
     out_.travel += travel;
-    out_.places.push_back({shift, angle, turn != 0.0 ? unit(angle) : last.turn, share, travel});
+    out_.places.push_back({shift, angle, turn != 0.0 ? unit(angle) : last.turn, time, travel});
     return way;
   }
 
@@ -135,7 +135,7 @@ class Run {
     const Vec3& acce = ahead_.state.acce[ahead_.row];
     Vec2 way{stopping_way(control[0], acce[0] * dt_, dt_), 0.0};
     if (kind_.travel > 1) way.y = stopping_way(control[1], acce[1] * dt_, dt_);
-    if (way.x != 0.0 || way.y != 0.0) add(pose_.position() - from_.position() + rotate(way, heading_), turned_, 1.0);
+    if (way.x != 0.0 || way.y != 0.0) add(pose_.position() - from_.position() + rotate(way, heading_), turned_, steps_ + 1.0);
   }
 
   const Ahead& ahead_;
@@ -145,6 +145,7 @@ class Run {
   Pose pose_;
   Vec2 heading_, start_;
   double dt_, turned_ = 0.0;
+  int steps_ = 0;
   Manoeuvre& out_;
 };
 
@@ -187,7 +188,7 @@ Vec3 Ahead::braking() const {
 
 void Ahead::step_and_stop(Vec3 control, Manoeuvre& out) const {
   Run run(*this, out);
-  run.step(control, true);
+  run.step(control);
   run.stop(control);
 }
 
@@ -200,6 +201,18 @@ double Ahead::range() const {
   double turn = kind.yaw < 0 ? 0.0 : way_with(*this, kind.yaw);
   if (kind.car) turn = car_turn(*kind.car, way);
   return way + reach * std::min(turn, 2.0);
+}
+
+double Ahead::duration() const {
+  const Components kind = components_of(world.drive[object]);
+  double longest = world.step_time;
+  const auto include = [&](int c) {
+    const double acce = state.acce[row][c];
+    if (acce > 0.0) longest = std::max(longest, most(*this, c) / acce + world.step_time);
+  };
+  for (int c = 0; c < kind.travel; ++c) include(c);
+  if (kind.yaw >= 0) include(kind.yaw);
+  return longest;
 }
 
 double Ahead::play() const {
