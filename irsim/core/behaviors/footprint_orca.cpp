@@ -186,8 +186,7 @@ void meet_reachable(FootprintSelf& self, OrcaCrowd& all) {
   const World& world = self.world();
   FootprintCrowd& crowd = self.crowd;
   std::vector<int>& others = crowd.others;
-  const double reach = self.limits().range + all.movers[self.mover].radius + crowd.widest +
-                       crowd.fastest * self.limits().duration + kStrangerDistance;
+  const double reach = self.limits().range + all.movers[self.mover].radius + crowd.widest + kStrangerDistance;
   const int most = static_cast<int>(all.movers.size()) - 1;
   const bool cut = static_cast<int>(others.size()) == std::min(self.options.maxNeighbors, most);
   const Vec2 centre = all.movers[self.mover].position;

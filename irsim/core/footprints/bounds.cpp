@@ -28,7 +28,7 @@ void fill_reaches(const Decision& decision, const OrcaCrowd& all, FootprintCrowd
   const Shapes& shapes = *state.scenes[decision.w()].shapes;
   crowd.stops.clear();
   crowd.reaches.assign(world.moving.size(), {});
-  crowd.widest = crowd.fastest = 0.0, crowd.way.stepwise = false;
+  crowd.widest = 0.0;
   for (std::size_t m = 0; m < world.moving.size(); ++m) {
     const int i = world.moving[m], row = decision.first_row + i, group = all.group[m];
     MoverReach& one = crowd.reaches[m];
@@ -36,7 +36,7 @@ void fill_reaches(const Decision& decision, const OrcaCrowd& all, FootprintCrowd
     one.radius = shapes.radius[i];
     if (group >= 0 && std::holds_alternative<FootprintOrcaOptions>(world.behaviors[group].behavior)) {
       const Ahead ahead{world, state, row, i, norm(shapes.centre[i]) + shapes.radius[i], crowd.extra};
-      one.range = ahead.range(), one.play = one.range, one.duration = ahead.duration();
+      one.range = ahead.range(), one.play = one.range;
       one.glides = glides(world, state, row, i);
       if (one.glides) {
         one.play = ahead.play();
@@ -49,7 +49,8 @@ void fill_reaches(const Decision& decision, const OrcaCrowd& all, FootprintCrowd
       }
     }
     crowd.widest = std::max(crowd.widest, one.range + shapes.radius[i]);
-    if (one.range == 0.0) crowd.fastest = std::max(crowd.fastest, norm(all.movers[m].velocity));
+    if (one.range == 0.0)
+      crowd.widest = std::max(crowd.widest, norm(all.movers[m].velocity) * world.step_time + shapes.radius[i]);
   }
 }
 
@@ -76,7 +77,7 @@ void bound_by_mover(FootprintSelf& self, const Encounter& encounter, const Separ
     return;
   }
   const Vec2 shift = encounter.moves * self.world().step_time;
-  const double reach = mine.range + norm(encounter.moves) * mine.duration + kLeastGap;
+  const double reach = mine.range + norm(shift) + kLeastGap;
   if (distance - shapes.radius[self.object] - shapes.radius[object] > reach) return;
   const double gap = apart ? apart->gap : separation(self.hull, body).gap;
   if (gap > reach) return;

@@ -88,8 +88,7 @@ Vec3 car_control(const FootprintSelf& self, const AckerOptions& car, Vec2 veloci
   const double speed = norm(velocity);
   if (speed < kMinSpeed) return {{0.0, car.mode == Steering::steer ? psi : 0.0, 0.0}};
   const double away = self.limits().glides ? leaves_goal(self, car, wheelbase) : 0.0;
-  if (away != 0.0)
-    return {{away * speed, car.mode == Steering::steer ? 0.0 : -psi / dt, 0.0}};
+  if (away != 0.0) return {{away * speed, car.mode == Steering::steer ? 0.0 : -psi / dt, 0.0}};
   const Course course = course_to(self, velocity);
   const double rolls = course.sign * speed * std::max(kMinCarShare, std::cos(course.error));
   const double target = clip(std::atan(course.error * wheelbase / (rolls * 2.0 * dt)), -kMostSteering, kMostSteering);
@@ -228,7 +227,6 @@ class BestVelocity {
 }  // namespace
 
 Intent best_intent(FootprintSelf& self, Vec2 wanted) {
-  self.crowd.way.stepwise = self.crowd.cell.has_strangers();
   BestVelocity choice(self, wanted);
   choice.consider(wanted);
   if (choice.is_perfect()) return choice.intent();

@@ -26,7 +26,6 @@ struct MoverReach {
   double radius = 0.0;  // [m]
   double range = 0.0;   // its points move no farther in a step and the stop after it [m]
   double play = 0.0;    // nor farther from the hull of the stop that could begin now [m]
-  double duration = 0.0;  // it stands after this time if it brakes after this step [s]
   bool glides = false;  // whether it cannot stop at once
 };
 
@@ -37,7 +36,6 @@ struct FootprintCrowd {
   Hulls stops;         // of all their places until they have stopped
   std::vector<MoverReach> reaches;
   double widest = 0.0;           // largest sum of range and radius of a mover [m]
-  double fastest = 0.0;          // largest speed of a mover [m/s]
   std::vector<Blocker> resting;  // movers that stand for good, or have arrived and rest
 
   std::vector<int> others;  // movers that the object avoids, nearest first

@@ -39,6 +39,7 @@ class Passage {
     bool known = false;                                               // whether `before_` is the place before
     for (std::size_t k = 1; k < way.places.size(); ++k) {
       const Place &from = way.places[k - 1], &to = way.places[k];
+      if (!fixture_.stands && to.time > 1.0) break;  // nobody knows where it will be then
       const double travel = to.travel + norm(fixture_.shift) * (to.time - from.time);
       if (travel <= left) {
         left -= travel, known = false;

@@ -1,7 +1,6 @@
 // Space that belongs to one body until it stands: bodies that stay in their own space cannot touch.
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "footprints/hulls.hpp"
@@ -41,7 +40,7 @@ struct FreeCell {
     Hull hull;
     double gap;   // least distance [m]
     double now;   // present distance [m]
-    Vec2 shift;   // of the hull in each step [m]
+    Vec2 shift;   // of the hull in this step [m]
     bool stands;  // whether it is certain to be there: others may be elsewhere
   };
   std::vector<Border> borders;
@@ -49,13 +48,11 @@ struct FreeCell {
   std::vector<Vec2> moved;        // scratch memory
 
   void clear() { borders.clear(), fixtures.clear(); }
-  bool has_strangers() const {
-    return std::any_of(fixtures.begin(), fixtures.end(), [](const Fixture& one) { return !one.stands; });
-  }
   bool empty() const { return borders.empty() && fixtures.empty(); }
   /// Whether a body stays on its side of all borders, and off what stands.
   bool holds(const CellBody& body, const Manoeuvre& way);
-  /// The smallest amount by which a body keeps its distance from what may be elsewhere [m]; negative if it does not.
+  /// The smallest amount by which a body keeps its distance from what may be elsewhere, in this step [m]; negative if
+  /// it does not.
   double room(const CellBody& body, const Manoeuvre& way);
 };
 

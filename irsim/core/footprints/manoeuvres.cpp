@@ -85,7 +85,7 @@ class Run {
   void stop(Vec3 control) {
     const Vec3& acce = ahead_.state.acce[ahead_.row];
     for (int k = 0; k < kMostSteps; ++k) {
-      if (!out_.stepwise && is_straight(control)) return go_straight(control);
+      if (is_straight(control)) return go_straight(control);
       for (int c = 0; c < 3; ++c) {
         const double change = acce[c] * dt_;
         if (c == 1 && kind_.car && kind_.car->mode == Steering::steer) {
@@ -135,7 +135,8 @@ class Run {
     const Vec3& acce = ahead_.state.acce[ahead_.row];
     Vec2 way{stopping_way(control[0], acce[0] * dt_, dt_), 0.0};
     if (kind_.travel > 1) way.y = stopping_way(control[1], acce[1] * dt_, dt_);
-    if (way.x != 0.0 || way.y != 0.0) add(pose_.position() - from_.position() + rotate(way, heading_), turned_, steps_ + 1.0);
+    if (way.x != 0.0 || way.y != 0.0)
+      add(pose_.position() - from_.position() + rotate(way, heading_), turned_, steps_ + 1.0);
   }
 
   const Ahead& ahead_;
@@ -201,18 +202,6 @@ double Ahead::range() const {
   double turn = kind.yaw < 0 ? 0.0 : way_with(*this, kind.yaw);
   if (kind.car) turn = car_turn(*kind.car, way);
   return way + reach * std::min(turn, 2.0);
-}
-
-double Ahead::duration() const {
-  const Components kind = components_of(world.drive[object]);
-  double longest = world.step_time;
-  const auto include = [&](int c) {
-    const double acce = state.acce[row][c];
-    if (acce > 0.0) longest = std::max(longest, most(*this, c) / acce + world.step_time);
-  };
-  for (int c = 0; c < kind.travel; ++c) include(c);
-  if (kind.yaw >= 0) include(kind.yaw);
-  return longest;
 }
 
 double Ahead::play() const {

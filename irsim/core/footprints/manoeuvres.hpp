@@ -23,7 +23,6 @@ struct Place {
 /// of the straight line between where it is at both.
 struct Manoeuvre {
   std::vector<Place> places;
-  bool stepwise = false;  // whether each step has its places: else a stop that leads straight on has its end only
   double bulge = 0.0;   // [m]
   double travel = 0.0;  // sum of those of the places [m]
 
@@ -49,8 +48,6 @@ struct Ahead {
   void stop(Manoeuvre& out) const;
   /// Largest distance that a point of it can move in a step and the stop after it [m].
   double range() const;
-  /// Time after which it stands at the latest if it brakes after this step [s].
-  double duration() const;
   /// Largest distance from the places of a stop that begins at once to those of any step and the stop after it [m].
   double play() const;
 };
