@@ -20,6 +20,7 @@ constexpr double kKeepDirection = 0.3;   // angle beyond a right angle before fo
 constexpr double kMinCarShare = 0.3;     // smallest share of a wanted speed of a car, which turns only while it rolls
 
 constexpr double kMostSteering = 0.25 * kPi;  // largest steering angle that is used [rad]
+constexpr double kStraightOn = 0.98;          // cosine of the angle at which a velocity leads to the goal
 constexpr double kOutside = 0.05;             // how far outside the turning circles of a car its goal must be then [m]
 
 constexpr double kLeastGain = 1e-6;  // smaller gains of a small step are rounding errors
@@ -67,14 +68,15 @@ Course course_to(const FootprintSelf& self, Vec2 velocity) {
 }
 
 /// Whether a car must drive away from its goal first, and forward (1) or backward (-1): no arc leads to places well
-/// inside its turning circles. 0 if it need not.
-double leaves_goal(const FootprintSelf& self, const AckerOptions& car, double wheelbase) {
+/// inside its turning circles. 0 if it need not, or if the velocity leads elsewhere.
+double leaves_goal(const FootprintSelf& self, const AckerOptions& car, double wheelbase, Vec2 velocity) {
   const State& state = self.state();
   double steering = std::min(car.psi_max, kMostSteering);
   if (car.mode == Steering::steer) steering = std::min(steering, state.vel_max[self.row][1]);
   if (!(steering > 0.0) || std::isnan(state.goal[self.row].x)) return 0.0;
   const double radius = wheelbase / std::tan(steering);
-  const Vec2 goal = unrotate(state.destination(self.row).position() - self.position, self.heading);
+  const Vec2 way = state.destination(self.row).position() - self.position, goal = unrotate(way, self.heading);
+  if (dot(velocity, way) < kStraightOn * norm(velocity) * norm(way)) return 0.0;
   const double inside = radius - norm({goal.x, std::fabs(goal.y) - radius});
   const double away = goal.x < 0.0 || !self.reverses ? 1.0 : -1.0;
   const bool leaving = state.control[self.row][0] * away > 0.0;
@@ -87,7 +89,7 @@ Vec3 car_control(const FootprintSelf& self, const AckerOptions& car, Vec2 veloci
   const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0, dt = self.world().step_time;
   const double speed = norm(velocity);
   if (speed < kMinSpeed) return {{0.0, car.mode == Steering::steer ? psi : 0.0, 0.0}};
-  const double away = self.limits().glides ? leaves_goal(self, car, wheelbase) : 0.0;
+  const double away = self.limits().glides ? leaves_goal(self, car, wheelbase, velocity) : 0.0;
   if (away != 0.0) return {{away * speed, car.mode == Steering::steer ? 0.0 : -psi / dt, 0.0}};
   const Course course = course_to(self, velocity);
   const double rolls = course.sign * speed * std::max(kMinCarShare, std::cos(course.error));

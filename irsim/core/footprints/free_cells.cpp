@@ -25,11 +25,22 @@ bool crosses(const Border& border, const CellBody& body, const Manoeuvre& way) {
   return false;
 }
 
+/// The place in the middle of the way between two places, on an arc or on the straight line.
+Place halfway(const Place& from, const Place& to, bool arcs) {
+  const double angle = 0.5 * (from.angle + to.angle);
+  Vec2 shift = (from.shift + to.shift) * 0.5;
+  if (arcs && to.angle != from.angle) {
+    const Vec2 chord = to.shift - from.shift;
+    shift = shift + Vec2{chord.y, -chord.x} * (0.5 * std::tan(0.25 * (to.angle - from.angle)));
+  }
+  return {shift, angle, unit(angle), 0.5 * (from.time + to.time), 0.0};
+}
+
 /// A body on its way past a fixture, seen from this.
 class Passage {
  public:
   Passage(const CellBody& body, const FreeCell::Fixture& fixture, const Manoeuvre& way, std::vector<Vec2>& memory)
-      : body_(body), fixture_(fixture), bulge_(way.bulge), memory_(memory) {
+      : body_(body), fixture_(fixture), bulge_(way.bulge), arcs_(way.arcs), memory_(memory) {
     memory_.resize(4 * static_cast<std::size_t>(body.hull.count));
   }
 
@@ -56,7 +67,8 @@ class Passage {
       const Separation after = look(to, 1);
       room = std::min(room, after.gap - fixture_.gap);
       if (room < 0.0) return room;
-      if (fixture_.gap > 0.0 && !is_free(from, before_.axis, to, after.axis, kHalvings)) return -bulge_ - fixture_.gap;
+      if (fixture_.gap > 0.0 && !is_free(from, before_.axis, to, after.axis, bulge_, kHalvings))
+        return -bulge_ - fixture_.gap;
       before_ = after, known = true;
       left = after.gap - fixture_.gap - bulge_;
     }
@@ -86,22 +98,24 @@ class Passage {
     return least + fixture_.hull.least(axis * -1.0) - hull.round - fixture_.hull.round;
   }
 
-  /// Whether one line separates both ends of a part from the fixture, and so all between them.
-  bool is_free(const Place& from, Vec2 first, const Place& to, Vec2 last, int halvings) {
-    const double least = 0.5 * fixture_.gap + bulge_;
+  /// Whether one line separates both ends of a part from the fixture, and so all between them, or if not, whether its
+  /// halves are free.
+  bool is_free(const Place& from, Vec2 first, const Place& to, Vec2 last, double bulge, int halvings) {
+    const double least = 0.5 * fixture_.gap + bulge;
     if (gap_along(first, from) >= least && gap_along(first, to) >= least) return true;
     if (gap_along(last, from) >= least && gap_along(last, to) >= least) return true;
     if (halvings == 0) return false;
-    const double angle = 0.5 * (from.angle + to.angle);
-    const Place middle{(from.shift + to.shift) * 0.5, angle, unit(angle), 0.5 * (from.time + to.time), 0.0};
+    const Place middle = halfway(from, to, arcs_);
     const Separation there = look(middle, 1);
-    return there.gap >= least && is_free(from, first, middle, there.axis, halvings - 1) &&
-           is_free(middle, there.axis, to, last, halvings - 1);
+    bulge *= 0.25;
+    return there.gap >= 0.5 * fixture_.gap + bulge && is_free(from, first, middle, there.axis, bulge, halvings - 1) &&
+           is_free(middle, there.axis, to, last, bulge, halvings - 1);
   }
 
   const CellBody& body_;
   const FreeCell::Fixture& fixture_;
   const double bulge_;
+  const bool arcs_;
   std::vector<Vec2>& memory_;
   Separation before_{};
 };

@@ -59,6 +59,7 @@ class Run {
     const double* rows = &ahead.state.extra[static_cast<std::size_t>(ahead.row) * ahead.state.extra_rows];
     ahead.extra.assign(rows, rows + ahead.state.extra_rows);
     out.clear();
+    out.arcs = ahead.world.integration == kExact;
   }
 
   void step(Vec3 control) {

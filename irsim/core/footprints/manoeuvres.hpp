@@ -23,6 +23,7 @@ struct Place {
 /// of the straight line between where it is at both.
 struct Manoeuvre {
   std::vector<Place> places;
+  bool arcs = false;    // whether it is on an arc between two places, with a heading that turns linearly
   double bulge = 0.0;   // [m]
   double travel = 0.0;  // sum of those of the places [m]
 
