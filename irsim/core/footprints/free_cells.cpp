@@ -6,7 +6,7 @@ namespace irsim {
 namespace {
 
 constexpr double kEvenSpeed = 0.3;  // speed added to those of both bodies, so that none is left without room [m/s]
-constexpr int kHalvings = 4;        // of a part of a way whose chord does not tell whether it is free
+constexpr int kHalvings = 6;        // of a part of a way whose chord does not tell whether it is free
 
 bool crosses(const Border& border, const CellBody& body, const Manoeuvre& way) {
   const Hull& hull = body.hull;

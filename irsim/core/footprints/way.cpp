@@ -15,7 +15,6 @@ constexpr double kCornerReached = 0.1;   // distance at which a corner of a way 
 constexpr double kProgress = 0.3;        // an object that stays within this distance makes no progress [m]
 constexpr double kPatience = 1.2;        // time without progress after which it tries other directions [s]
 constexpr double kTrial = 1.0;           // time for which it tries one, and then its own again [s]
-constexpr double kGather = 2.0;          // most time added to this while speed is gathered [s]
 constexpr double kLeastTrial = kPi / 3;  // smallest angle of such a direction from its own [rad]
 constexpr double kMakeRoom = 0.3;        // gap at which an arrived object makes room for others [m]
 constexpr double kStanding = 0.1;        // others that are slower are in the way of an object without progress [m/s]
@@ -126,9 +125,7 @@ Vec2 wanted_velocity(FootprintSelf& self) {
   const double distance = norm(way);
   if (!(distance > 0.0)) return {};
   const Vec2 wanted = way * (std::min(self.speed, left / dt) / distance);
-  const double acce = state.acce[self.row][0];  // a trial takes longer where speed must be gathered
-  const double gather = std::isfinite(acce) && acce > 0.0 ? std::min(self.speed / acce, kGather) : 0.0;
-  const auto trial = static_cast<std::int64_t>(std::floor(waited / (kTrial + gather)));
+  const auto trial = static_cast<std::int64_t>(std::floor(waited / kTrial));
   if (waited < 0.0 || trial % 2 == 1) return wanted;
   const Draws draws(state.key(self.decision.w()), Stream::behavior, world.number[self.object]);
   const auto u = draws.uniforms(static_cast<std::uint64_t>(detour.anchored) << 32 | static_cast<std::uint32_t>(trial));
