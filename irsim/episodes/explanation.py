@@ -23,6 +23,7 @@ from irsim.episodes.stuck import (
     is_moving_obstacle,
     jam_message,
     no_progress_since,
+    no_way_message,
 )
 from irsim.episodes.watching import sights_message, zones_message
 from irsim.metrics.roles import HUMAN, kinds_of
@@ -39,8 +40,6 @@ __all__ = ["first_collision", "has_one_end", "others_arrived_message", "reason_m
 
 _MAX_NAMED = 3
 """Number of robots that a sentence names."""
-_MAX_EVENTS = 100
-"""Number of last events of a robot that are searched for a missing path."""
 _MAX_POSES = 2_000_000
 """Number of poses, of all objects in all steps, up to which moving obstacles that stand still are looked for."""
 _MAX_STANDING_SPEED = 1e-3
@@ -297,12 +296,12 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
     record = view.record
     speed = float(np.linalg.norm(view.velocity_xy))
     standing = min(_MAX_STANDING_SPEED, view.max_speed / 10 or _MAX_STANDING_SPEED)
-    last = [event for event in events if event.object == robot.name][-_MAX_EVENTS:]
     place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
     if not _is_inside(env, robot):
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
-    if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < standing:
-        return f"stands still {place}: there is no path to it"
+    no_way = no_way_message(env.simulation, events, robot.name)
+    if no_way is not None and speed < standing:
+        return f"stands still {place}: {no_way.replace('to its goal', 'to it')}"
     if is_absent(env, view):
         return f"is not in the world yet, {place} ({absence(env, view)})"
     if env.simulation.waits(view.row):
@@ -316,7 +315,7 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
             stalled = stalled_step(env, view, events)
             since = "" if stalled is None else f", hardly nearer than at {seconds(stalled * env.step_time)}"
             return f"still moved at {speed:.2g} m/s, {place}{since}"
-        return f"hardly moves {place}{_obstruction_message(env, view, held)}"
+        return f"hardly moves {place}" + (f": {no_way}" if no_way else _obstruction_message(env, view, held))
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"
     if record.behavior is None and record.group_behavior is None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from irsim.common.angles import wrap
 from irsim.common.text import quoted, seconds
 from irsim.metrics.clearances import approaches
+from irsim.scenario.resolve.braking import follow_text
 from irsim.simulation.events import Event, is_collision_of, passable_names
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ __all__ = [
     "is_moving_obstacle",
     "jam_message",
     "no_progress_since",
+    "no_way_message",
     "reactive_behavior",
     "stalled_since",
 ]
@@ -225,8 +227,34 @@ def find_obstruction(
     return Obstruction(
         where,
         held=False,
-        advice=f"{name} plans no path{lacks}: use behavior: {{name: follow, local: {{name: {name}}}}}",
+        advice=f"{name} plans no path{lacks}: use {follow_text(record)}",
     )
+
+
+def no_way_message(simulation: Simulation, events: Sequence[Event], name: str) -> str | None:
+    """Why an object with the behavior ``follow`` finds no path to its present goal; None if it has found one.
+
+    Args:
+        simulation: The simulation; its first world counts.
+        events: Events of the episode so far.
+        name: Name of the object.
+    """
+    kinds = ("no_path", "waypoint", "arrival")
+    event = next((event for event in reversed(events) if event.object == name and event.kind in kinds), None)
+    if event is None or event.kind != "no_path":
+        return None
+    if event.partner is None:
+        return "there is no path to its goal"
+    row = next(i for i, record in enumerate(simulation.scenario.objects) if record.name == event.partner)
+    other = quoted(event.partner)
+    if simulation.arrived[row]:
+        return (
+            f"there is no way round {other}, which has arrived there "
+            f"(move the goal of {other} aside, or let arrived robots make room: after_arrival: yield)"
+        )
+    hit = next((e for e in events if e.kind == "collision" and event.partner in (e.object, e.partner)), None)
+    since = "" if hit is None else f" since a collision at {seconds(hit.time)}"
+    return f"there is no way round {other}, which has been stopped{since}"
 
 
 def reactive_behavior(record: ObjectRecord) -> str | None:

@@ -32,12 +32,13 @@ class EventRecord(Result):
         "contact_between_steps",
         "passed_through",
     ]
-    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, ``overshoot`` when an
-    object passes its goal within ``goal_threshold`` between two steps without arriving, ``zone_entry`` and
-    ``zone_exit`` when a body begins and ceases to touch a region of ``world.zones``, ``line_crossing`` when a centre
-    crosses a line, ``sight_start`` and ``sight_end`` when another object comes into and goes out of a field of view,
-    ``contact_between_steps`` when two objects touch within a step and are apart at its beginning and at its end, and
-    ``passed_through`` if the middle of one of them went through the other then."""
+    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, or none round
+    ``partner``, which stands for good, ``overshoot`` when an object passes its goal within ``goal_threshold``
+    between two steps without arriving, ``zone_entry`` and ``zone_exit`` when a body begins and ceases to touch a
+    region of ``world.zones``, ``line_crossing`` when a centre crosses a line, ``sight_start`` and ``sight_end`` when
+    another object comes into and goes out of a field of view, ``contact_between_steps`` when two objects touch
+    within a step and are apart at its beginning and at its end, and ``passed_through`` if the middle of one of them
+    went through the other then."""
     time: float
     """Simulated time [s]; of a contact between steps, within the step."""
     step: int

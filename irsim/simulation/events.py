@@ -58,18 +58,19 @@ class Event(NamedTuple):
     Attributes:
         kind: ``arrival`` (the last goal is reached), ``waypoint`` (a goal is reached and another follows),
             ``collision`` (a contact of two objects begins; reported once per contact, not per step), ``no_path``
-            (``follow`` has found no path), ``overshoot`` (the object passed its goal within the threshold between two
-            steps without arriving; reported once per goal), ``zone_entry`` and ``zone_exit`` (the body of an object
-            that can move begins or ceases to touch a region of ``world.zones``), ``line_crossing`` (its centre crosses
-            a line of ``world.zones``), ``sight_start`` and ``sight_end`` (another object comes into, or goes out of,
-            the field of view that the scenario gives the object with ``fov``; of static obstacles only those with tags
-            count), ``contact_between_steps`` (two objects that are apart at the beginning and at the end of a step
-            touch within it), ``passed_through`` (likewise, and the middle of one of them went through the other, as
-            a fast robot through a thin wall).
+            (``follow`` has found no path, or none round the object ``partner``, which stands for good), ``overshoot``
+            (the object passed its goal within the threshold between two steps without arriving; reported once per
+            goal), ``zone_entry`` and ``zone_exit`` (the body of an object that can move begins or ceases to touch a
+            region of ``world.zones``), ``line_crossing`` (its centre crosses a line of ``world.zones``),
+            ``sight_start`` and ``sight_end`` (another object comes into, or goes out of, the field of view that the
+            scenario gives the object with ``fov``; of static obstacles only those with tags count),
+            ``contact_between_steps`` (two objects that are apart at the beginning and at the end of a step touch
+            within it), ``passed_through`` (likewise, and the middle of one of them went through the other, as a fast
+            robot through a thin wall).
         time: Simulated time [s]; of a contact between steps, when the two first touch within the step.
         step: Number of executed steps at the event, with the step of the event itself; 0 is the initial state.
         object: Name of the object; for a contact, of the first of the two objects; for a sight, of the one that sees.
-        partner: Name of the second object of a contact, or of the object that is seen.
+        partner: Name of the second object of a contact, of the object that is seen, or round which there is no path.
         x, y: Position of the object, a point of the contact, the point at which the line is crossed, or the position
             of the object that is seen [m, world frame].
         zone: Name of the zone.

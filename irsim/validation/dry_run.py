@@ -24,6 +24,7 @@ from irsim.episodes.stuck import (
     heading_message,
     jam_message,
     no_progress_since,
+    no_way_message,
 )
 from irsim.episodes.watching import zone_results, zones_message
 from irsim.results.run import EventRecord
@@ -207,7 +208,7 @@ def _find_stuck(
             since, doing, why = begin + circle.since, "circles its goal", circle.message
         count += 1
         if len(found) < _MAX_LISTED:
-            why = why or _certain_cause(record, trace, index, events) or _likely_cause(env, trace, index, held)
+            why = why or _certain_cause(env, record, trace, index, events) or _likely_cause(env, trace, index, held)
             time, (x, y) = float(trace.time[since]), (float(value) for value in place[:2])
             found.append(Stuck(name=record.name, doing=doing, since=time, x=x, y=y, why=why))
     return found, count
@@ -225,7 +226,7 @@ def _first_row_of_goal(trace: Trace, index: int) -> int:
     return int(others[-1]) + 1 if others.size and others[-1] + 1 < len(trace) else 0
 
 
-def _certain_cause(record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]) -> str | None:
+def _certain_cause(env: Env, record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]) -> str | None:
     """Why a robot makes no progress, where the record or the events say so."""
     if trace.stopped[-1, index] or trace.collided[-1, index]:
         hit = next((e for e in events if e.kind == "collision" and record.name in (e.object, e.partner)), None)
@@ -237,9 +238,8 @@ def _certain_cause(record: ObjectRecord, trace: Trace, index: int, events: Seque
         return "it has no behavior (not needed if it is meant to stay or a program drives it)"
     if not any(record.vel_max):
         return "its vel_max is zero"
-    if any(e.kind == "no_path" and e.object == record.name for e in events):
-        return "there is no path to its goal"
-    return heading_message(record, trace.pose[-1, index], trace.goal[-1, index])
+    no_way = no_way_message(env.simulation, events, record.name)
+    return no_way or heading_message(record, trace.pose[-1, index], trace.goal[-1, index])
 
 
 def _likely_cause(env: Env, trace: Trace, index: int, held: dict[str, Event]) -> str:

@@ -1,5 +1,6 @@
 // One object on its route during one step. `plan_route.cpp` plans, `route.cpp` follows corners, `follow_legs.cpp`
-// follows poses through narrow places, `steering.cpp` turns both into commands that keep clear of static objects.
+// follows poses through narrow places, `parked.cpp` finds ways round objects that stand for good, `steering.cpp` turns
+// paths and poses into commands that keep clear of static objects.
 #pragma once
 
 #include "phases.hpp"
@@ -23,8 +24,7 @@ class Follower {
         shapes_(*state.scenes[w].shapes),
         blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data(), nullptr} {
     if (!options_.within.empty()) within_.emplace(options_.within);
-    for (const int zone : options_.avoid) avoided_.push_back(world.zones.footprint(zone));
-    mind_avoided(true);
+    collect_avoided();
   }
 
   /// Plan where that is due, go on along the route, and note the progress.
@@ -42,6 +42,15 @@ class Follower {
   const Region* region() const { return within_ ? &*within_ : nullptr; }
   /// Whether the zones that the object avoids are solid from now on.
   void mind_avoided(bool solid) { blockers_.others = solid && !avoided_.empty() ? &avoided_ : nullptr; }
+  /// Make the zones that the object avoids, and what its path leads round, solid.
+  void collect_avoided();
+  /// Whether another object stands for good: a collision has stopped it, or it rests at its last goal.
+  bool is_parked(int other) const;
+  /// Write the objects that stand for good within reach of the rest of the path.
+  void find_parked(std::vector<int>& found) const;
+  /// Plan a way round objects that stand for good on the path: at once under `dash`, which does not avoid them, else
+  /// when the object makes no progress. The present path stays if there is no way round.
+  void go_round_parked();
   /// Whether the object is in a zone that it avoids, into which it was pushed or in which it starts.
   bool is_in_avoided() const;
   /// Whether one of the bodies of the route can move straight between two points.
@@ -122,7 +131,7 @@ class Follower {
   Blockers blockers_;
   double gap_ = 0.0;                // gap to static objects that the next command must keep [m]
   std::optional<Region> within_;    // area that the path must not leave
-  std::vector<Footprint> avoided_;  // zones that are solid for this object
+  std::vector<Footprint> avoided_;  // zones that are solid for this object, and parked objects
 };
 
 }  // namespace irsim

@@ -76,8 +76,11 @@ void Follower::plan() {
   const Goal& goal = state_.goal[row_];
   const bool same_way =
       route_.goal.x == goal.x && route_.goal.y == goal.y && route_.planned_among == state_.scenes[w_].fixed;
-  if (!(route_.goal.x == goal.x && route_.goal.y == goal.y))
-    route_.reported = false, route_.resting_at = {kNone, kNone};
+  if (!(route_.goal.x == goal.x && route_.goal.y == goal.y)) {
+    route_.reported = route_.parked_reported = false, route_.resting_at = {kNone, kNone};
+    route_.parked.clear(), route_.parked_seen.clear();
+    collect_avoided();
+  }
   const bool failed_here = same_way && route_.uncertain &&
                            norm(route_.failed_pose.position() - position()) < kRestingDistance &&
                            std::fabs(wrap(route_.failed_pose.theta - state_.pose[row_].theta)) < kMaxHeadingError;
@@ -134,7 +137,11 @@ void Follower::plan() {
   }
   if (std::holds_alternative<AckerOptions>(world_.drive[object_]) || !route_.legs.empty())
     route_.wall_margin = kLegMargin;
-  if (route_.path.empty()) report_no_path();
+  if (!route_.path.empty()) return;
+  if (route_.parked.empty()) return report_no_path();
+  route_.parked.clear();  // there is no way round them, so the path leads past them
+  collect_avoided();
+  plan();
 }
 
 void Follower::report_no_path() {

@@ -26,6 +26,7 @@ void Follower::update_target() {
   Goal& target = state_.target[row_];
   target = goal;
   if (std::isnan(goal.x)) return;
+  if (!route_.path.empty()) go_round_parked();
   if (!route_.path.empty()) recover();
   if (route_.path.empty() || (route_.retreats && route_.legs.empty())) {
     target.x = target.y = kNone;

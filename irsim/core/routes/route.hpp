@@ -69,6 +69,9 @@ struct Route {
   // The path is free for a smaller body only, because poses for the whole body were not found from `failed_pose`.
   bool uncertain = false;
   Pose failed_pose{};
+  std::vector<int> parked;                     // objects that stand for good, round which the path leads
+  std::vector<int> parked_seen;                // those for which a way round was sought last
+  bool parked_reported = false;                // whether it was logged that there is no way round them to this goal
   Vec2 resting_at{kNone, kNone};               // the object has been near this point ...
   std::int64_t resting_since = 0;              // ... since this step
   std::shared_ptr<const Fixed> planned_among;  // static objects of the last plan

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from irsim.scenario.resolve.body_size import top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
 
-__all__ = ["HORIZONS", "Braking", "braking_of", "horizons_that_work", "short_horizons"]
+__all__ = ["HORIZONS", "Braking", "braking_of", "follow_text", "horizons_that_work", "short_horizons"]
 
 HORIZONS = ("timeHorizon", "timeHorizonObst")
 """Keys of behaviors: time horizons for what moves, and for what stands [s]."""
@@ -48,6 +48,15 @@ def braking_of(record: ObjectRecord) -> Braking | None:
 def short_horizons(options: Any, braking: Braking) -> list[str]:
     """Keys of a behavior's horizons that are shorter than the braking time."""
     return [key for key in HORIZONS if getattr(options, key, math.inf) < braking.time]
+
+
+def follow_text(record: ObjectRecord) -> str:
+    """The behavior ``follow`` with the present behavior of an object as its local one, and horizons that work."""
+    options: Any = record.active_behavior
+    braking = braking_of(record)
+    named = hasattr(options, "timeHorizon") and braking is not None
+    horizon = f", timeHorizon: {horizons_that_work(braking):g}" if named and braking is not None else ""
+    return f"behavior: {{name: follow, local: {{name: {options.name}{horizon}}}}}"
 
 
 def horizons_that_work(braking: Braking) -> float:

@@ -133,7 +133,10 @@ def _try_alone(
         for _ in range(0, min(_MAX_STEPS, _MAX_WORK // len(records)), chunk):
             before = state_of.pose[mine].copy()
             env.advance(chunk, until_done=True)
-            if any(event.kind == "no_path" and event.object == mover.record.name for event in env.events):
+            if any(
+                event.kind == "no_path" and event.partner is None and event.object == mover.record.name
+                for event in env.events
+            ):
                 return "no path"
             if state_of.arrived[mine]:
                 return "arrives"
