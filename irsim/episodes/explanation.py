@@ -313,6 +313,8 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
             return f"circles its goal: {circle}"
         if no_progress_since(env.simulation.state.trajectory(view.row)[:, :2], env.step_time, view.max_speed) is None:
             stalled = stalled_step(env, view, events)
+            if stalled is not None and no_way is not None:
+                return f"hardly moves {place}: {no_way}"
             since = "" if stalled is None else f", hardly nearer than at {seconds(stalled * env.step_time)}"
             return f"still moved at {speed:.2g} m/s, {place}{since}"
         return f"hardly moves {place}" + (f": {no_way}" if no_way else _obstruction_message(env, view, held))

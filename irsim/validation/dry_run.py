@@ -203,9 +203,13 @@ def _find_stuck(
             circle = (
                 find_circling(trace.pose[begin:, index], trace.goal[-1, index, :2]) if has_one_end(record) else None
             )
-            if circle is None:
+            blocked = next((e for e in reversed(events) if (e.kind, e.object) == ("no_path", record.name)), None)
+            if circle is not None:
+                since, doing, why = begin + circle.since, "circles its goal", circle.message
+            elif blocked is not None and no_way_message(env.simulation, events, record.name) is not None:
+                since = min(blocked.step, len(trace) - 1)  # it may drive to and fro in front of what is in the way
+            else:
                 continue
-            since, doing, why = begin + circle.since, "circles its goal", circle.message
         count += 1
         if len(found) < _MAX_LISTED:
             why = why or _certain_cause(env, record, trace, index, events) or _likely_cause(env, trace, index, held)

@@ -42,3 +42,19 @@ def test_horizons_shorter_than_braking_are_named(more: str, says: str | None, fi
     assert found[0].severity == "hint"
     assert says in found[0].message
     assert found[0].fix == fix
+
+
+@pytest.mark.parametrize("behavior", ["orca", "avocado"])
+def test_advice_to_follow_names_a_horizon_that_works(behavior: str) -> None:
+    text = (
+        "world: {width: 20, height: 12}\nrobot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, "
+        f"state: [2, 6, 0], goal: [18, 6], vel_max: [1.2, 2], vel_min: [0, -2], acce: [1, 4], "
+        f"behavior: {{name: {behavior}}}}}\n"
+        "obstacle: {shape: {name: linestring, vertices: [[7, 1], [10, 1], [10, 11], [7, 11]]}, state: [0, 0, 0]}"
+    )
+    result = irsim.run(text=text, seed=1)
+    advice = f"{{name: follow, local: {{name: {behavior}, timeHorizon: 1.8}}}}"
+    assert result.outcome == "timeout"
+    assert advice in str(result.reason)
+    mended = irsim.run(text=text.replace(f"{{name: {behavior}}}", advice), seed=1)
+    assert mended.outcome == "success", mended.reason

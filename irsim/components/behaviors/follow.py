@@ -27,6 +27,9 @@ class Follow(BehaviorOptions):
     would close narrow passages. Where there is no space to turn, `diff` and `acker` follow a path of poses instead,
     with the turning circle of a car, and wait for objects in the way.
 
+    A robot that has arrived or was stopped for good on the path is gone round: under `dash` as soon as it stands there,
+    else when the object makes no progress. Where there is no way round, a `no_path` event names it.
+
     Unless the local behavior is `dash`, an object on a route stays on its own side of a line between it and each object
     near it. Others on routes do the same, so they never touch. If two hold each other up for a second, the one that has
     the shorter way left goes first and the other gives way. Cars that block each other plan a path around each other,

@@ -60,9 +60,11 @@ class Borders {
 
   void add_movers() {
     const World& world = decision_.world;
+    const Shapes& shapes = *decision_.state.scenes[decision_.w()].shapes;
     const Stop& own = all_.of[self_];
     for (std::size_t m = 0; m < all_.of.size(); ++m) {
       const int other = world.moving[m];
+      if (shapes.parts[shapes.body[other].part].kind == Kind::linestring) continue;  // its circle is mostly empty
       if (other == object_ || world.unobstructed[other] || !is_shown(decision_, object_, other)) continue;
       const Stop& stop = all_.of[m];
       const Vec2* there = &all_.points[stop.first];

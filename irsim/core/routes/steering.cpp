@@ -139,6 +139,9 @@ bool Follower::clear_at(const Pose& pose) {
   for (const Side& side : work_.sides) {
     if (support(body, side.normal) > side.offset) return false;
   }
+  for (const int other : route_.parked_seen) {  // there may be no way round them
+    if (is_parked(other) && touch(body, state_.scenes[w_].moving.footprint(shapes_, other))) return false;
+  }
   if (route_.legs.empty()) return true;
   // An object cannot leave its legs, so it waits for moving objects that are in its way.
   return std::none_of(world_.moving.begin(), world_.moving.end(), [&](int i) {

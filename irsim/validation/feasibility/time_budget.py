@@ -14,6 +14,7 @@ from irsim.episodes.episode import HORIZON_FACTOR, MIN_HORIZON
 from irsim.episodes.stuck import REACTIVE
 from irsim.scenario.checks import Context
 from irsim.scenario.checks.overlap import reach_of
+from irsim.scenario.resolve.braking import follow_text
 from irsim.validation.feasibility.clearance_grid import ClearanceGrid
 from irsim.validation.feasibility.local_minima import Trap, trap_of
 from irsim.validation.feasibility.movers import Mover
@@ -223,7 +224,7 @@ def _check_car(mover: Mover, route: list[Leg], grid: ClearanceGrid | None, scene
         mover.goal_path(leg.index),
         mover.record,
         f"{why}({leg.goal[0]:g}, {leg.goal[1]:g})",
-        f"behavior: {{name: follow, local: {{name: {mover.behavior}}}}}",
+        follow_text(mover.record),
         scene.seed,
         serious=False,
     )
