@@ -138,9 +138,7 @@ robot:
 """
 
 
-@pytest.mark.parametrize(
-    ("count", "radius"), [(10, 4), pytest.param(50, 12, marks=pytest.mark.slow)]
-)  # the second circle has about the distances of the first one
+@pytest.mark.parametrize(("count", "radius"), [(10, 4), pytest.param(50, 25, marks=pytest.mark.slow)])
 def test_a_looped_swap_goes_on_for_a_minute_without_a_contact(count: int, radius: float) -> None:
     text = LOOP.format(count=count, radius=radius, size=2 * radius + 2, middle=radius + 1)
     result = irsim.run(text=text, seed=0)

@@ -12,6 +12,7 @@ constexpr double kOnWall = 1e-9;     // an object this close is on the wall [m]
 constexpr double kWallReach = 5.0;   // distance within which walls act, in units of sigma
 constexpr double kSideways = 0.2;    // largest push of walls across a route, as a share of the pull along it
 constexpr double kTolerance = 0.02;  // smaller heading errors are not corrected [rad]
+constexpr double kSameSpeed = 1e-6;  // velocities of a mirrored pair differ by less [m/s]
 
 bool same(Vec2 a, Vec2 b) { return a.x == b.x && a.y == b.y; }
 
@@ -28,7 +29,8 @@ Vec2 social_force(const SfmOptions& o, const Decision& decision, int k, const Eg
   for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& other) {
     if (ego.route != nullptr && world.is_static[other.object]) return;
     if (mutual.knows(other.object)) return;
-    if (!o.sidestep && !mutual.both_tied(other.object) && tied(decision, ego, other, o.neighbor_threshold, kTieSpeed)) {
+    if (!o.sidestep && !mutual.both_tied(other.object) &&
+        tied(decision, ego, other, o.neighbor_threshold, kSameSpeed)) {
       mutual.tie(other.object);
     }
     forces.add(other.centre - ego.position, ego.velocity - other.velocity);
