@@ -130,8 +130,8 @@ DIFFERENCES: dict[str, Difference] = {
     "D22": Difference(
         "with `arrive_mode: state`, `dash` stops at the goal with a heading error below `angle_tolerance`, or "
         "oscillates around it, and does not arrive if position and heading error together exceed `goal_threshold`",
-        "the same law, but an `omni_angular` robot that would stop or oscillate there turns to the heading of the "
-        "goal, also with the other behaviors",
+        "the same law, but `omni_angular`, and `diff` under every behavior, turn the rest: `diff` brakes for its goal, "
+        "stands there and turns on the spot, unless its behavior avoids somebody who would run into it",
         "a robot at its goal should arrive",
     ),
     "D25": Difference(

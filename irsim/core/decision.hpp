@@ -32,10 +32,11 @@ struct Intent {
   Vec2 velocity;
   Turning turning;
   Vec3 control;
+  bool final = false;       // whether the control already turns the object to the heading of its goal
   bool infeasible = false;  // whether no velocity avoids every collision; the intent is then the least bad one
 
-  static Intent of_velocity(Vec2 v, const Turning& turning = {}) { return {velocity_world, v, turning, {}, false}; }
-  static Intent of_control(Vec3 u) { return {control_body, {}, {}, u, false}; }
+  static Intent of_velocity(Vec2 v, const Turning& turning = {}) { return {velocity_world, v, turning, {}}; }
+  static Intent of_control(Vec3 u) { return {control_body, {}, {}, u}; }
 };
 
 }  // namespace irsim

@@ -265,7 +265,8 @@ GUIDES: dict[str, Guide] = {
         "rectangle. wall: rectangle, or linestring with state [0, 0, 0]; room: closed linestring. standing person: "
         "obstacle with a circle of 0.2 to 0.3 m and tags: [pedestrian]; walking person: also kinematics and behavior "
         "{name: orca, safe_radius: 0.1} (sfm looks more like people, who then touch now and then, whatever its "
-        "safety_radius). crowd: number 20 or more of them, about 0.3 persons per m2. "
+        "safety_radius: with world.collision_mode unobstructed_obstacles they walk on instead of stopping for good). "
+        "crowd: number 20 or more of them, about 0.3 persons per m2. "
         "start and goal of a robot: its keys state, goal.",
         "obstacle:\n  - number: 2\n    shape: {name: circle, radius: 0.25}\n    state: [[3, 3, 0], [4, 5, 0]]\n"
         "    tags: [pedestrian]",

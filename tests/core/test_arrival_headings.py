@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
 import irsim
 from irsim.lookup import lookup
 
-BEHAVIORS = ("dash", "follow", "orca", "rvo", "sfm")
+BEHAVIORS = ("dash", "follow", "orca", "avocado", "footprint_orca", "rvo", "sfm")
 LIMITS = (
     "vel_max: [1, 1, 1]",
     "vel_max: [1, 1, 3], vel_min: [-1, -1, -3], acce: [2, 2, 2]",
@@ -41,6 +42,67 @@ def test_omni_angular_arrives_with_its_heading_from_all_directions(behavior: str
     assert result.outcome == "success", result.reason
 
 
+@pytest.mark.parametrize("behavior", BEHAVIORS)
+@pytest.mark.parametrize(
+    "limits",
+    [
+        "vel_max: [1, 1], vel_min: [-1, -1]",
+        "vel_max: [1, 2], vel_min: [-1, -2], acce: [2, 4], goal_threshold: 0.05",
+        "vel_max: [1, 0.8], vel_min: [0, -0.8], acce: [0.8, 2], goal_threshold: 0.2",
+    ],
+)
+def test_diff_turns_on_the_spot_at_its_goal_and_stays_there(tmp_path: Path, behavior: str, limits: str) -> None:
+    text = in_all_directions(behavior, "diff", limits, 8)
+    assert "heading-not-reached" not in [finding.code for finding in irsim.validate(text=text).findings]
+    path = tmp_path / "scenario.yaml"
+    path.write_text(text, encoding="utf-8")
+    env = irsim.make(path, seed=1, headless=True, log_level="ERROR")
+    env.rollout(500, until_done=True)
+    assert all(robot.arrive for robot in env.robot_list), [robot.state[:, 0] for robot in env.robot_list]
+    env.rollout(100, until_done=False)
+    for robot in env.robot_list:
+        assert robot.arrive
+        assert abs(robot.velocity).max() < 1e-9
+    env.end()
+
+
+def test_the_field_file_of_a_diff_robot_with_a_heading() -> None:
+    text = (
+        "world: {width: 10, height: 10, time_limit: 40}\n"
+        "robot: [{kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [2, 5, 0], goal: [6, 5, 1.57], "
+        "arrive_mode: state, goal_threshold: 0.1, behavior: {name: dash}}]"
+    )
+    result = irsim.run(text=text)
+    assert result.outcome == "success", result.reason
+    x, y, heading = result.robots[0].pose
+    assert math.hypot(x - 6, y - 5, heading - 1.57) < 0.1
+
+
+@pytest.mark.parametrize("behavior", ["orca", "avocado", "sfm", "footprint_orca"])
+def test_members_of_a_group_turn_at_their_goals_too(behavior: str) -> None:
+    text = (
+        "world: {width: 20, height: 20, time_limit: 60}\nrobot:\n  - {number: 4, kinematics: {name: diff}, "
+        "shape: {name: circle, radius: 0.2}, arrive_mode: state, "
+        "state: [[2, 2, 0], [2, 6, 0], [2, 10, 0], [2, 14, 0]], "
+        f"goal: [[9, 2, 1], [9, 6, -1], [9, 10, 3], [9, 14, -2]], group_behavior: {{name: {behavior}}}}}"
+    )
+    result = irsim.run(text=text, seed=1)
+    assert result.outcome == "success", result.reason
+
+
+def test_whoever_turns_at_its_goal_lets_others_pass() -> None:
+    """Two others pass the place where a robot turns; nobody touches it, and it arrives in the end."""
+    text = (
+        "world: {width: 20, height: 10, time_limit: 60}\nrobot:\n"
+        "  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [6, 5, 3], goal: [8, 5, 3.1], "
+        "arrive_mode: state, behavior: {name: orca}}\n"
+        "  - {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, behavior: {name: orca}, "
+        "state: [[2, 5.1, 0], [14, 4.9, 3.14]], goal: [[14, 5.1], [2, 4.9]]}"
+    )
+    result = irsim.run(text=text, seed=1)
+    assert result.outcome == "success", result.reason
+
+
 def test_headings_are_reached_at_each_waypoint() -> None:
     text = in_all_directions("orca", "omni_angular", "vel_max: [1, 1, 1]", 1)
     text = text.replace("goal: [25.0000, 20.0000, 1.5708]", "waypoints: [[24, 20, 1.57], [20, 24, -1.57], [20, 20, 3]]")
@@ -58,7 +120,7 @@ def test_without_a_heading_to_reach_nobody_turns_to_one(behavior: str) -> None:
 
 
 def test_a_drive_that_does_not_turn_there_is_told_and_says_why() -> None:
-    text = in_all_directions("dash", "diff", "vel_max: [1, 1]", 1)
+    text = in_all_directions("dash", "omni", "vel_max: [1, 1]", 1)
     report = irsim.validate(text=text, simulate=True)
     assert "heading-not-reached" in [finding.code for finding in report.findings]
     assert report.dry_run is not None

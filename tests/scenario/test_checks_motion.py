@@ -174,7 +174,8 @@ def test_finds(data: Any, code: str) -> None:
 
 @pytest.mark.parametrize("data", SANE, ids=range(len(SANE)))
 def test_says_nothing_of_sane_ones(data: Any) -> None:
-    assert set(codes(data)) <= {"no-behavior"}
+    # Some are as fast as the check of tunneling allows, and so coarse for their size.
+    assert set(codes(data)) <= {"no-behavior", "coarse-steps"}
 
 
 def test_what_is_said_never_to_arrive_does_not() -> None:

@@ -29,11 +29,20 @@ def test_random_placement_counts_the_minimal_distance() -> None:
 
 
 @pytest.mark.parametrize(
-    ("drive", "goal", "expected"),
-    [("diff", [9, 9, 1], True), ("omni", [9, 9, 1], True), ("diff", [9, 9], False), ("omni_angular", [9, 9, 1], False)],
+    ("drive", "behavior", "goal", "expected"),
+    [
+        ("diff", "orca", [9, 9, 1], False),
+        ("omni", "orca", [9, 9, 1], True),
+        ("omni", "orca", [9, 9, 0], False),
+        ("omni", "orca", [9, 9], False),
+        ("omni_angular", "orca", [9, 9, 1], False),
+        ("acker", "orca", [9, 9, 1], True),
+        ("acker", "follow", [9, 9, 1], True),
+    ],
 )
-def test_headings_that_nobody_steers_for(drive: str, goal: list[float], expected: bool) -> None:
-    data = robot(kinematics={"name": drive}, goal=goal, arrive_mode="state")
+def test_headings_that_nobody_steers_for(drive: str, behavior: str, goal: list[float], expected: bool) -> None:
+    kinematics = {"name": drive, **({"wheelbase": 0.3} if drive == "acker" else {})}
+    data = robot(kinematics=kinematics, goal=goal, arrive_mode="state", behavior={"name": behavior}, state=[1, 1, 0])
     assert ("heading-not-reached" in [c for _, c, _ in findings(data)]) == expected
 
 

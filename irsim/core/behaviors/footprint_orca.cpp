@@ -6,6 +6,7 @@
 #include "footprints/decider.hpp"
 #include "geometry/predicates.hpp"
 #include "orca/obstacles.hpp"
+#include "surroundings/goal_heading.hpp"
 #include "world/features.hpp"
 
 namespace irsim {
@@ -44,6 +45,13 @@ void fill_crowd(const Decision& decision, const OrcaCrowd& all, FootprintCrowd& 
   }
 }
 
+/// Largest speed from which the object can stop at a goal at which it must turn [m/s]; infinite at other times.
+double approach_speed(const World& world, const State& state, int row, int object) {
+  const double left = norm(state.goal[row].position() - state.pose[row].position());
+  const bool brakes = turns_at_goal(world, state, row, object) && left >= world.goal_threshold[object];
+  return brakes ? speed_to_goal(world, state, row) : kInfinity;
+}
+
 FootprintSelf self_of(const FootprintOrcaOptions& options, const Decision& decision, int k, const OrcaCrowd& all,
                       FootprintCrowd& crowd) {
   const World& world = decision.world;
@@ -53,7 +61,7 @@ FootprintSelf self_of(const FootprintOrcaOptions& options, const Decision& decis
   const Drive& drive = world.drive[i];
   const Vec3& top = state.vel_max[row];
   const bool slides = std::holds_alternative<OmniOptions>(drive) || std::holds_alternative<OmniAngularOptions>(drive);
-  const double own = slides ? std::min(top[0], top[1]) : top[0];
+  const double own = std::min(slides ? std::min(top[0], top[1]) : top[0], approach_speed(world, state, row, i));
   const double reach = norm(shapes.centre[i]) + shapes.radius[i];
   const bool turns = !slides && !std::holds_alternative<AckerOptions>(drive);
   return {options,

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "footprints/decider.hpp"
+#include "surroundings/goal_heading.hpp"
 
 namespace irsim {
 namespace {
@@ -174,6 +175,23 @@ class BestVelocity {
       }
     }
   }
+  /// Turn to the heading of the goal while the object stands at it, as far as its cell allows.
+  void face_goal() {
+    const World& world = self_.world();
+    const State& state = self_.state();
+    const Vec2 way = state.goal[self_.row].position() - self_.position;
+    if (!std::holds_alternative<DiffOptions>(world.drive[self_.object]) ||
+        !turns_at_goal(world, state, self_.row, self_.object) || !(norm(way) < world.goal_threshold[self_.object]))
+      return;
+    const double rate = yaw_rate_to_goal(world, state, self_.row, self_.object);
+    for (const double share : {1.0, 0.5, 0.25}) {
+      const Vec3 control{{0.0, share * rate, 0.0}};
+      const double room = room_with(self_, control);
+      if (!(room >= 0.0)) continue;
+      best_ = {control, {}, room};
+      return;
+    }
+  }
   /// Whether nothing can be better.
   bool is_perfect() const { return cost_ <= 0.0; }
   Intent intent() const {
@@ -181,6 +199,7 @@ class BestVelocity {
     Intent intent = std::holds_alternative<std::monostate>(drive) ? Intent::of_velocity(best_.velocity)
                                                                   : Intent::of_control(best_.control);
     intent.infeasible = best_.room < 0.0;
+    intent.final = std::holds_alternative<DiffOptions>(drive);
     return intent;
   }
 
@@ -231,7 +250,10 @@ class BestVelocity {
 Intent best_intent(FootprintSelf& self, Vec2 wanted) {
   BestVelocity choice(self, wanted);
   choice.consider(wanted);
-  if (choice.is_perfect()) return choice.intent();
+  if (choice.is_perfect()) {
+    if (!(squared(wanted) > 0.0)) choice.face_goal();
+    return choice.intent();
+  }
   const double speed = norm(wanted);
   const Vec2 ahead = speed > 0.0 ? wanted * (1.0 / speed) : self.heading;
   for (const Vec2 turn : kDirections) {

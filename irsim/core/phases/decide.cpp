@@ -4,29 +4,14 @@
 #include "braking/brake_in_time.hpp"
 #include "phases.hpp"
 #include "routes/route.hpp"
+#include "surroundings/goal_heading.hpp"
 #include "world/features.hpp"
 
 namespace irsim {
 namespace {
 
-constexpr double kRestingTurn = 1e-9;  // an object that turns by less in a step counts as resting [rad]
-
 bool is_idle(const World& world, const State& state, int first, int object) {
   return world.is_static[object] || state.stopped[first + object] || state.waits(first + object);
-}
-
-/// With `arrive_mode: state` an object at its goal must also reach the heading of the goal. Where the behavior of an
-/// `omni_angular` drive rests or oscillates before that, set the turn rate with which the turn ends at that heading.
-void face_goal(const World& world, const State& state, int row, int object, Vec3& control) {
-  const Goal& goal = state.goal[row];
-  if (!world.state_arrival[object] || !std::holds_alternative<OmniAngularOptions>(world.drive[object])) return;
-  const double gap = norm(goal.position() - state.pose[row].position()), threshold = world.goal_threshold[object];
-  if (std::isnan(goal.theta) || state.arrived[row] || !(gap <= threshold)) return;
-  const double error = wrap(goal.theta - state.pose[row].theta), dt = world.step_time;
-  const double turn = std::fabs(control[2]) * dt, enough = std::sqrt(threshold * threshold - gap * gap);
-  if (turn > kRestingTurn && turn <= std::fabs(error) + enough) return;
-  const double left = std::fabs(error), rate = std::min(left / dt, speed_to_stop_within(left, state.acce[row][2], dt));
-  control[2] = error > 0.0 ? rate : -rate;
 }
 
 /// Let the behavior of `group` decide for the objects listed in `work.objects`.
@@ -45,7 +30,7 @@ void run_behavior(const World& world, State& state, int w, const BehaviorGroup& 
       command_velocity(world, state, w, object, intent.velocity, intent.turning);
     } else {
       state.command[first + object] = intent.control;
-      face_goal(world, state, first + object, object, state.command[first + object]);
+      if (!intent.final) face_goal(world, state, first + object, object, state.command[first + object]);
     }
     brake_in_time(decision, k, state.command[first + object]);
   }

@@ -72,9 +72,9 @@ MAPS_AND_LIMITS: dict[str, Code] = {
     ),
     "heading-not-reached": Code(
         "heading of the goal is not steered for",
-        "With 'arrive_mode: state' an arrival needs position and heading. Under every built-in behavior "
-        "'omni_angular' turns to the goal's heading once it is within 'goal_threshold' of the position; other "
-        "drives stop with the heading they have there and do not arrive.",
+        "With 'arrive_mode: state' an arrival needs position and heading. Under every built-in behavior 'diff' and "
+        "'omni_angular' turn to the goal's heading once they are within 'goal_threshold' of the position. A car "
+        "('acker') cannot turn on the spot and comes in with any heading. 'omni' keeps the heading that it starts with.",
     ),
     "steering-limit": Code(
         "steering angle beyond a quarter turn",

@@ -239,6 +239,21 @@ OBJECTS: dict[str, Code] = {
         "instead of going round. Example: 1.2 m/s at 1 m/s^2 takes 1.2 s and 0.72 m; timeHorizonObst: 0.5 is too "
         "short, timeHorizonObst: 1.8 leaves time to decide.",
     ),
+    "coarse-steps": Code(
+        "steps that are long for the size of a body",
+        "A body that moves by more than half of its smallest extent in a step, or turns by more than 0.5 rad (its rim "
+        "then moves by a quarter of its size), is seen, judged and decided for at few places of its way. Euler's law "
+        "moves it straight within a step and turns it afterwards: on a circle its position is off by up to the length "
+        "of one step. A smaller step_time cures both; integration: exact cures the turn alone, with arcs that do not "
+        "depend on the step.",
+    ),
+    "crowd-stops": Code(
+        "people who stop for good when they touch",
+        "Under 'sfm' people push each other away, but now and then they touch, whatever the safety_radius. In "
+        "collision_mode stop, the default, a contact stops both for good, so a crowd freezes bit by bit. With "
+        "unobstructed_obstacles people walk on and only robots stop, with unobstructed nobody stops; contacts are "
+        "counted all the same. People with 'orca' do not touch.",
+    ),
     "region-left": Code(
         "start or goal outside the region of follow",
         "Under `within` the path of `follow` stays in a region. To a goal outside it there is no path, and the object "

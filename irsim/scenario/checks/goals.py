@@ -58,22 +58,39 @@ def check(context: Context) -> Iterator[Finding]:
 
 
 def _heading_not_reached(context: Context, path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
-    """Arrival that requires a heading that the drive never turns to."""
+    """Arrival that requires a heading that the drive never turns to, or the behavior of a car never plans for."""
     for record in records:
         drive: Any = record.kinematics
-        behavior = record.behavior or record.group_behavior
-        steers = drive is None or drive.speeds == 0 or (drive.speeds == 2 and drive.turns)
-        if record.arrive_mode != "state" or steers or record.static or isinstance(behavior, CustomOptions | None):
+        behavior: Any = record.behavior or record.group_behavior
+        headings = [goal[2] for goal in record.goals if len(goal) > 2]
+        if record.arrive_mode != "state" or not headings or drive is None or drive.speeds == 0 or record.static:
             continue
-        if any(len(goal) > 2 for goal in record.goals[-1:]):
-            yield warning(
-                "heading-not-reached",
-                (*path, "arrive_mode"),
-                f"'{record.name}' never turns to the heading of its goal: only 'omni_angular' does",
-                given="state",
-                fix="kinematics: {name: omni_angular}, a goal of two numbers, or arrive_mode: position",
+        if isinstance(behavior, CustomOptions | None):
+            continue
+        if not drive.turns:
+            off = max(abs(math.remainder(heading - record.state[2], 2 * math.pi)) for heading in headings)
+            if off < record.goal_threshold:
+                continue
+            message = (
+                f"'{record.name}' keeps its heading and never turns to that of its goal, which is {off:.3g} rad off"
             )
-            return
+            fix = "kinematics: {name: omni_angular}, or {name: diff}"
+        elif drive.steered:
+            message = (
+                f"'{record.name}' is a car, and '{behavior.name}' steers it to the position of its goal only: it comes "
+                "there with any heading"
+            )
+            fix = "kinematics: {name: diff}"
+        else:
+            continue
+        yield warning(
+            "heading-not-reached",
+            (*path, "arrive_mode"),
+            message,
+            given="state",
+            fix=f"{fix}; a goal of two numbers; or arrive_mode: position",
+        )
+        return
 
 
 def _goals_reached_at_start(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:

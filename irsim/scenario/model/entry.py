@@ -157,7 +157,8 @@ class Entry(Options):
     arrive_mode: Annotated[Any, PerObject(Literal["position", "state"])] = "position"
     """What must match at the goal: `position` alone, or `state`, which includes the heading that a goal of three
     numbers [x, y, heading] gives. `state` has no tolerance of its own: sqrt(dx^2 + dy^2 + turn^2), in metres and
-    radians, must be below `goal_threshold`, so 0.1 allows at most 0.1 rad."""
+    radians, must be below `goal_threshold`, so 0.1 allows at most 0.1 rad. `diff` and `omni_angular` turn to it at
+    their goal under every built-in behavior."""
     group: Integer | None = None
     """Group number; objects with the same number form a group. Null gives each entry a number of its own."""
     group_name: Annotated[Any, PerObject(Text | None)] = None

@@ -1,0 +1,82 @@
+#include "surroundings/goal_heading.hpp"
+
+#include <algorithm>
+
+#include "world/spec.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kRestingTurn = 1e-9;      // an object that turns by less in a step counts as resting [rad]
+constexpr double kRestingSpeed = 0.05;     // slower objects run into nobody [m/s]
+constexpr double kCollisionHorizon = 2.0;  // collisions that would come later are not avoided yet [s]
+
+/// Whether somebody who moves on as now runs into the object within the horizon if it stands.
+bool is_run_into(const World& world, const State& state, int row, int object) {
+  const Shapes& shapes = *state.scenes[row / world.objects].shapes;
+  const auto centre_of = [&](int at, int i) {
+    return state.pose[at].position() + rotate(shapes.centre[i], state.heading(at));
+  };
+  const Vec2 here = centre_of(row, object);
+  return std::any_of(world.moving.begin(), world.moving.end(), [&](int i) {
+    const int other = row - object + i;
+    if (i == object || world.unobstructed[i] || state.absent(other)) return false;
+    const Vec2 velocity{state.twist[other][0], state.twist[other][1]};
+    const double speed2 = squared(velocity);
+    if (speed2 < kRestingSpeed * kRestingSpeed) return false;
+    const Vec2 gap = here - centre_of(other, i);
+    const double closing = dot(gap, velocity), reach = shapes.radius[i] + shapes.radius[object];
+    const double apart = squared(gap) - reach * reach, root = closing * closing - speed2 * apart;
+    if (closing <= 0.0 || root < 0.0) return false;
+    return apart <= 0.0 || closing - std::sqrt(root) <= kCollisionHorizon * speed2;
+  });
+}
+
+}  // namespace
+
+bool turns_at_goal(const World& world, const State& state, int row, int object) {
+  if (!world.state_arrival[object] || std::isnan(state.goal[row].theta)) return false;
+  const Drive& drive = world.drive[object];
+  return std::holds_alternative<DiffOptions>(drive) || std::holds_alternative<OmniAngularOptions>(drive);
+}
+
+double speed_to_goal(const World& world, const State& state, int row) {
+  const double gap = norm(state.goal[row].position() - state.pose[row].position());
+  return speed_to_stop_within(gap, state.acce[row][0], world.step_time);
+}
+
+double yaw_rate_to_goal(const World& world, const State& state, int row, int object) {
+  const int yaw = std::holds_alternative<DiffOptions>(world.drive[object]) ? 1 : 2;
+  const double error = wrap(state.goal[row].theta - state.pose[row].theta), dt = world.step_time;
+  const double left = std::fabs(error),
+               rate = std::min(left / dt, speed_to_stop_within(left, state.acce[row][yaw], dt));
+  return error > 0.0 ? rate : -rate;
+}
+
+void face_goal(const World& world, const State& state, int row, int object, Vec3& control) {
+  if (!turns_at_goal(world, state, row, object)) return;
+  const bool diff = std::holds_alternative<DiffOptions>(world.drive[object]);
+  const Pose& pose = state.pose[row];
+  const Vec2 way = state.goal[row].position() - pose.position();
+  const double gap = norm(way), threshold = world.goal_threshold[object];
+  const bool stands = diff && gap < threshold;
+  const Vec2 velocity = rotate({control[0], diff ? 0.0 : control[1]}, state.heading(row));
+  const double most = speed_to_goal(world, state, row), toward = dot(velocity, way);
+  const bool avoids = !std::holds_alternative<DashOptions>(world.specs[object].behavior);
+  if ((stands || toward > most * gap) && avoids && is_run_into(world, state, row, object)) return;
+  if (stands) {
+    control = {{0.0, yaw_rate_to_goal(world, state, row, object), 0.0}};
+    return;
+  }
+  if (toward > most * gap) {
+    control[0] *= most * gap / toward;
+    if (!diff) control[1] *= most * gap / toward;
+  }
+  if (diff || state.arrived[row] || !(gap <= threshold)) return;
+  const double error = wrap(state.goal[row].theta - pose.theta);
+  const double turn = std::fabs(control[2]) * world.step_time, enough = std::sqrt(threshold * threshold - gap * gap);
+  if (turn > kRestingTurn && turn <= std::fabs(error) + enough) return;
+  control[2] = yaw_rate_to_goal(world, state, row, object);
+}
+
+}  // namespace irsim
