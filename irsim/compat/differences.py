@@ -131,7 +131,8 @@ DIFFERENCES: dict[str, Difference] = {
         "with `arrive_mode: state`, `dash` stops at the goal with a heading error below `angle_tolerance`, or "
         "oscillates around it, and does not arrive if position and heading error together exceed `goal_threshold`",
         "the same law, but `omni_angular`, and `diff` under every behavior, turn the rest: `diff` brakes for its goal, "
-        "stands there and turns on the spot, unless its behavior avoids somebody who would run into it",
+        "stands there and turns on the spot, unless its behavior avoids somebody who would run into it; a car reaches "
+        "goal poses under `follow`",
         "a robot at its goal should arrive",
     ),
     "D25": Difference(

@@ -90,6 +90,56 @@ def test_members_of_a_group_turn_at_their_goals_too(behavior: str) -> None:
     assert result.outcome == "success", result.reason
 
 
+CAR = (
+    "world: {{width: 20, height: 20, time_limit: 90}}\nrobot: {{kinematics: {{name: acker, wheelbase: 0.5}}, "
+    "shape: {{name: rectangle, length: 0.8, width: 0.4, wheelbase: 0.5}}, state: {state}, goal: {goal}, "
+    "vel_max: [1, 0.6], vel_min: [{back}, -0.6], acce: {acce}, arrive_mode: state, goal_threshold: 0.15, "
+    "behavior: {{name: follow, local: {local}}}}}\n"
+)
+
+
+@pytest.mark.parametrize("heading", [0, 1.57, 3.14, -1.57, 0.7])
+@pytest.mark.parametrize(("back", "acce", "local"), [(-1, "[2, 2]", "dash"), (0, "[.inf, .inf]", "orca")])
+def test_a_car_comes_in_with_the_heading_under_follow(
+    tmp_path: Path, heading: float, back: float, acce: str, local: str
+) -> None:
+    text = CAR.format(state="[4, 10, 0]", goal=f"[12, 11, {heading}]", back=back, acce=acce, local=local)
+    assert "heading-not-reached" not in [finding.code for finding in irsim.validate(text=text).findings]
+    path = tmp_path / "scenario.yaml"
+    path.write_text(text, encoding="utf-8")
+    env = irsim.make(path, seed=1, headless=True, log_level="ERROR")
+    env.rollout(900, until_done=True)
+    assert env.robot.arrive, env.robot.state[:, 0]
+    env.rollout(100, until_done=False)
+    assert env.robot.arrive, "it stays"
+    env.end()
+
+
+@pytest.mark.parametrize("goal", ["[10, 10.6, 0]", "[10, 10, 3.14]", "[9, 10, 0]"])
+def test_a_car_parks_at_a_pose_beside_it(goal: str) -> None:
+    text = CAR.format(state="[10, 10, 0]", goal=goal, back=-1, acce="[2, 2]", local="dash")
+    result = irsim.run(text=text, seed=1)
+    assert result.outcome == "success", result.reason
+
+
+def test_a_car_backs_into_a_bay() -> None:
+    text = CAR.format(state="[4, 10, 0]", goal="[10, 8, 1.57]", back=-1, acce="[2, 2]", local="dash")
+    text += (
+        "obstacle:\n  - {number: 2, shape: {name: rectangle, length: 0.2, width: 1.6}, "
+        "state: [[9.4, 8.3, 0], [10.6, 8.3, 0]]}\n  - {shape: {name: rectangle, length: 1.4, width: 0.2}, state: [10, 7.3, 0]}\n"
+    )
+    result = irsim.run(text=text, seed=1)
+    assert result.outcome == "success", result.reason
+
+
+@pytest.mark.parametrize("behavior", ["dash", "orca", "rvo"])
+def test_a_car_under_another_behavior_is_told_at_once(behavior: str) -> None:
+    text = CAR.format(state="[4, 10, 0]", goal="[12, 11, 1.57]", back=-1, acce="[2, 2]", local="dash")
+    text = text.replace("{name: follow, local: dash}", f"{{name: {behavior}}}")
+    (found,) = [finding for finding in irsim.validate(text=text).findings if finding.code == "heading-not-reached"]
+    assert f"behavior: {{name: follow, local: {behavior}}}" in (found.fix or "")
+
+
 def test_whoever_turns_at_its_goal_lets_others_pass() -> None:
     """Two others pass the place where a robot turns; nobody touches it, and it arrives in the end."""
     text = (

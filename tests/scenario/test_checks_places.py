@@ -37,7 +37,7 @@ def test_random_placement_counts_the_minimal_distance() -> None:
         ("omni", "orca", [9, 9], False),
         ("omni_angular", "orca", [9, 9, 1], False),
         ("acker", "orca", [9, 9, 1], True),
-        ("acker", "follow", [9, 9, 1], True),
+        ("acker", "follow", [9, 9, 1], False),
     ],
 )
 def test_headings_that_nobody_steers_for(drive: str, behavior: str, goal: list[float], expected: bool) -> None:

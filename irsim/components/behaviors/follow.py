@@ -24,7 +24,8 @@ class Follow(BehaviorOptions):
 
     The local behavior avoids moving objects (`dash` avoids none; `orca` is the usual choice, also for cars). Towards
     static objects it keeps only the clearance that the path has, without its own margins, horizons and forces, which
-    would close narrow passages. Where there is no space to turn, `diff` and `acker` follow a path of poses instead,
+    would close narrow passages. With `arrive_mode: state` a car that is near its goal plans poses to the heading there,
+    backing up where that helps. Where there is no space to turn, `diff` and `acker` follow a path of poses instead,
     with the turning circle of a car, and wait for objects in the way.
 
     A robot that has arrived or was stopped for good on the path is gone round: under `dash` as soon as it stands there,

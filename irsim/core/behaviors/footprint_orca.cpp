@@ -48,7 +48,8 @@ void fill_crowd(const Decision& decision, const OrcaCrowd& all, FootprintCrowd& 
 /// Largest speed from which the object can stop at a goal at which it must turn [m/s]; infinite at other times.
 double approach_speed(const World& world, const State& state, int row, int object) {
   const double left = norm(state.goal[row].position() - state.pose[row].position());
-  const bool brakes = turns_at_goal(world, state, row, object) && left >= world.goal_threshold[object];
+  const bool brakes = std::holds_alternative<DiffOptions>(world.drive[object]) &&
+                      turns_at_goal(world, state, row, object) && left >= world.goal_threshold[object];
   return brakes ? speed_to_goal(world, state, row) : kInfinity;
 }
 

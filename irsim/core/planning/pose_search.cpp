@@ -4,6 +4,7 @@
 #include <queue>
 #include <unordered_map>
 
+#include "planning/dubins.hpp"
 #include "planning/lattice.hpp"
 
 namespace irsim {
@@ -20,6 +21,7 @@ constexpr double kSwitchCost = 0.3;     // cost of changing between forward and 
 constexpr double kSteeringCost = 0.02;  // cost of an arc [m]
 constexpr double kHeuristicWeight =
     1.5;  // weight of the distance to the goal: few nodes, paths longer by this factor at most
+constexpr std::size_t kBetterWays = 2000;  // poses that are tried after the first way to a heading, for a shorter one
 constexpr double kFieldCell = 0.1;         // smallest cell of the field of distances to the goal [m]
 constexpr double kMaxFieldCells = 250000;  // largest number of its cells
 
@@ -42,19 +44,24 @@ class PoseSearch {
     if (!measure()) return {};
     add(p_.start, 0.0, -1, 0);
     while (!open_.empty()) {
-      const int k = open_.top().second;
+      const auto [bound, k] = open_.top();
       open_.pop();
       if (closed_[k]) continue;
       closed_[k] = 1;
-      if (norm(nodes_[k].pose.position() - p_.goal) <= std::max(p_.near, step_)) return legs(k);
-      if (nodes_.size() > static_cast<std::size_t>(p_.most)) return {};
+      if (!std::isnan(p_.goal_heading)) {
+        if (last_.cost <= -bound || nodes_.size() > last_.most) break;
+        shoot(k);
+      } else if (norm(nodes_[k].pose.position() - p_.goal) <= std::max(p_.near, step_)) {
+        return legs(k);
+      }
+      if (nodes_.size() > static_cast<std::size_t>(p_.most)) break;
       if (p_.radius > 0.0) {
         arcs(k);
       } else {
         turns(k);
       }
     }
-    return {};
+    return last_.node < 0 ? std::vector<Leg>{} : legs_to_heading();
   }
 
  private:
@@ -147,6 +154,55 @@ class PoseSearch {
     }
   }
 
+  /// Try the ways from a node to the goal that change neither between forward and backward nor leave free space, and
+  /// keep the cheapest of all.
+  void shoot(int k) {
+    const PoseNode from = nodes_[k];
+    const Pose goal{p_.goal.x, p_.goal.y, p_.goal_heading};
+    for (const int way : {1, -1}) {
+      if (way < 0 && !p_.backs) continue;
+      const auto turned = [&](const Pose& pose) { return way > 0 ? pose : Pose{pose.x, pose.y, pose.theta + kPi}; };
+      for_dubins_ways(turned(from.pose), turned(goal), p_.radius, [&](DubinsWay found) {
+        const double cost = price(from, found.total(), way);
+        if (!(cost < last_.cost)) return;
+        for (int part = 0; part < 3; ++part) found.bend[part] *= way, found.length[part] *= way;
+        if (walk(from.pose, found, [&](const Pose& a, const Pose& b, double middle) {
+              return clear(middle, a.position(), b.position());
+            })) {
+          if (last_.node < 0) last_.most = nodes_.size() + kBetterWays;
+          last_.node = k, last_.way = way, last_.cost = cost, last_.ways = found;
+        }
+      });
+    }
+  }
+
+  /// Call `visit(from, to, heading between)` for pieces of a way. Stops and returns false where it returns false.
+  template <class Visit>
+  bool walk(Pose pose, const DubinsWay& found, Visit&& visit) const {
+    for (int part = 0; part < 3; ++part) {
+      const double length = found.length[part];
+      if (length == 0.0) continue;
+      const double turn = std::fabs(found.bend[part] * length / p_.radius) * kHeadings * kBodiesPerHeading / kTurn;
+      const int pieces = std::max(1, static_cast<int>(std::ceil(std::max(std::fabs(length) / step_, turn))));
+      for (int piece = 0; piece < pieces; ++piece) {
+        const Pose next = along_bend(pose, found.bend[part], length / pieces, p_.radius);
+        const double middle = along_bend(pose, found.bend[part], 0.5 * length / pieces, p_.radius).theta;
+        if (!visit(pose, next, middle)) return false;
+        pose = next;
+      }
+    }
+    return true;
+  }
+
+  std::vector<Leg> legs_to_heading() const {
+    std::vector<Leg> found = legs(last_.node);
+    walk(nodes_[last_.node].pose, last_.ways, [&](const Pose&, const Pose& to, double) {
+      found.push_back({to, last_.way});
+      return true;
+    });
+    return found;
+  }
+
   bool turn_is_free(Vec2 at, double from, double by) {
     const int parts = std::max(1, static_cast<int>(std::ceil(std::fabs(by) / kTurn * kHeadings * kBodiesPerHeading)));
     for (int part = 1; part <= parts; ++part) {
@@ -195,7 +251,16 @@ class PoseSearch {
     return merged;
   }
 
+  /// The cheapest way to the heading of the goal, and the node from which it leads there.
+  struct LastWay {
+    int node = -1, way = 1;
+    double cost = kInfinity;
+    DubinsWay ways;
+    std::size_t most = static_cast<std::size_t>(-1);  // number of nodes with which the search ends
+  };
+
   const PoseProblem& p_;
+  LastWay last_;
   double step_, cell_, margin_;
   std::vector<std::optional<Body>> bodies_;
   Lattice lattice_{};

@@ -23,6 +23,7 @@ struct PoseProblem {
   Box bounds;  // limits of positions
   Pose start;
   Vec2 goal;
+  double goal_heading;   // heading of a car at the goal, which it then reaches exactly [rad]; NaN: any
   double near;           // distance from the goal at which a path may end [m]
   bool backs;            // whether it may go backward
   double radius;         // radius of the turning circle [m]; 0 if it turns on the spot
@@ -34,7 +35,8 @@ struct PoseProblem {
 
 /// Legs from start to goal, starting with the start; empty if none are found. Hybrid A* (Dolgov, Thrun, Montemerlo,
 /// Diebel: "Practical Search Techniques in Path Planning for Autonomous Driving", 2008) with short arcs, or with
-/// straight pieces and turns on the spot. One pose is kept for each cell of position and heading.
+/// straight pieces and turns on the spot. One pose is kept for each cell of position and heading. A car that must reach
+/// a heading goes the last part without changing between forward and backward (dubins.hpp).
 std::vector<Leg> search_poses(const PoseProblem& problem);
 
 }  // namespace irsim

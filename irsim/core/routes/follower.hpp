@@ -68,12 +68,20 @@ class Follower {
   void report_if_stuck();
   /// Plan poses for a drive that cannot move sideways and cannot turn everywhere.
   bool find_legs(double reach, int most = kMaxPoses);
+  /// Whether the object is a car that must reach a heading at its goal.
+  bool parks() const;
+  /// Whether it is time to plan poses to that heading: the car is near its goal and has no such plan.
+  bool parking_is_due() const;
+  /// Plan poses to the heading of the goal. The present path stays if there is no such plan.
+  void plan_parking();
   /// A place near where a path may go, for an object that has left its region or is in a zone that it avoids.
   Vec2 way_back(const Space& space, bool left_region) const;
   /// Plan a path on which `wide` fits; `tight` is the body for which corners must stay in sight. Without `search` only
   /// the straight line is tried.
   bool attempt(const Body& wide, const Body& tight, bool search);
 
+  /// Radius of the turning circle that plans of a car use [m].
+  double turning_radius(const AckerOptions& car) const;
   double max_steering(const AckerOptions& car) const;
   /// The command that continues along the legs, which are cleared when the last one is finished.
   void follow_legs(Vec3& u);

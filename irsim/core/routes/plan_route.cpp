@@ -9,13 +9,15 @@ namespace {
 constexpr double kMarginShare = 0.3;                       // wanted margin beside a path, as a share of the radius
 constexpr double kMaxMargin = 0.3;                         // upper limit of that margin [m]
 constexpr double kMarginShares[] = {1.0, 0.3, 0.05, 0.0};  // shares of the margin, tried in this order
-constexpr double kLocalShare = 0.5;       // share of that margin that is kept when others push the object aside
-constexpr double kLegMargin = 0.01;       // the same of cars and on legs, whose plans have margins of their own [m]
-constexpr int kMaxTries = 10;             // plans attempted with a planner that draws samples
-constexpr double kSteeringShare = 0.9;    // share of the largest steering angle with which poses are planned
-constexpr double kRestingDistance = 0.1;  // an object that moves less than this counts as resting [m]
-constexpr double kStuckTime = 5.0;        // resting this long on a path that may be too narrow counts as stuck [s]
-constexpr int kEntries = 40;              // places along x and along y at which an object may come back to its way
+constexpr double kLocalShare = 0.5;           // share of that margin that is kept when others push the object aside
+constexpr double kLegMargin = 0.01;           // the same of cars and on legs, whose plans have margins of their own [m]
+constexpr int kMaxTries = 10;                 // plans attempted with a planner that draws samples
+constexpr double kSteeringShare = 0.9;        // share of the largest steering angle with which poses are planned
+constexpr double kRestingDistance = 0.1;      // an object that moves less than this counts as resting [m]
+constexpr double kStuckTime = 5.0;            // resting this long on a path that may be too narrow counts as stuck [s]
+constexpr double kParkingRadii = 6.0;         // a car plans to the heading of its goal from this many turning radii
+constexpr double kTimeBetweenParkings = 1.0;  // after a plan to the heading, before another one [s]
+constexpr int kEntries = 40;                  // places along x and along y at which an object may come back to its way
 constexpr std::uint64_t kDrawsPerPlan = std::uint64_t{1} << 40;  // blocks of draws reserved for each plan
 
 bool draws_samples(const Planner& planner) {
@@ -165,12 +167,23 @@ bool Follower::find_legs(double reach, int most) {
   const Drive& drive = world_.drive[object_];
   const auto* car = std::get_if<AckerOptions>(&drive);
   if (car == nullptr && !std::holds_alternative<DiffOptions>(drive)) return false;
-  const double radius = car == nullptr ? 0.0 : car->wheelbase / std::tan(kSteeringShare * max_steering(*car));
+  const double radius = car == nullptr ? 0.0 : turning_radius(*car);
   const double room = inner_radius(shapes_, object_);
   const bool backs = state_.vel_min[row_][0] < 0.0;
-  const PoseProblem problem{
-      blockers_, shapes_, object_, bounds(), state_.pose[row_], route_.goal, world_.goal_threshold[object_],
-      backs,     radius,  reach,   room,     region(),          most};
+  const PoseProblem problem{blockers_,
+                            shapes_,
+                            object_,
+                            bounds(),
+                            state_.pose[row_],
+                            route_.goal,
+                            parks() ? state_.goal[row_].theta : kNone,
+                            world_.goal_threshold[object_],
+                            backs,
+                            radius,
+                            reach,
+                            room,
+                            region(),
+                            most};
   route_.legs = search_poses(problem);
   route_.leg = 1;
   if (route_.legs.size() < 2) {
@@ -181,6 +194,34 @@ bool Follower::find_legs(double reach, int most) {
   for (const Leg& leg : route_.legs) route_.path.push_back(leg.pose.position());
   route_.path.push_back(route_.goal);
   return true;
+}
+
+double Follower::turning_radius(const AckerOptions& car) const {
+  return car.wheelbase / std::tan(kSteeringShare * max_steering(car));
+}
+
+bool Follower::parks() const {
+  return world_.state_arrival[object_] && !std::isnan(state_.goal[row_].theta) &&
+         std::holds_alternative<AckerOptions>(world_.drive[object_]);
+}
+
+bool Follower::parking_is_due() const {
+  if (!parks() || !route_.legs.empty() || route_.retreats || route_.path.empty() || state_.arrived[row_]) return false;
+  const double near = kParkingRadii * turning_radius(std::get<AckerOptions>(world_.drive[object_]));
+  if (norm(route_.goal - position()) > near) return false;
+  const double age = static_cast<double>(state_.count[w_] - route_.parking_at) * world_.step_time;
+  return route_.parking_at < 0 || age >= kTimeBetweenParkings;
+}
+
+void Follower::plan_parking() {
+  route_.parking_at = state_.count[w_];
+  std::vector<Vec2> path;
+  path.swap(route_.path);
+  if (find_legs(extent_of(shapes_, object_).reach)) {
+    route_.wall_margin = kLegMargin;
+  } else {
+    route_.path.swap(path);
+  }
 }
 
 Vec2 Follower::way_back(const Space& space, bool left_region) const {

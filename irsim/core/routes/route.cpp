@@ -16,6 +16,7 @@ constexpr double kMinTimeBetweenPlans = 1.0;  // after a plan, before another is
 void Follower::follow_route() {
   if (std::isnan(state_.goal[row_].x)) return;
   if (plan_is_due()) plan();
+  if (parking_is_due()) plan_parking();
   if (route_.path.empty()) return;
   if (route_.legs.empty() && !route_.retreats) advance();
   track_progress();
@@ -49,6 +50,10 @@ void Follower::adjust_command() {
     return;
   }
   if (route_.retreats && route_.legs.empty()) {
+    u = {};
+    return;
+  }
+  if (parks() && route_.legs.empty() && state_.arrived[row_]) {
     u = {};
     return;
   }

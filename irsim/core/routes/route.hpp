@@ -51,6 +51,7 @@ struct Route {
   std::size_t leg = 0;             // leg that the object follows
   int blocked_steps = 0;           // consecutive steps in which something blocked the leg
   bool keeps_heading = false;      // the path is free of collisions only at the present heading
+  std::int64_t parking_at = -1;    // step of the last plan to the heading of the goal; -1: none yet
   int backing_steps = 0;           // remaining steps of backing up
   double wall_radius = 0.0;        // radius of the disc about the origin that behaviors keep off walls [m]
   double wall_margin = 0.0;        // gap between the body and walls below which no command is allowed to lead [m]

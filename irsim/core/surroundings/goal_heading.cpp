@@ -53,27 +53,33 @@ double yaw_rate_to_goal(const World& world, const State& state, int row, int obj
   return error > 0.0 ? rate : -rate;
 }
 
-void face_goal(const World& world, const State& state, int row, int object, Vec3& control) {
-  if (!turns_at_goal(world, state, row, object)) return;
-  const bool diff = std::holds_alternative<DiffOptions>(world.drive[object]);
-  const Pose& pose = state.pose[row];
-  const Vec2 way = state.goal[row].position() - pose.position();
-  const double gap = norm(way), threshold = world.goal_threshold[object];
-  const bool stands = diff && gap < threshold;
-  const Vec2 velocity = rotate({control[0], diff ? 0.0 : control[1]}, state.heading(row));
-  const double most = speed_to_goal(world, state, row), toward = dot(velocity, way);
+namespace {
+
+/// `diff` brakes before its goal, then it stands and turns, unless it avoids somebody.
+void brake_and_turn(const World& world, const State& state, int row, int object, Vec3& control) {
+  const Vec2 way = state.goal[row].position() - state.pose[row].position();
+  const double gap = norm(way), most = speed_to_goal(world, state, row);
+  const double toward = control[0] * dot(state.heading(row), way);
+  const bool stands = gap<world.goal_threshold[object], brakes = toward> most * gap;
   const bool avoids = !std::holds_alternative<DashOptions>(world.specs[object].behavior);
-  if ((stands || toward > most * gap) && avoids && is_run_into(world, state, row, object)) return;
+  if (!(stands || brakes) || (avoids && is_run_into(world, state, row, object))) return;
   if (stands) {
     control = {{0.0, yaw_rate_to_goal(world, state, row, object), 0.0}};
-    return;
-  }
-  if (toward > most * gap) {
+  } else {
     control[0] *= most * gap / toward;
-    if (!diff) control[1] *= most * gap / toward;
   }
-  if (diff || state.arrived[row] || !(gap <= threshold)) return;
-  const double error = wrap(state.goal[row].theta - pose.theta);
+}
+
+}  // namespace
+
+void face_goal(const World& world, const State& state, int row, int object, Vec3& control) {
+  if (!turns_at_goal(world, state, row, object)) return;
+  if (std::holds_alternative<DiffOptions>(world.drive[object]))
+    return brake_and_turn(world, state, row, object, control);
+  const double gap = norm(state.goal[row].position() - state.pose[row].position());
+  const double threshold = world.goal_threshold[object];
+  if (state.arrived[row] || !(gap <= threshold)) return;
+  const double error = wrap(state.goal[row].theta - state.pose[row].theta);
   const double turn = std::fabs(control[2]) * world.step_time, enough = std::sqrt(threshold * threshold - gap * gap);
   if (turn > kRestingTurn && turn <= std::fabs(error) + enough) return;
   control[2] = yaw_rate_to_goal(world, state, row, object);

@@ -15,10 +15,11 @@ double speed_to_goal(const World& world, const State& state, int row);
 /// The yaw rate with which the turn of an object at its goal ends at the heading of the goal [rad/s].
 double yaw_rate_to_goal(const World& world, const State& state, int row, int object);
 
-/// Let an object that must reach a heading at its goal brake before the goal, and turn at it.
+/// Let an object that must reach a heading at its goal turn to it there.
 ///
-/// `diff` stands while it turns, and stays there, unless its behavior avoids somebody who would otherwise run into it
-/// soon. `omni_angular` moves as its behavior wants, and turns where the behavior rests or oscillates.
+/// `diff` brakes before its goal, stands while it turns, and stays there, unless its behavior avoids somebody who would
+/// otherwise run into it soon. `omni_angular` moves as its behavior wants, and turns where the behavior rests or
+/// oscillates.
 ///
 /// Args:
 ///   control: What the behavior of the object wants; changed in place.

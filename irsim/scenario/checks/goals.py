@@ -75,12 +75,12 @@ def _heading_not_reached(context: Context, path: Path, records: list[ObjectRecor
                 f"'{record.name}' keeps its heading and never turns to that of its goal, which is {off:.3g} rad off"
             )
             fix = "kinematics: {name: omni_angular}, or {name: diff}"
-        elif drive.steered:
+        elif drive.steered and behavior.name != "follow":
             message = (
                 f"'{record.name}' is a car, and '{behavior.name}' steers it to the position of its goal only: it comes "
                 "there with any heading"
             )
-            fix = "kinematics: {name: diff}"
+            fix = f"behavior: {{name: follow, local: {behavior.name}}}, which plans a car to the heading, too"
         else:
             continue
         yield warning(

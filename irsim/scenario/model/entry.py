@@ -158,7 +158,7 @@ class Entry(Options):
     """What must match at the goal: `position` alone, or `state`, which includes the heading that a goal of three
     numbers [x, y, heading] gives. `state` has no tolerance of its own: sqrt(dx^2 + dy^2 + turn^2), in metres and
     radians, must be below `goal_threshold`, so 0.1 allows at most 0.1 rad. `diff` and `omni_angular` turn to it at
-    their goal under every built-in behavior."""
+    their goal under every built-in behavior, and a car comes in with it under `follow`."""
     group: Integer | None = None
     """Group number; objects with the same number form a group. Null gives each entry a number of its own."""
     group_name: Annotated[Any, PerObject(Text | None)] = None
