@@ -126,7 +126,8 @@ def test_a_car_backs_into_a_bay() -> None:
     text = CAR.format(state="[4, 10, 0]", goal="[10, 8, 1.57]", back=-1, acce="[2, 2]", local="dash")
     text += (
         "obstacle:\n  - {number: 2, shape: {name: rectangle, length: 0.2, width: 1.6}, "
-        "state: [[9.4, 8.3, 0], [10.6, 8.3, 0]]}\n  - {shape: {name: rectangle, length: 1.4, width: 0.2}, state: [10, 7.3, 0]}\n"
+        "state: [[9.4, 8.3, 0], [10.6, 8.3, 0]]}\n"
+        "  - {shape: {name: rectangle, length: 1.4, width: 0.2}, state: [10, 7.3, 0]}\n"
     )
     result = irsim.run(text=text, seed=1)
     assert result.outcome == "success", result.reason

@@ -84,7 +84,7 @@ def _top_yaw_rate(record: ObjectRecord) -> float:
     psi = min(limit if drive.mode == "steer" else math.inf, drive.psi_max or math.inf)
     if psi >= math.pi / 2:
         return 0.0  # another check reports such an angle
-    return top_speed(record) * math.tan(psi) / (record.wheelbase or 1.0)
+    return float(top_speed(record) * math.tan(psi) / (record.wheelbase or 1.0))
 
 
 def _rounded_down(value: float) -> float:
