@@ -696,6 +696,7 @@ class World:
     step_time: float
     collision_mode: int  # may be set at run time
     after_arrival: int  # 0: arrived only while at the goal, 1: stands still for good, 2: arrived for good
+    contacts: int  # which count as collisions, 0: at the ends of steps, 1: within steps, too
     integration: int  # of drives, 0: Euler, 1: exact arcs
     extent: tuple[float, float, float, float]  # x0, y0, x1, y1 [m] of the box in which paths are planned; may be set
     def set_levels(self, levels: Sequence[Level], speeds: Sequence[Sequence[int]]) -> None:

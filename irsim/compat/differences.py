@@ -143,6 +143,14 @@ DIFFERENCES: dict[str, Difference] = {
         "law without this rule",
         "the circle swap that works there works here",
     ),
+    "D26": Difference(
+        "contacts are judged at the ends of steps, and nothing says what happened between: a fast robot passes through "
+        "a wall, and the run succeeds",
+        "they are judged at the ends of steps by default (`world.contacts: step_end`), and contacts within a step are "
+        "reported: `contact_between_steps`, and `passed_through` if the middle of one went through the other; `swept` "
+        "lets them count as collisions, and with `collision_mode: contact` bodies do not pass through others",
+        "a wall that was passed is no silent success",
+    ),
     "D27": Difference(
         "under `rvo`, `diff` ignores heading errors below 0.1 rad and turns at most at 1.5 rad/s",
         "while it avoids something it makes each turn at once, as fast as its own limit allows; `turning: fixed` is "
@@ -215,7 +223,7 @@ DIFFERENCES: dict[str, Difference] = {
 
 KEY_DIFFERENCES: dict[str, str] = {
     "world.name": "D9",
-    "world.collision_mode": "D20",
+    "world.collision_mode": "D20, D26",
     "world.obstacle_map": "D15, D16, D17",
     "entry.role": "D9",
     "entry.distribution": "D7, format-17",
@@ -253,6 +261,7 @@ EXTENSIONS: dict[str, str] = {
     "bridges": "connections to other programs",
     "world.boundary": "walls at the edge of the world",
     "world.seed": "default seed",
+    "world.contacts": "contacts within a step can count as collisions",
     "world.integration": "exact arcs within a step instead of Euler's law",
     "world.time_limit": "time horizon of a run",
     "world.description": "any text",

@@ -26,10 +26,11 @@ void watch(const World& world, State& state, int w, Workspace& work);
 /// Find the contacts of a pair of objects a < b within the step, and keep it in `Scene::meetings`. They are apart at
 /// its end.
 void meet(const World& world, State& state, int w, int a, int b);
+/// Where contacts within a step count as collisions (`world.contacts: swept`): find those of the pairs in `Scene::near`,
+/// and put objects that stop at a collision back to where they first touched something.
+void judge(const World& world, State& state, int w);
 /// Log the meetings of the step, and count them for each object.
 void log_meetings(const World& world, State& state, int w);
-/// The motion of an object in this step, to its present pose.
-Stride stride_of(const World& world, const State& state, int w, int object);
 /// Place the geometry of the moving objects at their present poses.
 void place_moving(const World& world, State& state, int w);
 /// One period. With `external` the caller has moved the objects already.

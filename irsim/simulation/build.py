@@ -43,6 +43,7 @@ __all__ = [
 ]
 
 AFTER_ARRIVAL = {None: 0, "freeze": 1, "yield": 2}
+CONTACTS = {"step_end": 0, "swept": 1}
 INTEGRATIONS = {"euler": 0, "exact": 1}
 COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2, "contact": 3}
 """Name of a collision mode -> its number in the core."""
@@ -291,6 +292,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
         targets=build_targets(scenario),
     )
     world.after_arrival = AFTER_ARRIVAL[scenario.world.after_arrival]
+    world.contacts = CONTACTS[scenario.world.contacts]
     world.integration = INTEGRATIONS[scenario.world.integration]
     x0, y0, x1, y1 = scenario.world.bounds
     world.extent = x0, y0, x1, y1

@@ -254,3 +254,16 @@ def test_gaps_between_segments() -> None:
     assert segment_gap(((0, 0), (2, 2)), ((0, 2), (2, 0))) == 0
     assert segment_gap(((0, 0), (2, 0)), ((3, 1), (3, -1))) == 1
     assert segment_gap(((0, 0), (0, 0)), ((3, 4), (3, 4))) == 5
+
+
+def test_nothing_jumps_where_contacts_within_steps_count() -> None:
+    text = (
+        "world: {{step_time: 1, {}}}\n"
+        "robot: {{kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.2}}, behavior: {{name: dash}}, "
+        "state: [1, 5, 0], goal: [9, 5], vel_max: [2, 1], goal_threshold: 1}}\n"
+        "obstacle: {{shape: {{name: rectangle, length: 0.1, width: 6}}, state: [5, 5, 0]}}\n"
+    )
+    assert "jumps-through" in codes(text.format("contacts: step_end"))
+    for judged in ("contacts: swept", "collision_mode: contact"):
+        assert "jumps-through" not in codes(text.format(judged))
+    assert irsim.run(text=text.format("contacts: swept"), seed=0).outcome == "collision"

@@ -37,6 +37,7 @@ void bind_world(nb::module_& m) {
       .def_ro("step_time", &World::step_time)
       .def_rw("collision_mode", &World::collision_mode)
       .def_rw("after_arrival", &World::after_arrival)
+      .def_rw("contacts", &World::contacts)
       .def_prop_rw(
           "integration", [](const World& world) { return static_cast<int>(world.integration); },
           [](World& world, int value) { world.integration = static_cast<Integration>(value); })

@@ -3,6 +3,7 @@
 
 #include "collision/touch.hpp"
 #include "phases.hpp"
+#include "phases/strides.hpp"
 
 namespace irsim {
 namespace {
@@ -30,12 +31,14 @@ void find_pairs(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
   const Shapes& shapes = *scene.shapes;
   const Fixed& fixed = *scene.fixed;
-  const bool moved = scene.in_motion;
+  const bool moved = scene.in_motion, judged = world.contacts == kSwept;
   std::vector<Pair>& pairs = scene.pairs;
   pairs.assign(fixed.pairs.begin(), fixed.pairs.end());
-  scene.meetings.clear();
+  scene.meetings.clear(), scene.near.clear();
   const auto examine = [&](int i, int j, const Footprint& a, const Footprint& b) {
-    if (a.box.meets(b.box) && touch(a, b)) {
+    if (judged) {
+      scene.near.push_back({std::min(i, j), std::max(i, j), kInfinity, {}, false});
+    } else if (a.box.meets(b.box) && touch(a, b)) {
       pairs.emplace_back(std::min(i, j), std::max(i, j));
     } else if (moved) {
       meet(world, state, w, std::min(i, j), std::max(i, j));
@@ -55,7 +58,19 @@ void find_pairs(const World& world, State& state, int w) {
       examine(i, j, scene.moving.footprint(shapes, i), scene.moving.footprint(shapes, j));
     });
   }
+  if (judged) judge(world, state, w);
   if (pairs.size() > 1) std::sort(pairs.begin(), pairs.end());
+  if (judged) pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+/// Where two objects touch: where they first did in this step if that was judged, otherwise where they do now.
+Vec2 place_of_contact(const World& world, const State& state, int w, int i, int j) {
+  for (const NearPair& pair : state.scenes[w].near) {
+    if (pair.judged && pair.a == i && pair.b == j) return pair.where;
+  }
+  Vec2 where;
+  touch(state.footprint(world, w, i), state.footprint(world, w, j), where);
+  return where;
 }
 
 /// Log contacts that began since the previous evaluation.
@@ -70,9 +85,7 @@ void log_contacts(const World& world, State& state, int w) {
     const bool first = !world.unobstructed[j] && (!world.is_static[i] || world.is_robot[i]);
     const bool second = !world.unobstructed[i] && (!world.is_static[j] || world.is_robot[j]);
     if (!first && !second) continue;
-    Vec2 where;
-    touch(state.footprint(world, w, i), state.footprint(world, w, j), where);
-    state.log(world, w, EventKind::collision, i, j, where);
+    state.log(world, w, EventKind::collision, i, j, place_of_contact(world, state, w, i, j));
   }
 }
 

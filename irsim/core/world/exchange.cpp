@@ -113,6 +113,17 @@ std::vector<Pair> rename_pairs(const std::vector<Pair>& pairs, const std::vector
   return out;
 }
 
+/// Pairs that stopped where they touched, with the indices of the new objects.
+std::vector<HeldPair> rename_held(const std::vector<HeldPair>& pairs, const std::vector<int>& new_row) {
+  std::vector<HeldPair> out;
+  for (const HeldPair& pair : pairs) {
+    const int a = new_row[pair.a], b = new_row[pair.b];
+    if (a < 0 || b < 0) continue;
+    out.push_back(a < b ? HeldPair{a, b, pair.pose_a, pair.pose_b} : HeldPair{b, a, pair.pose_b, pair.pose_a});
+  }
+  return out;
+}
+
 /// Rebuild the geometry of all objects after `scene.shapes` has changed.
 void rebuild_geometry(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
@@ -163,6 +174,8 @@ void continue_from(const World& world, State& state, const World& world_before, 
   scene.sweep.reset(world.moving);
   scene.contacts.clear();
   scene.pairs = rename_pairs(before.scenes[0].pairs, new_row);
+  scene.held = rename_held(before.scenes[0].held, new_row);
+  scene.meetings.clear();
   scene.watched = continue_watching(world, state, world_before, before, new_row);
   rebuild_geometry(world, state, 0);
   sense(world, state, 0, state.workspaces.front());

@@ -71,6 +71,20 @@ struct Meeting {
   bool through;  // whether the middle of one went through the other
 };
 
+/// Two objects a < b whose motions in a step come near each other.
+struct NearPair {
+  int a, b;
+  double when = kInfinity;  // time of the first contact within the step; infinite without one
+  Vec2 where;
+  bool judged = false;  // whether it counts as a collision
+};
+
+/// Two objects in contact that stopped where they first touched: they stay in contact while they stay there.
+struct HeldPair {
+  int a, b;
+  Pose pose_a, pose_b;
+};
+
 struct Scene {
   std::shared_ptr<const Shapes> shapes;
   std::shared_ptr<const Fixed> fixed;
@@ -83,7 +97,10 @@ struct Scene {
   Watched watched;
   bool in_motion = false;         // whether the objects have moved from `State::before` since the last evaluation
   std::vector<Meeting> meetings;  // of the last step, sorted by objects
-  Outlines trial;                 // moving objects at poses within the step
+  std::vector<NearPair> near;     // of the last step, if contacts within steps are judged
+  std::vector<HeldPair> held;
+  std::vector<double> until;  // (N,) time within the step at which each object stopped
+  Outlines trial;             // moving objects at poses within the step
   SweptBuffers swept;
 };
 

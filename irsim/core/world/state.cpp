@@ -198,6 +198,7 @@ void restart(const World& world, State& state, int w, Workspace& work) {
   scene.events.clear();
   scene.pairs.clear();
   scene.in_motion = false;
+  scene.held.clear();
   if (world.fog) std::fill_n(state.explored.data + w * world.fog->cells(), world.fog->cells(), std::uint8_t{0});
   scene.contacts.clear();
   for (int i = 0; i < world.objects; ++i) restart_row(world, state, w * world.objects + i);

@@ -58,6 +58,9 @@ struct BodyDynamics {
   bool pushable;       // whether it is not static, has a finite mass, and is no obstacle that replays a recording
 };
 
+/// Which contacts are collisions: those at the ends of steps, or those within steps, too.
+enum Contacts { kStepEnd = 0, kSwept = 1 };
+
 struct World {
   World(double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> specs,
         std::vector<Placement> placements, int copies, std::optional<Fog> fog, std::vector<Perturbation> perturbations,
@@ -70,6 +73,7 @@ struct World {
   int collision_mode;     // CollisionMode
   int after_arrival = 0;  // AfterArrival
   Integration integration = kEuler;
+  int contacts = kStepEnd;         // Contacts
   double gravity;                  // [m/s^2]
   std::array<double, 4> extent{};  // x0, y0, x1, y1 [m]: paths are planned within this box
   int copies;

@@ -228,9 +228,10 @@ OBJECTS: dict[str, Code] = {
     ),
     "jumps-through": Code(
         "steps longer than the obstacles are thick",
-        "Collisions are detected after each step. An object that moves farther in one step than it and the wall are"
-        " thick together can pass to the other side without a collision. Example: 20 m/s × 0.1 s = 2 m against a "
-        "wall of 0.1 m; lower step_time, or the speed: limits are in m/s.",
+        "By default contacts are judged after each step. An object that moves farther in one step than it and the wall "
+        "are thick together can pass to the other side without a collision; the run then reports passed_through. "
+        "Example: 20 m/s × 0.1 s = 2 m against a wall of 0.1 m; lower step_time, or the speed: limits are in m/s. With "
+        "contacts: swept in 'world', contacts within a step are collisions, too.",
     ),
     "brakes-too-late": Code(
         "a horizon shorter than it takes to brake",

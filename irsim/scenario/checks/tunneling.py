@@ -1,4 +1,4 @@
-"""Finds objects that can pass through others: collisions are detected after each step, not during it."""
+"""Finds objects that can pass through others where contacts are judged after each step, not during it."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ Point = tuple[float, float]
 Segment = tuple[Point, Point]
 _PASSABLE = ("unobstructed", "reactive")
 """Collision modes in which objects pass through each other anyway."""
-_PUSHING = ("contact",)
-"""Collision modes in which other objects push an object off its path."""
+_CONTINUOUS = ("contact",)
+"""Collision modes in which nothing passes through a body, however fast it is."""
 _MAX_LEGS = 1000
 """Largest number of legs of a path that is examined; an object with more legs is assumed to get anywhere."""
 _TURNING_RADII = 2.0
@@ -34,7 +34,7 @@ _NAMES = {"map": "the map", "walls": "the walls round the world"}
 def check(context: Context) -> Iterator[Finding]:
     """One finding per entry: an object can pass through another that is thinner than one step."""
     world = context.scenario.world
-    if world.collision_mode in _PASSABLE:
+    if world.collision_mode in (*_PASSABLE, *_CONTINUOUS) or world.contacts == "swept":
         return
     dt, shapes = world.step_time, dict[int, _Shape]()
     there = [
@@ -87,7 +87,8 @@ def _finding(context: Context, one: _Body, other: _Body, least: float, speed: fl
         f"'{one.record.name}' moves {metres(one.speed * dt)} per step{together}: it can pass through {thing} "
         f"({metres(other.shape.width)} thick) without ever touching it",
         given=one.record.vel_max,
-        fix=f"step_time: {min(longest, least / speed):.3g} or less, or a lower speed (limits are in m/s)",
+        fix=f"step_time: {min(longest, least / speed):.3g} or less, or a lower speed (limits are in m/s), or contacts: swept "
+        "in 'world'",
     )
 
 
@@ -176,7 +177,7 @@ def _band(context: Context, body: _Body) -> _Band | None:
     driven = record.group_behavior is not None or record.group in context.driven_groups
     if min(map(len, (record.vel_min, record.vel_max, record.acce))) < 2:  # another check reports them as too short
         return None
-    if not _is_straight(record) or driven or world.collision_mode in _PUSHING or world.control_mode != "auto":
+    if not _is_straight(record) or driven or world.control_mode != "auto":
         return None
     legs = body.legs
     if len(legs) > _MAX_LEGS:

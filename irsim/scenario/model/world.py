@@ -107,6 +107,9 @@ class WorldModel(Options):
         "integrator": "integration",
         "integration_method": "integration",
         "timestep": "step_time",
+        "contact_detection": "contacts",
+        "continuous_collision": "contacts",
+        "swept": "contacts",
         "origin": "offset",
         "map": "obstacle_map",
         "grid_map": "obstacle_map",
@@ -157,6 +160,10 @@ class WorldModel(Options):
     collision_mode: Literal["stop", "unobstructed", "unobstructed_obstacles", "reactive", "contact"] = "stop"
     """What a collision does: it stops both objects (`stop`), has no effect (`unobstructed`, `reactive`), stops robots
     only (`unobstructed_obstacles`), or lets bodies push and slide (`contact`)."""
+    contacts: Annotated[Literal["step_end", "swept"], BeforeValidator(_normalize_word)] = "step_end"
+    """Which contacts are collisions: those at the ends of steps, as in IR-SIM 2.12 (`step_end`), or those within steps,
+    too, where objects that stop at a collision stop where they first touch (`swept`). Contacts within a step are found
+    and reported in any case."""
     after_arrival: Literal["freeze", "yield"] | None = None
     """What a robot does that has reached its last goal: it stands still for good (`freeze`), or it stays controlled, so
     that it can make room, and counts as arrived for good (`yield`); null is as `yield`, but the robot counts as arrived

@@ -1,0 +1,105 @@
+#include "phases/strides.hpp"
+
+#include <algorithm>
+
+#include "collision/distance.hpp"
+#include "collision/touch.hpp"
+#include "geometry/predicates.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kRounding = 1e-6;  // slack of bounding circles, far above rounding errors [m]
+constexpr double kResting = 1e-5;   // gap up to which bodies that push each other are in contact [m]
+constexpr double kSoon = 1e-8;      // time after a first contact at which the bodies may overlap for the first time
+
+Moving moving_of(const World& world, const State& state, int w, int object) {
+  const Scene& scene = state.scenes[w];
+  const bool rests = world.is_static[object] || scene.shapes->is_map(object);
+  if (rests) return resting_body(state.footprint(world, w, object));
+  return moving_body(*scene.shapes, object, stride_of(world, state, w, object));
+}
+
+}  // namespace
+
+Stride stride_of(const World& world, const State& state, int w, int object) {
+  const int row = w * world.objects + object;
+  const bool arc = world.integration == kExact && world.dynamics[object].driven;
+  return Stride::between(state.before[row], state.pose[row], state.twist[row][2] * world.step_time, arc);
+}
+
+Passage::Passage(const World& world, State& state, int w, int a_, int b_)
+    : a(a_),
+      b(b_),
+      one(moving_of(world, state, w, a)),
+      other(moving_of(world, state, w, b)),
+      world_(world),
+      state_(state),
+      scene_(state.scenes[w]),
+      w_(w) {}
+
+void Passage::stop(int object, double time) {
+  Moving& body = object == a ? one : other;
+  if (!world_.is_static[object]) body.stride = Stride::resting(body.stride.at(time));
+}
+
+bool Passage::come_near() const {
+  const Shapes& shapes = *scene_.shapes;
+  const auto centre_at_end = [&](int i) {
+    return world_.is_static[i] ? scene_.fixed->outlines.centres[shapes.placed[i].object]
+                               : scene_.moving.centres[shapes.placed[i].object];
+  };
+  const Vec2 to = centre_at_end(b) - centre_at_end(a), from = to - other.stride.by + one.stride.by;
+  const auto slack = [&](int i, const Stride& stride) {
+    if (stride.turn == 0.0) return 0.0;
+    const Vec2 centre = shapes.centre[i];
+    return std::min(std::fabs(stride.turn), 2.0) * (std::fabs(centre.x) + std::fabs(centre.y)) + stride.bulge(0.0);
+  };
+  const double reach = shapes.radius[a] + shapes.radius[b] + slack(a, one.stride) + slack(b, other.stride) + kRounding;
+  return squared(nearest_on_segment(from, to, {})) <= reach * reach;
+}
+
+double Passage::first_contact(double begin, double end, Vec2& where) const {
+  if (world_.unobstructed[a] || world_.unobstructed[b]) return kInfinity;
+  if (one.stride.rests() && other.stride.rests()) return kInfinity;
+  for (const int i : {a, b}) {
+    const std::int64_t since = state_.appeared[w_ * world_.objects + i];
+    if (since > 0 && since == state_.count[w_]) return kInfinity;
+  }
+  for (const Contact& contact : scene_.contacts) {
+    if (contact.a == a && contact.b == b) return kInfinity;  // they have pushed each other apart
+  }
+  if (begin == 0.0 && !come_near()) return kInfinity;
+  return irsim::first_contact(one, other, begin, end, scene_.swept, where);
+}
+
+Footprint Passage::footprint(int object, const Moving& body, double time) const {
+  if (world_.is_static[object]) return scene_.fixed->outlines.footprint(*scene_.shapes, object);
+  scene_.trial.resize(scene_.shapes->size[0]);
+  const Pose pose = body.stride.at(time);
+  scene_.trial.place(*scene_.shapes, object, pose, unit(pose.theta));
+  return scene_.trial.footprint(*scene_.shapes, object);
+}
+
+double Passage::gap(double time) const {
+  const Footprint p = footprint(a, one, time);
+  return distance(p, footprint(b, other, time));
+}
+
+bool Passage::touch_at(double time) const {
+  const Footprint p = footprint(a, one, time);
+  return touch(p, footprint(b, other, time));
+}
+
+bool Passage::in_contact(double time) const {
+  return touch_at(time) || (world_.collision_mode == kContact && gap(time) < kResting);
+}
+
+bool Passage::overlap_after(double when) const {
+  for (double later = kSoon; when + later < 1.0; later *= 1.5) {
+    if (touch_at(when + later)) return true;
+  }
+  return touch_at(1.0);
+}
+
+}  // namespace irsim
