@@ -86,6 +86,28 @@ Measure measure(const Part& part, const Vec2* vertices) {
   return sum;
 }
 
+/// The least extent of a piece.
+double width_of(const Bodies& bodies, const Convex& piece) {
+  if (piece.count == 1) return 2.0 * piece.radius;
+  double least = kInfinity;
+  for (int k = piece.first; k < piece.first + piece.count; ++k) {
+    double most = 0.0;
+    for (int v = piece.first; v < piece.first + piece.count; ++v)
+      most = std::max(most, dot(bodies.normals[k], bodies.vertices[k] - bodies.vertices[v]));
+    least = std::min(least, most);
+  }
+  return least;
+}
+
+/// The least extent of the thinnest piece of an object, or of the cells of a map.
+double width_of(const Bodies& bodies, int object) {
+  double least = kInfinity;
+  if (const OccupancyGrid* cells = bodies.cells[object]) least = std::min(cells->cell().x, cells->cell().y);
+  for (int p = bodies.begin[object]; p < bodies.begin[object + 1]; ++p)
+    least = std::min(least, width_of(bodies, bodies.pieces[p]));
+  return least;
+}
+
 }  // namespace
 
 std::vector<std::vector<Vec2>> convex_pieces(std::vector<Vec2> ring) {
@@ -112,6 +134,7 @@ std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shap
     }
     bodies->cells.push_back(shapes.is_map(i) ? shapes.parts[shapes.body[i].part].cells : nullptr);
     bodies->begin.push_back(static_cast<int>(bodies->pieces.size()));
+    bodies->width.push_back(width_of(*bodies, i));
     Vec2 centre = whole.size > 0.0 ? whole.moment * (1.0 / whole.size) : shapes.centre[i];
     const std::vector<double>& given = world.specs[i].centroid;
     const double scale = shapes.scale_of(i);

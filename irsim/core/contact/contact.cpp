@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "contact/parts.hpp"
 #include "contact/push.hpp"
 #include "contact/solver.hpp"
 #include "phases.hpp"
@@ -121,8 +122,13 @@ void ContactSolver::place_moving() {
 }
 
 void push_apart(const World& world, State& state, int w, Workspace& work) {
-  const Resolution usual{32, 480, 1e-6, world.step_time};
-  push_apart(world, state, w, work, usual, nullptr);
+  const int parts = parts_of_step(world, state, w, work);
+  const Resolution usual{32, 480, 1e-6, world.step_time / parts};
+  if (parts == 1) {
+    push_apart(world, state, w, work, usual, nullptr);
+  } else {
+    push_in_parts(world, state, w, work, usual, parts);
+  }
   update_contact_times(world, state, w);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/stride.hpp"
 #include "contact/overlap.hpp"
 #include "contact/packing.hpp"
 #include "geometry/vec.hpp"
@@ -61,6 +62,14 @@ struct ContactBuffers {
   std::vector<int> blocked;                // objects that have blocks
   std::vector<const Pair*> pair_of;        // pair of each contact
   std::vector<std::uint8_t> reached;
+  // of steps that are divided
+  std::vector<Contact> merged;
+  std::vector<Pose> end;              // (N,) where each object would be without contacts
+  std::vector<Vec3> drift;            // (N,) what contacts add to each part of its motion [m, m, rad]
+  std::vector<Vec3> twists;           // (N,) velocities before the contacts of a part
+  std::vector<Stride> strides;        // of the moving objects
+  std::vector<std::uint8_t> touched;  // (N,)
+  std::vector<std::pair<int, int>> met;
 };
 
 }  // namespace irsim

@@ -8,24 +8,6 @@
 namespace irsim {
 namespace {
 
-/// A box that holds a moving object throughout the step.
-Box box_of_step(const World& world, const State& state, int w, int object) {
-  const Scene& scene = state.scenes[w];
-  const Shapes& shapes = *scene.shapes;
-  const Box& end = scene.moving.boxes[shapes.placed[object].object];
-  const Pose &from = state.before[w * world.objects + object], &to = state.pose[w * world.objects + object];
-  const double x = from.x - to.x, y = from.y - to.y;
-  Box box{end.x0 + std::min(x, 0.0), end.y0 + std::min(y, 0.0), end.x1 + std::max(x, 0.0), end.y1 + std::max(y, 0.0)};
-  if (from.theta == to.theta) return box;
-  const Vec2 centre = shapes.centre[object];
-  const bool is_disc =
-      centre.x == 0.0 && centre.y == 0.0 && shapes.parts[shapes.body[object].part].kind == Kind::circle;
-  const double turn = std::fabs(stride_of(world, state, w, object).turn);
-  double wide =
-      is_disc ? 0.0 : std::min(turn, 2.0) * (std::fabs(centre.x) + std::fabs(centre.y) + shapes.radius[object]);
-  return {box.x0 - wide, box.y0 - wide, box.x1 + wide, box.y1 + wide};
-}
-
 /// Find the pairs that touch now, and those that touched since the last evaluation.
 void find_pairs(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];

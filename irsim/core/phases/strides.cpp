@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/distance.hpp"
+#include "collision/support.hpp"
 #include "collision/touch.hpp"
 #include "geometry/predicates.hpp"
 
@@ -26,6 +27,21 @@ Stride stride_of(const World& world, const State& state, int w, int object) {
   const int row = w * world.objects + object;
   const bool arc = world.integration == kExact && world.dynamics[object].driven;
   return Stride::between(state.before[row], state.pose[row], state.twist[row][2] * world.step_time, arc);
+}
+
+Box box_of_step(const World& world, const State& state, int w, int object) {
+  const Scene& scene = state.scenes[w];
+  const Shapes& shapes = *scene.shapes;
+  const Box& end = scene.moving.boxes[shapes.placed[object].object];
+  const Pose &from = state.before[w * world.objects + object], &to = state.pose[w * world.objects + object];
+  const double x = from.x - to.x, y = from.y - to.y;
+  Box box{end.x0 + std::min(x, 0.0), end.y0 + std::min(y, 0.0), end.x1 + std::max(x, 0.0), end.y1 + std::max(y, 0.0)};
+  if (from.theta == to.theta) return box;
+  const Vec2 centre = shapes.centre[object];
+  if (centre.x == 0.0 && centre.y == 0.0 && shapes.parts[shapes.body[object].part].kind == Kind::circle) return box;
+  const double turn = std::min(std::fabs(stride_of(world, state, w, object).turn), 2.0);
+  const double wide = turn * (std::fabs(centre.x) + std::fabs(centre.y) + shapes.radius[object]);
+  return {box.x0 - wide, box.y0 - wide, box.x1 + wide, box.y1 + wide};
 }
 
 Passage::Passage(const World& world, State& state, int w, int a_, int b_)
@@ -59,6 +75,30 @@ bool Passage::come_near() const {
   return squared(nearest_on_segment(from, to, {})) <= reach * reach;
 }
 
+bool Passage::stay_apart() const {
+  const Shapes& shapes = *scene_.shapes;
+  const auto placed = [&](int i) {
+    return (world_.is_static[i] ? scene_.fixed->outlines : scene_.moving).footprint(shapes, i);
+  };
+  const auto swing = [&](int i, const Stride& stride) {
+    if (stride.turn == 0.0) return 0.0;
+    const Vec2 centre = shapes.centre[i];
+    return std::fabs(stride.turn) * (std::fabs(centre.x) + std::fabs(centre.y) + shapes.radius[i]) + stride.bulge(0.0);
+  };
+  const Footprint p = placed(a), q = placed(b);
+  const Vec2 between = q.centre - p.centre, relative = one.stride.by - other.stride.by;
+  const double turning = swing(a, one.stride) + swing(b, other.stride) + kRounding;
+  const auto apart_along = [&](Vec2 axis) {
+    const double length = norm(axis);
+    if (!(length > 0.0)) return false;
+    axis = axis * (1.0 / length);
+    const double end = -support(q, axis * -1.0) - support(p, axis);
+    return end > kRounding && end + dot(axis, relative) > turning;  // both ends; in between it is a straight line
+  };
+  const Vec2 beside{-relative.y, relative.x};
+  return apart_along(between) || apart_along(dot(beside, between) < 0.0 ? beside * -1.0 : beside);
+}
+
 double Passage::first_contact(double begin, double end, Vec2& where) const {
   if (world_.unobstructed[a] || world_.unobstructed[b]) return kInfinity;
   if (one.stride.rests() && other.stride.rests()) return kInfinity;
@@ -69,7 +109,7 @@ double Passage::first_contact(double begin, double end, Vec2& where) const {
   for (const Contact& contact : scene_.contacts) {
     if (contact.a == a && contact.b == b) return kInfinity;  // they have pushed each other apart
   }
-  if (begin == 0.0 && !come_near()) return kInfinity;
+  if (begin == 0.0 && (!come_near() || stay_apart())) return kInfinity;
   return irsim::first_contact(one, other, begin, end, scene_.swept, where);
 }
 

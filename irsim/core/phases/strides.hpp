@@ -10,6 +10,9 @@ namespace irsim {
 /// The motion of an object in this step, from `State::before` to its present pose.
 Stride stride_of(const World& world, const State& state, int w, int object);
 
+/// A box that holds a moving object throughout the step, once `place_moving` has put it where the step ends.
+Box box_of_step(const World& world, const State& state, int w, int object);
+
 /// What happens between two objects a < b in a step.
 class Passage {
  public:
@@ -31,7 +34,10 @@ class Passage {
   Moving one, other;
 
  private:
+  /// Whether their bounding circles come near each other.
   bool come_near() const;
+  /// Whether a line certainly separates them throughout the step.
+  bool stay_apart() const;
   Footprint footprint(int object, const Moving& body, double time) const;
   bool touch_at(double time) const;
 

@@ -87,8 +87,8 @@ def _finding(context: Context, one: _Body, other: _Body, least: float, speed: fl
         f"'{one.record.name}' moves {metres(one.speed * dt)} per step{together}: it can pass through {thing} "
         f"({metres(other.shape.width)} thick) without ever touching it",
         given=one.record.vel_max,
-        fix=f"step_time: {min(longest, least / speed):.3g} or less, or a lower speed (limits are in m/s), or contacts: swept "
-        "in 'world'",
+        fix=f"step_time: {min(longest, least / speed):.3g} or less, or a lower speed (limits are in m/s), or "
+        "contacts: swept in 'world'",
     )
 
 

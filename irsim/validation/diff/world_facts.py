@@ -24,8 +24,8 @@ _DECIMALS = 9
 """Decimals of the numbers in a description."""
 _WORLD = (
     "width", "height", "offset", "step_time", "integration", "sample_time", "time_limit", "control_mode",
-    "collision_mode", "contacts", "after_arrival", "step_mode", "boundary", "seed", "obstacle_map", "mdownsample", "fog_map",
-    "fog_map_resolution", "zones",
+    "collision_mode", "contacts", "after_arrival", "step_mode", "boundary", "seed", "obstacle_map", "mdownsample",
+    "fog_map", "fog_map_resolution", "zones",
 )  # fmt: skip
 _RECORD = (
     "role", "group", "static", "unobstructed", "goal_threshold", "arrive_mode", "wander", "loop", "target_roles",

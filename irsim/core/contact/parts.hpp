@@ -1,0 +1,15 @@
+// Steps in which fast bodies meet something are divided, so that nothing passes through a body.
+#pragma once
+
+#include "contact/push.hpp"
+
+namespace irsim {
+
+/// Into how many parts a step must be divided: 1 unless a body that meets something moves farther in it than half of
+/// both are thick, or may push a body that far into a third one.
+int parts_of_step(const World& world, State& state, int w, Workspace& work);
+/// Move all objects of a world through the step part by part, and push overlapping bodies apart after each part. What
+/// contacts do to the velocity of a body changes the rest of its motion.
+void push_in_parts(const World& world, State& state, int w, Workspace& work, const Resolution& options, int parts);
+
+}  // namespace irsim
