@@ -108,7 +108,8 @@ def _advice(env: Env, event: Event) -> str:
     moved = {name: _step_length(env, name, event.step) for name in (event.object, event.partner)}
     name = max(moved, key=lambda name: moved[name])
     far = f"{called(env.scenario, name)} moved {metres(moved[name])} in that step; " if moved[name] else ""
-    return f"{far}lower step_time, or set world.contacts: swept"
+    other = ", or set world.contacts: swept" if env.scenario.world.contacts == "step_end" else ""
+    return f"{far}lower step_time{other}"
 
 
 def _step_length(env: Env, name: str | None, step: int) -> float:

@@ -103,6 +103,21 @@ def test_nothing_is_told_of_what_others_pass_through_or_where_steps_are_short() 
     assert "between two steps" not in short.summary
 
 
+def test_swept_contacts_are_collisions_and_told_once() -> None:
+    """They are not told as contacts between steps, too, and nothing is counted twice."""
+    text = scene().replace("step_time: 0.1", "step_time: 0.1, contacts: swept")
+    found = irsim.run(text=text)
+    assert (found.outcome, found.decisive_step) == ("collision", 14)
+    assert found.reason == "'runner' hit 'post' at 1.4 s near (5.02, 3.08)"
+    assert (found.robots[0].collision_count, found.contacts_between_steps) == (1, 0)
+    assert "between" not in found.summary
+    driven = irsim.run(text=text.replace("contacts: swept", "contacts: swept, collision_mode: unobstructed"))
+    assert driven.outcome == "collision"  # it drives on and arrives, after both
+    assert driven.reason == "'runner' hit 'post' at 1.4 s near (5.02, 3.08)"
+    assert driven.robots[0].collision_count == 2
+    assert "between two steps" not in driven.summary
+
+
 def test_robots_that_pass_through_each_other() -> None:
     fast = "kinematics: {name: omni}, shape: {name: circle, radius: 0.1}, behavior: {name: dash}, goal_threshold: 0.6"
     limits = "vel_max: [9, 9], vel_min: [-9, -9]"

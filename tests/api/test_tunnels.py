@@ -19,6 +19,15 @@ robot:
 obstacle: [{shape: {name: rectangle, length: 0.02, width: 10}, state: [10, 5, 0]}]
 """
 """A step is 0.45 m, the robot 0.2 m plus the wall 0.02 m: at the end of no step the two touch."""
+SWEPT = STOP.replace("collision_mode: stop", "collision_mode: stop, contacts: swept")
+CONTACT = """\
+world: {width: 20, height: 10, step_time: %s, collision_mode: contact, time_limit: 30}
+robot:
+  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.1}, state: [5.13, 5, 0], goal: [18, 5],
+     behavior: {name: dash}, vel_max: [3, 3], vel_min: [-3, -3]}
+obstacle: [{shape: {name: rectangle, length: 0.02, width: 10}, state: [10, 5, 0]}]
+"""
+"""A step of 0.1 s is 0.3 m; the wall stands in the way."""
 TOLD = "'robot_0' passed through 'obstacle_1' between two steps at 3.13 s near (9.99, 5.00)"
 CURE = "('robot_0' moved 0.45 m in that step; lower step_time, or set world.contacts: swept)"
 
@@ -57,3 +66,24 @@ def test_in_python(file: Path) -> None:
         env.step()
     assert [event.kind for event in env.events] == ["passed_through", "arrival"]
     env.end(ending_time=0.0)
+
+
+def test_a_swept_contact_stops_it_at_the_wall(file: Path) -> None:
+    file.write_text(SWEPT)
+    shown = CliRunner().invoke(app, ["run", file.name, "--require-success"])
+    assert shown.exit_code == 1
+    assert "'robot_0' hit 'obstacle_1' at 3.3 s near (9.99, 5.00)" in " ".join(shown.stdout.split())
+    found = irsim.run(file.name)
+    assert (found.outcome, found.contacts_between_steps) == ("collision", 0)
+    assert found.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)  # its radius before the face of the wall
+
+
+@pytest.mark.parametrize("step_time", [0.1, 0.5, 1])
+def test_nothing_passes_in_contact_mode(file: Path, step_time: float) -> None:
+    file.write_text(CONTACT % step_time)
+    shown = " ".join(CliRunner().invoke(app, ["run", file.name]).stdout.split())
+    assert "timeout: the robot did not arrive within 30 s" in shown
+    found = irsim.run(file.name)
+    assert (found.outcome, found.contacts_between_steps) == ("timeout", 0)
+    assert found.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)
+    assert "without touching" not in found.summary  # it leans on the wall

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.api.test_tunnels import CURE, STOP, TOLD
+from tests.api.test_tunnels import CONTACT, CURE, STOP, SWEPT, TOLD
 from tests.mcp.conftest import connected, data_of, text_of
 
 pytestmark = pytest.mark.anyio
@@ -20,3 +20,13 @@ async def test_a_wall_that_was_passed(workspace: Path) -> None:
     assert text_of(run).splitlines()[0] == f"success: {TOLD} {CURE}; the robot arrived at 8.4 s"
     assert data["next"].startswith("Do not trust this success")
     assert looked["summary"].startswith(TOLD)
+
+
+async def test_a_wall_that_stopped_the_robot(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        swept = await client.call_tool("run_episode", {"scenario_yaml": SWEPT})
+        pushed = await client.call_tool("run_episode", {"scenario_yaml": CONTACT % 0.1})
+    assert text_of(swept).startswith("collision: the robot collided; 'robot_0' hit 'obstacle_1' at 3.3 s")
+    assert "incidents" not in data_of(swept)
+    assert data_of(pushed)["outcome"] == "timeout"
+    assert "passed through" not in text_of(pushed)
