@@ -1245,12 +1245,12 @@ def neighbors(
     """
 
 def walls(
-    world: World, state: State, index: int, centre: tuple[float, float], reach: float, lines: bool
+    world: World, state: State, index: int, centre: tuple[float, float], reach: float
 ) -> list[tuple[float, float, float, float, int, int, int]]:
-    """Wall segments within `reach` [m] of a point: x, y of both ends, object, next, previous (-1 at a free end).
+    """Wall segments within `reach` [m] of a point: x, y of both ends, object, next, previous.
 
-    With `lines` they are those of static linestrings, else the counter-clockwise outlines of other static objects that
-    are neither circles nor `unobstructed`.
+    They are the outlines of the static objects that are not circles, with the solid side on their left. A linestring has
+    them on both sides. Those that are `unobstructed` have none, linestrings excepted.
     """
 
 def clearances(

@@ -173,7 +173,7 @@ GUIDES: dict[str, Guide] = {
     "avoidance": Guide(
         "what each behavior avoids",
         "dash drives straight and avoids nothing. rvo, orca, footprint_orca, avocado and sfm avoid other objects and "
-        "walls (behavior, or group_behavior for all but rvo), but find no path around walls: see dead-ends. follow "
+        "walls (behavior, or group_behavior for all but rvo) and pass single ones, but find no path: see dead-ends. follow "
         "plans a path and follows it with one of these: among walls, use follow with local: {name: orca}, for cars "
         "too. No behavior guarantees success: crowds can jam. What is lost, by drive: diff brakes and turns before it "
         "can go sideways; omni loses nothing; acker cannot turn on the spot, so it needs room beside it, a circle of "
@@ -222,8 +222,8 @@ GUIDES: dict[str, Guide] = {
     ),
     "dead-ends": Guide(
         "traps, and the behavior that gets out of them",
-        "dash, rvo, orca, avocado and sfm head for the goal and consider only what is near: in front of a concave "
-        "obstacle (a U, a corner, a long wall between them and the goal) they stay caught. In such a local minimum "
+        "dash, rvo, orca, avocado and sfm head for the goal and consider only what is near: in a concave "
+        "obstacle (a U, a corner, a room whose door is not straight ahead) they stay caught. Single walls they pass. In such a local minimum "
         "rvo, orca, avocado and sfm usually time out; dash drives into the obstacle, which is a collision "
         "(collision_mode stop), not a time-out. follow finds a path around it: it plans on the whole map, including "
         "what no sensor has seen. To test your own exploring behavior, leave out the key behavior and drive by a "

@@ -8,8 +8,32 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import shapely
 
-from tests.core.oracle import wrap
+from tests.core.oracle import rotation, wrap
+
+Walls = list[tuple[np.ndarray, np.ndarray]]
+
+
+@dataclass
+class Ring:
+    """The walls of one static object, the solid side on their left, and the corners of its hull, world frame."""
+
+    walls: Walls
+    points: np.ndarray
+
+    def distance(self, p: np.ndarray) -> float:
+        """Distance from the hull; 0 inside."""
+        return float(shapely.MultiPoint(self.points).convex_hull.distance(shapely.Point(p)))
+
+    def facing(self, view: View, reach: float) -> Walls:
+        """The walls within reach whose free side faces the object."""
+        p = view.position
+        return [
+            (a, b)
+            for a, b in self.walls
+            if cross(b - a, p - a) <= 0 and np.linalg.norm(nearest(a, b, p) - p) <= reach
+        ]
 
 
 @dataclass
@@ -21,8 +45,10 @@ class View:
     desired: np.ndarray
     radius: float
     discs: list[tuple[np.ndarray, np.ndarray, float]] = field(default_factory=list)  # centre, velocity, radius
-    lines: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
-    walls: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)  # inside on the left
+    goal: float = math.inf  # distance to the goal
+    ahead: np.ndarray = field(default_factory=lambda: np.zeros(2))  # direction of the goal
+    lines: Walls = field(default_factory=list)  # moving ones
+    rings: list[Ring] = field(default_factory=list)
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> float:
@@ -64,16 +90,83 @@ def wall_force(o: Any, view: View, point: np.ndarray) -> np.ndarray:
 
 
 def obstacle_force(o: Any, view: View) -> np.ndarray:
-    """Every segment of a line; of the outlines each distinct nearest point of a side that faces the object."""
-    force = sum((wall_force(o, view, nearest(a, b, view.position)) for a, b in view.lines), np.zeros(2))
-    points: list[np.ndarray] = []
-    for a, b in view.walls:
-        if cross(b - a, view.position - a) > 0:
-            continue
-        point = nearest(a, b, view.position)
-        if not any(np.allclose(point, other, atol=1e-12) for other in points):
-            points.append(point)
-    return force + sum((wall_force(o, view, point) for point in points), np.zeros(2))
+    """Every segment of a moving line, and every wall that faces the object; a corner of two such walls counts once."""
+    p = view.position
+    force = sum((wall_force(o, view, nearest(a, b, p)) for a, b in view.lines), np.zeros(2))
+    for ring in view.rings:
+        for (a, b), (c, d) in zip(ring.walls, [*ring.walls[1:], ring.walls[0]], strict=True):
+            if cross(b - a, p - a) > 0:
+                continue
+            shared = (p - b) @ (b - a) >= 0 and (p - c) @ (d - c) <= 0 and cross(d - c, p - c) <= 0
+            if not shared:
+                force = force + wall_force(o, view, nearest(a, b, p))
+    return force
+
+
+def past_walls(view: View, wanted: np.ndarray, reach: float = 3.0) -> np.ndarray:
+    """The wanted velocity turned to the tangent of what is in the way within `reach` and before the goal.
+
+    The side is that of the shorter way over the corner to the goal.
+    """
+    look = min(reach, view.goal)
+    ahead = math.atan2(wanted[1], wanted[0])
+    goal = view.goal * view.ahead
+
+    def tangents(ring: Ring) -> tuple[float, float, float]:
+        """A direction into the hull, and how far its tangents are to the right and to the left of it."""
+        reach = min(view.radius + 0.02, ring.distance(view.position) * (1 - 1e-6))
+        x, y = np.mean(ring.points, axis=0) - view.position
+        middle = math.atan2(y, x)
+        corners = [
+            (wrap(math.atan2(y, x) - middle), math.asin(min(1.0, reach / math.hypot(x, y))))
+            for x, y in ring.points - view.position
+        ]
+        return middle, min(a - half for a, half in corners), max(a + half for a, half in corners)
+
+    def blocking(angle: float, share: float) -> Ring | None:
+        w = np.array([math.cos(angle), math.sin(angle)])
+        for ring in view.rings:
+            if ring.distance(view.position) == 0:
+                continue
+            middle, right, left = tangents(ring)
+            walls = ring.facing(view, look + view.radius)
+            inside = right + 1e-9 < wrap(angle - middle) < left - 1e-9
+            if inside and any(time_to_wall(view, a, b, w) < look * share for a, b in walls):
+                return ring
+        return None
+
+    def edge(ring: Ring, angle: float, side: float) -> tuple[float, np.ndarray]:
+        """The direction of the tangent on one side, and the corner of the hull that it touches."""
+        middle, right, left = tangents(ring)
+        end = left if side > 0 else right
+        reach = min(view.radius + 0.02, ring.distance(view.position) * (1 - 1e-6))
+        offsets = ring.points - view.position
+        misses = [
+            abs(wrap(math.atan2(y, x) - middle) + side * math.asin(min(1.0, reach / math.hypot(x, y))) - end)
+            for x, y in offsets
+        ]
+        return angle + end - wrap(angle - middle), offsets[int(np.argmin(misses))]
+
+    def turned(side: float, share: float) -> tuple[float, float]:
+        """Length of the way and its direction."""
+        angle, length = ahead, view.goal
+        for _ in range(8):
+            ring = blocking(angle, share)
+            if ring is None:
+                return length, angle
+            angle, corner = edge(ring, angle, side)
+            if math.cos(angle - ahead) < 0.01:
+                break
+            length = float(np.linalg.norm(corner) + np.linalg.norm(goal - corner))
+        return math.inf, ahead
+
+    for share in (1.0, 0.5, 0.25, 0.125):
+        if blocking(ahead, share) is None:
+            return wanted
+        left, right = turned(1.0, share), turned(-1.0, share)
+        if min(left, right)[0] < math.inf:
+            return rotation((left if left[0] < right[0] - 1e-9 else right)[1] - ahead) @ wanted
+    return wanted
 
 
 def group_force(o: Any, view: View, companions: Sequence[tuple[np.ndarray, float]]) -> np.ndarray:
@@ -102,7 +195,7 @@ def group_force(o: Any, view: View, companions: Sequence[tuple[np.ndarray, float
 def sfm(o: Any, view: View, dt: float, companions: Sequence[tuple[np.ndarray, float]] = ()) -> np.ndarray:
     """Wanted velocity, world frame."""
     speed = np.linalg.norm(view.desired)
-    desired = view.desired / speed * o.vmax if speed > 0 else np.zeros(2)
+    desired = past_walls(view, view.desired) / speed * o.vmax if speed > 0 else np.zeros(2)
     social = np.zeros(2)
     for centre, velocity, _ in view.discs:
         if np.linalg.norm(centre - view.position) < o.neighbor_threshold:
@@ -118,10 +211,18 @@ def sfm(o: Any, view: View, dt: float, companions: Sequence[tuple[np.ndarray, fl
     return velocity * (o.vmax / fast) if fast > o.vmax else velocity
 
 
-def forward(velocity: np.ndarray, theta: float, *, tolerance: float, guarantee_time: float, max_rate: float) -> tuple:
+def forward(
+    velocity: np.ndarray,
+    theta: float,
+    *,
+    tolerance: float,
+    guarantee_time: float,
+    max_rate: float,
+    min_speed: float = 0.02,
+) -> tuple:
     """Forward speed, heading error and yaw rate for a wanted velocity (reference: 5.4)."""
     speed = float(np.hypot(*velocity))
-    if speed <= 0.02:
+    if speed <= min_speed:
         return 0.0, 0.0, 0.0
     error = -wrap(theta - math.atan2(velocity[1], velocity[0]))
     kept = 0.0 if abs(error) < tolerance else error
@@ -210,26 +311,35 @@ def samples(speed: float, acce: float, limit: float) -> np.ndarray:
     return grid if len(grid) else np.array([np.clip(speed, -limit, limit)])
 
 
+def rvo_walls(o: Any, view: View) -> tuple[Walls, Walls, float]:
+    """Walls that block what reaches them within a second, those to be passed among them, and how far one looks."""
+    reach = min(o.neighbor_threshold, view.radius + math.hypot(o.vxmax, o.vymax))
+    look = min(view.goal, o.neighbor_threshold) if view.desired.any() else 0.0
+    walls, passed = [], []
+    for ring in view.rings:
+        if look > 0 and ring.distance(view.position) > 0:
+            passed += ring.facing(view, max(reach, look + view.radius))
+        else:
+            walls += ring.facing(view, reach)
+    return walls + passed, passed, look
+
+
 def rvo(o: Any, view: View) -> list[tuple[float, float, float]]:
     """Candidates (cost, x, y) of the class that counts, best first.
 
     Several may be equally good to rounding: any of them is a right answer, the first one in exact arithmetic.
     """
     view.discs = [d for d in view.discs if np.linalg.norm(d[0] - view.position) < o.neighbor_threshold]
-    reach = min(o.neighbor_threshold, view.radius + math.hypot(o.vxmax, o.vymax))
-    view.walls = [
-        (a, b)
-        for a, b in view.walls
-        if cross(b - a, view.position - a) <= 0
-        and np.linalg.norm(nearest(a, b, view.position) - view.position) <= reach
-    ]
+    if view.desired.any():
+        view.desired = past_walls(view, view.desired, o.neighbor_threshold)
+    walls, passed, look = rvo_walls(o, view)
     obstacles = cones(o, view)
-    free, spoiled, walled = [], [], []
+    free, spoiled, walled, gaps = [], [], [], {}
     for x in samples(view.velocity[0], o.acce, o.vxmax):
         for y in samples(view.velocity[1], o.acce, o.vymax):
             w = np.array([x, y])
             far = float(np.linalg.norm(w - view.desired))
-            into_wall = [time_to_wall(view, a, b, w) for a, b in view.walls]
+            into_wall = [time_to_wall(view, a, b, w) for a, b in walls]
             times = [1e6]
             for centre, velocity, radius in view.discs:
                 gap2 = np.sum((centre - view.position) ** 2) - (view.radius + radius + 0.1) ** 2
@@ -248,4 +358,10 @@ def rvo(o: Any, view: View) -> list[tuple[float, float, float]]:
                 spoiled.append((penalty + far, x, y))
             else:
                 free.append((far, x, y))
+                gaps[x, y] = min(into_wall[len(walls) - len(passed) :], default=math.inf) * float(np.linalg.norm(w))
+    free.sort(key=lambda c: c[0])
+    for share in (1.0, 0.5, 0.25, 0.125) if passed else ():
+        past = [c for c in free if gaps[c[1:]] >= look * share]
+        if past and np.array(past[0][1:]) @ view.desired > 0.01 * view.desired @ view.desired:
+            return past
     return sorted(free or spoiled or walled, key=lambda c: c[0])

@@ -107,7 +107,7 @@ class Crowd:
             top = top[[0, 0]]
         distance = math.hypot(*way)
         desired = top * way / distance if distance > 0.1 else np.zeros(2)
-        view = oracle.View(position, self.velocity(i), desired, self.radius(i) + PADDING)
+        view = oracle.View(position, self.velocity(i), desired, self.radius(i) + PADDING, goal=distance, ahead=way / distance)
         for j, other in enumerate(self.specs):
             roles, role = spec["target_roles"], other["role"]
             mate = grouped and j < self.deciders
@@ -116,13 +116,17 @@ class Crowd:
             part = other["parts"][0]
             if isinstance(part, core.Linestring):
                 v = self.state.vertices(j, 0, True)
-                view.lines += list(itertools.pairwise(v))
+                edges = list(itertools.pairwise(v))
+                if self.drives[j] is not None:
+                    view.lines += edges
+                else:  # a static one has walls on both sides
+                    view.rings.append(oracle.Ring([*edges, *((b, a) for a, b in reversed(edges))], v))
             elif self.drives[j] is not None or isinstance(part, core.Circle):
                 centre = np.array(other["pose"][:2]) if mate else self.centroid(j)
                 view.discs.append((centre, self.velocity(j), self.radius(j)))
             elif not other.get("unobstructed"):
                 v = self.state.vertices(j, 0, True)
-                view.walls += list(zip(v, np.roll(v, -1, axis=0), strict=True))
+                view.rings.append(oracle.Ring(list(zip(v, np.roll(v, -1, axis=0), strict=True)), v))
         return view
 
     def control(self, i: int, velocity: np.ndarray, turning: dict[str, float], fastest: float = math.inf) -> np.ndarray:

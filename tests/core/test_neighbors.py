@@ -40,7 +40,7 @@ def test_neighbors_are_those_within_reach(count: int, reach: float) -> None:
     world, state = crowd(count, count, 20.0)
     everyone = core.neighbors(world, state, 0, (10.0, 10.0), 1e9)
     seen = {row[0]: np.array(row[1:3]) for row in everyone}
-    walls = {row[4] for lines in (False, True) for row in core.walls(world, state, 0, (10.0, 10.0), 1e9, lines)}
+    walls = {row[4] for row in core.walls(world, state, 0, (10.0, 10.0), 1e9)}
     lines = {row for row in range(count) if state.parts(row)[0] == "linestring"}
     assert set(seen) == set(range(count)) - walls - lines
     rng = np.random.default_rng(1)
@@ -86,7 +86,7 @@ def test_outlines_run_counter_clockwise_whatever_way_they_are_written() -> None:
     corners = [(0, 0), (2, 0), (2, 1), (1, 2)]
     for vertices in (corners, corners[::-1]):
         world, state = scene(obstacle(pose=[1.0, 2.0, 0.6], parts=[polygon(*vertices)]))
-        rows = core.walls(world, state, 0, (0.0, 0.0), 100.0, False)
+        rows = core.walls(world, state, 0, (0.0, 0.0), 100.0)
         assert len(rows) == 4
         a, b = np.array([row[:2] for row in rows]), np.array([row[2:4] for row in rows])
         area = 0.5 * np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
@@ -108,12 +108,11 @@ def test_what_is_a_wall_and_what_is_not() -> None:
         robot(parts=[rectangle(1, 1)]),
         mode=1,
     )
-    walls = core.walls(world, state, 0, (0.0, 0.0), 100.0, False)
-    assert [row[4] for row in walls] == [0] * 4 + [4] * 20
-    middle = np.array([np.add(row[:2], row[2:4]) / 2 for row in walls[8:]])
-    np.testing.assert_allclose(np.hypot(middle[:, 0] - 1.0, middle[:, 1]), 0.5, atol=1e-12)
-    lines = core.walls(world, state, 0, (0.0, 0.0), 100.0, True)
-    assert lines == [(0.0, 0.0, 1.0, 0.0, 3, 1, -1), (1.0, 0.0, 1.0, 1.0, 3, -1, 0)]
+    walls = core.walls(world, state, 0, (0.0, 0.0), 100.0)
+    assert [row[4] for row in walls] == [0] * 4 + [3] * 4 + [4] * 21  # one outline
+    there = [(0.0, 0.0, 1.0, 0.0, 3, 5, 7), (1.0, 0.0, 1.0, 1.0, 3, 6, 4)]
+    back = [(1.0, 1.0, 1.0, 0.0, 3, 7, 5), (1.0, 0.0, 0.0, 0.0, 3, 4, 6)]
+    assert walls[4:8] == there + back
     assert [row[0] for row in core.neighbors(world, state, 0, (0.0, 0.0), 100.0)] == [2, 5]
 
 
@@ -128,7 +127,7 @@ def test_walls_within_reach(seed: int, reach: float) -> None:
         ),
         mode=1,
     )
-    everything = core.walls(world, state, 0, (0.0, 0.0), math.inf, False)
+    everything = core.walls(world, state, 0, (0.0, 0.0), math.inf)
     assert len(everything) == 160
     centre = rng.uniform(0, 30, 2)
     near = []
@@ -137,4 +136,4 @@ def test_walls_within_reach(seed: int, reach: float) -> None:
         t = np.clip((centre - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
         if np.hypot(*(a + t * (b - a) - centre)) <= reach:
             near.append(row)
-    assert core.walls(world, state, 0, tuple(centre), reach, False) == near
+    assert core.walls(world, state, 0, tuple(centre), reach) == near

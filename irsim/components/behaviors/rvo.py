@@ -15,9 +15,10 @@ from irsim.options.units import Degrees, Meters, MetersPerSecond, Number
 class Rvo(BehaviorOptions):
     """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
 
-    Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second. While
-    it avoids nothing, or with `turning: fixed`, it turns at most at 1.5 rad/s, whatever `vel_max` allows. With `acce`
-    it brakes in time before walls and others. It does not get out of dead ends.
+    A wall that stands free (static rectangle, polygon, compound, linestring or block of a map) is passed on the nearer
+    side, a wall round the object blocks what reaches it within one second. While it avoids nothing, or with
+    `turning: fixed`, it turns at most at 1.5 rad/s, whatever `vel_max` allows. With `acce` it brakes in time before
+    walls and others. It does not get out of dead ends.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -36,7 +37,7 @@ class Rvo(BehaviorOptions):
     mode: Literal["rvo", "hrvo", "vo"] = "rvo"
     """Share of the avoidance taken: half (`rvo`), all (`vo`), or half on one side and all on the other (`hrvo`)."""
     neighbor_threshold: Annotated[Meters, Field(gt=0)] = 3.0
-    """Objects and walls farther away are ignored; linestrings are never ignored."""
+    """Objects and walls farther away are ignored."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
     """As in `orca`: null breaks ties only, 0 is the law of IR-SIM."""
     turning: Literal["limit", "fixed"] = "limit"

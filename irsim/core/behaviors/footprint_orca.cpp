@@ -87,7 +87,8 @@ FootprintSelf self_of(const FootprintOrcaOptions& options, const Decision& decis
 /// Find the static obstacles near an object: threats, and blockers of its way.
 void meet_static(FootprintSelf& self) {
   const World& world = self.world();
-  const Obstacles& obstacles = self.state().scenes[self.decision.w()].fixed->obstacles;
+  const Fixed& fixed = *self.state().scenes[self.decision.w()].fixed;
+  const Obstacles& obstacles = fixed.obstacles;
   FootprintCrowd& crowd = self.crowd;
   crowd.blockers.clear();
   for (const Blocker& one : crowd.resting) {
@@ -112,6 +113,7 @@ void meet_static(FootprintSelf& self) {
       crowd.walls.add(obstacles.discs[k - edges].centre, obstacles.discs[k - edges].radius);
     }
   }
+  Sight sight(fixed.walls, centre);
   const double horizon = self.options.timeHorizonObst;
   const double reach = horizon * self.speed + 2.0 * self.stride() + radius;
   for (int n = 0; n < crowd.walls.count(); ++n) {
@@ -119,7 +121,7 @@ void meet_static(FootprintSelf& self) {
     const Vec2 a = wall.corner[0], b = wall.corner[wall.count - 1];
     crowd.blockers.push_back({wall, (a + b) * 0.5, 0.5 * norm(b - a) + wall.round});
     const int k = found[n];
-    const bool faces = k >= edges || obstacles.edges[k].faces(centre);
+    const bool faces = k >= edges || sight.sees(obstacles.edges[k]);
     const double distance = norm(nearest_on_segment(a, b, centre) - centre) - wall.round;
     if (faces && distance < reach) {
       Threat threat{{}, 1.0, {}, horizon, true};

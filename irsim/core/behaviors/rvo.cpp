@@ -2,6 +2,7 @@
 
 #include "rvo/velocity_obstacles.hpp"
 #include "surroundings/ego.hpp"
+#include "surroundings/passing.hpp"
 #include "surroundings/sidestep.hpp"
 #include "surroundings/ties.hpp"
 
@@ -13,6 +14,8 @@ constexpr double kMinLength = 1e-6;   // shorter segments are skipped [m]
 constexpr double kThinAngle = 0.01;   // replaces an angle of zero in the apex of hrvo [rad]
 constexpr double kWallHorizon = 1.0;  // walls that would be reached sooner block a velocity [s]
 constexpr double kSameSample = 1e-9;  // two squared distances of samples differ by more [m^2/s^2]
+constexpr double kMargin = 1e-6;      // of the tangents of walls, so that rounding does not hide a wall beside one [m]
+constexpr double kSlowest = 1e-3;     // slower velocities near walls are rounding errors [m/s]
 constexpr double kMinRolling = 0.2;   // smallest share of the speed at which drives roll while they turn
 
 /// The apex of the cone of a disc. `sine` and `cosine` are those of half its angle.
@@ -60,31 +63,26 @@ bool look_around(const RvoOptions& options, const Decision& decision, const Ego&
   obstacles.clear();
   obstacles.horizon = kWallHorizon;
   const double room = ego.route != nullptr ? ego.route->wall_radius : ego.radius;  // distance to keep from walls [m]
-  const auto bar = [&](Vec2 a, Vec2 b, double radius) {
-    a = a - ego.position, b = b - ego.position;
-    const Vec2 nearest = nearest_on_segment(a, b, {});
-    obstacles.barriers.push_back({a, b, nearest, radius, norm(nearest) - radius});
-  };
+  WallView& walls = obstacles.walls;
   for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& disc) {
     const bool stands = decision.world.is_static[disc.object];
     if (ego.route == nullptr || !stands) {
       add_disc(options, ego, disc, obstacles);
       if (!options.sidestep && !meets) meets = tied(decision, ego, disc, options.neighbor_threshold, kTieSpeed);
     } else if (!decision.world.unobstructed[disc.object]) {
-      bar(disc.centre, disc.centre, room + disc.radius);
+      const Vec2 centre = disc.centre - ego.position;
+      walls.barriers.emplace_back(centre, centre, room + disc.radius);
     }
   });
+  if (!walls.barriers.empty()) walls.fronts.emplace_back().last = static_cast<int>(walls.barriers.size());
   const double fastest = norm({options.vxmax, options.vymax}) * ego.pace;
   const double reach = std::min(options.neighbor_threshold, room + fastest * kWallHorizon);
-  if (ego.route == nullptr) {
-    for_static_lines(decision, ego, kInfinity, [&](const Wall& line) { add_line(ego, line.a, line.b, obstacles); });
-  } else {
-    for_static_lines(decision, ego, reach, [&](const Wall& line) {
-      if (!decision.world.unobstructed[line.object]) bar(line.a, line.b, room);
-    });
-  }
   for_moving_lines(decision, ego, [&](Vec2 a, Vec2 b) { add_line(ego, a, b, obstacles); });
-  for_facing_walls(decision, ego, reach, [&](const Wall& wall) { bar(wall.a, wall.b, room); });
+  // A route already leads past walls.
+  const double goal = norm(decision.state.destination(ego.row).position() - ego.position);
+  const bool wants = ego.route == nullptr && squared(ego.desired) > 0.0;
+  const double look = wants ? std::min(goal, options.neighbor_threshold) : 0.0;
+  add_walls(decision, ego.id, ego.position, room, reach, look, kMargin, ego.route == nullptr, walls);
   return meets;
 }
 
@@ -106,7 +104,7 @@ constexpr bool moves_sideways(const OmniAngularOptions&) { return true; }
 double free_speed(const VelocityObstacles& obstacles, Vec2 velocity, Vec2 heading) {
   const double rolling = std::max(dot(velocity, heading), kMinRolling * norm(velocity));
   double speed = kInfinity;
-  for (const Barrier& wall : obstacles.barriers) {
+  for (const Barrier& wall : obstacles.walls.barriers) {
     const double share = wall.time(heading * rolling) / obstacles.horizon;
     if (share < 1.0) speed = std::min(speed, rolling * share);
   }
@@ -131,7 +129,9 @@ Turning sharp_turning(const Decision& decision, const Ego& ego) {
 
 Intent turning_intent(const VelocityObstacles& obstacles, const Ego& ego, Vec2 velocity, Vec2 heading,
                       Turning turning) {
-  if (ego.route != nullptr) turning.tolerance = 0.0;  // nearly parallel to a wall still ends in the wall
+  // Nearly parallel to a wall still ends in the wall, and what is slow there is no rounding error.
+  if (ego.route != nullptr || !obstacles.walls.barriers.empty()) turning.tolerance = 0.0;
+  if (ego.route == nullptr && !obstacles.walls.barriers.empty()) turning.min_speed = kSlowest;
   if (norm(velocity) <= turning.min_speed) {
     const bool alone = obstacles.cones.empty();
     turning.max_forward = 0.0;
@@ -147,6 +147,7 @@ void rvo(const RvoOptions& options, const Decision& decision, Intent* intents) {
   VelocityObstacles& obstacles = decision.work.velocity_obstacles;
   for (int k = 0; k < decision.count; ++k) {
     Ego ego = ego_of(decision, k);
+    ego.desired = past_walls(decision, k, ego.position, ego.radius, options.neighbor_threshold, ego.desired, true);
     ego.desired = sidestepped(decision, k, ego.desired, options.sidestep.value_or(0.0));
     if (look_around(options, decision, ego, obstacles)) ego.desired = keep_right(ego.desired, kTieTurn);
     const Vec2 v = ego.velocity;

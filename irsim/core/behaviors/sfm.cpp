@@ -2,6 +2,7 @@
 
 #include "geometry/predicates.hpp"
 #include "surroundings/ego.hpp"
+#include "surroundings/passing.hpp"
 #include "surroundings/sidestep.hpp"
 #include "surroundings/ties.hpp"
 
@@ -77,13 +78,11 @@ Vec2 obstacle_force(const SfmOptions& o, const Decision& decision, const Ego& eg
   const auto push = [&](Vec2 a, Vec2 b) { force = force + wall_force(o, ego, nearest_on_segment(a, b, ego.position)); };
   for_moving_lines(decision, ego, push);
   if (ego.route != nullptr) std::swap(force, moving);
-  for_static_lines(decision, ego, reach, [&](const Wall& line) {
-    if (ego.route == nullptr || !decision.world.unobstructed[line.object]) push(line.a, line.b);
-  });
   const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
-  for_facing_walls(decision, ego, reach, [&](const Wall& wall) {
+  for_facing_walls(decision, ego.id, ego.position, reach, [&](const Wall& wall) {
+    if (ego.route != nullptr && decision.world.unobstructed[wall.object]) return;
     if (shared_corner(walls, wall, ego.position)) return;
-    force = force + wall_force(o, ego, nearest_on_segment(wall.a, wall.b, ego.position));
+    push(wall.a, wall.b);
   });
   if (ego.route == nullptr) return force;
   for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& disc) {
@@ -158,6 +157,7 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
   decision.work.mutual_forces.begin(decision.objects, decision.count, world.objects);
   for (int k = 0; k < decision.count; ++k) {
     Ego ego = ego_of(decision, k);
+    ego.desired = past_walls(decision, k, ego.position, ego.radius, kWallLook, ego.desired, true);
     ego.desired = sidestepped(decision, k, ego.desired, options.sidestep.value_or(0.0));
     const Vec2 social = social_force(options, decision, k, ego);
     if (decision.work.mutual_forces.tied()) ego.desired = keep_right(ego.desired, kTieTurn);

@@ -95,14 +95,13 @@ std::vector<std::tuple<int, double, double, double, double, double>> near_object
 }
 
 std::vector<std::tuple<double, double, double, double, int, int, int>> near_walls(World& world, BoundState& bound,
-                                                                                  int w, Point centre, double reach,
-                                                                                  bool lines) {
+                                                                                  int w, Point centre, double reach) {
   State& state = bound.of(world);
   bound.check_world(w);
   const Fixed& fixed = *state.scenes[w].fixed;
   std::vector<int> found;
   std::vector<std::tuple<double, double, double, double, int, int, int>> out;
-  for_walls(lines ? fixed.lines : fixed.walls, found, {centre.first, centre.second}, reach, [&](const Wall& wall) {
+  for_walls(fixed.walls, found, {centre.first, centre.second}, reach, [&](const Wall& wall) {
     out.emplace_back(wall.a.x, wall.a.y, wall.b.x, wall.b.y, wall.object, wall.next, wall.previous);
   });
   return out;
@@ -191,8 +190,7 @@ void bind_steps(nb::module_& m) {
       nb::arg("step_time"));
   m.def("neighbors", &near_objects, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"),
         nb::arg("reach"));
-  m.def("walls", &near_walls, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"), nb::arg("reach"),
-        nb::arg("lines"));
+  m.def("walls", &near_walls, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"), nb::arg("reach"));
 }
 
 }  // namespace irsim

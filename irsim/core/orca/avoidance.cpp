@@ -8,6 +8,7 @@
 #include "orca/crowd.hpp"
 #include "orca/obstacles.hpp"
 #include "routes/right_of_way.hpp"
+#include "surroundings/passing.hpp"
 #include "surroundings/sidestep.hpp"
 #include "surroundings/ties.hpp"
 #include "world/features.hpp"
@@ -128,9 +129,11 @@ bool targets_role(const World& world, int viewer, int other) {
 }
 
 /// Add half-planes of walls and static circles, nearest edges first. Those that other planes cover are left out.
-void avoid_obstacles(double horizon, const World& world, const Obstacles& obstacles, const OrcaAgent& agent, int object,
+void avoid_obstacles(double horizon, const World& world, const Fixed& fixed, const OrcaAgent& agent, int object,
                      double speed, OrcaCrowd& all) {
+  const Obstacles& obstacles = fixed.obstacles;
   if (obstacles.empty()) return;
+  Sight sight(fixed.walls, agent.position);
   const double reach = horizon * speed + agent.radius;
   const int edges = static_cast<int>(obstacles.edges.size());
   std::vector<HalfPlane>& planes = all.planes;
@@ -144,10 +147,12 @@ void avoid_obstacles(double horizon, const World& world, const Obstacles& obstac
       return;
     }
     const Edge& edge = obstacles.edges[k];
-    if (!edge.faces(agent.position) || (edge.object >= 0 && !targets_role(world, object, edge.object))) return;
+    if (!sight.sees(edge) || (edge.object >= 0 && !targets_role(world, object, edge.object))) return;
     const Vec2 nearest = nearest_on_segment(edge.left.point, edge.right.point, agent.position);
     const double distance2 = squared(nearest - agent.position);
-    if (distance2 < reach * reach) all.edges.push_back({distance2, k});
+    // Of two edges whose nearest point is their common corner, the one that ends there comes first.
+    const int rank = dot(agent.position - edge.left.point, edge.direction()) <= 0.0 ? k + edges : k;
+    if (distance2 < reach * reach) all.edges.push_back({distance2, rank});
   });
   const auto covered = [&](Vec2 a, Vec2 b, double radius) {
     return std::any_of(planes.begin(), planes.end(),
@@ -155,7 +160,7 @@ void avoid_obstacles(double horizon, const World& world, const Obstacles& obstac
   };
   std::sort(all.edges.begin(), all.edges.end());
   for (const Nearest::Found& found : all.edges) {
-    const Edge& edge = obstacles.edges[found.index];
+    const Edge& edge = obstacles.edges[found.index % edges];
     HalfPlane plane;
     if (covered(edge.left.point, edge.right.point, agent.radius)) continue;
     if (avoid_edge(agent, edge, horizon, plane)) planes.push_back(plane);
@@ -271,22 +276,23 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
   const World& world = decision.world;
   const State& state = decision.state;
   const Scene& scene = state.scenes[decision.w()];
-  const Obstacles& obstacles = scene.fixed->obstacles;
+  const Fixed& fixed = *scene.fixed;
   OrcaCrowd& all = crowd(world, state, decision.work, decision.w());
   for (int k = 0; k < decision.count; ++k) {
     const int i = decision.objects[k], row = decision.row(k), self = scene.shapes->placed[i].object;
     const OrcaAgent& agent = all.movers[self];
     const double speed = top_speed(options, world, state, row, i);
     all.planes.clear();
-    Vec2 preferred = sidestepped(decision, k, preferred_velocity(options, world, state, row, i, speed),
-                                 options.sidestep.value_or(0.0));
+    const Vec2 straight = preferred_velocity(options, world, state, row, i, speed);
+    const Vec2 past = past_walls(decision, k, agent.position, agent.radius, kWallLook, straight, false);
+    Vec2 preferred = sidestepped(decision, k, past, options.sidestep.value_or(0.0));
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
     if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
     if (const Route* route = state.route_of(row)) {  // a route already avoids static objects
       const OrcaAgent inner{state.pose[row].position(), agent.velocity, route->wall_radius};
-      avoid_obstacles(std::min(options.timeHorizonObst, kRouteHorizon), world, obstacles, inner, i, speed, all);
+      avoid_obstacles(std::min(options.timeHorizonObst, kRouteHorizon), world, fixed, inner, i, speed, all);
     } else {
-      avoid_obstacles(options.timeHorizonObst, world, obstacles, agent, i, speed, all);
+      avoid_obstacles(options.timeHorizonObst, world, fixed, agent, i, speed, all);
     }
     const int hard = static_cast<int>(all.planes.size());
     if (reciprocity != nullptr) reciprocity->begin(k, self);

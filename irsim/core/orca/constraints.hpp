@@ -12,7 +12,7 @@ struct OrcaAgent {
   double radius;            // including the margin [m]
 };
 
-/// The point at which two edges of an outline meet or an open line ends. The solid side is on the left.
+/// The point at which two edges of an outline meet. The solid side is on the left.
 struct Corner {
   Vec2 point;          // [m], world frame
   Vec2 in, out;        // unit vectors of the edges that end and start at this corner
@@ -23,6 +23,7 @@ struct Corner {
 struct Edge {
   Corner left, right;
   int object;
+  int ring = -1;  // index in Walls::rings if this hides the edge from one side of it, else -1
 
   Vec2 direction() const { return left.out; }
   /// Whether `p` is on the free side.

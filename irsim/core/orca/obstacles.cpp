@@ -15,34 +15,26 @@ Vec2 along(const Wall& wall) {
   return length > 0.0 ? way * (1.0 / length) : Vec2{};
 }
 
-/// The unit vector of the next wall with a length in the direction of `link`; zero at a free end.
+/// The unit vector of the next wall with a length in the direction of `link`.
 Vec2 beyond(const Walls& walls, int k, int Wall::* link) {
   for (std::size_t tries = 0; tries < walls.list.size(); ++tries) {
     k = walls.list[k].*link;
-    if (k < 0) break;
     const Vec2 way = along(walls.list[k]);
     if (squared(way) > 0.0) return way;
   }
   return {};
 }
 
-/// Make a corner. A zero vector marks the side on which a line ends.
-Corner corner(Vec2 point, Vec2 in, Vec2 out) {
-  if (squared(in) == 0.0) in = out * -1.0;
-  if (squared(out) == 0.0) out = in * -1.0;
-  return {point, in, out, cross(in, out) >= 0.0};
-}
+Corner corner(Vec2 point, Vec2 in, Vec2 out) { return {point, in, out, cross(in, out) >= 0.0}; }
 
-void add_edges(std::vector<Edge>& edges, const Walls& walls, const World& world, bool both_sides) {
+void add_edges(std::vector<Edge>& edges, const Walls& walls, const World& world) {
   for (int k = 0; k < static_cast<int>(walls.list.size()); ++k) {
     const Wall& wall = walls.list[k];
     const Vec2 way = along(wall);
     if (squared(way) == 0.0 || (wall.object >= 0 && world.unobstructed[wall.object])) continue;
     const Vec2 before = beyond(walls, k, &Wall::previous), after = beyond(walls, k, &Wall::next);
-    edges.push_back({corner(wall.a, before, way), corner(wall.b, way, after), wall.object});
-    if (!both_sides) continue;
-    const Vec2 back = way * -1.0;
-    edges.push_back({corner(wall.b, after * -1.0, back), corner(wall.a, back, before * -1.0), wall.object});
+    const int ring = walls.rings[wall.ring].corners.empty() ? -1 : wall.ring;
+    edges.push_back({corner(wall.a, before, way), corner(wall.b, way, after), wall.object, ring});
   }
 }
 
@@ -50,8 +42,7 @@ void add_edges(std::vector<Edge>& edges, const Walls& walls, const World& world,
 
 Obstacles make_obstacles(const World& world, const Shapes& shapes, const Fixed& fixed) {
   Obstacles all;
-  add_edges(all.edges, fixed.walls, world, false);
-  add_edges(all.edges, fixed.lines, world, true);
+  add_edges(all.edges, fixed.walls, world);
   for (const int i : fixed.disc_ids) {
     if (world.unobstructed[i] || !fixed.outlines.footprint(shapes, i).box.finite()) continue;
     all.discs.push_back({fixed.outlines.footprint(shapes, i).centre, shapes.radius[i], i});

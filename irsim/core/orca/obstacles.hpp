@@ -5,6 +5,7 @@
 
 #include "collision/grid.hpp"
 #include "orca/constraints.hpp"
+#include "surroundings/walls.hpp"
 
 namespace irsim {
 
@@ -19,7 +20,26 @@ struct StaticDisc {
   int object;
 };
 
-/// All static obstacles of one scene. Open lines have an edge on either side.
+/// Tells which edges can be seen from a point. The walls that edges were made from know which side a ring hides.
+class Sight {
+ public:
+  Sight(const Walls& walls, Vec2 from) : walls_(walls), from_(from) {}
+
+  bool sees(const Edge& edge) {
+    if (!edge.faces(from_)) return false;
+    if (edge.ring < 0) return true;
+    if (edge.ring != ring_) ring_ = edge.ring, seen_ = walls_.rings[ring_].is_seen_from(from_);
+    return seen_;
+  }
+
+ private:
+  const Walls& walls_;
+  Vec2 from_;
+  int ring_ = -1;
+  bool seen_ = false;
+};
+
+/// All static obstacles of one scene.
 struct Obstacles {
   std::vector<Edge> edges;
   std::vector<StaticDisc> discs;
@@ -38,7 +58,7 @@ struct Obstacles {
   static constexpr std::size_t kMaxLinearObstacles = 16;  // up to this many are visited one by one
 };
 
-/// Make the obstacles from the walls, lines and discs of `fixed`.
+/// Make the obstacles from the walls and discs of `fixed`.
 Obstacles make_obstacles(const World& world, const Shapes& shapes, const Fixed& fixed);
 
 }  // namespace irsim

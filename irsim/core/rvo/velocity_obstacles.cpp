@@ -7,6 +7,8 @@ namespace {
 
 constexpr double kMinTime = 1e-4;           // smallest time to a collision in the penalty [s]
 constexpr double kMinRelativeSpeed = 1e-7;  // added to relative speeds [m/s]
+constexpr double kLeastShare = 0.125;        // of the distance within which walls are passed, before the last resort
+constexpr double kLeastProgress = 0.01;      // share of the desired velocity that leads past walls
 constexpr double kParallel = 1e-9;          // slower approaches count as parallel motion [m/s]
 
 /// The best sample so far: the one of smallest cost, then the first in order.
@@ -102,14 +104,15 @@ int next_free(std::vector<Cone>& cones, double x, const Axis& y, int j, int step
   return j;
 }
 
-Best nearest_free_sample(VelocityObstacles& o, const Axis& x, const Axis& y, Vec2 desired) {
+/// The free sample nearest to `desired`; none if `Best::i` is negative. `cones` change their order.
+Best nearest_free_sample(const VelocityObstacles& o, std::vector<Cone>& cones, const Axis& x, const Axis& y, Vec2 desired) {
   Best best;
   const int middle = y.nearest(desired.y);
   const auto column = [&](int i, double dx2) {
     const double at = x.at(i);
     for (const int step : {1, -1}) {
       for (int j = step > 0 ? middle : middle - 1;; j += step) {
-        j = next_free(o.cones, at, y, j, step);
+        j = next_free(cones, at, y, j, step);
         if (j < 0 || j >= y.count) break;
         const double dy = y.at(j) - desired.y, cost = dx2 + dy * dy;
         if (cost > best.cost) break;
@@ -121,6 +124,18 @@ Best nearest_free_sample(VelocityObstacles& o, const Axis& x, const Axis& y, Vec
   };
   outwards(x, desired.x, [&](double d) { return d <= best.cost; }, column);
   return best;
+}
+
+/// The free sample nearest to `desired` if walls that can be passed block the directions that meet them within `share` of
+/// their `look`. A ring whose hull is within this distance blocks all directions between its tangents.
+Best way_past_walls(VelocityObstacles& o, double share, const Axis& x, const Axis& y, Vec2 desired) {
+  o.look_share = share;
+  o.ways = o.cones;
+  for (const Front& front : o.walls.fronts) {
+    if (front.last > front.first && !front.everywhere && front.farthest < front.look * share)
+      o.ways.push_back({{}, front.tangents.left, front.tangents.right});
+  }
+  return nearest_free_sample(o, o.ways, x, y, desired);
 }
 
 /// The inverse of the time to the first collision at velocity w [1/s].
@@ -141,7 +156,7 @@ double urgency(const VelocityObstacles& o, Vec2 w, bool walls) {
     urgent = std::max(urgent, 1.0 / (t == 0.0 ? kMinTime : t));
   }
   if (walls) {
-    for (const Barrier& wall : o.barriers) urgent = std::max(urgent, 1.0 / clip(wall.time(w), kMinTime, kNever));
+    for (const Barrier& wall : o.walls.barriers) urgent = std::max(urgent, 1.0 / clip(wall.time(w), kMinTime, kNever));
   }
   return urgent;
 }
@@ -233,29 +248,6 @@ double Stretch::time(Vec2 w) const {
   return at >= -radius && at <= length + radius ? t : kNever;
 }
 
-double Barrier::time(Vec2 w) const {
-  if (!(dot(w, nearest) > 0.0)) return kInfinity;  // the ego moves away from the nearest point, and so from the wall
-  if (gap <= 0.0) return 0.0;
-  double first = kInfinity;
-  const Vec2 edge = b - a;
-  const double length = norm(edge);
-  if (length > 0.0) {
-    const double offset = cross(edge, a) / length, speed = cross(edge, w) / length;
-    const double towards = offset > 0.0 ? speed : -speed;
-    if (towards > 0.0) {
-      const double t = (std::fabs(offset) - radius) / towards;
-      const double at = dot(w * t - a, edge);
-      if (t >= 0.0 && at >= 0.0 && at <= length * length) first = t;
-    }
-  }
-  for (const Vec2 end : {a, b}) {
-    const double along = dot(w, end), speed2 = squared(w);
-    const double root = along * along - speed2 * (squared(end) - radius * radius);
-    if (along > 0.0 && root >= 0.0) first = std::min(first, std::max((along - std::sqrt(root)) / speed2, 0.0));
-  }
-  return first;
-}
-
 Axis Axis::arange(double start, double stop, double spacing) {
   const double count = std::ceil((stop - start) / spacing);
   return {start, (start + spacing) - start, count > 0.0 ? static_cast<int>(std::min(count, 1e6)) : 0};
@@ -269,18 +261,20 @@ void VelocityObstacles::clear() {
   cones.clear();
   approaches.clear();
   stretches.clear();
-  barriers.clear();
-}
-
-bool VelocityObstacles::walled(Vec2 w) const {
-  for (const Barrier& wall : barriers) {
-    if (wall.time(w) < horizon) return true;
-  }
-  return false;
+  walls.clear();
 }
 
 Vec2 best_sample(VelocityObstacles& obstacles, const Axis& x, const Axis& y, Vec2 desired, double factor) {
-  Best best = nearest_free_sample(obstacles, x, y, desired);
+  if (obstacles.walls.passable) {
+    for (double share = 1.0; share >= kLeastShare; share *= 0.5) {
+      const Best way = way_past_walls(obstacles, share, x, y, desired);
+      if (way.i < 0) continue;
+      const Vec2 w{x.at(way.i), y.at(way.j)};
+      if (dot(w, desired) > kLeastProgress * squared(desired)) return w;
+    }
+  }
+  obstacles.look_share = 0.0;
+  Best best = nearest_free_sample(obstacles, obstacles.cones, x, y, desired);
   if (best.i < 0) best = Penalties(obstacles, x, y, desired, factor, false).best();
   if (best.i < 0) best = Penalties(obstacles, x, y, desired, factor, true).best();
   return {x.at(best.i), y.at(best.j)};

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry/vec.hpp"
+#include "surroundings/wall_view.hpp"
 
 namespace irsim {
 
@@ -32,14 +33,6 @@ struct Stretch {
   double time(Vec2 w) const;
 };
 
-/// A wall relative to the ego.
-struct Barrier {
-  Vec2 a, b, nearest;  // relative to the ego [m]
-  double radius, gap;  // radius of the ego [m]; distance of its rim from the wall [m], negative inside
-  /// Time until the rim reaches the wall at velocity w [s]: 0 if it already does and comes nearer, infinite if never.
-  double time(Vec2 w) const;
-};
-
 constexpr double kNever = 1e6;  // stands for "no collision" in the penalty [s]
 
 /// Values of numpy.arange(start, stop, spacing).
@@ -58,16 +51,22 @@ struct VelocityObstacles {
   std::vector<Cone> cones;
   std::vector<Approach> approaches;
   std::vector<Stretch> stretches;
-  std::vector<Barrier> barriers;
-  double horizon = 0;  // a wall blocks velocities that reach it sooner [s]
+  WallView walls;
+  double horizon = 0;      // a wall blocks velocities that reach it sooner [s]
+  double look_share = 0;   // part of Front::look within which walls that can be passed block directions
+  std::vector<Cone> ways;  // scratch: `cones`, and those of walls whose every direction is blocked
 
   void clear();
-  bool walled(Vec2 w) const;
+  bool walled(Vec2 w) const { return walls.blocks(w, horizon, look_share); }
 };
 
 /// The sample of the grid nearest to `desired` outside all obstacles; among equally near ones the first by x, then y.
 /// If every sample is blocked, the one with the smallest penalty, which is `factor` divided by the time to the first
 /// collision plus the distance to `desired`. Samples that hit walls count only if no sample avoids them.
+///
+/// Walls that can be passed block every direction that meets them within Front::look, so that the sample leads past
+/// them. If no such sample leads nearer to `desired`, half of that distance counts, and so on; in the end they block only
+/// what reaches them before `horizon`, as walls that cannot be passed do.
 Vec2 best_sample(VelocityObstacles& obstacles, const Axis& x, const Axis& y, Vec2 desired, double factor);
 
 }  // namespace irsim

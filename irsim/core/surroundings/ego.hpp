@@ -47,15 +47,6 @@ void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& v
   });
 }
 
-/// Call `visit(line)` for the segments of static linestrings within `reach`.
-template <class Visit>
-void for_static_lines(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
-  const Walls& lines = decision.state.scenes[decision.w()].fixed->lines;
-  for_walls(lines, decision.work.walls, ego.position, reach, [&](const Wall& line) {
-    if (is_shown(decision, ego.id, line.object)) visit(line);
-  });
-}
-
 /// Call `visit(a, b)` for the segments of all moving linestrings, at any distance.
 template <class Visit>
 void for_moving_lines(const Decision& decision, const Ego& ego, Visit&& visit) {
@@ -74,12 +65,17 @@ void for_moving_lines(const Decision& decision, const Ego& ego, Visit&& visit) {
   }
 }
 
-/// Call `visit(wall)` for the walls within `reach` whose outside faces the ego.
+/// Call `visit(wall)`, by ascending index, for the walls within `reach` of `position` that face it and that object `id`
+/// sees.
 template <class Visit>
-void for_facing_walls(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+void for_facing_walls(const Decision& decision, int id, Vec2 position, double reach, Visit&& visit) {
   const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
-  for_walls(walls, decision.work.walls, ego.position, reach, [&](const Wall& wall) {
-    if (is_shown(decision, ego.id, wall.object) && cross(wall.b - wall.a, ego.position - wall.a) <= 0.0) visit(wall);
+  int ring = -1;
+  bool seen = false;
+  for_walls(walls, decision.work.walls, position, reach, [&](const Wall& wall) {
+    if (!is_shown(decision, id, wall.object) || cross(wall.b - wall.a, position - wall.a) > 0.0) return;
+    if (wall.ring != ring) ring = wall.ring, seen = walls.rings[ring].is_seen_from(position);
+    if (seen) visit(wall);
   });
 }
 

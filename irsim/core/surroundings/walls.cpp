@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "surroundings/outline_union.hpp"
 #include "world/features.hpp"
 #include "world/scene.hpp"
 #include "world/world.hpp"
@@ -11,43 +12,88 @@ namespace {
 
 constexpr double kCell = 4.0;                // cell size of the grid of walls [m]
 constexpr int kCorners = 16;                 // corners of the polygon that stands for a circle of a compound
+constexpr double kClosed = 1e-9;              // a line whose ends are this close is closed [m]
 constexpr std::size_t kMaxLinearWalls = 24;  // up to this many walls are searched one by one
 
-void add_part(Walls& walls, const Footprint& body, const Part& part, int object) {
+/// Whether the edges of a closed outline meet only where one follows the other.
+bool is_simple(const std::vector<Vec2>& ring) {
+  const std::size_t n = ring.size();
+  Vec2 where;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = i + 2; k < n; ++k) {
+      if (i == 0 && k == n - 1) continue;
+      if (segments_meet(ring[i], ring[i + 1], ring[k], ring[(k + 1) % n], where)) return false;
+    }
+  }
+  return n >= 3;
+}
+
+/// Add both sides of a polyline. A closed one has an outer and an inner side; any other is an outline without area,
+/// which leads to its end and back.
+void add_line(Walls& walls, const Vec2* vertices, int count, int object) {
+  std::vector<Vec2> ring(vertices, vertices + count);
+  const bool closed = norm(ring.front() - ring.back()) <= kClosed;
+  if (closed) ring = bends_of(vertices, count - 1);
+  if (closed && is_simple(ring)) {
+    if (twice_area(ring) < 0.0) std::reverse(ring.begin(), ring.end());
+    walls.add_ring(ring.data(), static_cast<int>(ring.size()), Inside::shell, object);
+    std::reverse(ring.begin(), ring.end());
+    return walls.add_ring(ring.data(), static_cast<int>(ring.size()), Inside::lining, object);
+  }
+  ring.assign(vertices, vertices + count);
+  for (int k = count - 2; k > 0; --k) ring.push_back(vertices[k]);
+  walls.add_ring(ring.data(), static_cast<int>(ring.size()), Inside::solid, object);
+}
+
+/// The outline of a polygon or of a circle of a compound, counter-clockwise.
+std::vector<Vec2> outline_of(const Footprint& body, const Part& part) {
   const Vec2* vertices = body.vertices + part.first;
+  std::vector<Vec2> ring;
+  if (part.kind == Kind::circle) {
+    const double radius = part.radius / std::cos(kPi / kCorners);
+    for (int k = 0; k < kCorners; ++k) ring.push_back(*vertices + unit(kTurn * k / kCorners) * radius);
+    return ring;
+  }
+  ring.assign(vertices, vertices + (part.last - part.first));
+  if (part.turn < 0.0) std::reverse(ring.begin() + 1, ring.end());
+  return ring;
+}
+
+void add_body(Walls& walls, const Footprint& body, int object) {
+  const Part& part = body.parts[0];
+  const Vec2* vertices = body.vertices + part.first;
+  const int count = part.last - part.first;
   if (part.cells != nullptr) {
     for (const std::vector<Vec2>& ring : part.cells->outline())
-      walls.add_ring(ring.data(), static_cast<int>(ring.size()), 1.0, object);
+      walls.add_ring(ring.data(), static_cast<int>(ring.size()),
+                     twice_area(ring) < 0.0 ? Inside::hollow : Inside::solid, object);
     return;
   }
+  if (part.kind == Kind::linestring) return add_line(walls, vertices, count + 1, object);
   if (part.kind == Kind::room) {  // a room is solid outside, so its outline is clockwise
-    std::vector<Vec2> ring(vertices, vertices + (part.last - part.first));
+    std::vector<Vec2> ring(vertices, vertices + count);
     if (twice_area(ring) > 0.0) std::reverse(ring.begin(), ring.end());
-    return walls.add_ring(ring.data(), static_cast<int>(ring.size()), 1.0, object);
+    return walls.add_ring(ring.data(), static_cast<int>(ring.size()), Inside::hollow, object);
   }
-  if (part.kind == Kind::polygon) return walls.add_ring(vertices, part.last - part.first, part.turn, object);
-  Vec2 corners[kCorners];
-  const double radius = part.radius / std::cos(kPi / kCorners);
-  for (int k = 0; k < kCorners; ++k) corners[k] = *vertices + unit(kTurn * k / kCorners) * radius;
-  walls.add_ring(corners, kCorners, 1.0, object);
+  std::vector<std::vector<Vec2>> rings;
+  for (int p = 0; p < body.count; ++p) rings.push_back(outline_of(body, body.parts[p]));
+  if (rings.size() > 1) rings = union_of(rings);
+  for (const std::vector<Vec2>& ring : rings)
+    walls.add_ring(ring.data(), static_cast<int>(ring.size()),
+                   rings.size() > 1 && twice_area(ring) < 0.0 ? Inside::lining : Inside::solid, object);
 }
 
 }  // namespace
 
-void Walls::add_ring(const Vec2* corners, int count, double turn, int object) {
-  const int first = static_cast<int>(list.size());
-  const auto corner = [&](int k) { return corners[turn < 0.0 ? (count - k) % count : k % count]; };
-  for (int k = 0; k < count; ++k) {
-    list.push_back({corner(k), corner(k + 1), object, first + (k + 1) % count, first + (k + count - 1) % count});
+void Walls::add_ring(const Vec2* corners, int count, Inside inside, int object) {
+  const std::vector<Vec2> bends = bends_of(corners, count);
+  const int first = static_cast<int>(list.size()), n = static_cast<int>(bends.size());
+  if (n < 2) return;
+  for (int k = 0; k < n; ++k) {
+    list.push_back({bends[k], bends[(k + 1) % n], object, first + (k + 1) % n, first + (k + n - 1) % n,
+                    static_cast<int>(rings.size())});
   }
-}
-
-void Walls::add_chain(const Vec2* corners, int count, int object) {
-  const int first = static_cast<int>(list.size()), edges = count - 1;
-  for (int k = 0; k < edges; ++k) {
-    list.push_back(
-        {corners[k], corners[k + 1], object, k + 1 < edges ? first + k + 1 : -1, k > 0 ? first + k - 1 : -1});
-  }
+  rings.emplace_back(bends, inside, object);
 }
 
 void Walls::build() {
@@ -88,21 +134,9 @@ Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed) {
   for (const int i : world.fixed_objects) {
     const Footprint body = fixed.outlines.footprint(shapes, i);
     const Kind kind = body.parts[0].kind;
-    const bool plain = body.count == 1 && (kind == Kind::circle || kind == Kind::linestring);
-    if (world.unobstructed[i] || plain || !body.box.finite() || (kind == Kind::cells && !avoids)) continue;
-    for (int p = 0; p < body.count; ++p) add_part(walls, body, body.parts[p], i);
-  }
-  walls.build();
-  return walls;
-}
-
-Walls make_lines(const World& world, const Shapes& shapes, const Fixed& fixed) {
-  Walls walls;
-  for (const int i : world.fixed_objects) {
-    const Footprint body = fixed.outlines.footprint(shapes, i);
-    const Part& part = body.parts[0];
-    if (part.kind == Kind::linestring && body.box.finite())
-      walls.add_chain(body.vertices + part.first, part.last - part.first + 1, i);
+    if ((world.unobstructed[i] && kind != Kind::linestring) || !body.box.finite()) continue;
+    if ((body.count == 1 && kind == Kind::circle) || (kind == Kind::cells && !avoids)) continue;
+    add_body(walls, body, i);
   }
   walls.build();
   return walls;

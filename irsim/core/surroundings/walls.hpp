@@ -1,4 +1,4 @@
-// Walls: the segments of static objects other than circles.
+// Walls: the segments of static objects other than circles. However an outline is written, its walls are the same.
 #pragma once
 
 #include <vector>
@@ -6,6 +6,7 @@
 #include "collision/grid.hpp"
 #include "geometry/predicates.hpp"
 #include "geometry/vec.hpp"
+#include "surroundings/rings.hpp"
 
 namespace irsim {
 
@@ -17,29 +18,28 @@ struct Shapes;
 struct Wall {
   Vec2 a, b;
   int object;
-  int next, previous;  // walls that start at b and end at a; -1 at a free end
+  int next, previous;  // walls that start at b and end at a
+  int ring;            // index in Walls::rings
 };
 
-/// Segments and a grid to find them.
+/// Segments in rings, and a grid to find them. The walls of a ring are in a row.
 struct Walls {
   std::vector<Wall> list;
+  std::vector<Ring> rings;
   Grid grid;
 
-  /// Add a closed outline of `count` corners, which are clockwise if `turn` < 0.
-  void add_ring(const Vec2* corners, int count, double turn, int object);
-  /// Add an open polyline.
-  void add_chain(const Vec2* corners, int count, int object);
+  /// Add a closed outline. Its solid side is on the left of its walls.
+  void add_ring(const Vec2* corners, int count, Inside inside, int object);
   /// Build the grid after the last wall was added; queries are possible afterwards.
   void build();
   /// Write the indices, ascending, of the walls within `reach` [m] of `centre` to `found`.
   void within(Vec2 centre, double reach, std::vector<int>& found) const;
 };
 
-/// The outlines of static objects that are neither circles nor linestrings nor `unobstructed`. A polygon stands for a
-/// circle that is part of a compound. Outlines of maps are left out if no behavior avoids obstacles.
+/// The outlines of static objects other than circles. Linestrings have walls on both sides, also those that are
+/// `unobstructed`; other shapes that are have none. The parts of a compound make one outline, in which a polygon stands
+/// for a circle. Outlines of maps are left out if no behavior avoids obstacles.
 Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed);
-/// The segments of static linestrings, including `unobstructed` ones.
-Walls make_lines(const World& world, const Shapes& shapes, const Fixed& fixed);
 
 /// Call `visit(wall)` for each wall within `reach` [m] of `centre`, by ascending index. `found` is scratch memory.
 template <class Visit>

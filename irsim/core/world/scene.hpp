@@ -26,7 +26,7 @@ struct Fixed {
   Outlines outlines;
   Grid grid;
   std::vector<Pair> pairs;    // static objects that touch each other
-  Walls walls, lines;         // outlines of obstacles; segments of linestrings
+  Walls walls;                // outlines of static objects other than circles
   std::vector<int> disc_ids;  // ids of the circles
   Points disc_points;         // centres of these circles
   Obstacles obstacles;        // all of these in the form that `orca` needs

@@ -47,6 +47,7 @@ struct Workspace {
   ContactBuffers contacts;
   std::vector<int> walls;  // walls found near an object
   VelocityObstacles velocity_obstacles;
+  WallView wall_view;  // walls in the way of an object
   OrcaCrowd orca;
   std::vector<Opinion> opinions;  // those of the step before, of the object that decides
   SearchMemory search;            // memory of planners

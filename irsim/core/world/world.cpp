@@ -290,7 +290,6 @@ std::shared_ptr<const Fixed> make_fixed(const World& world, const Shapes& shapes
   }
   fixed->disc_points.build(centres, kDiscCell);
   fixed->walls = make_walls(world, shapes, *fixed);
-  fixed->lines = make_lines(world, shapes, *fixed);
   fixed->obstacles = make_obstacles(world, shapes, *fixed);
   for (const int i : world.fixed_objects) {
     const Footprint body = fixed->outlines.footprint(shapes, i);

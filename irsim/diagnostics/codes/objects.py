@@ -157,13 +157,13 @@ OBJECTS: dict[str, Code] = {
     "dash-into-obstacle": Code(
         "straight line to the goal is blocked",
         "'dash' drives straight to the goal and avoids nothing, and an obstacle is on that line. Example: an "
-        "obstacle at [5, 5] between [1, 1] and [9, 9]; use rvo or orca to avoid single round objects, and 'follow' "
-        "around walls and through buildings.",
+        "obstacle at [5, 5] between [1, 1] and [9, 9]; use rvo or orca to pass single obstacles, and 'follow' out of "
+        "dead ends and through buildings.",
     ),
     "needs-planning": Code(
         "behavior does not plan a path around obstacles",
-        "'rvo', 'sfm', 'orca' and 'avocado' choose a velocity for the next seconds. Before a flat wall, or in a dead "
-        "end, they stop where every step aside leads away from the goal. The finding names that place, or compares "
+        "'rvo', 'sfm', 'orca' and 'avocado' choose a velocity for the next seconds. They pass single obstacles, but "
+        "in a dead end they stop where every step aside leads away from the goal. The finding names that place, or compares "
         "the path around the obstacle with the straight line. Example: a maze with 'rvo'; write behavior: {name: "
         "follow, planner: astar, local: rvo}, or give waypoints.",
     ),

@@ -1,4 +1,4 @@
-"""Flat walls on which a behavior without path planning gets stuck, at the point of the wall nearest to the goal."""
+"""Walls of dead ends in which a behavior without path planning gets stuck, at the point nearest to the goal."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
+
+import shapely
 
 import irsim._core as core
 from irsim.validation.feasibility.clearance_grid import Point
@@ -38,20 +40,27 @@ def trap_of(scene: Scene, leg: Leg) -> Trap | None:
     """The side that the straight line meets first, if its point nearest to the goal is not near one of its ends.
 
     A robot that slides along the side towards the goal stops at that point, as every further step leads away from the
-    goal. From a point near an end it gets around the corner.
+    goal. From a point near an end it gets around the corner. Only obstacles whose convex hull holds the start count: the
+    behaviors pass all others on the nearer side.
     """
     best: tuple[float, Trap | None] = (math.inf, None)
     path = [core.Linestring(vertices=[list(leg.start), list(leg.goal)])]
     for thing in scene.things:
         if math.dist(leg.start, leg.goal) == 0 or not core.intersects(path, [0.0, 0.0, 0.0], *thing):
             continue
+        if not _surrounds(thing, leg.start):
+            continue
         for a, b, line in _sides(thing):
             met = _meets(leg.start, leg.goal, a, b)
             if met is not None and met < best[0]:
                 best = met, _trap(a, b, leg, line)
-        if not any(True for _ in _sides(thing)):  # a circle or a map has no sides
-            return None
     return best[1]
+
+
+def _surrounds(thing: Thing, place: Point) -> bool:
+    """Whether the convex hull of the sides of an obstacle holds a place. A circle or a map has no sides."""
+    corners = [end for a, b, _ in _sides(thing) for end in (a, b)]
+    return bool(corners) and bool(shapely.MultiPoint(corners).convex_hull.contains(shapely.Point(place)))
 
 
 def _trap(a: Point, b: Point, leg: Leg, line: bool) -> Trap | None:

@@ -252,9 +252,9 @@ def _report_dash(mover: Mover, leg: Leg, trap: Trap | None, scene: Scene, tally:
         "on that line",
         "behavior: {name: follow} plans a path around it; "
         + (
-            "rvo and orca get around single round obstacles but stay caught in dead ends"
+            "rvo, sfm and orca get around single obstacles but stay caught in dead ends"
             if trap is None
-            else "rvo, sfm and orca stop before a flat wall"
+            else "rvo, sfm and orca stay caught in this dead end"
         ),
         scene.seed,
         serious=False,

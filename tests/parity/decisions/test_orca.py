@@ -21,6 +21,10 @@ EXCEPTIONS = {
 """(snapshot, agent) of recorded answers that are not reproduced: 5 of 6400."""
 
 
+AHEAD = 1e-3
+"""Distance [m] of the goals. No wall is before them, so the wanted velocity leads straight on, as that of RVO2 does."""
+
+
 def decide(index: int) -> np.ndarray:
     """(AGENTS, 2) velocities of the core for one recorded snapshot."""
     data = {name: values[index].astype(float) for name, values in RECORDED.items()}
@@ -43,7 +47,8 @@ def decide(index: int) -> np.ndarray:
             pose=[*position, 0.0],
             control=[*velocity, 0.0],
             vel_max=[top, top, 0.0],
-            goals=[goal],
+            goals=[position + AHEAD * (goal - position) / np.linalg.norm(goal - position)],
+            goal_threshold=AHEAD / 2,
             behavior=behavior,
         )
         for radius, position, velocity, top, goal in zip(
