@@ -223,7 +223,8 @@ GUIDES: dict[str, Guide] = {
     "dead-ends": Guide(
         "traps, and the behavior that gets out of them",
         "dash, rvo, orca, avocado and sfm head for the goal and consider only what is near: in a concave "
-        "obstacle (a U, a corner, a room whose door is not straight ahead) they stay caught. Single walls they pass. In such a local minimum "
+        "obstacle (a U, a corner, a room whose door is not straight ahead) they stay caught. Single walls they "
+        "pass. In such a local minimum "
         "rvo, orca, avocado and sfm usually time out; dash drives into the obstacle, which is a collision "
         "(collision_mode stop), not a time-out. follow finds a path around it: it plans on the whole map, including "
         "what no sensor has seen. To test your own exploring behavior, leave out the key behavior and drive by a "

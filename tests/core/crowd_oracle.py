@@ -30,9 +30,7 @@ class Ring:
         """The walls within reach whose free side faces the object."""
         p = view.position
         return [
-            (a, b)
-            for a, b in self.walls
-            if cross(b - a, p - a) <= 0 and np.linalg.norm(nearest(a, b, p) - p) <= reach
+            (a, b) for a, b in self.walls if cross(b - a, p - a) <= 0 and np.linalg.norm(nearest(a, b, p) - p) <= reach
         ]
 
 

@@ -107,7 +107,9 @@ class Crowd:
             top = top[[0, 0]]
         distance = math.hypot(*way)
         desired = top * way / distance if distance > 0.1 else np.zeros(2)
-        view = oracle.View(position, self.velocity(i), desired, self.radius(i) + PADDING, goal=distance, ahead=way / distance)
+        view = oracle.View(
+            position, self.velocity(i), desired, self.radius(i) + PADDING, goal=distance, ahead=way / distance
+        )
         for j, other in enumerate(self.specs):
             roles, role = spec["target_roles"], other["role"]
             mate = grouped and j < self.deciders

@@ -204,11 +204,12 @@ def test_in_random_scenes_no_single_place_is_named() -> None:
     assert "is free" not in str(item.fix)
 
 
-def test_a_wall_stops_nobody_who_gets_around_its_end() -> None:
+def test_a_pocket_stops_nobody_who_gets_around_its_end() -> None:
     """Sliding towards the goal, the body passes an end that is nearer than its radius."""
-    for low, expected in ((4.75, []), (4.0, ["needs-planning"])):
-        wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 9 - low}, "state": [6, (low + 9) / 2, 0]}
-        assert codes(scenario(ROBOT, wall)) == expected, low
+    robot = {**ROBOT, "state": [3.5, 5, 0]}
+    for end, expected in ((5.25, []), (6.0, ["needs-planning"])):
+        hook = {"name": "linestring", "vertices": [[2, 8], [2, 2], [6, 2], [6, end]]}
+        assert codes(scenario(robot, {"shape": hook, "state": [0, 0, 0]})) == expected, end
 
 
 HALL = """

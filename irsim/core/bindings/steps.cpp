@@ -190,7 +190,8 @@ void bind_steps(nb::module_& m) {
       nb::arg("step_time"));
   m.def("neighbors", &near_objects, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"),
         nb::arg("reach"));
-  m.def("walls", &near_walls, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"), nb::arg("reach"));
+  m.def("walls", &near_walls, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"),
+        nb::arg("reach"));
 }
 
 }  // namespace irsim

@@ -7,8 +7,8 @@ namespace {
 
 constexpr double kMinTime = 1e-4;           // smallest time to a collision in the penalty [s]
 constexpr double kMinRelativeSpeed = 1e-7;  // added to relative speeds [m/s]
-constexpr double kLeastShare = 0.125;        // of the distance within which walls are passed, before the last resort
-constexpr double kLeastProgress = 0.01;      // share of the desired velocity that leads past walls
+constexpr double kLeastShare = 0.125;       // of the distance within which walls are passed, before the last resort
+constexpr double kLeastProgress = 0.01;     // share of the desired velocity that leads past walls
 constexpr double kParallel = 1e-9;          // slower approaches count as parallel motion [m/s]
 
 /// The best sample so far: the one of smallest cost, then the first in order.
@@ -105,7 +105,8 @@ int next_free(std::vector<Cone>& cones, double x, const Axis& y, int j, int step
 }
 
 /// The free sample nearest to `desired`; none if `Best::i` is negative. `cones` change their order.
-Best nearest_free_sample(const VelocityObstacles& o, std::vector<Cone>& cones, const Axis& x, const Axis& y, Vec2 desired) {
+Best nearest_free_sample(const VelocityObstacles& o, std::vector<Cone>& cones, const Axis& x, const Axis& y,
+                         Vec2 desired) {
   Best best;
   const int middle = y.nearest(desired.y);
   const auto column = [&](int i, double dx2) {
@@ -126,8 +127,8 @@ Best nearest_free_sample(const VelocityObstacles& o, std::vector<Cone>& cones, c
   return best;
 }
 
-/// The free sample nearest to `desired` if walls that can be passed block the directions that meet them within `share` of
-/// their `look`. A ring whose hull is within this distance blocks all directions between its tangents.
+/// The free sample nearest to `desired` if walls that can be passed block the directions that meet them within `share`
+/// of their `look`. A ring whose hull is within this distance blocks all directions between its tangents.
 Best way_past_walls(VelocityObstacles& o, double share, const Axis& x, const Axis& y, Vec2 desired) {
   o.look_share = share;
   o.ways = o.cones;

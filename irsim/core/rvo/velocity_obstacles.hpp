@@ -65,8 +65,8 @@ struct VelocityObstacles {
 /// collision plus the distance to `desired`. Samples that hit walls count only if no sample avoids them.
 ///
 /// Walls that can be passed block every direction that meets them within Front::look, so that the sample leads past
-/// them. If no such sample leads nearer to `desired`, half of that distance counts, and so on; in the end they block only
-/// what reaches them before `horizon`, as walls that cannot be passed do.
+/// them. If no such sample leads nearer to `desired`, half of that distance counts, and so on; in the end they block
+/// only what reaches them before `horizon`, as walls that cannot be passed do.
 Vec2 best_sample(VelocityObstacles& obstacles, const Axis& x, const Axis& y, Vec2 desired, double factor);
 
 }  // namespace irsim

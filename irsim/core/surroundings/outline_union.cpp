@@ -7,8 +7,8 @@
 namespace irsim {
 namespace {
 
-constexpr double kMeets = 1e-9;  // points and edges this close meet [m]
-constexpr double kSameCorner = 1e-7;   // ends of pieces this close are one corner [m]
+constexpr double kMeets = 1e-9;       // points and edges this close meet [m]
+constexpr double kSameCorner = 1e-7;  // ends of pieces this close are one corner [m]
 
 using Corners = std::vector<Vec2>;
 
@@ -74,8 +74,8 @@ void add_pieces(const std::vector<Corners>& polygons, std::size_t self, std::vec
   }
 }
 
-/// The unused piece that starts at the end of `last` and turns farthest to the left there, so that bodies which touch in
-/// one corner keep rings of their own; null without one.
+/// The unused piece that starts at the end of `last` and turns farthest to the left there, so that bodies which touch
+/// in one corner keep rings of their own; null without one.
 Piece* next_piece(std::vector<Piece>& pieces, const Piece& last) {
   Piece* best = nullptr;
   double most = -kInfinity;

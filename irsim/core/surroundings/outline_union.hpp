@@ -7,8 +7,9 @@
 
 namespace irsim {
 
-/// The outline of the union of simple counter-clockwise polygons that may overlap or touch: counter-clockwise rings, and
-/// clockwise ones round its holes. If rounding errors leave no closed outline, the result is the polygons themselves.
+/// The outline of the union of simple counter-clockwise polygons that may overlap or touch: counter-clockwise rings,
+/// and clockwise ones round its holes. If rounding errors leave no closed outline, the result is the polygons
+/// themselves.
 ///
 /// Method: every edge is cut where it meets other polygons; the pieces inside of one of them are dropped, and so are
 /// the pieces on a common edge, except one if both polygons are on the same side. What is left is joined to rings.

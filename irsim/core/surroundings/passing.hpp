@@ -5,7 +5,8 @@
 // along a tangent of what is in the way:
 //  - A ring (rings.hpp) is in the way if the disc of the object, moved straight to the goal, meets one of its walls
 //    before the goal and within `look`. A goal in front of a wall or a free gap therefore changes nothing.
-//  - The turn to either side goes on until nothing is in the way. The side of the shorter way over the corner to the goal
+//  - The turn to either side goes on until nothing is in the way. The side of the shorter way over the corner to the
+//  goal
 //    counts: on that way the other one never becomes shorter. In a tie it is the right one.
 //  - If both sides lead away from the goal, half of the distance counts, and so on. In a room or a corridor whose walls
 //    leave no way round, the wanted velocity stays as it is.

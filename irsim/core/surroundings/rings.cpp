@@ -6,9 +6,9 @@
 namespace irsim {
 namespace {
 
-constexpr double kSamePlace = 1e-9;  // corners this close are one [m]
+constexpr double kSamePlace = 1e-9;       // corners this close are one [m]
 constexpr double kTouching = 1.0 - 1e-6;  // at its full distance the tangent of a corner is a root of a rounding error
-constexpr double kStraight = 1e-9;   // a smaller sine of a turn is a rounding error
+constexpr double kStraight = 1e-9;        // a smaller sine of a turn is a rounding error
 
 bool goes_straight(Vec2 a, Vec2 b, Vec2 c) {
   const Vec2 in = b - a, out = c - b;

@@ -1,5 +1,5 @@
-// Walls as a disc sees them that wants to get somewhere: how far it can move in a direction, and the tangents of what it
-// can pass.
+// Walls as a disc sees them that wants to get somewhere: how far it can move in a direction, and the tangents of what
+// it can pass.
 #pragma once
 
 #include <vector>

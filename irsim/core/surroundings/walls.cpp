@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCell = 4.0;                // cell size of the grid of walls [m]
 constexpr int kCorners = 16;                 // corners of the polygon that stands for a circle of a compound
-constexpr double kClosed = 1e-9;              // a line whose ends are this close is closed [m]
+constexpr double kClosed = 1e-9;             // a line whose ends are this close is closed [m]
 constexpr std::size_t kMaxLinearWalls = 24;  // up to this many walls are searched one by one
 
 /// Whether the edges of a closed outline meet only where one follows the other.

@@ -28,20 +28,18 @@ class Trap:
     Attributes:
         place: The point of the side that is nearest to the goal [m].
         length: Length of the side [m].
-        line: Whether the side belongs to a line, which has no inside.
     """
 
     place: Point
     length: float
-    line: bool
 
 
 def trap_of(scene: Scene, leg: Leg) -> Trap | None:
     """The side that the straight line meets first, if its point nearest to the goal is not near one of its ends.
 
     A robot that slides along the side towards the goal stops at that point, as every further step leads away from the
-    goal. From a point near an end it gets around the corner. Only obstacles whose convex hull holds the start count: the
-    behaviors pass all others on the nearer side.
+    goal. From a point near an end it gets around the corner. Only obstacles whose convex hull holds the start count:
+    the behaviors pass all others on the nearer side.
     """
     best: tuple[float, Trap | None] = (math.inf, None)
     path = [core.Linestring(vertices=[list(leg.start), list(leg.goal)])]
@@ -50,30 +48,30 @@ def trap_of(scene: Scene, leg: Leg) -> Trap | None:
             continue
         if not _surrounds(thing, leg.start):
             continue
-        for a, b, line in _sides(thing):
+        for a, b in _sides(thing):
             met = _meets(leg.start, leg.goal, a, b)
             if met is not None and met < best[0]:
-                best = met, _trap(a, b, leg, line)
+                best = met, _trap(a, b, leg)
     return best[1]
 
 
 def _surrounds(thing: Thing, place: Point) -> bool:
     """Whether the convex hull of the sides of an obstacle holds a place. A circle or a map has no sides."""
-    corners = [end for a, b, _ in _sides(thing) for end in (a, b)]
+    corners = [end for a, b in _sides(thing) for end in (a, b)]
     return bool(corners) and bool(shapely.MultiPoint(corners).convex_hull.contains(shapely.Point(place)))
 
 
-def _trap(a: Point, b: Point, leg: Leg, line: bool) -> Trap | None:
+def _trap(a: Point, b: Point, leg: Leg) -> Trap | None:
     length = math.dist(a, b)
     along = ((leg.goal[0] - a[0]) * (b[0] - a[0]) + (leg.goal[1] - a[1]) * (b[1] - a[1])) / length
     if not leg.mover.radius < along < length - leg.mover.radius:
         return None
     place = (a[0] + along / length * (b[0] - a[0]), a[1] + along / length * (b[1] - a[1]))
-    return Trap(place, length, line)
+    return Trap(place, length)
 
 
-def _sides(thing: Thing) -> Iterator[tuple[Point, Point, bool]]:
-    """Both ends of each side of polygons and lines, world frame, and whether it belongs to a line."""
+def _sides(thing: Thing) -> Iterator[tuple[Point, Point]]:
+    """Both ends of each side of polygons and lines, world frame."""
     parts, (x, y, theta) = thing
     cos, sin = math.cos(theta), math.sin(theta)
     for part in parts:
@@ -83,7 +81,7 @@ def _sides(thing: Thing) -> Iterator[tuple[Point, Point, bool]]:
         line = isinstance(part, core.Linestring)
         for a, b in itertools.pairwise(corners if line else [*corners, corners[0]]):
             if a != b:
-                yield a, b, line
+                yield a, b
 
 
 def _meets(p: Point, q: Point, a: Point, b: Point) -> float | None:

@@ -84,7 +84,6 @@ def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, l
         if blocked and mover.behavior in ("dash", *REACTIVE) and looked_at < _MAX_TRAPS:
             looked_at += 1
             trap = trap_of(scene, blocked[0])
-            trap = None if trap is not None and trap.line and mover.behavior == "rvo" else trap  # rvo passes lines
         if trap is not None and mover.behavior in REACTIVE:
             _report_trap(mover, blocked[0], trap, scene, tally)
         elif mover.behavior in REACTIVE and getattr(mover.record.kinematics, "steered", False):

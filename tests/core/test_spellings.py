@@ -1,0 +1,177 @@
+"""Walls are walls however they are written: the same outline gives the same motion, and a way past what stands free."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import irsim
+from tests.effort import examples
+
+BEHAVIORS = ["rvo", "sfm", "orca", "avocado", "footprint_orca"]
+DRIVES = ["diff", "omni", "omni_angular", "acker"]
+EQUAL = 1e-6
+"""Largest distance [m] between runs among different spellings: rounding errors, which motion amplifies."""
+
+Corners = list[list[float]]
+
+
+def line(corners: Corners) -> dict[str, Any]:
+    return {"name": "linestring", "vertices": [*corners, corners[0]]}
+
+
+def polygon(corners: Corners) -> dict[str, Any]:
+    return {"name": "polygon", "vertices": corners}
+
+
+def box(length: float, width: float) -> Corners:
+    x, y = length / 2, width / 2
+    return [[-x, -y], [x, -y], [x, y], [-x, y]]
+
+
+def spellings_of_a_box(length: float, width: float) -> list[dict[str, Any]]:
+    part = {"name": "rectangle", "width": width}
+    halves = [
+        {**part, "length": 0.7 * length, "pose": [-0.15 * length, 0, 0]},
+        {**part, "length": 0.6 * length, "pose": [0.2 * length, 0, 0]},
+    ]
+    return [
+        {"name": "rectangle", "length": length, "width": width},
+        polygon(box(length, width)),
+        polygon(box(length, width)[::-1]),
+        line(box(length, width)),
+        line(np.roll(box(length, width), 1, axis=0).tolist()[::-1]),
+        {"name": "compound", "parts": halves},
+    ]
+
+
+def scene(behavior: str, drive: str, shape: dict[str, Any], pose: list[float], start: float = 0.0) -> dict[str, Any]:
+    robot = {
+        "kinematics": {"name": drive, **({"wheelbase": 0.2} if drive == "acker" else {})},
+        "shape": {"name": "circle", "radius": 0.2},
+        "state": [3, 10 + start, 0],
+        "goal": [17, 10],
+        "goal_threshold": 0.2,
+        "group_behavior" if behavior in ("orca", "avocado", "footprint_orca") else "behavior": {"name": behavior},
+    }
+    obstacle = {"shape": shape, "state": pose}
+    return {"world": {"width": 20, "height": 20, "time_limit": 90}, "robot": robot, "obstacle": obstacle}
+
+
+def trace(data: dict[str, Any], steps: int) -> np.ndarray:
+    """(steps, 3) poses of the robot."""
+    env = irsim.make(text=yaml.safe_dump(data), display=False, seed=0)
+    poses = []
+    for _ in range(steps):
+        env.step()
+        poses.append(env.robot.state[:3, 0])
+    env.end(0)
+    return np.array(poses)
+
+
+def assert_equal(data: list[dict[str, Any]], steps: int) -> None:
+    first, *others = (trace(one, steps) for one in data)
+    for k, other in enumerate(others, start=1):
+        np.testing.assert_allclose(other[:, :2], first[:, :2], atol=EQUAL, rtol=0, err_msg=f"spelling {k}")
+
+
+@pytest.mark.parametrize("behavior", BEHAVIORS)
+@pytest.mark.parametrize("drive", DRIVES)
+@settings(max_examples=examples(8))
+@given(seed=st.integers(0, 2**32 - 1))
+def test_every_spelling_of_a_box_gives_the_same_motion(behavior: str, drive: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    pose = [*rng.uniform([6, 9], [8, 11]).tolist(), float(rng.uniform(-math.pi, math.pi))]
+    size = rng.uniform(0.5, 3, 2).tolist()
+    assert_equal([scene(behavior, drive, shape, pose) for shape in spellings_of_a_box(*size)], 60)
+
+
+@pytest.mark.parametrize("behavior", BEHAVIORS)
+@pytest.mark.parametrize("drive", DRIVES)
+@settings(max_examples=examples(8))
+@given(seed=st.integers(0, 2**32 - 1))
+def test_every_spelling_of_a_convex_outline_gives_the_same_motion(behavior: str, drive: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    hull: Any = shapely.MultiPoint(rng.uniform(-1.5, 1.5, (8, 2))).convex_hull
+    corners = shapely.get_coordinates(hull.exterior)[:-1].tolist()
+    middle = np.mean(corners, axis=0).tolist()
+    fan = [{**polygon([middle, a, b])} for a, b in itertools.pairwise([*corners, corners[0]])]
+    shapes = [polygon(corners), polygon(corners[2:] + corners[:2]), line(corners), {"name": "compound", "parts": fan}]
+    pose = [*rng.uniform([6, 9], [8, 11]).tolist(), float(rng.uniform(-math.pi, math.pi))]
+    assert_equal([scene(behavior, drive, shape, pose) for shape in shapes], 60)
+
+
+@pytest.mark.parametrize("behavior", BEHAVIORS)
+def test_a_block_of_a_map_is_a_box(behavior: str) -> None:
+    grid = np.zeros((200, 200), dtype=bool)
+    grid[90:110, 94:114] = True  # 2 m at (10, 10.4); columns of the array run along y
+    boxed = scene(behavior, "diff", {"name": "rectangle", "length": 2, "width": 2}, [10, 10.4, 0])
+    mapped = scene(behavior, "diff", {"name": "rectangle", "length": 2, "width": 2}, [10, 10.4, 0])
+    del mapped["obstacle"]
+    mapped["world"]["obstacle_map"] = (100.0 * grid).tolist()
+    mapped["world"]["mdownsample"] = 1
+    assert_equal([boxed, mapped], 120)
+
+
+@pytest.mark.parametrize("behavior", ["rvo", "sfm", "orca", "avocado"])
+@pytest.mark.parametrize("drive", ["diff", "omni"])
+@pytest.mark.parametrize(
+    ("size", "offset"),
+    [
+        pytest.param(s, dy, marks=[] if dy == 0.2 else [pytest.mark.slow])
+        for s in (0.5, 1, 2, 3)
+        for dy in (0, 0.05, 0.2, 0.5, 0.8)
+    ],
+)
+def test_boxes_are_passed(behavior: str, drive: str, size: float, offset: float) -> None:
+    for shape in spellings_of_a_box(size, size)[::3]:
+        result = irsim.run(text=yaml.safe_dump(scene(behavior, drive, shape, [10, 10 + offset, 0])), seed=0)
+        assert result.outcome == "success"
+
+
+@pytest.mark.parametrize("behavior", ["rvo", "orca", "avocado"])
+@pytest.mark.parametrize("turn", [0.0, 0.7, 2.0])
+def test_a_turned_world_turns_the_way_past_a_wall(behavior: str, turn: float) -> None:
+    """In every direction, with the wall exactly across the way."""
+    data = scene(behavior, "diff", {"name": "rectangle", "length": 0.2, "width": 4}, [10, 10, turn])
+    way = 5 * np.array([math.cos(turn), math.sin(turn)])
+    data["robot"]["state"] = [*(10 - way).tolist(), turn]
+    data["robot"]["goal"] = (10 + way).tolist()
+    assert irsim.run(text=yaml.safe_dump(data), seed=0).outcome == "success"
+
+
+@pytest.mark.parametrize("behavior", ["rvo", "orca", "avocado"])
+@pytest.mark.parametrize("goal", [0.4, 0.6, 1.0, 2.0])
+def test_a_goal_before_a_wall_is_reached(behavior: str, goal: float) -> None:
+    data = scene(behavior, "diff", {"name": "rectangle", "length": 2, "width": 6}, [10, 10, 0])
+    data["robot"]["goal"] = [9 - goal, 10]
+    assert irsim.run(text=yaml.safe_dump(data), seed=0).outcome == "success"
+
+
+@pytest.mark.parametrize("behavior", ["rvo", "orca"])
+@pytest.mark.parametrize("spelling", ["rectangles", "lines", "closed line"])
+def test_a_room_is_crossed_past_a_box(behavior: str, spelling: str) -> None:
+    ends = [[6, 6], [14, 6], [14, 14], [6, 14], [6, 6]]
+    sides = [([10, 5.9], 8.4, 0.2), ([10, 14.1], 8.4, 0.2), ([5.9, 10], 0.2, 8.4), ([14.1, 10], 0.2, 8.4)]
+    walls: dict[str, list[dict[str, Any]]] = {
+        "rectangles": [
+            {"shape": {"name": "rectangle", "length": a, "width": b}, "state": [*at, 0]} for at, a, b in sides
+        ],
+        "lines": [
+            {"shape": {"name": "linestring", "vertices": [a, b]}, "state": [0, 0, 0]}
+            for a, b in itertools.pairwise(ends)
+        ],
+        "closed line": [{"shape": {"name": "linestring", "vertices": ends}, "state": [0, 0, 0]}],
+    }
+    data = scene(behavior, "diff", {"name": "rectangle", "length": 2, "width": 2}, [10, 10.15, 0])
+    data["robot"]["state"], data["robot"]["goal"] = [6.7, 6.7, 0.785], [13.3, 13.3]
+    data["obstacle"] = [data["obstacle"], *walls[spelling]]
+    assert irsim.run(text=yaml.safe_dump(data), seed=0).outcome == "success"
