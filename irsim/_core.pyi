@@ -1249,8 +1249,8 @@ def walls(
 ) -> list[tuple[float, float, float, float, int, int, int]]:
     """Wall segments within `reach` [m] of a point: x, y of both ends, object, next, previous.
 
-    They are the outlines of the static objects that are not circles, with the solid side on their left. A linestring has
-    them on both sides. Those that are `unobstructed` have none, linestrings excepted.
+    They are the outlines of the static objects that are not circles, with the solid side on their left. A linestring
+    has them on both sides. Those that are `unobstructed` have none, linestrings excepted.
     """
 
 def clearances(

@@ -43,12 +43,12 @@ DIFFERENCES: dict[str, Difference] = {
         "errors should be reported before anything runs",
     ),
     "D6": Difference(
-        "polygons and maps are one disc for `rvo` and `sfm`, and invisible to `orca`; linestrings are endless cones for "
-        "`rvo` at any distance, and `sfm` adds the push of all their segments, also of hidden ones",
+        "polygons and maps are one disc for `rvo` and `sfm`, and invisible to `orca`; linestrings are endless cones "
+        "for `rvo` at any distance, and `sfm` adds the push of all their segments, also of hidden ones",
         "static walls are walls however they are written: a rectangle, polygon, compound, linestring or block of map "
-        "cells of the same outline gives the same motion. Walls that stand free are passed on the nearer side by `rvo`, "
-        "`sfm`, `orca` and `avocado`, walls round the object block what reaches them. `unobstructed` linestrings count "
-        "for `rvo` and `sfm` as in 2.12, other `unobstructed` walls for none. Moving polygons stay discs, moving "
+        "cells of the same outline gives the same motion. Walls that stand free are passed on the nearer side by "
+        "`rvo`, `sfm`, `orca` and `avocado`, walls round the object block what reaches them. `unobstructed` "
+        "linestrings count for `rvo` and `sfm` as in 2.12, other `unobstructed` walls for none. Moving polygons stay discs, moving "
         "linestrings as in 2.12. `orca` also sees moving objects outside its group",
         "robots drove through walls, stayed metres away from them or stood before them, and closed rooms of "
         "linestrings blocked every direction",
