@@ -48,8 +48,8 @@ DIFFERENCES: dict[str, Difference] = {
         "static walls are walls however they are written: a rectangle, polygon, compound, linestring or block of map "
         "cells of the same outline gives the same motion. Walls that stand free are passed on the nearer side by "
         "`rvo`, `sfm`, `orca` and `avocado`, walls round the object block what reaches them. `unobstructed` "
-        "linestrings count for `rvo` and `sfm` as in 2.12, other `unobstructed` walls for none. Moving polygons stay discs, moving "
-        "linestrings as in 2.12. `orca` also sees moving objects outside its group",
+        "linestrings count for `rvo` and `sfm` as in 2.12, other `unobstructed` walls for none. Moving polygons stay "
+        "discs, moving linestrings as in 2.12. `orca` also sees moving objects outside its group",
         "robots drove through walls, stayed metres away from them or stood before them, and closed rooms of "
         "linestrings blocked every direction",
     ),

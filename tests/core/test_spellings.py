@@ -14,6 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim
+from irsim.env import Env
+from irsim.scenario.read import read
 from tests.effort import examples
 
 BEHAVIORS = ["rvo", "sfm", "orca", "avocado", "footprint_orca"]
@@ -68,7 +70,7 @@ def scene(behavior: str, drive: str, shape: dict[str, Any], pose: list[float], s
 
 def trace(data: dict[str, Any], steps: int) -> np.ndarray:
     """(steps, 3) poses of the robot."""
-    env = irsim.make(text=yaml.safe_dump(data), display=False, seed=0)
+    env = Env(read(data).scenario, headless=True, seed=0)
     poses = []
     for _ in range(steps):
         env.step()
