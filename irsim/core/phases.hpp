@@ -26,8 +26,8 @@ void watch(const World& world, State& state, int w, Workspace& work);
 /// Find the contacts of a pair of objects a < b within the step, and keep it in `Scene::meetings`. They are apart at
 /// its end.
 void meet(const World& world, State& state, int w, int a, int b);
-/// Where contacts within a step count as collisions (`world.contacts: swept`): find those of the pairs in `Scene::near`,
-/// and put objects that stop at a collision back to where they first touched something.
+/// Where contacts within a step count as collisions (`world.contacts: swept`): find those of the pairs in
+/// `Scene::near`, and put objects that stop at a collision back to where they first touched something.
 void judge(const World& world, State& state, int w);
 /// Log the meetings of the step, and count them for each object.
 void log_meetings(const World& world, State& state, int w);

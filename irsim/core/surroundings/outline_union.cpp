@@ -10,7 +10,7 @@ namespace {
 constexpr double kMeets = 1e-9;       // points and edges this close meet [m]
 constexpr double kSameCorner = 1e-7;  // ends of pieces this close are one corner [m]
 
-using Corners = std::vector<Vec2>;
+using RingCorners = std::vector<Vec2>;
 
 struct Piece {
   Vec2 a, b;
@@ -20,8 +20,8 @@ struct Piece {
 enum class Place { outside, inside, same_edge, opposite_edge };
 
 /// Where the middle of a piece with this direction is relative to a polygon.
-Place place_of(Vec2 middle, Vec2 direction, const Corners& polygon) {
-  Corners closed = polygon;
+Place place_of(Vec2 middle, Vec2 direction, const RingCorners& polygon) {
+  RingCorners closed = polygon;
   closed.push_back(polygon.front());
   for (std::size_t k = 0; k + 1 < closed.size(); ++k) {
     if (norm(nearest_on_segment(closed[k], closed[k + 1], middle) - middle) > kMeets) continue;
@@ -32,7 +32,7 @@ Place place_of(Vec2 middle, Vec2 direction, const Corners& polygon) {
 }
 
 /// Add the distances from `a` at which a polygon meets the edge from `a` to `b`.
-void cut(Vec2 a, Vec2 b, const Corners& polygon, std::vector<double>& cuts) {
+void cut(Vec2 a, Vec2 b, const RingCorners& polygon, std::vector<double>& cuts) {
   const Vec2 along = (b - a) * (1.0 / norm(b - a));
   const double length = norm(b - a);
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -46,8 +46,8 @@ void cut(Vec2 a, Vec2 b, const Corners& polygon, std::vector<double>& cuts) {
 }
 
 /// The pieces of the edges of polygon `self` that are on the outline of the union.
-void add_pieces(const std::vector<Corners>& polygons, std::size_t self, std::vector<Piece>& pieces) {
-  const Corners& ring = polygons[self];
+void add_pieces(const std::vector<RingCorners>& polygons, std::size_t self, std::vector<Piece>& pieces) {
+  const RingCorners& ring = polygons[self];
   std::vector<double> cuts;
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const Vec2 a = ring[k], b = ring[(k + 1) % ring.size()];
@@ -93,11 +93,11 @@ Piece* next_piece(std::vector<Piece>& pieces, const Piece& last) {
 std::vector<std::vector<Vec2>> union_of(const std::vector<std::vector<Vec2>>& polygons) {
   std::vector<Piece> pieces;
   for (std::size_t k = 0; k < polygons.size(); ++k) add_pieces(polygons, k, pieces);
-  std::vector<Corners> rings;
+  std::vector<RingCorners> rings;
   for (Piece& first : pieces) {
     if (first.used) continue;
     first.used = true;
-    Corners ring{first.a};
+    RingCorners ring{first.a};
     for (const Piece* last = &first; norm(last->b - first.a) > kSameCorner;) {
       Piece* next = next_piece(pieces, *last);
       if (next == nullptr) return polygons;

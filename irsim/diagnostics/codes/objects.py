@@ -164,8 +164,8 @@ OBJECTS: dict[str, Code] = {
         "behavior does not plan a path around obstacles",
         "'rvo', 'sfm', 'orca' and 'avocado' choose a velocity for the next seconds. They pass single obstacles, but "
         "in a dead end they stop where every step aside leads away from the goal. The finding names that place, or "
-        "compares the path around the obstacle with the straight line. Example: a maze with 'rvo'; write behavior: {name: "
-        "follow, planner: astar, local: rvo}, or give waypoints.",
+        "compares the path around the obstacle with the straight line. Example: a maze with 'rvo'; write behavior: "
+        "{name: follow, planner: astar, local: rvo}, or give waypoints.",
     ),
     "time-too-short": Code(
         "too little time for the path",

@@ -125,7 +125,8 @@ def _barriers(walls: Floats, thing: Floats, box: Floats) -> Floats:
     middle = (thing[:2] + thing[2:]) / 2
     around = np.all((walls[:, :2] <= middle) & (middle <= walls[:, 2:]), axis=1)
     narrow = np.any(walls[:, 2:] - walls[:, :2] < box[2:] - box[:2], axis=1)
-    return walls[~around | narrow]
+    kept: Floats = walls[~around | narrow]
+    return kept
 
 
 def _choices(box: Floats, thing: Floats, distances: Sequence[float]) -> Floats:

@@ -32,7 +32,8 @@ def best_moves(values: Floats, futures: Futures) -> Floats:
     """
     returns = futures.reward + futures.discount[:, None] * values
     best = np.argmax(np.where(np.isnan(returns), -np.inf, returns), axis=1)
-    return futures.move[np.arange(len(best)), best]
+    chosen: Floats = futures.move[np.arange(len(best)), best]
+    return chosen
 
 
 class LookaheadPolicy(LayerPolicy):

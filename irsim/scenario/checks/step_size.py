@@ -78,7 +78,7 @@ def _top_yaw_rate(record: ObjectRecord) -> float:
     drive: Any = record.kinematics
     if drive.speeds == 0 or not drive.turns or len(record.vel_max) <= drive.speeds:
         return 0.0
-    limit = max(abs(record.vel_min[drive.speeds]), abs(record.vel_max[drive.speeds]))
+    limit = float(max(abs(record.vel_min[drive.speeds]), abs(record.vel_max[drive.speeds])))
     if not drive.steered:
         return limit
     psi = min(limit if drive.mode == "steer" else math.inf, drive.psi_max or math.inf)
