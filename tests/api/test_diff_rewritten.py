@@ -244,6 +244,8 @@ WORLD: dict[str, Any] = {
     "step_mode": "external",
     "control_mode": "keyboard",
     "collision_mode": "stop",
+    "contacts": "swept",
+    "integration": "exact",
     "after_arrival": "freeze",
     "boundary": "walls",
     "mdownsample": 2,

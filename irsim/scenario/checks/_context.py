@@ -88,6 +88,11 @@ class Context:
         written = at(self.data, path)
         return isinstance(written, (list, tuple)) and not is_vector(written)
 
+    def goal_path(self, record: ObjectRecord, key: str, index: int) -> Path:
+        """Path of one of the goals of an object, in a list or alone."""
+        path = self.entry_path(record, key)
+        return (*path, index) if self.has_goals(path) else path
+
     def is_given(self, record: ObjectRecord, key: str) -> bool:
         """Whether the entry of an object writes ``key`` (null does not count)."""
         value: Any = self.data

@@ -1,4 +1,4 @@
-"""Checks states and goals: nesting, ignored values, places outside the world, goals reached at once."""
+"""Checks states and goals: nesting, ignored values, goals reached at once, headings of goals."""
 
 from __future__ import annotations
 
@@ -23,8 +23,6 @@ from irsim.scenario.yaml.formatting import flow
 
 _MAX_HEADING = 6.3
 """Largest heading that is surely in radians: a full turn, rounded up [rad]."""
-_MAX_BEYOND = 0.05
-"""Share of its radius by which a round body may reach over the edge of the world at its goal without a hint."""
 _MAX_THRESHOLD_RATIO = 0.5
 """Share of a rectangle's diagonal within which more than half of all pairs of its points lie."""
 
@@ -44,11 +42,8 @@ def check(context: Context) -> Iterator[Finding]:
             yield from _ignored_keys(path, entry)
         elif records:
             yield from _state(context, path, entry, records)
-        if records and entry.distribution is not None and entry.distribution.name != "manual":
-            yield from _placed_outside(context, path, entry, records)
-        elif records:
+        if records and (entry.distribution is None or entry.distribution.name == "manual"):
             yield from _surplus_states(path, entry)
-            yield from _outside_world(context, records)
             yield from _surplus_values(context, path, entry)
             yield from _default_goal(context, path, entry, records)
             yield from _headings_in_degrees(context, records)
@@ -105,7 +100,7 @@ def _goals_reached_at_start(context: Context, records: list[ObjectRecord]) -> It
             if not _arrives(record, a, b):
                 continue
             key = "waypoints" if context.is_given(record, "waypoints") else "goal"
-            where = _goal_path(context, record, key, index) if context.is_given(record, key) else record.path
+            where = context.goal_path(record, key, index) if context.is_given(record, key) else record.path
             gap = f"{metres(math.dist(a[:2], b[:2]))}"
             if index == 0:
                 what = "goal" if len(record.goals) == 1 else "first goal"
@@ -146,12 +141,6 @@ def _threshold_too_large(context: Context, path: Path, entry: Entry, records: li
             fix=f"goal_threshold: {min(0.3, diagonal / 20):.2g}; lengths are in metres",
         )
         return
-
-
-def _goal_path(context: Context, record: ObjectRecord, key: str, index: int) -> Path:
-    """Path of one of the goals of an object, in a list or alone."""
-    path = context.entry_path(record, key)
-    return (*path, index) if context.has_goals(path) else path
 
 
 def _arrives(record: ObjectRecord, a: list[float], b: list[float]) -> bool:
@@ -275,7 +264,7 @@ def _headings_in_degrees(context: Context, records: list[ObjectRecord]) -> Itera
             if angle == int(angle):
                 yield hint(
                     "heading-in-degrees",
-                    context.entry_path(record, key) if key == "state" else _goal_path(context, record, key, index),
+                    context.entry_path(record, key) if key == "state" else context.goal_path(record, key, index),
                     f"a heading of {angle:g} radians is {abs(angle) / (2 * math.pi):.1f} turns",
                     fix=f"angles are in radians: {angle:g} degrees are {math.radians(angle):.5g}",
                 )
@@ -323,87 +312,3 @@ def _surplus_values(context: Context, path: Path, entry: Entry) -> Iterator[Find
             given=written[key],
             fix=f"number: {count}, or one value per object",
         )
-
-
-def _placed_outside(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
-    """Starts and goals that a distribution may place outside the world."""
-    x0, y0, x1, y1 = context.scenario.world.bounds
-    world, options = f"the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]", entry.distribution
-    placement = next((p for p in context.resolved.placements if p.path == path), None)
-    if placement is not None:
-        (left, low), (right, high) = placement.range_low[:2], placement.range_high[:2]
-        if left < x0 or low < y0 or right > x1 or high > y1:
-            key = "range_high" if right > x1 or high > y1 else "range_low"
-            written = getattr(options, key, None) is not None
-            keys = {"circle_crossing": "'center' and 'radius'", "square_crossing": "'center' and 'width'"}
-            removed = keys.get(placement.distribution, "'range_low' and 'range_high'")
-            yield hint(
-                "outside-world",
-                (*path, "distribution", key) if written else (*path, "distribution"),
-                f"random places have x from {left:g} to {right:g} and y from {low:g} to {high:g}, partly outside "
-                + world,
-                fix=f"remove {removed}: the defaults end half a metre inside the world",
-            )
-        return
-    lost = [r for r in records if not (x0 <= r.state[0] <= x1 and y0 <= r.state[1] <= y1)]
-    if not lost:
-        return
-    center = getattr(options, "center", None) or context.scenario.world.center
-    room = min(center[0] - x0, x1 - center[0], center[1] - y0, y1 - center[1])
-    fix = f"radius: {room:g} or less" if room > 0 else f"center: {flow(list(context.scenario.world.center))}"
-    yield hint(
-        "outside-world",
-        (*path, "distribution"),
-        f"{len(lost)} of {len(records)} objects start outside {world}, for example '{lost[0].name}' at "
-        f"({lost[0].state[0]:.4g}, {lost[0].state[1]:.4g})",
-        fix=fix if options.name == "circle" else "use places inside the world, or a larger world",
-    )
-
-
-def _outside_world(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
-    x0, y0, x1, y1 = context.scenario.world.bounds
-    what = [("state", "starts")] if records[0].role == "robot" else []
-    if any(not record.static for record in records) and records[0].role == "robot":
-        what.append(("goal", "has a goal"))
-    for key, words in what:
-        for record in records:
-            free = record.wander or (record.behavior is None and record.name in context.bridged)
-            points = [record.state] if key == "state" else [] if free else record.goals
-            lost = [(i, p) for i, p in enumerate(points) if not (x0 <= p[0] <= x1 and y0 <= p[1] <= y1)]
-            if lost and (context.is_given(record, key) or key == "state" or record.behavior is not None):
-                written = "waypoints" if key == "goal" and context.is_given(record, "waypoints") else key
-                index, (x, y) = lost[0][0], lost[0][1][:2]
-                yield hint(
-                    "outside-world",
-                    _goal_path(context, record, written, index) if key == "goal" else context.entry_path(record, key),
-                    f"'{record.name}' {words} at ({x:g}, {y:g}), outside the world "
-                    f"[{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]"
-                    + ("" if context.is_given(record, written) else f" (the default {key})"),
-                    fix=f"use x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, or a larger world",
-                )
-                break
-            near = key == "goal" and not free and context.is_given(record, "goal")
-            over = _over_the_edge(context, record) if near else None
-            if over is not None and not lost:
-                yield over
-                break
-
-
-def _over_the_edge(context: Context, record: ObjectRecord) -> Finding | None:
-    """A hint at the first goal where a round body reaches over an open edge of the world; walls are another matter."""
-    if context.scenario.world.boundary == "walls" or record.shape.name != "circle" or record.wander:
-        return None
-    x0, y0, x1, y1 = context.scenario.world.bounds
-    r = record.shape.radius
-    for index, goal in enumerate(record.goals):
-        x, y = goal[:2]
-        beyond = r - min(x - x0, x1 - x, y - y0, y1 - y)
-        if beyond > _MAX_BEYOND * r and x0 + r <= x1 - r and y0 + r <= y1 - r:
-            return hint(
-                "outside-world",
-                _goal_path(context, record, "goal", index),
-                f"at its goal ({x:g}, {y:g}) the body of '{record.name}' reaches {metres(beyond)} over the edge of "
-                "the world: nothing stops it there, and pictures show only a part of it",
-                fix=f"use x from {x0 + r:g} to {x1 - r:g} and y from {y0 + r:g} to {y1 - r:g}, or a larger world",
-            )
-    return None
