@@ -14,7 +14,7 @@ double ContactSolver::reach_per_step() const {
     if (std::isfinite(top)) fastest = std::max(fastest, top);
     fastest = std::max(fastest, norm(buffers_.bodies[i].start_velocity));
   }
-  return 2.0 * options_.step_time * fastest + 1e-6;
+  return 2.0 * world_.step_time * fastest + 1e-6;  // pushes of a whole step, even in a part of it
 }
 
 void ContactSolver::add_candidate(int i, int j) {
