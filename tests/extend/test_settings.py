@@ -122,19 +122,23 @@ def test_state_under_its_private_names(env):
     assert env.robot._velocity.ravel().tolist() == env.robot.velocity.ravel().tolist() == [0.25, 0]
 
 
+AVOIDING = {"name": "rvo", "turning": "fixed"}
+"""A behavior that turns as in 2.12."""
+
+
 @pytest.mark.parametrize(
     "write",
     [
-        lambda robot: robot.beh_config.update(name="rvo"),
-        lambda robot: robot.beh_config.__setitem__("name", "rvo"),
-        lambda robot: setattr(robot, "beh_config", {"name": "rvo"}),
-        lambda robot: robot.obj_behavior.behavior_dict.update(name="rvo"),
-        lambda robot: setattr(robot.obj_behavior, "behavior_dict", {"name": "rvo"}),
+        lambda robot: robot.beh_config.update(AVOIDING),
+        lambda robot: [robot.beh_config.__setitem__(key, value) for key, value in AVOIDING.items()],
+        lambda robot: setattr(robot, "beh_config", AVOIDING),
+        lambda robot: robot.obj_behavior.behavior_dict.update(AVOIDING),
+        lambda robot: setattr(robot.obj_behavior, "behavior_dict", AVOIDING),
     ],
 )
 def test_behavior(env, write):
     write(env.robot)
-    assert env.robot.beh_config == {"name": "rvo"} == env.robot.obj_behavior.behavior_dict
+    assert env.robot.beh_config == AVOIDING == env.robot.obj_behavior.behavior_dict
     go(env, 25)
     assert env.robot.state.ravel() == pytest.approx([2.992, 0.912, -0.299], abs=2e-3)  # as of 2.12
 

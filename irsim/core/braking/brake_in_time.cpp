@@ -156,8 +156,7 @@ void brake_in_time(const Decision& decision, int k, Vec3& command) {
     command = slower;
     return;
   }
-  const auto* car = std::get_if<AckerOptions>(&drive);
-  command = car != nullptr && car->mode == Steering::steer ? Vec3{{0.0, command[1], 0.0}} : Vec3{};
+  command = braking_control(drive, decision.state.control[row]);
 }
 
 }  // namespace irsim

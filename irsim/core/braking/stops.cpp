@@ -15,12 +15,6 @@ constexpr int kMaxSteps = 40;  // longer ways are followed in larger steps
 
 bool steers(const Drive& drive) { return std::holds_alternative<AckerOptions>(drive); }
 
-/// The control that brakes: zero, but wheels that are steered keep their angle.
-Vec3 braking_control(const Drive& drive, const Vec3& present) {
-  const auto* car = std::get_if<AckerOptions>(&drive);
-  return car != nullptr && car->mode == Steering::steer ? Vec3{{0.0, present[1], 0.0}} : Vec3{};
-}
-
 Vec3 within_limits(const World& world, const State& state, int row, int object, const Vec3& from, const Vec3& wanted,
                    double dt) {
   Vec3 next;
@@ -44,6 +38,11 @@ bool plans(const World& world, const State& state, int row, int object) {
 }
 
 }  // namespace
+
+Vec3 braking_control(const Drive& drive, const Vec3& present) {
+  const auto* car = std::get_if<AckerOptions>(&drive);
+  return car != nullptr && car->mode == Steering::steer ? Vec3{{0.0, present[1], 0.0}} : Vec3{};
+}
 
 bool brakes_in_time(const World& world, int object) {
   const Behavior& behavior = world.specs[object].behavior;
