@@ -318,8 +318,7 @@ def test_beams_against_geometries() -> None:
     [("rvo", [0.8, -0.3], [0.45, -0.15]), ("hrvo", [0.8, -0.3], [0.45, -0.15]), ("vo", [0.55, -0.4], [0.55, -0.4])],
 )
 def test_velocity_obstacles_of_arrays(mode: str, free: list[float], with_line: list[float]) -> None:
-    """With ``vo`` no velocity leads on that misses the line. It is 1.2 m away, so it does not count yet; in 2.12 it blocks
-    at any distance."""
+    """With ``vo`` all velocities that lead on meet the line, which is 1.2 m away: too far to count, but not in 2.12."""
     model = reciprocal_vel_obs(EGO, OTHERS)
     assert model.cal_vel(mode) == pytest.approx(free, abs=1e-12)
     model.update(EGO, OTHERS, LINES)
