@@ -14,7 +14,7 @@ __all__ = ["Limit", "limits_of", "unequal_note"]
 _EQUAL_SHARE = 0.01
 """Limits that differ by less than this share are equal."""
 _RVO_TURN_RATE = 1.5
-"""Largest turn rate of ``rvo`` [rad/s]."""
+"""Largest turn rate of ``rvo`` while it avoids nothing [rad/s]."""
 _FIXES = {
     "rvo": "vxmax and vymax of rvo",
     "sfm": "vmax of sfm",
@@ -74,7 +74,8 @@ def unequal_note(limits: Mapping[str, Mapping[str, Limit]]) -> str | None:
         slower = [one.behavior for one in found.values() if one.speed * (1 + _EQUAL_SHARE) < most]
         fixes = dict.fromkeys(_FIXES[behavior] for behavior in slower if behavior in _FIXES)
     if _ratio(found, 1) > 1 + _EQUAL_SHARE:
-        parts.append("turns at most " + _by_policy({key: one.turn for key, one in found.items()}, "rad/s"))
+        free = " (rvo: while it avoids nothing)" if any(one.behavior == "rvo" for one in found.values()) else ""
+        parts.append("turns at most " + _by_policy({key: one.turn for key, one in found.items()}, "rad/s") + free)
     equal = f"; equal speeds need {' and '.join(fixes)} or a lower vel_max" if fixes else ""
     return f"limits are unequal, so times are not fair: '{clean(name)}' {' and '.join(parts)}{equal}"
 
