@@ -199,6 +199,8 @@ def _components(source: _Source, kind: str, level: str = "##") -> str:
         mark = "" if feature.simulated else _NOT_SIMULATED
         own = [key for key in _all_keys(answers[feature.name]) if key not in common]
         example = answers[feature.name].example or ""
+        if example == f"{kind}: {{name: {feature.name}}}":  # the heading and the introduction say as much
+            example = ""
         body = [
             " ".join((feature.options.__doc__ or "").split()),
             key_table(own) if own else "",

@@ -171,11 +171,19 @@ def test_what_it_says_about_loops_and_headings_is_so(tmp_path: Path) -> None:
     path = tmp_path / "run.yaml"
     path.write_text(SKELETON.replace("{name: dash}", "{name: dash, loop: true}"), encoding="utf-8")
     assert irsim.run(path).outcome == "success"
-    for drive, limits, outcome in (("omni_angular", "[1, 1, 1]", "success"), ("diff", "[1, 1.5]", "timeout")):
+    drives = {
+        "omni_angular": ("[1, 1, 1]", "dash"),
+        "diff": ("[1, 1.5]", "dash"),
+        "acker, wheelbase: 0.4": ("[1, 0.6]", "follow"),
+    }
+    for drive, (limits, behavior) in drives.items():
         text = SKELETON.replace("goal: [10.5, 4]", "goal: [10.5, 4, 1.5708]\n    arrive_mode: state")
         text = text.replace("{name: diff}", f"{{name: {drive}}}").replace("vel_max: [1.0, 1.5]", f"vel_max: {limits}")
-        path.write_text(text.replace("    vel_min: [-1.0, -1.5]\n", ""), encoding="utf-8")
-        assert irsim.run(path).outcome == outcome, drive
+        text = text.replace("{name: dash}", f"{{name: {behavior}}}").replace("    vel_min: [-1.0, -1.5]\n", "")
+        path.write_text(text, encoding="utf-8")
+        result = irsim.run(path)
+        assert result.outcome == "success", drive
+        assert abs(result.robots[0].pose[2] - 1.5708) < 0.1, drive
 
 
 def test_a_robot_that_only_watches_is_valid_as_told_and_waits_for_the_time_limit(tmp_path: Path) -> None:

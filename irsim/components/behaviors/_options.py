@@ -23,8 +23,7 @@ class BehaviorOptions(Options):
     name: str
     """Name of the behavior."""
     wander: Bool = False
-    """Drive to random goals between `range_low` and `range_high`; each arrival draws the next, for each object on its
-    own."""
+    """Drive to random goals between `range_low` and `range_high`; each object draws its next at each arrival."""
     loop: Bool = False
     """After the last goal, start again with the first; with one goal, shuttle between it and the start. `wander` takes
     precedence."""
@@ -34,8 +33,8 @@ class BehaviorOptions(Options):
     range_high: Pose | None = None
     """Upper corner of random goals, as `range_low`; null is the world's own."""
     target_roles: Literal["all", "robot", "obstacle"] = "all"
-    """Role of the other objects that the behavior reacts to: with `robot` it does not avoid people who are obstacles,
-    with `obstacle` no other robots."""
+    """Role of the objects that it reacts to: with `robot` it does not avoid people who are obstacles, with `obstacle`
+    no robots."""
 
     def draws(self) -> bool:
         """Whether its decisions draw random numbers, so that they depend on the seed."""

@@ -15,12 +15,11 @@ from irsim.options.units import Count, Degrees, Fraction, Hertz, Meters, MetersP
 class Avocado(BehaviorOptions):
     """Avoid others as `orca` does, but learn from what each of them does how much of the avoidance is left to make.
 
-    It forms an opinion of every moving object near it: one that does not react gets out of nothing, so the robot makes
-    more of the change of velocity that avoids it, and less for one that gives way. `orca` is told who gives way;
-    this is for people and robots whose behavior is unknown. An opinion starts neutral, which is the half that `orca`
-    makes, and is forgotten when the other is no longer among those considered. Walls, limits of speed and turning,
-    `acce`, cars and the goal are as in `orca`, and so are dead ends: for a way round walls, use `follow` with `avocado`
-    as its `local`. Its weak noise breaks exact symmetry, and follows the seed.
+    It forms an opinion of every moving object near it: the robot makes more of the change of velocity that avoids one
+    that does not react, and less for one that gives way. `orca` is told who gives way; this is for people and robots
+    whose behavior is unknown. An opinion starts neutral, which is the half that `orca` makes, and is forgotten when the
+    other is no longer among those considered. Walls, limits of speed and turning, `acce`, cars, goals and dead ends are
+    as in `orca`. Its weak noise breaks exact symmetry, and follows the seed.
     """
 
     in_group: ClassVar[bool] = True

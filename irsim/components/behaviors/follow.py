@@ -17,24 +17,23 @@ from irsim.options.units import Meters, Seconds
 class Follow(BehaviorOptions):
     """Plan a path round everything static, out of dead ends and through mazes, and follow it.
 
-    The planner knows the whole map from the start. The path keeps clear of everything static that is not
-    `unobstructed`: obstacles, cells of the map, walls round the world. It is planned once per goal, and again when the
-    object has been pushed off it. Commands that would hit something static are slowed down. Without a path the object
-    stays where it is, and a `no_path` event reports it.
+    The planner knows the whole map from the start, and keeps the path clear of everything static that is not
+    `unobstructed`. Commands that would hit something static are slowed down. Without a path the object stays, and a
+    `no_path` event reports it.
 
     The local behavior avoids moving objects (`dash` avoids none; `orca` is the usual choice, also for cars). Towards
     static objects it keeps only the clearance that the path has, without its own margins, horizons and forces, which
-    would close narrow passages. With `arrive_mode: state` a car that is near its goal plans poses to the heading there,
-    backing up where that helps. Where there is no space to turn, `diff` and `acker` follow a path of poses instead,
-    with the turning circle of a car, and wait for objects in the way.
+    would close narrow passages. With `arrive_mode: state` a car plans poses to the heading of its goal, backing up
+    where that helps. Where there is no space to turn, `diff` and `acker` follow poses, with the turning circle of a
+    car, and wait for objects in the way.
 
-    A robot that has arrived or was stopped for good on the path is gone round: under `dash` as soon as it stands there,
-    else when the object makes no progress. Where there is no way round, a `no_path` event names it.
+    A robot that has arrived or was stopped for good on the path is gone round: under `dash` at once, else when the
+    object makes no progress. Where there is no way round, a `no_path` event names it.
 
     Unless the local behavior is `dash`, an object on a route stays on its own side of a line between it and each object
-    near it. Others on routes do the same, so they never touch. If two hold each other up for a second, the one that has
-    the shorter way left goes first and the other gives way. Cars that block each other plan a path around each other,
-    or back up the way they came, which needs a reverse gear (`vel_min`).
+    near it. Others on routes do the same, so they never touch. If two hold each other up for a second, the one with the
+    shorter way left goes first. Cars that block each other plan a path round each other, or back up the way they came,
+    which needs a reverse gear (`vel_min`).
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -61,22 +60,21 @@ class Follow(BehaviorOptions):
 
     name: Literal["follow"] = "follow"
     planner: Annotated[Any, Select(PLANNERS, short=(None, "name")), Field(validate_default=True)] = "astar"
-    """Path planner: its name, or a mapping with its name and options."""
+    """Path planner, with or without options."""
     local: Annotated[
         Any, Select(BEHAVIORS, exclude=("follow", "replay"), short=(None, "name")), Field(validate_default=True)
     ] = "dash"
-    """Behavior that drives from one corner to the next: its name, or a mapping with its name and options, as in
-    `local: {name: orca}`."""
+    """Behavior that drives from corner to corner, as in `local: {name: orca, timeHorizon: 2}`."""
     replan: Annotated[Seconds, Field(gt=0)] | None = None
     """Plan again after this time; null plans once per goal, and when the path is lost."""
     lookahead: Annotated[Meters, Field(gt=0)] | None = None
     """Distance along the path to the point that the object heads for; null is the farthest corner in sight."""
     within: Region | None = None
-    """Area that the path stays in, so that it does not go around through the open ends of a corridor or outside a
-    building. It holds for the middle of the object; one that is pushed out comes back. Null sets no limit."""
+    """Area that the path stays in, so that it does not go round through the open ends of a corridor or outside a
+    building. It holds for the middle of the object; one that is pushed out comes back."""
     avoid: list[Annotated[str, Field(strict=True, min_length=1)]] = []
-    """Names of zones of `world.zones` that are solid for this object alone: its path leads around them, and its body
-    does not enter them, not even to give way. One that starts in a zone or is pushed into it leaves it."""
+    """Names of zones of `world.zones` that are solid for this object alone: its body does not enter them, not even to
+    give way. One that starts in a zone or is pushed into it leaves it."""
 
     def draws(self) -> bool:
         """Whether its local behavior draws random numbers."""

@@ -16,10 +16,9 @@ class Orca(BehaviorOptions):
     """Take half of the smallest change of velocity that avoids every collision, and leave the rest to the other.
 
     It makes the whole change for moving objects that run no kind of orca, and never drives into static ones.
-    It respects walls, limits of speed and turning, the steering of a car, and `acce`: it brakes in time before walls
-    and others, whatever its horizons. Every object counts as the circle round its footprint, even a long rectangle.
-    Robots that have arrived still give way: they leave their goals and come back. It does not get out of dead ends: to
-    find a way round walls, use `follow` with `orca` as its `local`.
+    It respects walls, limits of speed and turning, the steering of a car, and `acce`: it brakes in time, whatever its
+    horizons. Every object counts as the circle round its footprint. Robots that have arrived still give way: they leave
+    their goals and come back. It does not get out of dead ends: use it as the `local` of `follow`.
     """
 
     in_group: ClassVar[bool] = True
@@ -28,30 +27,29 @@ class Orca(BehaviorOptions):
 
     name: Literal["orca"] = "orca"
     neighborDist: Annotated[Meters, Field(gt=0)] = 15.0
-    """Moving objects farther away than this are ignored."""
+    """Moving objects farther away are ignored."""
     maxNeighbors: Count = 10
     """Number of moving objects considered, nearest first; walls and static circles do not count."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 20.0
-    """Time horizon within which collisions with moving objects are avoided. A long one makes crowds slow."""
+    """Time horizon for collisions with moving objects. A long one makes crowds slow."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 10.0
-    """Time horizon within which collisions with walls and static circles are avoided. Near walls set 1 to 2 s: with the
-    default, robots are slow in corridors and approach goals near walls very slowly."""
+    """The same for walls and static circles. Near walls set 1 to 2 s: with the default, robots are slow in corridors
+    and approach goals near walls very slowly."""
     safe_radius: Annotated[Meters, Field(ge=0)] = 0.1
     """Margin added to the radius of the object itself."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Largest speed; null is the speed that the object can reach in every direction, which is also the upper limit."""
+    """Largest speed; null is what the object can reach in every direction, which is also the upper limit."""
     responsibility: Annotated[Fraction, Field(gt=0)] | None = None
-    """Share of the change of velocity that it makes for a moving object; null is half for one that runs a kind of orca
-    and sees it, and all for others. Most other programs always take 0.5, also for people who do not see the robot."""
+    """Share of that change of velocity that it makes for a moving object; null is half for one that runs a kind of orca
+    and sees it, and all for others. Most other programs always take 0.5."""
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
     """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
     speed."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
     """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
-    turns by this angle to the right, to the left if negative, and further, up to 90 degrees, the slower the object
-    drives. 10 passes a slower one straight ahead. null only breaks ties: of two that are each other's mirror images,
-    such as two that meet head-on, both pass on their right. 0 leaves ties as they are: the two brake, and may stand for
-    ever."""
+    turns by this angle to the right, to the left if negative, and by up to 90 degrees the slower the object drives.
+    10 passes a slower one straight ahead. null only breaks ties: two mirror images, such as two that meet head-on, both
+    pass on their right. 0 leaves ties: the two brake, and may stand for ever."""
 
 
 BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

@@ -15,10 +15,9 @@ from irsim.options.units import Degrees, Meters, MetersPerSecond, Number
 class Rvo(BehaviorOptions):
     """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
 
-    A wall that stands free (static rectangle, polygon, compound, linestring or block of a map) is passed on the nearer
-    side, a wall round the object blocks what reaches it within one second. While it avoids nothing, or with
-    `turning: fixed`, it turns at most at 1.5 rad/s, whatever `vel_max` allows. With `acce` it brakes in time before
-    walls and others. It does not get out of dead ends.
+    A wall that stands free, in any spelling, is passed on the nearer side; a wall round the object blocks what reaches
+    it within one second. While it avoids nothing it turns at most at 1.5 rad/s. With `acce` it brakes in time. It does
+    not get out of dead ends.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -41,8 +40,8 @@ class Rvo(BehaviorOptions):
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
     """As in `orca`: null breaks ties only, 0 is the law of IR-SIM."""
     turning: Literal["limit", "fixed"] = "limit"
-    """How a drive that cannot move sideways turns while it avoids something: `limit` at once, as fast as `vel_max`
-    allows; `fixed` as in IR-SIM, which ignores heading errors below 0.1 rad and turns at most at 1.5 rad/s."""
+    """How a drive that cannot move sideways turns while it avoids something: `limit` as fast as `vel_max` allows;
+    `fixed` as in IR-SIM, at most at 1.5 rad/s and not for heading errors below 0.1 rad."""
 
 
 BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

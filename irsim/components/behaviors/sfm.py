@@ -16,8 +16,8 @@ class Sfm(BehaviorOptions):
     """Walk like a pedestrian: pulled to the goal, pushed away by others and by walls (social force model).
 
     It starts from rest and does not brake at its goal: it overshoots and swings back, so use a `goal_threshold` of
-    about 0.3 m, and keep the goals of several objects a metre apart. An object that touches another stops for the rest
-    of the run, unless `world.collision_mode` is `unobstructed_obstacles`. It does not get out of dead ends.
+    about 0.3 m, and keep the goals of several objects a metre apart. An object that touches another stops for good,
+    unless `world.collision_mode` is `unobstructed_obstacles`. It does not get out of dead ends.
     """
 
     in_group: ClassVar[bool] = True
@@ -38,8 +38,8 @@ class Sfm(BehaviorOptions):
     force_factor_obstacle: Number = 10.0
     """Weight of the push away from walls."""
     sigma_obstacle: Annotated[Meters, Field(gt=0)] = 0.8
-    """Reach of the push away from walls. In a corridor use about a twentieth of its width (0.15 m for 3 m); a larger
-    value pushes people from both directions into the middle, where they block each other."""
+    """Reach of the push away from walls. In a corridor use about a twentieth of its width (0.15 m for 3 m): more pushes
+    people from both directions into the middle, where they block each other."""
     lambda_importance: Number = 2.0
     """Weight of the relative velocity, compared with the relative position, in the interaction of two objects."""
     gamma: Annotated[Number, Field(gt=0)] = 0.35
@@ -53,17 +53,17 @@ class Sfm(BehaviorOptions):
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
     """As in `orca`: null breaks ties only, also with an object straight ahead; 0 leaves them."""
     social_groups: list[list[Annotated[Integer, Field(ge=0)]]] | None = None
-    """As group behavior: lists of the indices of members that walk together; each index at most once."""
+    """As `group_behavior`: lists of the indices of members that walk together; each index at most once."""
     force_factor_coherence: Number = 2.0
-    """As group behavior: weight of the pull to the middle of the social group."""
+    """In a group: weight of the pull to the middle of the social group."""
     force_factor_group_repulsion: Number = 1.0
-    """As group behavior: weight of the push away from members of the social group that are too close."""
+    """In a group: weight of the push away from members of the social group that are too close."""
     group_repulsion_threshold: Annotated[Meters, Field(ge=0)] | None = None
-    """As group behavior: distance below which members push each other; null is the sum of their radii."""
+    """In a group: distance below which members push each other; null is the sum of their radii."""
     force_factor_gaze: Number = 3.0
-    """As group behavior: weight of turning to keep the social group in view."""
+    """In a group: weight of turning to keep the social group in view."""
     gaze_vision_angle: Annotated[Degrees, Field(gt=0, le=180)] = 90.0
-    """As group behavior: half the angle that a member sees without turning."""
+    """In a group: half the angle that a member sees without turning."""
 
 
 BEHAVIORS.register(Sfm, kernel=core.SfmOptions)

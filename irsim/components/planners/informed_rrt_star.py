@@ -23,7 +23,7 @@ class InformedRrtStar(RrtStar):
     connect_circle_dist: Annotated[Meters, Field(gt=0)] = 50.0
     """Scale of the radius in which the tree is rewired."""
     search_until_max_iter: Bool = True
-    """Keep improving until all samples are drawn, instead of stopping at the first path."""
+    """Improve until all samples are drawn, instead of stopping at the first path."""
 
 
 PLANNERS.register(InformedRrtStar, kernel=core.InformedRrtStarOptions)

@@ -23,7 +23,7 @@ class RrtStar(SamplingPlanner):
     connect_circle_dist: Annotated[Meters, Field(gt=0)] = 0.5
     """Scale of the radius in which the tree is rewired."""
     search_until_max_iter: Bool = False
-    """Keep improving until all samples are drawn, instead of stopping at the first path."""
+    """Improve until all samples are drawn, instead of stopping at the first path."""
 
 
 PLANNERS.register(RrtStar, kernel=core.RrtStarOptions)
