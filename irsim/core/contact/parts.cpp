@@ -31,12 +31,13 @@ void find_near(const World& world, State& state, int w, double reach, std::vecto
     if (world.unobstructed[i] || world.unobstructed[j]) return;
     if (world.dynamics[i].pushable || world.dynamics[j].pushable) out.emplace_back(std::min(i, j), std::max(i, j));
   };
+  bound_steps(world, state, w, scene.ways);
+  const auto box = [&](int i) { return scene.ways[scene.shapes->placed[i].object]; };
   if (!world.fixed_objects.empty()) {
-    for (const int i : world.moving)
-      scene.fixed->grid.query(wider(box_of_step(world, state, w, i), reach), [&](int j) { add(i, j); });
+    for (const int i : world.moving) scene.fixed->grid.query(wider(box(i), reach), [&](int j) { add(i, j); });
   }
   if (world.moving.size() > 1) {
-    scene.sweep.pairs([&](int i) { return wider(box_of_step(world, state, w, i), 0.5 * reach); }, add);
+    scene.sweep.pairs([&](int i) { return wider(box(i), 0.5 * reach); }, add);
   }
   std::sort(out.begin(), out.end());
 }

@@ -26,9 +26,10 @@ void find_pairs(const World& world, State& state, int w) {
       meet(world, state, w, std::min(i, j), std::max(i, j));
     }
   };
-  const auto box = [&](int i) {
-    return moved ? box_of_step(world, state, w, i) : scene.moving.boxes[shapes.placed[i].object];
-  };
+  if (moved) bound_steps(world, state, w, scene.ways);
+  const Box* boxes = moved ? scene.ways.data() : scene.moving.boxes.data();
+  const Slot* placed = shapes.placed.data();
+  const auto box = [=](int i) { return boxes[placed[i].object]; };
   if (!world.fixed_objects.empty()) {
     for (const int i : world.moving) {
       const Footprint body = scene.moving.footprint(shapes, i);

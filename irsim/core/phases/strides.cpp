@@ -21,6 +21,17 @@ Moving moving_of(const World& world, const State& state, int w, int object) {
   return moving_body(*scene.shapes, object, stride_of(world, state, w, object));
 }
 
+/// How far a turn in the step may carry an object out of the box that moves with it in a straight line [m].
+double swing_of_step(const World& world, const State& state, int w, int object) {
+  const Shapes& shapes = *state.scenes[w].shapes;
+  const Vec2 centre = shapes.centre[object];
+  const Stride stride = stride_of(world, state, w, object);
+  const double aside = stride.bulge(0.0);
+  if (centre.x == 0.0 && centre.y == 0.0 && shapes.parts[shapes.body[object].part].kind == Kind::circle) return aside;
+  const double turn = std::min(std::fabs(stride.turn), 2.0);
+  return turn * (std::fabs(centre.x) + std::fabs(centre.y) + shapes.radius[object]) + aside;
+}
+
 }  // namespace
 
 Stride stride_of(const World& world, const State& state, int w, int object) {
@@ -29,19 +40,21 @@ Stride stride_of(const World& world, const State& state, int w, int object) {
   return Stride::between(state.before[row], state.pose[row], state.twist[row][2] * world.step_time, arc);
 }
 
-Box box_of_step(const World& world, const State& state, int w, int object) {
+void bound_steps(const World& world, State& state, int w, std::vector<Box>& out) {
   const Scene& scene = state.scenes[w];
-  const Shapes& shapes = *scene.shapes;
-  const Box& end = scene.moving.boxes[shapes.placed[object].object];
-  const Pose &from = state.before[w * world.objects + object], &to = state.pose[w * world.objects + object];
-  const double x = from.x - to.x, y = from.y - to.y;
-  Box box{end.x0 + std::min(x, 0.0), end.y0 + std::min(y, 0.0), end.x1 + std::max(x, 0.0), end.y1 + std::max(y, 0.0)};
-  if (from.theta == to.theta) return box;
-  const Vec2 centre = shapes.centre[object];
-  if (centre.x == 0.0 && centre.y == 0.0 && shapes.parts[shapes.body[object].part].kind == Kind::circle) return box;
-  const double turn = std::min(std::fabs(stride_of(world, state, w, object).turn), 2.0);
-  const double wide = turn * (std::fabs(centre.x) + std::fabs(centre.y) + shapes.radius[object]);
-  return {box.x0 - wide, box.y0 - wide, box.x1 + wide, box.y1 + wide};
+  const Slot* placed = scene.shapes->placed.data();
+  const Box* ends = scene.moving.boxes.data();
+  const Pose *before = &state.before[w * world.objects], *now = &state.pose[w * world.objects];
+  out.resize(scene.moving.boxes.size());
+  Box* boxes = out.data();
+  for (const int i : world.moving) {
+    const int slot = placed[i].object;
+    const Box end = ends[slot];
+    const double x = before[i].x - now[i].x, y = before[i].y - now[i].y;
+    const double swing = before[i].theta == now[i].theta ? 0.0 : swing_of_step(world, state, w, i);
+    boxes[slot] = {end.x0 + std::min(x, 0.0) - swing, end.y0 + std::min(y, 0.0) - swing,
+                   end.x1 + std::max(x, 0.0) + swing, end.y1 + std::max(y, 0.0) + swing};
+  }
 }
 
 Passage::Passage(const World& world, State& state, int w, int a_, int b_)

@@ -10,8 +10,9 @@ namespace irsim {
 /// The motion of an object in this step, from `State::before` to its present pose.
 Stride stride_of(const World& world, const State& state, int w, int object);
 
-/// A box that holds a moving object throughout the step, once `place_moving` has put it where the step ends.
-Box box_of_step(const World& world, const State& state, int w, int object);
+/// The boxes that hold the moving objects throughout the step, by their slots in `Scene::moving`, once `place_moving`
+/// has put them where the step ends.
+void bound_steps(const World& world, State& state, int w, std::vector<Box>& out);
 
 /// What happens between two objects a < b in a step.
 class Passage {
