@@ -28,4 +28,5 @@ CHANGED_SCENES: dict[str, ChangedScene] = {
     "templates/crowd": ChangedScene("D27", "the robot, with `rvo` and a `diff` drive, avoids people"),
     "templates/head-on": ChangedScene("D27", "robots with `rvo` and a `diff` drive avoid each other"),
 }
-"""Folder -> reason. All other templates, and all scenes and decisions recorded from 2.12, move as before."""
+"""Folder -> reason. All other templates and all scenes recorded from 2.12 move as before; its recorded decisions, too,
+with `turning: fixed` and without static lines (D6) and `acce` (D28)."""

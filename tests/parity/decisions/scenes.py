@@ -1,7 +1,8 @@
 """Random scenes of which one decision is compared; the same numbers on every platform and version of Python.
 
 No scene has what a difference id is about: static shapes other than circles and linestrings (D6), drives without a law
-of their own (D13). Objects pass through each other, so that nobody stops.
+of their own (D13). Where lines (D6) or `acce` (D28) matter, the test leaves the scene out. Objects pass through each
+other, so that nobody stops.
 """
 
 from __future__ import annotations
