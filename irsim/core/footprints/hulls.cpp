@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "footprints/manoeuvres.hpp"
+#include "geometry/convex_hull.hpp"
 
 namespace irsim {
 namespace {
@@ -25,32 +26,14 @@ bool is_convex(const std::vector<Vec2>& points) {
 
 constexpr double kSamePoint = 1e-6;  // corners of hulls that are nearer to each other are one [m]
 
-/// Replace points by the corners of their hull, counter-clockwise (Andrew's monotone chain). `hull` is scratch memory.
-void make_hull(std::vector<Vec2>& points, std::vector<Vec2>& hull, double same = 0.0) {
-  std::sort(points.begin(), points.end(), [](Vec2 a, Vec2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-  hull.clear();
-  const double same2 = same * same;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t first = hull.size();
-    for (const Vec2 p : points) {
-      while (hull.size() >= first + 2 && !(cross(hull.back() - hull[hull.size() - 2], p - hull.back()) > 0.0))
-        hull.pop_back();
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
+/// Remove corners that are nearly the same as the one before them or as the first.
+void merge_corners(std::vector<Vec2>& corners) {
+  std::size_t kept = 0;
+  for (const Vec2 p : corners) {
+    constexpr double kSame2 = kSamePoint * kSamePoint;
+    if (kept == 0 || (squared(p - corners[kept - 1]) > kSame2 && squared(p - corners[0]) > kSame2)) corners[kept++] = p;
   }
-  if (same > 0.0) {
-    std::size_t kept = 0;
-    for (const Vec2 p : hull) {
-      if (kept == 0 || (squared(p - hull[kept - 1]) > same2 && squared(p - hull[0]) > same2)) hull[kept++] = p;
-    }
-    hull.resize(kept);
-  }
-  if (!hull.empty())
-    points.swap(hull);
-  else
-    points.resize(1);
+  corners.resize(kept);
 }
 
 }  // namespace
@@ -107,7 +90,8 @@ void Hulls::add(const Hull& body, Vec2 position, const Manoeuvre& manoeuvre) {
     const Vec2 there = position + place.shift;
     for (int k = 0; k < body.count; ++k) points_.push_back(there + rotate(body.corner[k] - position, place.turn));
   }
-  make_hull(points_, scratch_, kSamePoint);
+  make_hull(points_, scratch_);
+  merge_corners(points_);
   corners_.insert(corners_.end(), points_.begin(), points_.end());
   close(first, body.round + manoeuvre.bulge + kSamePoint);
 }

@@ -4,9 +4,9 @@
 
 namespace irsim {
 
-void make_hull(std::vector<Vec2>& points) {
+void make_hull(std::vector<Vec2>& points, std::vector<Vec2>& hull) {
   std::sort(points.begin(), points.end(), [](Vec2 a, Vec2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-  std::vector<Vec2> hull;
+  hull.clear();
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t first = hull.size();
     for (const Vec2 p : points) {
@@ -18,7 +18,7 @@ void make_hull(std::vector<Vec2>& points) {
     std::reverse(points.begin(), points.end());
   }
   if (!hull.empty())
-    points = std::move(hull);
+    points.swap(hull);
   else
     points.resize(1);
 }

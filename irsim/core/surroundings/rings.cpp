@@ -29,7 +29,8 @@ std::vector<Vec2> bends_of(const Vec2* corners, int count) {
 }
 
 Ring::Ring(const std::vector<Vec2>& outline, Inside side, int id) : object(id), inside(side), hull(outline) {
-  make_hull(hull);
+  std::vector<Vec2> scratch;
+  make_hull(hull, scratch);
   for (const Vec2 p : outline) box_.include(p);
   if (inside != Inside::shell && inside != Inside::lining) return;
   corners = outline;
