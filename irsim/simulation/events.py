@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from irsim.common.event_kinds import BETWEEN_STEPS, SIGHTS, EventKind
+
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
@@ -23,27 +25,8 @@ __all__ = [
 ]
 
 
-EventKind = Literal[
-    "arrival",
-    "waypoint",
-    "collision",
-    "no_path",
-    "overshoot",
-    "zone_entry",
-    "zone_exit",
-    "line_crossing",
-    "sight_start",
-    "sight_end",
-    "contact_between_steps",
-    "passed_through",
-]
-"""Kinds of events; :class:`Event` says what they mean."""
 Direction = Literal["left_to_right", "right_to_left"]
 """Direction in which a line is crossed, as seen from its first point towards its second."""
-SIGHTS: tuple[EventKind, ...] = ("sight_start", "sight_end")
-"""Kinds of events of fields of view."""
-BETWEEN_STEPS: tuple[EventKind, ...] = ("contact_between_steps", "passed_through")
-"""Kinds of contacts that begin and end within one step; a contact has one of them."""
 _CROSSINGS: dict[str, Direction] = {"crossing_to_right": "left_to_right", "crossing_to_left": "right_to_left"}
 """Names that the core gives the crossing of a line, by direction."""
 

@@ -76,7 +76,7 @@ def _usual_speed(record: ObjectRecord) -> float:
 def _top_yaw_rate(record: ObjectRecord) -> float:
     """Fastest turn [rad/s]; 0 for drives that do not turn, or of user code."""
     drive: Any = record.kinematics
-    if drive.speeds == 0 or not drive.turns or len(record.vel_max) <= drive.speeds:
+    if drive.speeds == 0 or not drive.turns or min(len(record.vel_min), len(record.vel_max)) <= drive.speeds:
         return 0.0
     limit = float(max(abs(record.vel_min[drive.speeds]), abs(record.vel_max[drive.speeds])))
     if not drive.steered:

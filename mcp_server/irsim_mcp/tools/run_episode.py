@@ -8,8 +8,8 @@ from mcp.server.mcpserver import Context
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
+from irsim.common.event_kinds import BETWEEN_STEPS, SIGHTS
 from irsim.common.text import clean, listed
-from irsim.simulation.events import BETWEEN_STEPS
 from irsim_mcp.json_answer import Found, json_answer
 from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_SEED, MAX_STEPS
 from irsim_mcp.progress import reporter
@@ -222,11 +222,10 @@ def _chosen(found: dict[str, Any], detailed: bool, most: int) -> list[dict[str, 
         return events[:most]
     robots = {robot["name"] for robot in found["robots"]}
     important = [event for event in events if event["kind"] != "waypoint"]
-    sights = ("sight_start", "sight_end")
 
     def rank(event: dict[str, Any]) -> tuple[bool, bool, bool]:
         kind, of_robot = event["kind"], bool(robots & {event["object"], event["partner"]})
-        return kind not in BETWEEN_STEPS, kind in sights, not of_robot
+        return kind not in BETWEEN_STEPS, kind in SIGHTS, not of_robot
 
     kept = sorted(important, key=rank)[:most]
     kept += [event for event in events if event["kind"] == "waypoint"][: most - len(kept)]
