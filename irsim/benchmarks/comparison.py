@@ -15,6 +15,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from irsim.benchmarks.assumptions import assumptions_of
 from irsim.benchmarks.cluster import run_on_cluster
 from irsim.benchmarks.decision_timer import time_behavior
 from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
@@ -53,6 +54,7 @@ from irsim.scenario.perturbation import (
     read_perturbations,
 )
 from irsim.scenario.resolve.randomness import random_parts
+from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
 __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged"]
@@ -154,6 +156,7 @@ def benchmark(
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
     periods, chances, changes = dict[str, float](), dict[str, list[str]](), dict[str, list[str]]()
     unequal: dict[str, str] = {}
+    settled: dict[str, ResolvedScenario] = {}
     for name, source in zip(names, given, strict=True):
         document = _document(source, limits)
         scenario, warnings[name] = read_document(document, strict=strict)
@@ -164,7 +167,7 @@ def benchmark(
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
         if texts:
             changes[name] = perturbed_message(scenario)
-        limits_under: dict[str, dict[str, Limit]] = {}
+        settled[name], limits_under = scenario, dict[str, dict[str, Limit]]()
         for number, (policy, behavior) in enumerate(zip(opened, wanted, strict=True)):
             if policy.stochastic and "policy" not in chances[name]:
                 chances[name].append("policy")
@@ -208,6 +211,7 @@ def benchmark(
         perturb=list(texts),
         perturbed=changes,
         unequal=unequal,
+        assumptions=assumptions_of(settled),
         random=chances,
         rows=[],
         episodes=[],

@@ -139,6 +139,9 @@ class BenchmarkResult(Result):
     """What they change in each scenario, in words; empty without a perturbation."""
     unequal: dict[str, str] = Field(default_factory=dict)
     """Which limits of robots differ between the policies, in words, by scenario; empty if all are equal."""
+    assumptions: list[str] = Field(default_factory=list)
+    """What the numbers take for granted, in words: when contacts count, how fast robots change their speed, and what
+    behaviors know."""
     random: dict[str, list[str]]
     """What the seed decides in each scenario; a scenario in which it decides nothing runs with the first seed only."""
     rows: list[BenchmarkRow]

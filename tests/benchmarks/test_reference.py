@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import re
-from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -12,7 +11,7 @@ import pytest
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_files import suite_names
 from irsim.results.suite import SuiteResult
-from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, lines_of
+from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, changes, counted, lines_of
 
 
 def rerun(name: str, folder: Path, seeds: int) -> None:
@@ -48,9 +47,7 @@ def test_the_table_counts_the_kept_episodes(name: str) -> None:
     plan = TABLES[name].plan()
     assert f"suite hash {plan.suite_hash}, run hash {plan.hash}, " in page
     with (FOLDER / f"{name}.csv").open(encoding="utf-8") as file:
-        outcomes: dict[tuple[str, str], Counter[str]] = {}
-        for row in csv.DictReader(file):
-            outcomes.setdefault((row["scenario"], row["policy"]), Counter())[row["outcome"]] += 1
+        outcomes = counted(csv.DictReader(file))
     for (scenario, policy), count in outcomes.items():
         shares, *_ = re.findall(rf"^\| {re.escape(scenario)} \| {re.escape(policy)} \| (.*)$", page, re.MULTILINE)
         cells = shares.split(" | ")
@@ -59,3 +56,8 @@ def test_the_table_counts_the_kept_episodes(name: str) -> None:
         placed = sum(count.values()) - count["placement-crowded"]
         wanted = [float(f"{100 * count[name] / n:.0f}") for name in ("success", "collision", "timeout")]
         assert (n, found) == (placed, wanted), (scenario, policy)
+    assert page.endswith("\n" + "\n".join(changes(name, outcomes)) + "\n")
+    assert (
+        "Taken for granted: contacts count at the ends of steps of 0.1 s only; robots change their speed at once"
+        in page
+    )

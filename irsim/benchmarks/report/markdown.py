@@ -94,6 +94,8 @@ def facts_of(result: BenchmarkResult) -> list[str]:
     if isinstance(result, SuiteResult):
         hashes = f"suite hash {result.suite_hash}, run hash {result.hash}"
         lines.append(f"Suite version {result.suite_version}, {hashes}, irsim {result.version}.")
+    if result.assumptions:
+        lines.append(f"Taken for granted: {'; '.join(result.assumptions)}.")
     if result.incidents:
         lines.append(f"Besides outcomes: {'; '.join(result.incidents)}.")
     return lines

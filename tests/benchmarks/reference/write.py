@@ -1,6 +1,7 @@
 """Keeps results of suites: ``python -m tests.benchmarks.reference.write NAME`` for a name of ``TABLES``.
 
-It writes the episodes (``NAME.csv``) and the table with intervals (``skills/irsim-benchmark/results/NAME.md``).
+It writes the episodes (``NAME.csv``) and the table with intervals (``skills/irsim-benchmark/results/NAME.md``), which
+also has the shares that were others before contacts between steps were counted and limits planned with (``before/``).
 """
 
 from __future__ import annotations
@@ -9,7 +10,8 @@ import csv
 import io
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,7 +23,7 @@ from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.benchmark import EpisodeRow
 from irsim.results.suite import SuiteResult
 
-__all__ = ["FOLDER", "PAGES", "TABLES", "Table", "lines_of", "main"]
+__all__ = ["FOLDER", "PAGES", "TABLES", "Table", "changes", "counted", "lines_of", "main"]
 
 FOLDER = Path(__file__).parent
 PAGES = FOLDER.parents[2] / "skills" / "irsim-benchmark" / "results"
@@ -75,6 +77,43 @@ def lines_of(episodes: Sequence[EpisodeRow], labels: dict[str, str]) -> list[str
     return text.getvalue().splitlines()
 
 
+def changes(name: str, outcomes: Mapping[tuple[str, str], Counter[str]]) -> list[str]:
+    """The lines of a table with the shares that have changed, old and new side by side.
+
+    Args:
+        name: Name of the table.
+        outcomes: (scenario, policy) → number of episodes by outcome, now.
+    """
+    kinds, rows, same = ("success", "collision", "timeout"), list[str](), dict[str, bool]()
+    with (FOLDER / "before" / f"{name}.csv").open(encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            scenario, policy = row["scenario"], row["policy"]
+            old, new = [int(row[kind]) for kind in kinds], [outcomes[scenario, policy][kind] for kind in kinds]
+            same[policy] = same.get(policy, True) and old == new
+            if old != new:
+                rows.append(f"| {scenario} | {policy} | {_shares(old)} | {_shares(new)} |")
+    equal = " and ".join(f"`{policy}`" for policy, is_same in same.items() if is_same)
+    about = (
+        "Robots now plan with their limits and with the step, walls are walls however they are written, and ties are "
+        "broken. Contacts between steps, which nobody counted before, are counted and still not judged here. Success / "
+        f"collision / timeout in %, where they differ; all shares of {equal} are the same."
+    )
+    return ["## Before and now", "", about, "", "| scenario | policy | before | now |", "|---|---|---|---|", *rows]
+
+
+def _shares(counts: Sequence[int]) -> str:
+    """Shares in %."""
+    return " / ".join(f"{100 * count / sum(counts):.0f}" for count in counts)
+
+
+def counted(episodes: Iterable[Mapping[str, str]]) -> dict[tuple[str, str], Counter[str]]:
+    """(scenario, policy) → number of episodes by outcome, of lines of a kept file."""
+    outcomes: dict[tuple[str, str], Counter[str]] = {}
+    for row in episodes:
+        outcomes.setdefault((row["scenario"], row["policy"]), Counter())[row["outcome"]] += 1
+    return outcomes
+
+
 def main(name: str) -> None:
     """Run a suite and keep its result."""
     with tempfile.TemporaryDirectory() as folder:
@@ -82,9 +121,10 @@ def main(name: str) -> None:
     assert isinstance(result, SuiteResult)
     labels = {text: name for name, text in result.policies.items()}
     head = ",".join(("scenario", "policy", "seed", "outcome", "steps", *_METRICS))
-    lines = "\n".join([head, *lines_of(result.episodes, labels)])
-    (FOLDER / f"{name}.csv").write_text(lines + "\n", encoding="utf-8")
-    (PAGES / f"{name}.md").write_text(markdown(result), encoding="utf-8")
+    episodes = [head, *lines_of(result.episodes, labels)]
+    (FOLDER / f"{name}.csv").write_text("\n".join(episodes) + "\n", encoding="utf-8")
+    more = "\n".join(changes(name, counted(csv.DictReader(episodes))))
+    (PAGES / f"{name}.md").write_text(f"{markdown(result)}\n{more}\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
