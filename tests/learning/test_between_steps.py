@@ -15,12 +15,12 @@ FAST = {"shape": {"name": "circle", "radius": 0.1}, "vel_max": [3, 2], "vel_min"
 AHEAD = np.array([1.0, 0.0])
 
 
-def tunnel(*names: str) -> dict[str, Any]:
+def tunnel(*names: str, **world: Any) -> dict[str, Any]:
     """Robots that move 0.3 m per step; the first, on y = 5, passes through a board in its fourth step."""
     robots = [
         {**FAST, "name": name, "state": [1, 5 - 2 * k, 0], "goal": [9, 5 - 2 * k]} for k, name in enumerate(names)
     ]
-    return task(*robots, obstacles=[BOARD], horizon=0.7, learners=list(names))
+    return task(*robots, obstacles=[BOARD], horizon=0.7, learners=list(names), world=world)
 
 
 def test_gymnasium() -> None:
@@ -54,3 +54,28 @@ def test_vectors_have_the_number_of_the_episode_also_in_its_last_step(mode: str,
     assert counts[:7] == [[0, 0, 0, 0]] * 3 + [[1, 0, 1, 0]] * 4
     assert told[6][3].all()  # the last step of the episode
     assert counts[7] == [0, 0, 0, 0]
+
+
+@pytest.mark.parametrize("integration", ["euler", "exact"])
+def test_swept_contacts_end_episodes_and_cost_what_collisions_cost(integration: str) -> None:
+    made = tunnel("ann", contacts="swept", integration=integration)
+    env = Env({**made, "reward": [{"name": "collision", "weight": -5}]})
+    env.reset(seed=0)
+    told = [env.step(AHEAD) for _ in range(4)]
+    assert [reward for _, reward, *_ in told] == [0, 0, 0, -5]
+    assert [terminated for _, _, terminated, *_ in told] == [False, False, False, True]
+    info = told[-1][-1]
+    assert (info["collided"], info["is_success"]) == (True, False)
+    x = env.worlds.simulation.state.pose[0, 0]
+    assert x == pytest.approx(2.05 - 0.01 - 0.1, abs=1e-4)  # where it touches the board
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_swept_contacts_in_vectors(workers: int) -> None:
+    env = VectorEnv(tunnel("ann", "bob", contacts="swept"), 4, workers=workers)
+    try:
+        env.reset(seed=0)
+        told = [env.step(np.tile(AHEAD, (4, 1))) for _ in range(4)]
+    finally:
+        env.close()
+    assert [info["collided"].tolist() for *_, info in told] == [[False] * 4] * 3 + [[True, False, True, False]]

@@ -35,7 +35,13 @@ def one_step(worlds: Worlds, actions: Any) -> tuple[Any, ...]:
     return worlds.observe(), result.reward, result.terminated, result.truncated, result.over
 
 
-@pytest.mark.parametrize("made", [crowd(), lidar_among_boxes()], ids=["crowd", "lidar"])
+MOTION = {"contacts": "swept", "integration": "exact"}
+"""Arcs within a step, on which contacts count."""
+
+
+@pytest.mark.parametrize(
+    "made", [crowd(), crowd(8, world=MOTION), lidar_among_boxes()], ids=["crowd", "swept crowd", "lidar"]
+)
 def test_a_world_is_the_same_alone_and_among_others_on_any_number_of_threads(made: dict[str, Any]) -> None:
     together = [Worlds(made, 5, seed=7, threads=threads) for threads in (1, 3)]
     alone = [Worlds(made, 1, seed=7 + i) for i in range(5)]

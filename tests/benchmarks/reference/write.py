@@ -1,4 +1,4 @@
-"""Keeps results of suites: ``python -m tests.benchmarks.reference.write NAME`` for a name of ``TABLES``.
+"""Keeps results of suites: ``python -m tests.benchmarks.reference.write NAME [FOLDER]`` for a name of ``TABLES``.
 
 It writes the episodes (``NAME.csv``) and the table with intervals (``skills/irsim-benchmark/results/NAME.md``), which
 also has the shares that were others before contacts between steps were counted and limits planned with (``before/``).
@@ -12,6 +12,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -114,10 +115,10 @@ def counted(episodes: Iterable[Mapping[str, str]]) -> dict[tuple[str, str], Coun
     return outcomes
 
 
-def main(name: str) -> None:
-    """Run a suite and keep its result."""
-    with tempfile.TemporaryDirectory() as folder:
-        result = run_plan(TABLES[name].plan(), Path(folder))
+def main(name: str, folder: str | None = None) -> None:
+    """Run a suite and keep its result; with a folder, go on with the episodes that are there."""
+    with nullcontext(folder) if folder else tempfile.TemporaryDirectory() as place:
+        result = run_plan(TABLES[name].plan(), Path(place), resume=folder is not None)
     assert isinstance(result, SuiteResult)
     labels = {text: name for name, text in result.policies.items()}
     head = ",".join(("scenario", "policy", "seed", "outcome", "steps", *_METRICS))
@@ -128,4 +129,4 @@ def main(name: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])
