@@ -10,7 +10,7 @@ import pytest
 import irsim
 
 ROBOT = (
-    "world: {{step_time: {dt}, integration: {integration}}}\n"
+    "world: {{step_time: {dt}, integration: {integration}, {world}}}\n"
     "robot: {{kinematics: {{name: {drive}}}, shape: {{name: circle, radius: {radius}}}, state: [1, 1, 0], "
     "goal: [9, 9], vel_max: {top}, vel_min: {low}, goal_threshold: 0.5, behavior: {{name: orca}}}}\n"
 )
@@ -23,8 +23,9 @@ def findings(
     top: str = "[1, 1]",
     low: str = "[-1, -1]",
     integration: str = "euler",
+    world: str = "contacts: step_end",
 ) -> list[Any]:
-    text = ROBOT.format(dt=dt, drive=drive, radius=radius, top=top, low=low, integration=integration)
+    text = ROBOT.format(dt=dt, drive=drive, radius=radius, top=top, low=low, integration=integration, world=world)
     return [finding for finding in irsim.validate(text=text).findings if finding.code == "coarse-steps"]
 
 
@@ -33,6 +34,7 @@ def test_a_step_longer_than_half_of_the_body() -> None:
     (found,) = findings(top="[2.1, 1]", low="[-2.1, -1]")
     assert found.severity == "hint"
     assert "0.21 m in a step of 0.1 s, more than half of its size (0.4 m)" in found.message
+    assert "it decides, and contacts are judged, only that often" in found.message
     assert "world.step_time: 0.09 or less" in (found.fix or "")
     assert findings(dt=0.09, top="[2.1, 1]", low="[-2.1, -1]") == []
     assert len(findings(top="[2.1, 1]", low="[-2.1, -1]", integration="exact")) == 1  # arcs are as long
@@ -49,6 +51,17 @@ def test_a_turn_by_more_than_half_a_radian(drive: str, top: str, low: str) -> No
     assert "integration: exact" in (found.fix or "")
     assert "world.step_time: 0.1 or less" in (found.fix or "")
     assert not findings(0.2, drive, top=top, low=low, integration="exact")
+
+
+@pytest.mark.parametrize("world", ["contacts: swept", "collision_mode: contact"])
+def test_where_contacts_within_steps_count(world: str) -> None:
+    (found,) = findings(top="[2.1, 1]", low="[-2.1, -1]", world=world)
+    assert "(0.4 m): it decides only that often" in found.message
+
+
+@pytest.mark.parametrize("low", ["[-1]", "[]"])
+def test_limits_of_wrong_lengths_are_no_business_of_it(low: str) -> None:
+    assert findings(low=low) == []
 
 
 def test_ordinary_robots_and_all_templates_are_not_coarse() -> None:

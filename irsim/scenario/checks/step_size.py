@@ -10,6 +10,7 @@ from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, hint
+from irsim.scenario.model.world import WorldModel
 from irsim.scenario.resolve.body_size import has_fixed_shape, thickness, top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
 
@@ -59,10 +60,16 @@ def _coarse_steps(context: Context) -> Iterator[Finding]:
                 "coarse-steps",
                 where,
                 f"'{record.name}' moves by up to {metres(speed * dt)} in a step of {dt:g} s, more than half of its "
-                f"size ({metres(size)}): it decides, and contacts are judged, only that often",
+                f"size ({metres(size)}): {_only(world)} only that often",
                 given=record.vel_max,
                 fix=f"world.step_time: {longest:g} or less; world.integration: exact helps where it turns",
             )
+
+
+def _only(world: WorldModel) -> str:
+    """What happens once in a step."""
+    within = world.contacts == "swept" or world.collision_mode == "contact"
+    return "it decides" if within else "it decides, and contacts are judged,"
 
 
 def _usual_speed(record: ObjectRecord) -> float:
