@@ -168,7 +168,7 @@ DIFFERENCES: dict[str, Difference] = {
         "and robots drive into walls and each other",
         "with `acce` turns end at the wanted heading, and `rvo`, `sfm` and `orca` brake in time; without it nothing "
         "changes",
-        "behaviors that ignore a limit drive into each other (10 robots under `orca`, `acce: [1, 4]`: success 53 -> 95 %)",
+        "behaviors that ignore a limit collide (success of 10 robots under `orca`, `acce: [1, 4]`: 53 -> 95 %)",
     ),
     "format-3": Difference(
         "`obstacle: {…}` joins group 0 and follows its group behavior",
