@@ -108,6 +108,19 @@ double width_of(const Bodies& bodies, int object) {
   return least;
 }
 
+/// Radius of the largest disc round the origin inside a piece of an object, 0 if there is none.
+double inner_of(const Bodies& bodies, int object) {
+  double most = 0.0;
+  for (int p = bodies.begin[object]; p < bodies.begin[object + 1]; ++p) {
+    const Convex& piece = bodies.pieces[p];
+    double least = piece.count == 1 ? piece.radius - norm(bodies.vertices[piece.first]) : kInfinity;
+    for (int k = piece.first; piece.count > 1 && k < piece.first + piece.count; ++k)
+      least = std::min(least, dot(bodies.normals[k], bodies.vertices[k]));
+    most = std::max(most, least);
+  }
+  return most;
+}
+
 }  // namespace
 
 std::vector<std::vector<Vec2>> convex_pieces(std::vector<Vec2> ring) {
@@ -135,6 +148,7 @@ std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shap
     bodies->cells.push_back(shapes.is_map(i) ? shapes.parts[shapes.body[i].part].cells : nullptr);
     bodies->begin.push_back(static_cast<int>(bodies->pieces.size()));
     bodies->width.push_back(width_of(*bodies, i));
+    bodies->inner.push_back(inner_of(*bodies, i));
     Vec2 centre = whole.size > 0.0 ? whole.moment * (1.0 / whole.size) : shapes.centre[i];
     const std::vector<double>& given = world.specs[i].centroid;
     const double scale = shapes.scale_of(i);

@@ -24,10 +24,11 @@ struct Bodies {
       normals;  // normals[k]: outward normal of the edge from vertex k to the next one of its piece
   std::vector<const OccupancyGrid*> cells;  // (N,) cells of maps, which have no pieces; else null
   std::vector<double> width;                // (N,) least extent of the thinnest piece or cell [m]
-  std::vector<Vec2> centroid;               // (N,) centres of mass
-  std::vector<double> inverse_mass;         // (N,) [1/kg], 0 for objects that cannot be pushed
-  std::vector<double> gyration2;            // (N,) square of the radius of gyration [m^2]
-  std::vector<double> inverse_inertia;      // (N,) [1/(kg m^2)]
+  std::vector<double> inner;            // (N,) radius of a disc round the origin inside a piece, 0 if there is none [m]
+  std::vector<Vec2> centroid;           // (N,) centres of mass
+  std::vector<double> inverse_mass;     // (N,) [1/kg], 0 for objects that cannot be pushed
+  std::vector<double> gyration2;        // (N,) square of the radius of gyration [m^2]
+  std::vector<double> inverse_inertia;  // (N,) [1/(kg m^2)]
 };
 
 std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shapes);

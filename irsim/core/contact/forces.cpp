@@ -7,8 +7,23 @@ void ContactSolver::change_velocities() {
   const double per_second = 1.0 / options_.step_time;
   for (const int i : world_.moving) {
     const Buffers::Body& body = buffers_.bodies[i];
-    if (body.moves > 0) push(world_, state_, first_ + i, body.moved * per_second, body.turned * per_second);
+    if (body.moves == 0) continue;
+    const double rate = per_second * counted(i, body.moved * per_second, body.turned * per_second);
+    push(world_, state_, first_ + i, body.moved * rate, body.turned * rate);
   }
+}
+
+double ContactSolver::counted(int object, Vec2 change, double yaw_rate) const {
+  if (!std::isfinite(options_.fastest)) return 1.0;
+  const Vec3& twist = state_.twist[first_ + object];
+  const double radius = scene_.shapes->radius[object];
+  double share = 1.0;
+  const auto speed = [&] {
+    const Vec2 along{twist[0] + share * change.x, twist[1] + share * change.y};
+    return std::max(norm(along), 0.5 * radius * std::fabs(twist[2] + share * yaw_rate));
+  };
+  while (share > options_.share && speed() > options_.fastest) share *= 0.5;
+  return std::max(share, options_.share);
 }
 
 void ContactSolver::record_contact(Buffers::Pair& pair, const Overlap& o, double depth) {

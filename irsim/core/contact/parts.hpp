@@ -5,8 +5,9 @@
 
 namespace irsim {
 
-/// Into how many parts a step must be divided: 1 unless a body that meets something moves farther in it than half of
-/// both are thick, or may push a body that far into a third one.
+/// Into how many parts a step must be divided: 1 unless a body would come out on the far side of another one that it
+/// meets, or be pushed out on the far side of a third one. Jams, in which bodies come out where they went in, are not
+/// divided.
 int parts_of_step(const World& world, State& state, int w, Workspace& work);
 /// Move all objects of a world through the step part by part, and push overlapping bodies apart after each part. What
 /// contacts do to the velocity of a body changes the rest of its motion.

@@ -21,6 +21,10 @@ struct Resolution {
   int extra_sweeps;  // maximum number of further sweeps while bodies visibly overlap
   double slop;       // gap left between bodies that were pushed apart [m]
   double step_time;  // [s]
+  // In parts of a step: no contact makes a body faster than the fastest one [m/s]. What remains of older overlaps
+  // would, because it goes in the time of a part; only this share of it counts.
+  double fastest = kInfinity;
+  double share = 1.0;
 };
 
 /// Push these pairs of objects apart, or all objects that may meet if `pairs` is null.

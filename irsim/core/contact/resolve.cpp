@@ -51,6 +51,17 @@ const Overlap& ContactSolver::overlap(Buffers::Pair& pair) {
   return pair.overlap;
 }
 
+Overlap ContactSolver::overlap_at(int a, int b, const Pose& at_a, const Pose& at_b) {
+  const auto put = [&](int object, const Pose& at) {
+    const Pose now = std::exchange(state_.pose[first_ + object], at);
+    place(object);
+    state_.pose[first_ + object] = now;
+  };
+  put(a, at_a), put(b, at_b);
+  Buffers::Pair pair{a, b, 0, 0, 0, false, {}, -1, 0.0, false, false};
+  return overlap(pair);
+}
+
 Overlap ContactSolver::overlap_with_cells(int object, const OccupancyGrid& grid) const {
   Overlap deepest;
   for (int p = bodies_.begin[object]; p < bodies_.begin[object + 1]; ++p) {

@@ -25,6 +25,9 @@ class ContactSolver {
 
   /// Resolve the contacts of these pairs, or of all objects that may meet.
   void run(const std::vector<std::pair<int, int>>* given);
+  void place_moving();
+  /// How two objects overlap at other poses, after `place_moving`. The depth is -infinity if they are apart.
+  Overlap overlap_at(int a, int b, const Pose& at_a, const Pose& at_b);
 
  private:
   using Buffers = ContactBuffers;
@@ -43,7 +46,6 @@ class ContactSolver {
   double deepest_overlap();
   /// Put the pieces of an object where its pose is now.
   void place(int object);
-  void place_moving();
 
   /// Distance that two bodies can approach each other by in a step, with a small margin [m].
   double reach_per_step() const;
@@ -75,6 +77,8 @@ class ContactSolver {
 
   /// Add the displacements of this step to the velocities.
   void change_velocities();
+  /// Which share of a change of velocity counts, see `Resolution`.
+  double counted(int object, Vec2 change, double yaw_rate) const;
   void record_contact(Buffers::Pair& pair, const Overlap& o, double depth);
   /// Give passive bodies the speed of separation that their restitution asks for.
   void bounce();

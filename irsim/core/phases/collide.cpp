@@ -16,7 +16,9 @@ void find_pairs(const World& world, State& state, int w) {
   const bool moved = scene.in_motion, judged = world.contacts == kSwept;
   std::vector<Pair>& pairs = scene.pairs;
   pairs.assign(fixed.pairs.begin(), fixed.pairs.end());
-  scene.meetings.clear(), scene.near.clear();
+  scene.meetings.clear(), scene.near.clear(), scene.parted.clear();
+  for (const Contact& contact : scene.contacts) scene.parted.emplace_back(contact.a, contact.b);
+  std::sort(scene.parted.begin(), scene.parted.end());
   const auto examine = [&](int i, int j, const Footprint& a, const Footprint& b) {
     if (judged) {
       scene.near.push_back({std::min(i, j), std::max(i, j), kInfinity, {}, false});
@@ -48,9 +50,10 @@ void find_pairs(const World& world, State& state, int w) {
 
 /// Where two objects touch: where they first did in this step if that was judged, otherwise where they do now.
 Vec2 place_of_contact(const World& world, const State& state, int w, int i, int j) {
-  for (const NearPair& pair : state.scenes[w].near) {
-    if (pair.judged && pair.a == i && pair.b == j) return pair.where;
-  }
+  const std::vector<NearPair>& near = state.scenes[w].near;  // sorted by objects
+  const auto pair = std::lower_bound(near.begin(), near.end(), Pair{i, j},
+                                     [](const NearPair& p, const Pair& q) { return Pair{p.a, p.b} < q; });
+  if (pair != near.end() && pair->judged && pair->a == i && pair->b == j) return pair->where;
   Vec2 where;
   touch(state.footprint(world, w, i), state.footprint(world, w, j), where);
   return where;

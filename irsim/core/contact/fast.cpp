@@ -1,0 +1,196 @@
+// Whether pushing bodies apart at the end of a step would let one of them come out on the far side of another.
+#include <algorithm>
+
+#include "collision/touch.hpp"
+#include "contact/parts.hpp"
+#include "contact/solver.hpp"
+#include "phases.hpp"
+#include "phases/strides.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kFast = 0.5;        // share of the widths of two bodies; past it, the way out is on the far side
+constexpr double kPart = 0.25;       // the same, for how far bodies move in a part of a step
+constexpr double kCorners = 0.25;    // the same, of what turns outside of a disc that always stays in a body
+constexpr int kMostParts = 4000;     // of a step
+constexpr int kMostPairs = 1000000;  // of near bodies, in all parts of a step; larger crowds move in fewer parts
+
+Box wider(const Box& box, double by) { return {box.x0 - by, box.y0 - by, box.x1 + by, box.y1 + by}; }
+
+class FastBodies {
+ public:
+  FastBodies(const World& world, State& state, int w, Workspace& work)
+      : world_(world),
+        state_(state),
+        w_(w),
+        work_(work),
+        buffers_(work.contacts),
+        scene_(state.scenes[w]),
+        bodies_(bodies_of(world, state, w)),
+        first_(w * world.objects) {}
+
+  int parts() {
+    buffers_.strides.clear();
+    double far = 0.0, lightest = kInfinity, least = kInfinity;
+    for (const int i : world_.moving) {
+      buffers_.strides.push_back(stride_of(world_, state_, w_, i));
+      far = std::max(far, swing(i, buffers_.strides.back()) + norm(buffers_.strides.back().by));
+    }
+    for (int i = 0; i < world_.objects; ++i) {
+      if (world_.unobstructed[i]) continue;
+      least = std::min(least, bodies_.width[i]);
+      if (world_.dynamics[i].pushable) lightest = std::min(lightest, bodies_.width[i]);
+    }
+    thinnest_ = lightest + least;
+    if (!(2.0 * far > kFast * thinnest_)) return 1;
+    return examine(far);
+  }
+
+ private:
+  /// How far the turn and the bend of its way carry the sides of a body out of the straight motion of its origin [m]. A
+  /// turn carries them over what is outside of the disc that always stays in the body.
+  double swing(int object, const Stride& stride) const {
+    const Shapes& shapes = *scene_.shapes;
+    const double outer = norm(shapes.centre[object]) + shapes.radius[object];
+    const double way = std::min(std::fabs(stride.turn) * outer, outer - bodies_.inner[object]);
+    return std::isfinite(stride.by.x + stride.by.y) ? way + 2.0 * stride.bulge(0.0) : 0.0;
+  }
+  Stride stride(int i) const {
+    if (world_.is_static[i]) return Stride::resting(state_.pose[first_ + i]);
+    return buffers_.strides[scene_.shapes->placed[i].object];
+  }
+  /// How far sides of two bodies may move past each other in the step [m]. The corners of compact bodies do not count.
+  double way_between(int a, int b) const {
+    const Stride one = stride(a), other = stride(b);
+    return norm(one.by - other.by) + std::max(0.0, swing(a, one) + swing(b, other) - kCorners * width(a, b));
+  }
+  double width(int a, int b) const { return bodies_.width[a] + bodies_.width[b]; }
+  bool is_whole(int i) const { return bodies_.cells[i] == nullptr && bodies_.begin[i + 1] == bodies_.begin[i] + 1; }
+
+  /// The pairs of objects whose boxes in the step come within `reach` of each other, and of which one can be pushed.
+  void find_near(double reach) {
+    std::vector<std::pair<int, int>>& out = buffers_.met;
+    out.clear();
+    const auto add = [&](int i, int j) {
+      if (world_.unobstructed[i] || world_.unobstructed[j]) return;
+      if (world_.dynamics[i].pushable || world_.dynamics[j].pushable) out.emplace_back(std::min(i, j), std::max(i, j));
+    };
+    bound_steps(world_, state_, w_, scene_.ways);
+    const auto box = [&](int i) { return scene_.ways[scene_.shapes->placed[i].object]; };
+    if (!world_.fixed_objects.empty()) {
+      for (const int i : world_.moving) scene_.fixed->grid.query(wider(box(i), reach), [&](int j) { add(i, j); });
+    }
+    if (world_.moving.size() > 1) scene_.sweep.pairs([&](int i) { return wider(box(i), 0.5 * reach); }, add);
+    std::sort(out.begin(), out.end());
+  }
+
+  int examine(double far) {
+    scene_.parted.clear();
+    place_moving(world_, state_, w_);
+    find_near(far);
+    const std::vector<std::pair<int, int>>& near = buffers_.met;
+    const int most = std::min(kMostParts, kMostPairs / std::max(1, static_cast<int>(near.size())));
+    if (most * kPart < kFast) return 1;
+    const Resolution any{0, 0, 0.0, world_.step_time};
+    ContactSolver solver(world_, state_, w_, work_, any);
+    solver.place_moving();
+    for (const auto& [a, b] : near) {
+      if (share_ >= most * kPart) break;
+      const double way = way_between(a, b);
+      if (!(way > kFast * thinnest_) || !std::isfinite(way)) continue;
+      if (way > kFast * width(a, b) && comes_out_elsewhere(solver, a, b, way)) {
+        share_ = std::max(share_, way / width(a, b));
+      } else {
+        push_apart(solver, a, b);
+      }
+    }
+    if (!(share_ > kFast)) return 1;
+    return static_cast<int>(clip(std::ceil(share_ / kPart), 2.0, most));
+  }
+
+  /// Whether two bodies meet in the step, but are pushed apart at its end in another direction, or not at all. The
+  /// first pushes the second one before it then.
+  bool comes_out_elsewhere(ContactSolver& solver, int a, int b, double way) {
+    const Stride one = stride(a), other = stride(b);
+    const Passage passage(world_, state_, w_, a, b);
+    Vec2 where;
+    const bool touch = passage.in_contact(0.0);
+    const double when = touch ? 0.0 : passage.first_contact(0.0, 1.0, where);
+    if (!(when <= 1.0) || !((1.0 - when) * way > kFast * width(a, b))) return false;
+    const Pose at_a = one.at(when), at_b = other.at(when);
+    const Overlap first = solver.overlap_at(a, b, at_a, at_b);
+    const auto moved = [&](const Pose& from, const Pose& to) {
+      return to.position() + rotate(first.point - from.position(), unit(to.theta - from.theta)) - first.point;
+    };
+    const Vec2 push_b = moved(at_a, one.at(1.0)), push_a = moved(at_b, other.at(1.0));
+    if (touch && dot(first.normal, push_b - push_a) >= 0.0) return false;  // they part
+    if (swing(a, one) + swing(b, other) <= kFast * width(a, b) && is_whole(a) && is_whole(b)) {
+      const Overlap last = solver.overlap_at(a, b, one.at(1.0), other.at(1.0));
+      if (std::isfinite(last.depth) && dot(first.normal, last.normal) > 0.0) return false;
+    }
+    push_on(a, at_a, push_a, b);
+    push_on(b, at_b, push_b, a);
+    return true;
+  }
+  /// Look for thin bodies that one of these two, pushed away at the end of the step, would be pushed through.
+  void push_apart(ContactSolver& solver, int a, int b) {
+    const Pose &at_a = state_.pose[first_ + a], &at_b = state_.pose[first_ + b];
+    const Overlap last = solver.overlap_at(a, b, at_a, at_b);
+    if (!(last.depth > kFast * thinnest_)) return;
+    push_on(a, at_a, last.normal * last.depth, b);
+    push_on(b, at_b, last.normal * -last.depth, a);
+  }
+  /// Look for thin bodies that a body would be pushed through by another one, or would push other bodies through.
+  void push_on(int body, const Pose& from, Vec2 push, int by) {
+    const double way = norm(push);
+    if (!world_.dynamics[body].pushable || !(way > kFast * thinnest_)) return;
+    buffers_.reached.assign(world_.objects, 0);
+    buffers_.reached[body] = buffers_.reached[by] = 1;
+    buffers_.queue.assign(1, body);
+    for (std::size_t head = 0; head < buffers_.queue.size(); ++head) {
+      const int now = buffers_.queue[head];
+      const Pose at = now == body ? from : state_.pose[first_ + now];
+      scene_.trial.resize(scene_.shapes->size[0]);
+      scene_.trial.place(*scene_.shapes, now, at, unit(at.theta));
+      for (const auto& [i, j] : buffers_.met) {
+        if (i != now && j != now) continue;
+        const int next = i == now ? j : i;
+        if (buffers_.reached[next] || !meets(now, at, push, next)) continue;
+        buffers_.reached[next] = 1;
+        if (way > kFast * width(now, next))
+          share_ = std::max(share_, (way + way_between(now, next)) / width(now, next));
+        if (world_.dynamics[next].pushable) buffers_.queue.push_back(next);
+      }
+    }
+  }
+  /// Whether a body, put into `Scene::trial` at a pose, meets another one on its way from there.
+  bool meets(int body, const Pose& from, Vec2 push, int next) {
+    const Footprint here = scene_.trial.footprint(*scene_.shapes, body), there = state_.footprint(world_, w_, next);
+    Box way = here.box;
+    way.include({way.x0 + push.x, way.y0 + push.y, way.x1 + push.x, way.y1 + push.y});
+    if (!way.meets(there.box)) return false;
+    const Moving pushed = moving_body(*scene_.shapes, body, {from, push});
+    Vec2 where;
+    return touch(here, there) || first_contact(pushed, resting_body(there), 0.0, 1.0, scene_.swept, where) <= 1.0;
+  }
+
+  const World& world_;
+  State& state_;
+  const int w_;
+  Workspace& work_;
+  ContactBuffers& buffers_;
+  Scene& scene_;
+  const Bodies& bodies_;
+  const int first_;
+  double thinnest_ = kInfinity;  // least width of two bodies that can meet
+  double share_ = 0.0;           // largest of those ways through which a body would pass another, in their widths
+};
+
+}  // namespace
+
+int parts_of_step(const World& world, State& state, int w, Workspace& work) {
+  return state.scenes[w].in_motion ? FastBodies(world, state, w, work).parts() : 1;
+}
+
+}  // namespace irsim
