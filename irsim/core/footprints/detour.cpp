@@ -14,8 +14,7 @@ constexpr double kAround = 1.5;       // free space round everything, through wh
 constexpr double kSmall = 0.5;        // bodies up to this radius need no more space than that [m]
 constexpr double kAside = 4.0;        // no way leads farther aside of the straight line, or back, plus the space [m]
 constexpr double kComfort = 0.15;     // clearance that a way keeps if it is not much longer [m]
-constexpr double kTight = 0.06;       // overlap of the disc that is tried if there is no other way [m]
-constexpr double kTightCost = 30.0;   // factor on the length of such a part
+constexpr double kTightCost = 30.0;   // factor on the length of a part on which the disc overlaps something
 constexpr double kComfortCost = 2.0;  // factor on the length of a part without clearance, added to 1
 constexpr double kLeaving = 0.3;      // distance from the start within which any overlap may be left [m]
 constexpr double kGreed =
@@ -38,16 +37,16 @@ double distance_to(const Hull& hull, Vec2 p) {
 }
 
 /// Factor on the length of a way through a point; infinite if it is closed.
-double price_of(Vec2 p, Vec2 start, double radius, const std::vector<Blocker>& blockers,
+double price_of(Vec2 p, Vec2 start, double radius, double overlap, const std::vector<Blocker>& blockers,
                 const std::vector<DetourMemory::Reach>& reaches) {
   double clear = kComfort;
   for (std::size_t k = 0; k < reaches.size(); ++k) {
     if (squared(p - reaches[k].centre) >= reaches[k].far2) continue;
     clear = std::min(clear, distance_to(blockers[k].hull, p) - radius);
-    if (clear <= -kTight) break;
+    if (clear <= -overlap) break;
   }
   if (clear >= 0.0) return 1.0 + kComfortCost * (1.0 - clear / kComfort);
-  return clear > -kTight || squared(p - start) < kLeaving * kLeaving ? kTightCost : kInfinity;
+  return clear > -overlap || squared(p - start) < kLeaving * kLeaving ? kTightCost : kInfinity;
 }
 
 }  // namespace
@@ -65,8 +64,8 @@ bool is_open(Vec2 a, Vec2 b, double radius, const std::vector<Blocker>& blockers
   return true;
 }
 
-bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, const std::vector<Blocker>& blockers,
-                 DetourMemory& memory, std::vector<Vec2>& points) {
+bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, double overlap,
+                 const std::vector<Blocker>& blockers, DetourMemory& memory, std::vector<Vec2>& points) {
   // The grid lies along the straight line, so that a turned world gives turned ways.
   const double distance = norm(goal - start);
   const Vec2 ahead = distance > 0.0 ? (goal - start) * (1.0 / distance) : Vec2{1.0, 0.0};
@@ -113,7 +112,8 @@ bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, const std::
   memory.parent.resize(size);
   const auto price = [&](int k) {
     float& known = memory.price[k];
-    if (known == 0.0f) known = static_cast<float>(price_of(centre(k), start, radius, blockers, memory.reaches));
+    if (known == 0.0f)
+      known = static_cast<float>(price_of(centre(k), start, radius, overlap, blockers, memory.reaches));
     return known;
   };
   const auto remaining = [&](int k) { return kGreed * std::max(0.0, norm(centre(k) - goal) - reach); };

@@ -13,6 +13,8 @@ struct Detour {
   std::int64_t step = -1;     // step in which it was last used
   std::int64_t planned = -1;  // step in which a way was last searched; -1: the goal is straight ahead
   int blockers = 0;           // number of bodies that stood in the way then
+  bool leads = false;         // whether the way leads to the goal, not only near it or toward it
+  bool wide = false;          // whether it leaves room to turn on the spot: without it, there was no progress
   Vec2 goal;
   std::vector<Vec2> points;  // corners of the way; empty: straight to the goal
   std::size_t next = 0;      // the corner ahead
@@ -45,8 +47,11 @@ bool is_open(Vec2 a, Vec2 b, double radius, const std::vector<Blocker>& blockers
 
 /// Find a way of a disc of this radius to within `reach` [m] of the goal: the corners after `start`.
 ///
+/// Args:
+///   overlap: How far the disc may overlap something where there is no other way that is not much longer [m].
+///
 /// Returns: False if there is none; the points then lead as near as possible.
-bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, const std::vector<Blocker>& blockers,
-                 DetourMemory& memory, std::vector<Vec2>& points);
+bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, double overlap,
+                 const std::vector<Blocker>& blockers, DetourMemory& memory, std::vector<Vec2>& points);
 
 }  // namespace irsim

@@ -9,11 +9,15 @@ namespace {
 
 constexpr double kLane = 0.02;           // clearance of a straight lane on either side [m]
 constexpr double kSearchAgain = 3.0;     // time after which a way that is not open is searched again [s]
+constexpr double kGoOn = 1.0;            // the same at the end of one that does not lead to the goal [s]
+constexpr double kAtEnd = 0.5;           // distance from this end [m]
+constexpr double kTight = 0.06;          // overlap with a lane that is tried if there is no other way [m]
 constexpr double kHorizon = 8.0;         // ways are planned no farther ahead [m]
 constexpr double kInside = 0.02;         // depth within `goal_threshold` to which a way leads [m]
 constexpr double kCornerReached = 0.1;   // distance at which a corner of a way is left behind [m]
 constexpr double kProgress = 0.3;        // an object that stays within this distance makes no progress [m]
-constexpr double kPatience = 1.2;        // time without progress after which it tries other directions [s]
+constexpr double kPatience = 1.2;        // time without progress, besides that for gathering speed, after which it
+                                         // tries other directions [s]
 constexpr double kTrial = 1.0;           // time for which it tries one, and then its own again [s]
 constexpr double kLeastTrial = kPi / 3;  // smallest angle of such a direction from its own [rad]
 constexpr double kMakeRoom = 0.3;        // gap at which an arrived object makes room for others [m]
@@ -30,23 +34,43 @@ double half_lane(const FootprintSelf& self) {
   return (self.slides ? std::sqrt(most) : most) + self.hull.round + kLane;
 }
 
+/// Radius of the disc that stands for the body on its way, and how far it may overlap what stands [m].
+struct Lane {
+  double radius, overlap;
+};
+Lane lane_of(const FootprintSelf& self, const Detour& detour) {
+  const double half = half_lane(self);
+  const double radius = detour.wide && self.turn_rate > 0.0 ? std::max(half, self.reach + kLane) : half;
+  return {radius, radius - half + kTight};
+}
+
+/// Whether a way must be searched though all of it is open.
+bool is_spent(const FootprintSelf& self, const Detour& detour, double age) {
+  if (detour.planned < 0) return true;
+  if (detour.points.empty() || age >= kSearchAgain)
+    return age >= kSearchAgain && (detour.points.empty() || !detour.leads);
+  return !detour.leads && age >= kGoOn && squared(detour.points.back() - self.position) < kAtEnd * kAtEnd;
+}
+
 /// Search a way if there is none, if it is old, or if it has become blocked.
-void update_way(FootprintSelf& self, Detour& detour, Vec2 to, double reach, double radius, std::int64_t now) {
+void update_way(FootprintSelf& self, Detour& detour, Vec2 to, double reach, Lane lane, std::int64_t now) {
   const std::vector<Blocker>& blockers = self.crowd.blockers;
   const int count = static_cast<int>(blockers.size());
-  const bool old = (now - detour.planned) * self.world().step_time >= kSearchAgain;
-  bool search = detour.planned < 0 || (old && detour.points.empty());
+  const double age = (now - detour.planned) * self.world().step_time;
+  const bool old = age >= kSearchAgain;
+  bool search = is_spent(self, detour, age);
   if (!search && (old || detour.blockers != count)) {
     Vec2 from = self.position;
     for (std::size_t k = detour.next; k < detour.points.size() && !search; ++k) {
-      search = !is_open(from, detour.points[k], radius, blockers);
+      search = !is_open(from, detour.points[k], lane.radius, blockers);
       from = detour.points[k];
     }
     detour.blockers = count;
     if (old) detour.planned = now;
   }
   if (!search) return;
-  find_detour(self.position, to, reach, radius, blockers, self.crowd.search, detour.points);
+  detour.leads =
+      find_detour(self.position, to, reach, lane.radius, lane.overlap, blockers, self.crowd.search, detour.points);
   detour.planned = now, detour.blockers = count, detour.next = 0;
 }
 
@@ -55,24 +79,33 @@ Vec2 next_point(FootprintSelf& self, Detour& detour, Vec2 goal, std::int64_t now
   const std::vector<Blocker>& blockers = self.crowd.blockers;
   if (blockers.empty()) return goal;
   const Vec2 way = goal - self.position;
-  const double distance = norm(way), radius = half_lane(self);
+  const double distance = norm(way);
+  const Lane lane = lane_of(self, detour);
   double reach = std::max(0.0, self.world().goal_threshold[self.object] - kInside);
   Vec2 to = goal;
-  if (distance > kHorizon) to = self.position + way * (kHorizon / distance), reach = std::max(reach, 1.0);
+  const bool far = distance > kHorizon;
+  if (far) to = self.position + way * (kHorizon / distance), reach = std::max(reach, 1.0);
   const double left = norm(to - self.position);
   const Vec2 end = left > reach ? self.position + way * ((left - reach) / distance) : self.position;
-  if (is_open(self.position, end, radius, blockers)) {
+  if (is_open(self.position, end, lane.radius, blockers)) {
     detour.points.clear(), detour.planned = -1;
     return goal;
   }
-  update_way(self, detour, to, reach, radius, now);
+  update_way(self, detour, to, reach, lane, now);
+  if (far) detour.leads = false;
   if (detour.points.empty()) return goal;
   const std::size_t last = detour.points.size() - 1;
   while (detour.next < last && (squared(detour.points[detour.next] - self.position) < kCornerReached * kCornerReached ||
-                                is_open(self.position, detour.points[detour.next + 1], radius, blockers))) {
+                                is_open(self.position, detour.points[detour.next + 1], lane.radius, blockers))) {
     ++detour.next;
   }
   return detour.points[detour.next];
+}
+
+/// Time in which an object gathers its speed [s].
+double time_to_speed(const FootprintSelf& self) {
+  const double acce = self.state().acce[self.row][0];
+  return acce > 0.0 ? self.speed / acce : 0.0;
 }
 
 /// An object without progress goes round others that stand, too.
@@ -115,12 +148,13 @@ Vec2 wanted_velocity(FootprintSelf& self) {
   const std::int64_t now = state.count[self.decision.w()];
   if (detour.step != now - 1 && detour.step != now) detour = {};
   if (detour.step < 0 || squared(detour.goal - goal) > 0.0)
-    detour.points.clear(), detour.planned = -1, detour.goal = goal;
+    detour.points.clear(), detour.planned = -1, detour.goal = goal, detour.wide = false;
   detour.step = now;
   if (detour.anchored < 0 || squared(detour.anchor - self.position) > kProgress * kProgress)
     detour.anchor = self.position, detour.anchored = now;
-  const double waited = (now - detour.anchored) * dt - kPatience;
+  const double waited = (now - detour.anchored) * dt - kPatience - time_to_speed(self);
   if (waited >= 0.0) add_standing(self);
+  if (waited >= 0.0 && !detour.wide) detour.wide = true, detour.planned = -1;
   const Vec2 way = next_point(self, detour, goal, now) - self.position;
   const double distance = norm(way);
   if (!(distance > 0.0)) return {};
