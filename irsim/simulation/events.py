@@ -50,7 +50,8 @@ class Event(NamedTuple):
             ``contact_between_steps`` (two objects that are apart at the beginning and at the end of a step touch
             within it), ``passed_through`` (likewise, and the middle of one of them went through the other, as a fast
             robot through a thin wall).
-        time: Simulated time [s]; of a contact between steps, when the two first touch within the step.
+        time: Simulated time [s]; of a contact between steps, and of a collision with ``world.contacts: swept``, when
+            the two first touch within the step.
         step: Number of executed steps at the event, with the step of the event itself; 0 is the initial state.
         object: Name of the object; for a contact, of the first of the two objects; for a sight, of the one that sees.
         partner: Name of the second object of a contact, of the object that is seen, or round which there is no path.
@@ -85,21 +86,23 @@ def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[
     step_time = float(simulation.scenario.world.step_time)
     found = []
     state = simulation.state
-    moments = state.moments(world, start) if state.between_steps.any() else None
-    for number, (kind, step, first, second, x, y) in enumerate(state.events(world, start)):
-        time, name = step * step_time, simulation.names[first]
+    rows = state.events(world, start)
+    within = simulation.scenario.world.contacts == "swept" or any(row[0] in BETWEEN_STEPS for row in rows)
+    moments = state.moments(world, start) if within else []
+    for number, (kind, step, first, second, x, y) in enumerate(rows):
+        when, depth = moments[number] if within else (1.0, 0.0)
+        time = step * step_time if when == 1.0 else (step - 1 + when) * step_time
+        name = simulation.names[first]
         if kind in _CROSSINGS:
             found.append(Event("line_crossing", time, step, name, None, x, y, zones[second].name, _CROSSINGS[kind]))
         elif kind in ("zone_entry", "zone_exit"):
             found.append(Event(kind, time, step, name, None, x, y, zones[second].name))  # type: ignore[arg-type]
         elif kind in BETWEEN_STEPS:
-            when, depth = state.moments(world, start + number)[0] if moments is None else moments[number]
-            time = (step - 1 + when) * step_time
             found.append(Event(kind, time, step, name, simulation.names[second], x, y, depth=depth))
         else:
             partner = simulation.names[second] if second >= 0 else None
             found.append(Event(kind, time, step, name, partner, x, y))  # type: ignore[arg-type]
-    return found
+    return sorted(found, key=lambda event: event.time) if within else found
 
 
 def first_events(events: list[Event], kind: str) -> dict[str, Event]:

@@ -85,6 +85,17 @@ def test_other_modes(mode: int) -> None:
         assert state.stopped.tolist() == [1, 0]
 
 
+def test_every_crossing_is_a_collision_of_its_own_with_its_own_time() -> None:
+    world, state = swept(robot(**FAST), WALLS["line"], mode=1)
+    for way in (20.0, -20.0, 20.0):
+        command(state, [way])
+        core.advance(world, state, 1)
+    assert kinds(state) == ["collision", "passed_through"] * 3
+    first, second, third = (state.moments(0)[k][0] for k in (0, 2, 4))
+    assert first == third == pytest.approx(0.4, abs=1e-8)  # 0.8 m of 2 m
+    assert second == pytest.approx(0.4, abs=1e-8)
+
+
 def test_a_robot_that_is_freed_goes_on() -> None:
     world, state = swept(robot(**FAST), robot(pose=[1.0, 0.0, 0.0], behavior=None))
     command(state, [20.0])

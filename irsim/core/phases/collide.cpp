@@ -48,12 +48,16 @@ void find_pairs(const World& world, State& state, int w) {
   if (judged) pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-/// Where two objects touch: where they first did in this step if that was judged, otherwise where they do now.
-Vec2 place_of_contact(const World& world, const State& state, int w, int i, int j) {
-  const std::vector<NearPair>& near = state.scenes[w].near;  // sorted by objects
+/// The contact of two objects within this step if that was judged; null otherwise.
+const NearPair* judged_contact(const Scene& scene, int i, int j) {
+  const std::vector<NearPair>& near = scene.near;  // sorted by objects
   const auto pair = std::lower_bound(near.begin(), near.end(), Pair{i, j},
                                      [](const NearPair& p, const Pair& q) { return Pair{p.a, p.b} < q; });
-  if (pair != near.end() && pair->judged && pair->a == i && pair->b == j) return pair->where;
+  return pair != near.end() && pair->judged && pair->a == i && pair->b == j ? &*pair : nullptr;
+}
+
+/// Where two objects touch at the end of the step.
+Vec2 place_of_contact(const World& world, const State& state, int w, int i, int j) {
   Vec2 where;
   touch(state.footprint(world, w, i), state.footprint(world, w, j), where);
   return where;
@@ -65,13 +69,17 @@ void log_contacts(const World& world, State& state, int w) {
   auto old = scene.previous_pairs.begin();
   for (const Pair& pair : scene.pairs) {
     while (old != scene.previous_pairs.end() && *old < pair) ++old;
-    if (old != scene.previous_pairs.end() && *old == pair) continue;
     const auto [i, j] = pair;
+    const NearPair* judged = judged_contact(scene, i, j);
+    const bool was_there = old != scene.previous_pairs.end() && *old == pair;
+    if (was_there && (judged == nullptr || !judged->begins)) continue;  // not one contact after the other
     // An event needs a moving object or a robot that has met something obstructing.
     const bool first = !world.unobstructed[j] && (!world.is_static[i] || world.is_robot[i]);
     const bool second = !world.unobstructed[i] && (!world.is_static[j] || world.is_robot[j]);
     if (!first && !second) continue;
-    state.log(world, w, EventKind::collision, i, j, place_of_contact(world, state, w, i, j));
+    const Vec2 where = judged == nullptr ? place_of_contact(world, state, w, i, j) : judged->where;
+    state.log(world, w, EventKind::collision, i, j, where);
+    if (judged != nullptr) state.scenes[w].events.back().when = judged->when;
   }
 }
 

@@ -8,6 +8,8 @@
 namespace irsim {
 namespace {
 
+constexpr double kApart = 1e-6;  // gap above which bodies are apart, far above rounding errors [m]
+
 bool stops(const World& world, int object) {
   if (world.is_static[object] || world.unstoppable[object]) return false;
   return world.collision_mode == kStop || (world.collision_mode == kUnobstructedObstacles && world.is_robot[object]);
@@ -43,6 +45,7 @@ void judge_pairs(const World& world, State& state, int w, std::vector<double>& u
   for (NearPair& pair : near) examine(world, state, w, until, pair);
   while (NearPair* hit = first_of(near)) {
     hit->judged = true;
+    hit->begins = Passage(world, state, w, hit->a, hit->b).gap(0.0) > kApart;
     bool stopped[2] = {false, false};
     for (const int k : {0, 1}) {
       const int i = k == 0 ? hit->a : hit->b;

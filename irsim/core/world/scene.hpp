@@ -77,6 +77,7 @@ struct NearPair {
   double when = kInfinity;  // time of the first contact within the step; infinite without one
   Vec2 where;
   bool judged = false;  // whether it counts as a collision
+  bool begins = false;  // whether they are apart when the step begins
 };
 
 /// Two objects in contact that stopped where they first touched: they stay in contact while they stay there.

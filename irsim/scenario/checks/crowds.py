@@ -12,7 +12,7 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 
 _TOUCHING = ("sfm",)
 """Behaviors that push others away, but let bodies touch now and then."""
-_CROWD = 10
+_CROWD = 6
 """Number of people with a way to one goal, as obstacles, from which some are likely to touch."""
 
 

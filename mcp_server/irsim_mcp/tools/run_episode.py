@@ -368,7 +368,8 @@ def _robot_text(robot: Robot) -> str:
         near = f"came as near as {robot.min_clearance + 0.0:g} m to {other}, edge to edge"
         if robot.min_clearance < 0:
             near = f"overlapped {other} by {-robot.min_clearance:g} m when they collided"
-        facts.append(near + at)
+        within = " at the ends of steps" if getattr(robot, "contacts_between_steps", 0) else ""
+        facts.append(near + at + within)
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
     if count := getattr(robot, "contacts_between_steps", 0):
         passed = [repr(name) for name in getattr(robot, "passed_through", [])]
