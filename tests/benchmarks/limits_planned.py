@@ -11,7 +11,7 @@ import argparse
 import sys
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -73,6 +73,7 @@ class Cell:
     limited: bool = True
     obstacles: str = ""
     others: str = ""
+    behavior: str = "{name: footprint_orca}"
 
     def text(self) -> str:
         """The scenario."""
@@ -89,7 +90,7 @@ robot:
     shape: {SHAPE}
     {limits.replace("], ", "]" + chr(10) + "    ")}
     goal_threshold: 0.3
-    behavior: {{name: footprint_orca}}
+    behavior: {self.behavior}
 {self.others}
 {obstacles}
 """
@@ -227,6 +228,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--episodes", type=int, default=200)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--groups", nargs="*", help="only the rows of these groups")
+    parser.add_argument("--behavior", default=Cell.behavior, help="the behavior of the robots, as in a scenario")
+    parser.add_argument("--unlimited", action="store_true", help="without acce")
     parser.add_argument("--sampled", action="store_true", help="count contacts between steps with shapely, too (slow)")
     given = parser.parse_args(arguments)
     head = ["scene", "robots", "protocol", "drive", "integration", "step", "success", "collided", "late", "between"]
@@ -237,6 +240,7 @@ def main(arguments: list[str] | None = None) -> int:
         if given.groups and cell.group not in given.groups:
             continue
         start = time.perf_counter()
+        cell = replace(cell, behavior=given.behavior, limited=cell.limited and not given.unlimited)
         found = run(cell, seeds, given.threads, sampled=given.sampled)
         row = [cell.group, cell.robots, cell.protocol, cell.drive, cell.integration, f"{cell.step_time:g} s"]
         row += [f"{100 * found.success / len(seeds):.1f} %", found.collided, found.late, found.between]

@@ -18,8 +18,9 @@ class Avocado(BehaviorOptions):
     It forms an opinion of every moving object near it: the robot makes more of the change of velocity that avoids one
     that does not react, and less for one that gives way. `orca` is told who gives way; this is for people and robots
     whose behavior is unknown. An opinion starts neutral, which is the half that `orca` makes, and is forgotten when the
-    other is no longer among those considered. Walls, limits of speed and turning, `acce`, cars, goals and dead ends are
-    as in `orca`. Its weak noise breaks exact symmetry, and follows the seed.
+    other is no longer among those considered. Walls, limits of speed and turning, `acce`, cars and goals are as in
+    `orca`. A wall that stands free is passed on the nearer side; it does not get out of dead ends. Its weak noise
+    breaks exact symmetry, and follows the seed.
     """
 
     in_group: ClassVar[bool] = True

@@ -18,7 +18,8 @@ class Orca(BehaviorOptions):
     It makes the whole change for moving objects that run no kind of orca, and never drives into static ones.
     It respects walls, limits of speed and turning, the steering of a car, and `acce`: it brakes in time, whatever its
     horizons. Every object counts as the circle round its footprint. Robots that have arrived still give way: they leave
-    their goals and come back. It does not get out of dead ends: use it as the `local` of `follow`.
+    their goals and come back. A wall that stands free is passed on the nearer side; it does not get out of dead ends:
+    use it as the `local` of `follow`.
     """
 
     in_group: ClassVar[bool] = True

@@ -17,7 +17,8 @@ class Sfm(BehaviorOptions):
 
     It starts from rest and does not brake at its goal: it overshoots and swings back, so use a `goal_threshold` of
     about 0.3 m, and keep the goals of several objects a metre apart. An object that touches another stops for good,
-    unless `world.collision_mode` is `unobstructed_obstacles`. It does not get out of dead ends.
+    unless `world.collision_mode` is `unobstructed_obstacles`. A wall that stands free is passed on the nearer
+    side; it does not get out of dead ends.
     """
 
     in_group: ClassVar[bool] = True
