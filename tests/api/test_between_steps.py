@@ -108,12 +108,12 @@ def test_swept_contacts_are_collisions_and_told_once() -> None:
     text = scene().replace("step_time: 0.1", "step_time: 0.1, contacts: swept")
     found = irsim.run(text=text)
     assert (found.outcome, found.decisive_step) == ("collision", 14)
-    assert found.reason == "'runner' hit 'post' at 1.4 s near (5.02, 3.08)"
+    assert found.reason == "'runner' hit 'post' at 1.32 s near (5.02, 3.08)"
     assert (found.robots[0].collision_count, found.contacts_between_steps) == (1, 0)
     assert "between" not in found.summary
     driven = irsim.run(text=text.replace("contacts: swept", "contacts: swept, collision_mode: unobstructed"))
     assert driven.outcome == "collision"  # it drives on and arrives, after both
-    assert driven.reason == "'runner' hit 'post' at 1.4 s near (5.02, 3.08)"
+    assert driven.reason == "'runner' hit 'post' at 1.32 s near (5.02, 3.08)"
     assert driven.robots[0].collision_count == 2
     assert "between two steps" not in driven.summary
 

@@ -72,7 +72,7 @@ def test_a_swept_contact_stops_it_at_the_wall(file: Path) -> None:
     file.write_text(SWEPT)
     shown = CliRunner().invoke(app, ["run", file.name, "--require-success"])
     assert shown.exit_code == 1
-    assert "'robot_0' hit 'obstacle_1' at 3.3 s near (9.99, 5.00)" in " ".join(shown.stdout.split())
+    assert "'robot_0' hit 'obstacle_1' at 3.13 s near (9.99, 5.00)" in " ".join(shown.stdout.split())
     found = irsim.run(file.name)
     assert (found.outcome, found.contacts_between_steps) == ("collision", 0)
     assert found.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)  # its radius before the face of the wall
