@@ -16,7 +16,8 @@
 - ``records``: exports of recorded runs, opened by the tools they are for: pandas, DuckDB, mcap-ros2-support, Minari.
 - ``interop``: bridges, each against software that somebody else wrote: middleware, simulators, parsers, a browser.
 - ``onnx``: policies from ONNX models, with onnxruntime.
-- ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write.
+- ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write;
+  each day another tenth of the bench of avoidance.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 All quick tests together run in ``check``, and on the newest Python in the README's own test command, with which
@@ -308,7 +309,7 @@ def interop(session: nox.Session) -> None:
 
 @nox.session(reuse_venv=True, python=find_python(INTEROP))
 def nightly(session: nox.Session) -> None:
-    """Stages of OpenUSD, read by Blender, which is 947 MB; a test that is skipped fails. No part of ``full``."""
+    """Stages of OpenUSD, read by Blender, which is 947 MB, and a tenth of avoidance. No part of ``full``."""
     install(session, "-e", ".[test,usd,records]")
     blender = Path(session.virtualenv.location, "blender").resolve() / "bin" / "python"
     if not blender.exists():
@@ -317,6 +318,8 @@ def nightly(session: nox.Session) -> None:
     peers = {"IRSIM_INTEROP": "required", "IRSIM_NIGHTLY": "1", "IRSIM_BPY": str(blender)}
     options = ("-m", "slow", "--durations", "5", "tests/interop/test_blender.py")
     timed(session, "tests with Blender", "pytest", *options, *session.posargs, env=peers)
+    options = ("-m", "slow", "-n", "2", "tests/avoidance/test_reference.py")
+    timed(session, "another tenth of avoidance", "pytest", *options, env={"IRSIM_NIGHTLY": "1"})
 
 
 def install_debian(session: nox.Session, packages: Iterable[str]) -> None:

@@ -29,4 +29,4 @@ CHANGED_SCENES: dict[str, ChangedScene] = {
     "templates/head-on": ChangedScene("D27", "robots with `rvo` and a `diff` drive avoid each other"),
 }
 """Folder -> reason. All other templates and all scenes recorded from 2.12 move as before; its recorded decisions, too,
-with `turning: fixed` and without static lines (D6) and `acce` (D28)."""
+with `turning: fixed` and `keep_gap: false`, and without static lines (D6) and `acce` (D28)."""

@@ -21,8 +21,8 @@ _INTRO = (
 
 _SCENES = (
     "These scenes of irsim itself moved in another way before the difference. All other templates and all scenes "
-    "recorded from 2.12 move as before; its recorded decisions, too, with `turning: fixed` and without static lines "
-    "(D6) and `acce` (D28)."
+    "recorded from 2.12 move as before; its recorded decisions, too, with `turning: fixed`, `keep_gap: false`, and "
+    "without static lines (D6) and `acce` (D28)."
 )
 
 

@@ -55,7 +55,7 @@ def test_a_robot_that_is_caught_is_decided_when_it_ceases_to_get_on() -> None:
 world: {width: 10, height: 6, time_limit: 20}
 robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 3, 0], goal: [9, 3],
         behavior: {name: sfm}}
-obstacle: {shape: {name: linestring, vertices: [[-2, 2], [0, 2], [0, -2], [-2, -2]]}, state: [5, 3, 0]}
+obstacle: {shape: {name: linestring, vertices: [[-5, 2], [0, 2], [0, -2], [-5, -2]]}, state: [5, 3, 0]}
 """
     found = irsim.run(text=text)
     assert found.outcome == "timeout"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -99,6 +99,19 @@ def obstacle_force(o: Any, view: View) -> np.ndarray:
             if not shared:
                 force = force + wall_force(o, view, nearest(a, b, p))
     return force
+
+
+def on_free_way(o: Any, view: View, desired: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """The force of walls without what holds somebody whose way is free for 3 m: at most half the pull is left."""
+    speed = np.linalg.norm(desired)
+    if not speed > 0:
+        return force
+    ahead = desired / speed
+    excess = -force @ ahead - 0.5 * o.vmax * o.force_factor_desired / o.relaxation_time
+    body = replace(view, radius=view.radius - 0.1)
+    walls = [wall for ring in view.rings for wall in ring.facing(body, 3.0 + body.radius)]
+    free = excess > 0 and all(time_to_wall(body, a, b, ahead) >= 3.0 for a, b in walls)
+    return force + excess * ahead if free else force
 
 
 def past_walls(view: View, wanted: np.ndarray, reach: float = 3.0) -> np.ndarray:
@@ -201,7 +214,8 @@ def sfm(o: Any, view: View, dt: float, companions: Sequence[tuple[np.ndarray, fl
     force = (
         o.force_factor_desired * (desired - view.velocity) / o.relaxation_time
         + o.force_factor_social * social
-        + o.force_factor_obstacle * obstacle_force(o, view)
+        + o.force_factor_obstacle * obstacle_force(o, replace(view, rings=[]))
+        + on_free_way(o, view, desired, o.force_factor_obstacle * obstacle_force(o, replace(view, lines=[])))
         + group_force(o, view, companions)
     )
     velocity = view.velocity + dt * force

@@ -26,6 +26,7 @@ DEFAULTS: dict[str, Any] = {
     "neighbor_threshold": 3.0,
     "sidestep": 0.0,
     "turning": "fixed",
+    "keep_gap": False,
 }
 TURNING = {"tolerance": 0.1, "guarantee_time": 0.2, "max_rate": 1.5}
 

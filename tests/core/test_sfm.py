@@ -35,6 +35,7 @@ DEFAULTS: dict[str, Any] = {
     "force_factor_group_repulsion": 1.0,
     "group_repulsion_threshold": None,
     "sidestep": 0.0,
+    "keep_gap": False,
     "force_factor_gaze": 3.0,
     "gaze_vision_angle": 90.0,
 }

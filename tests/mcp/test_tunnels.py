@@ -26,7 +26,9 @@ async def test_a_wall_that_stopped_the_robot(workspace: Path) -> None:
     async with connected(workspace) as client:
         swept = await client.call_tool("run_episode", {"scenario_yaml": SWEPT})
         pushed = await client.call_tool("run_episode", {"scenario_yaml": CONTACT % 0.1})
-    assert text_of(swept).startswith("collision: the robot collided; 'robot_0' hit 'obstacle_1' at 3.13 s near (9.99, 5.00)")
+    assert text_of(swept).startswith(
+        "collision: the robot collided; 'robot_0' hit 'obstacle_1' at 3.13 s near (9.99, 5.00)"
+    )
     assert "incidents" not in data_of(swept)
     assert data_of(pushed)["outcome"] == "timeout"
     assert "passed through" not in text_of(pushed)

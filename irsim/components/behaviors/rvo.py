@@ -15,9 +15,8 @@ from irsim.options.units import Degrees, Meters, MetersPerSecond, Number
 class Rvo(BehaviorOptions):
     """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
 
-    A wall that stands free, in any spelling, is passed on the nearer side; a wall round the object blocks what reaches
-    it within one second. While it avoids nothing it turns at most at 1.5 rad/s. With `acce` it brakes in time. It does
-    not get out of dead ends.
+    A wall that stands free is passed on the nearer side; a wall round the object blocks what reaches it within 1 s.
+    Avoiding nothing, it turns at most at 1.5 rad/s. With `acce` it brakes in time. It stays in dead ends.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {
@@ -40,8 +39,9 @@ class Rvo(BehaviorOptions):
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
     """As in `orca`: null breaks ties only, 0 is the law of IR-SIM."""
     turning: Literal["limit", "fixed"] = "limit"
-    """How a drive that cannot move sideways turns while it avoids something: `limit` as fast as `vel_max` allows;
-    `fixed` as in IR-SIM, at most at 1.5 rad/s and not for heading errors below 0.1 rad."""
+    """While it avoids something, a drive turns as fast as `vel_max` allows (`limit`) or as in IR-SIM (`fixed`)."""
+    keep_gap: bool | None = None
+    """Take at most 2/5 of a gap to a circle in a step; null: robots do, others do not."""
 
 
 BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

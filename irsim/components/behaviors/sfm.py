@@ -16,9 +16,9 @@ class Sfm(BehaviorOptions):
     """Walk like a pedestrian: pulled to the goal, pushed away by others and by walls (social force model).
 
     It starts from rest and does not brake at its goal: it overshoots and swings back, so use a `goal_threshold` of
-    about 0.3 m, and keep the goals of several objects a metre apart. An object that touches another stops for good,
-    unless `world.collision_mode` is `unobstructed_obstacles`. A wall that stands free is passed on the nearer
-    side; it does not get out of dead ends.
+    about 0.3 m, and keep the goals of several objects a metre apart. One that touches another stops for good, unless
+    `world.collision_mode` is `unobstructed_obstacles`. A wall that stands free is passed on the nearer
+    side; it stays in dead ends.
     """
 
     in_group: ClassVar[bool] = True
@@ -53,6 +53,8 @@ class Sfm(BehaviorOptions):
     """Margin added to the radius of each object in the interaction."""
     sidestep: Annotated[Degrees, Field(ge=-45, le=45)] | None = None
     """As in `orca`: null breaks ties only, also with an object straight ahead; 0 leaves them."""
+    keep_gap: bool | None = None
+    """As in `rvo`."""
     social_groups: list[list[Annotated[Integer, Field(ge=0)]]] | None = None
     """As `group_behavior`: lists of the indices of members that walk together; each index at most once."""
     force_factor_coherence: Number = 2.0

@@ -1,6 +1,7 @@
 #include "behaviors/rvo.hpp"
 
 #include "rvo/velocity_obstacles.hpp"
+#include "surroundings/closing.hpp"
 #include "surroundings/ego.hpp"
 #include "surroundings/passing.hpp"
 #include "surroundings/sidestep.hpp"
@@ -64,10 +65,14 @@ bool look_around(const RvoOptions& options, const Decision& decision, const Ego&
   obstacles.horizon = kWallHorizon;
   const double room = ego.route != nullptr ? ego.route->wall_radius : ego.radius;  // distance to keep from walls [m]
   WallView& walls = obstacles.walls;
+  const double fastest = norm({options.vxmax, options.vymax}) * ego.pace;
+  const bool gaps = keeps_gaps(decision, ego, options.keep_gap);
+  decision.work.nearby.clear();
   for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& disc) {
     const bool stands = decision.world.is_static[disc.object];
     if (ego.route == nullptr || !stands) {
       add_disc(options, ego, disc, obstacles);
+      if (gaps) add_nearby(decision, ego, disc, fastest);
       if (!options.sidestep && !meets) meets = tied(decision, ego, disc, options.neighbor_threshold, kTieSpeed);
     } else if (!decision.world.unobstructed[disc.object]) {
       const Vec2 centre = disc.centre - ego.position;
@@ -75,7 +80,6 @@ bool look_around(const RvoOptions& options, const Decision& decision, const Ego&
     }
   });
   if (!walls.barriers.empty()) walls.fronts.emplace_back().last = static_cast<int>(walls.barriers.size());
-  const double fastest = norm({options.vxmax, options.vymax}) * ego.pace;
   const double reach = std::min(options.neighbor_threshold, room + fastest * kWallHorizon);
   for_moving_lines(decision, ego, [&](Vec2 a, Vec2 b) { add_line(ego, a, b, obstacles); });
   // A route already leads past walls.
@@ -160,6 +164,7 @@ void rvo(const RvoOptions& options, const Decision& decision, Intent* intents) {
         std::visit([](const auto& drive) { return moves_sideways(drive); }, decision.world.drive[ego.id]);
     intents[k] = sideways ? Intent::of_velocity(velocity)
                           : turning_intent(obstacles, ego, velocity, decision.state.heading(ego.row), turning);
+    keep_gaps(decision, ego, false, intents[k]);
   }
 }
 

@@ -24,13 +24,14 @@ struct RvoOptions {
   // angle to the right of the wanted velocity while something moving is ahead [degrees]; none: only ties are broken
   std::optional<double> sidestep;
   RvoTurning turning;
+  std::optional<bool> keep_gap;  // whether a step takes only a share of a gap; none: those of robots do
 
   static constexpr auto fields() {
     using R = RvoOptions;
     return std::make_tuple(field("vxmax", &R::vxmax), field("vymax", &R::vymax), field("acce", &R::acce),
                            field("factor", &R::factor), choice("mode", &R::mode, "rvo", "hrvo", "vo"),
                            field("neighbor_threshold", &R::neighbor_threshold), field("sidestep", &R::sidestep),
-                           choice("turning", &R::turning, "limit", "fixed"));
+                           choice("turning", &R::turning, "limit", "fixed"), field("keep_gap", &R::keep_gap));
   }
 };
 

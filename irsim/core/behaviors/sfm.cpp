@@ -1,6 +1,7 @@
 #include "behaviors/sfm.hpp"
 
 #include "geometry/predicates.hpp"
+#include "surroundings/closing.hpp"
 #include "surroundings/ego.hpp"
 #include "surroundings/passing.hpp"
 #include "surroundings/sidestep.hpp"
@@ -9,9 +10,10 @@
 namespace irsim {
 namespace {
 
-constexpr double kOnWall = 1e-9;     // an object this close is on the wall [m]
-constexpr double kWallReach = 5.0;   // distance within which walls act, in units of sigma
-constexpr double kSideways = 0.2;    // largest push of walls across a route, as a share of the pull along it
+constexpr double kOnWall = 1e-9;    // an object this close is on the wall [m]
+constexpr double kWallReach = 5.0;  // distance within which walls act, in units of sigma
+constexpr double kSideways = 0.2;   // largest push of walls across a route, as a share of the pull along it
+constexpr double kAgainst = 0.5;    // largest push of walls against a way that is free, as a share of the pull along it
 constexpr double kTolerance = 0.02;  // smaller heading errors are not corrected [rad]
 constexpr double kSameSpeed = 1e-6;  // velocities of a mirrored pair differ by less [m/s]
 
@@ -25,10 +27,13 @@ Vec2 social_force(const SfmOptions& o, const Decision& decision, int k, const Eg
   MutualForces& mutual = decision.work.mutual_forces;
   const Scene& scene = decision.state.scenes[decision.w()];
   const Neighbors& near = neighbors(world, decision.state, decision.work, decision.w());
+  const bool gaps = keeps_gaps(decision, ego, o.keep_gap);
+  decision.work.nearby.clear();
   mutual.decide(k);
   forces.clear(world.objects);
   for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& other) {
     if (ego.route != nullptr && world.is_static[other.object]) return;
+    if (gaps) add_nearby(decision, ego, other, o.vmax * ego.pace);
     if (mutual.knows(other.object)) return;
     if (!o.sidestep && !mutual.both_tied(other.object) &&
         tied(decision, ego, other, o.neighbor_threshold, kSameSpeed)) {
@@ -72,19 +77,36 @@ Vec2 on_route(const SfmOptions& o, const Ego& ego, Vec2 force) {
   return side * clip(dot(force, side) * o.force_factor_obstacle, -most, most) * (1.0 / o.force_factor_obstacle);
 }
 
-Vec2 obstacle_force(const SfmOptions& o, const Decision& decision, const Ego& ego) {
+/// The force of walls that leave the way ahead free, such as the posts of a door, without the part against the wanted
+/// velocity that would hold the object there: what is left is weaker than the pull to the goal.
+Vec2 on_free_way(const SfmOptions& o, const Decision& decision, int k, const Ego& ego, Vec2 force) {
+  const double speed = norm(ego.desired);
+  if (!(speed > 0.0)) return force;
+  const Vec2 ahead = ego.desired * (1.0 / speed);
+  const double most = kAgainst * o.vmax * ego.pace * o.force_factor_desired / o.relaxation_time;
+  const double excess = -dot(force, ahead) * o.force_factor_obstacle - most;
+  if (!(excess > 0.0)) return force;
+  if (!is_free_ahead(decision, k, ego.position, ego.radius - kPadding, kWallLook, ahead)) return force;
+  return force + ahead * (excess / o.force_factor_obstacle);
+}
+
+Vec2 obstacle_force(const SfmOptions& o, const Decision& decision, int k, const Ego& ego) {
   Vec2 force, moving;
   const double reach = kWallReach * o.sigma_obstacle + ego.radius;
   const auto push = [&](Vec2 a, Vec2 b) { force = force + wall_force(o, ego, nearest_on_segment(a, b, ego.position)); };
   for_moving_lines(decision, ego, push);
-  if (ego.route != nullptr) std::swap(force, moving);
+  moving = force;
+  if (ego.route != nullptr) force = {};
   const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
   for_facing_walls(decision, ego.id, ego.position, reach, [&](const Wall& wall) {
     if (ego.route != nullptr && decision.world.unobstructed[wall.object]) return;
     if (shared_corner(walls, wall, ego.position)) return;
     push(wall.a, wall.b);
   });
-  if (ego.route == nullptr) return force;
+  if (ego.route == nullptr) {
+    const Vec2 walls_alone = force - moving, limited = on_free_way(o, decision, k, ego, walls_alone);
+    return same(limited, walls_alone) ? force : moving + limited;
+  }
   for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& disc) {
     if (!decision.world.is_static[disc.object] || decision.world.unobstructed[disc.object]) return;
     const Vec2 way = ego.position - disc.centre;
@@ -166,7 +188,7 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
     const Vec2 desired = speed > 0.0 ? ego.desired * (most / speed) : Vec2{};
     const Vec2 force = (desired - ego.velocity) * (options.force_factor_desired / options.relaxation_time) +
                        social * options.force_factor_social +
-                       obstacle_force(options, decision, ego) * options.force_factor_obstacle +
+                       obstacle_force(options, decision, k, ego) * options.force_factor_obstacle +
                        group_force(options, decision, ego);
     Vec2 velocity = ego.velocity + force * dt;
     // A car turns too slowly to follow one period of the forces, so on a route it steers where they lead in the end.
@@ -180,6 +202,7 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
     turning.guarantee_time = dt;
     turning.max_rate = decision.state.vel_max[ego.row][1];
     intents[k] = Intent::of_velocity(velocity, turning);
+    keep_gaps(decision, ego, true, intents[k]);
   }
 }
 

@@ -21,6 +21,7 @@ struct SfmOptions {
   double safety_radius;  // [m]
   // angle to the right of the wanted velocity while something moving is ahead [degrees]; none: only ties are broken
   std::optional<double> sidestep;
+  std::optional<bool> keep_gap;  // whether a step takes only a share of a gap; none: those of robots do
   // forces between members of a group behavior
   std::optional<std::vector<std::vector<int>>> social_groups;  // indices in Decision::members
   double force_factor_coherence, force_factor_group_repulsion;
@@ -37,7 +38,8 @@ struct SfmOptions {
         field("force_factor_obstacle", &S::force_factor_obstacle), field("sigma_obstacle", &S::sigma_obstacle),
         field("lambda_importance", &S::lambda_importance), field("gamma", &S::gamma), field("n_angular", &S::n_angular),
         field("n_velocity", &S::n_velocity), field("safety_radius", &S::safety_radius), field("sidestep", &S::sidestep),
-        field("social_groups", &S::social_groups), field("force_factor_coherence", &S::force_factor_coherence),
+        field("keep_gap", &S::keep_gap), field("social_groups", &S::social_groups),
+        field("force_factor_coherence", &S::force_factor_coherence),
         field("force_factor_group_repulsion", &S::force_factor_group_repulsion),
         field("group_repulsion_threshold", &S::group_repulsion_threshold),
         field("force_factor_gaze", &S::force_factor_gaze), field("gaze_vision_angle", &S::gaze_vision_angle));

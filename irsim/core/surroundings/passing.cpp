@@ -1,5 +1,7 @@
 #include "surroundings/passing.hpp"
 
+#include <algorithm>
+
 #include "surroundings/wall_view.hpp"
 #include "world/scene.hpp"
 
@@ -59,6 +61,14 @@ Vec2 past_walls(const Decision& decision, int k, Vec2 position, double radius, d
       return (left.length < right.length - kTie ? left : right).direction * speed;
   }
   return wanted;
+}
+
+bool is_free_ahead(const Decision& decision, int k, Vec2 position, double radius, double look, Vec2 ahead) {
+  WallView& view = decision.work.wall_view;
+  view.clear();
+  add_walls(decision, decision.objects[k], position, radius, look + radius, 0.0, 0.0, true, view);
+  return std::all_of(view.barriers.begin(), view.barriers.end(),
+                     [&](const Barrier& wall) { return wall.time(ahead) >= look; });
 }
 
 }  // namespace irsim

@@ -29,4 +29,11 @@ constexpr double kWallLook = 3.0;  // distance within which behaviors without an
 ///   all: Whether `unobstructed` lines are in the way, too.
 Vec2 past_walls(const Decision& decision, int k, Vec2 position, double radius, double look, Vec2 wanted, bool all);
 
+/// Whether a disc gets `look` [m] far in a direction without meeting a wall that object k sees.
+///
+/// Args:
+///   position, radius: The disc, world frame [m].
+///   ahead: Unit vector, world frame.
+bool is_free_ahead(const Decision& decision, int k, Vec2 position, double radius, double look, Vec2 ahead);
+
 }  // namespace irsim

@@ -13,6 +13,7 @@
 #include "rvo/velocity_obstacles.hpp"
 #include "sfm/mutual.hpp"
 #include "sfm/social_force.hpp"
+#include "surroundings/closing.hpp"
 #include "surroundings/neighbors.hpp"
 
 namespace irsim {
@@ -47,7 +48,8 @@ struct Workspace {
   ContactBuffers contacts;
   std::vector<int> walls;  // walls found near an object
   VelocityObstacles velocity_obstacles;
-  WallView wall_view;  // walls in the way of an object
+  WallView wall_view;          // walls in the way of an object
+  std::vector<Nearby> nearby;  // what an object could reach in one step
   OrcaCrowd orca;
   std::vector<Opinion> opinions;  // those of the step before, of the object that decides
   SearchMemory search;            // memory of planners

@@ -27,11 +27,14 @@ def is_decided_otherwise(document: dict[str, Any], rows: list[int]) -> bool:
     return lines or any("acce" in document["robot"][row] for row in rows if row < len(document["robot"]))
 
 
-def with_turning_of_2_12(document: dict[str, Any]) -> dict[str, Any]:
-    """The scene with ``turning: fixed`` (D27), so that drives turn as there."""
+def with_laws_of_2_12(document: dict[str, Any]) -> dict[str, Any]:
+    """The scene with ``turning: fixed`` (D27) and ``keep_gap: false`` (D29), so that robots move as there."""
     for entry in document["robot"]:
-        if entry.get("behavior", {}).get("name") == "rvo":
-            entry["behavior"]["turning"] = "fixed"
+        for options in (entry.get("behavior", {}), entry.get("group_behavior", {})):
+            if options.get("name") == "rvo":
+                options["turning"] = "fixed"
+            if options.get("name") in ("rvo", "sfm"):
+                options["keep_gap"] = False
     return document
 
 
@@ -43,7 +46,7 @@ def test_decisions_equal_the_recorded_ones(family: str, tmp_path: Path) -> None:
     assert len(commands) >= 500
     wrong, compared = {}, 0
     for index in range(FAMILIES[family]):
-        document = with_turning_of_2_12(scene(family, index))
+        document = with_laws_of_2_12(scene(family, index))
         if is_decided_otherwise(document, deciders(family, document)):
             continue
         compared += 1

@@ -1,0 +1,36 @@
+// Closing in on others: in one step an object takes at most two fifths of the gap to any round body. Two that both come
+// keep a fifth of it, so that they do not touch, whichever velocities they choose and however their drives turn.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/vec.hpp"
+
+namespace irsim {
+
+struct Decision;
+struct Disc;
+struct Ego;
+struct Intent;
+
+/// A round body that one step could bring an object to.
+struct Nearby {
+  Vec2 towards;  // unit vector
+  double gap;    // between both outlines, without a centimetre that is never taken [m], at least 0
+};
+
+/// Whether an object keeps gaps: robots do unless their behavior says otherwise.
+bool keeps_gaps(const Decision& decision, const Ego& ego, std::optional<bool> chosen);
+
+/// Add a disc to `Workspace::nearby` if the ego could take its share of the gap in one step at `fastest` [m/s], and
+/// both bodies are circles: the discs of other bodies are larger than they are.
+void add_nearby(const Decision& decision, const Ego& ego, const Disc& disc, double fastest);
+
+/// Change what an object wants so that it takes no more than its share of any gap in `Workspace::nearby` in this step.
+/// A drive that can move sideways slides along what is in its way; any other rolls no faster along its heading, and
+/// turns to the direction in which it would slide if `slides`: a behavior that searches among velocities knows a better
+/// one.
+void keep_gaps(const Decision& decision, const Ego& ego, bool slides, Intent& intent);
+
+}  // namespace irsim
