@@ -141,3 +141,29 @@ def test_fast_steps_do_not_depend_on_the_order_of_objects() -> None:
         return state.pose[order].copy()
 
     assert poses(True) == pytest.approx(poses(False), abs=1e-9)
+
+
+@pytest.mark.parametrize("turn", [3.0, -3.0])
+def test_a_turn_within_a_step_leads_through_no_wall(turn: float) -> None:
+    """The arc of the step goes 0.4 m into a thick wall and comes out of it again."""
+    thick = obstacle(pose=[WALL_X + 5.0, 0.0, 0.0], parts=[rectangle(10.0, 40.0)])
+    driver = fast_robot(30.0, pose=[WALL_X - 0.6, 0.0, 0.0], control=[10.0 * abs(turn), 10.0 * turn, 0.0])
+    world, state = scene(driver, thick, mode=CONTACT)
+    world.integration = 1
+    run(world, state, 1, [10.0 * abs(turn), 10.0 * turn])
+    assert told(state) == []
+    assert [(c[0], c[1]) for c in state.contacts(0)] == [(0, 1)]
+    assert state.pose[0, 0] <= WALL_X - 0.1 + 1e-3
+
+
+def test_a_robot_that_slides_along_a_wall_stops_at_the_next_one() -> None:
+    """Its way in the step leads past the next wall, but not where the first one lets it go."""
+    first = obstacle(pose=[2.0, 5.0, 0.0], parts=[rectangle(20.0, 10.0)])
+    second = obstacle(pose=[WALL_X + 0.01, -2.0, 0.0], parts=[rectangle(0.02, 4.0)])
+    for angle in (0.2, 0.5, 1.0):
+        driver = fast_robot(30.0, pose=[1.0, -0.1, angle], control=[30.0, 0.0, 0.0])
+        world, state = scene(driver, first, second, mode=CONTACT)
+        run(world, state, 2, [30.0, 0.0])
+        assert state.pose[0, 0] <= WALL_X - 0.1 + 1e-3, angle
+        assert state.pose[0, 1] <= -0.1 + 1e-3, angle
+        assert told(state) == [], angle

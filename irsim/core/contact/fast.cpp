@@ -43,7 +43,7 @@ class FastBodies {
       if (world_.dynamics[i].pushable) lightest = std::min(lightest, bodies_.width[i]);
     }
     thinnest_ = lightest + least;
-    if (!(2.0 * far > kFast * thinnest_)) return 1;
+    if (!(2.0 * far > std::min(kFast * thinnest_, lightest))) return 1;
     return examine(far);
   }
 
@@ -66,6 +66,14 @@ class FastBodies {
     return norm(one.by - other.by) + std::max(0.0, swing(a, one) + swing(b, other) - kCorners * width(a, b));
   }
   double width(int a, int b) const { return bodies_.width[a] + bodies_.width[b]; }
+  /// How far two bodies must move past each other to pass, or for one that can be pushed to go in and out again [m].
+  double fast_way(int a, int b) const {
+    double least = kFast * width(a, b);
+    for (const int i : {a, b}) {
+      if (world_.dynamics[i].pushable) least = std::min(least, bodies_.width[i]);
+    }
+    return least;
+  }
   bool is_whole(int i) const { return bodies_.cells[i] == nullptr && bodies_.begin[i + 1] == bodies_.begin[i] + 1; }
 
   /// The pairs of objects whose boxes in the step come within `reach` of each other, and of which one can be pushed.
@@ -86,7 +94,7 @@ class FastBodies {
   }
 
   int examine(double far) {
-    scene_.parted.clear();
+    scene_.parted.clear(), scene_.bent.clear();
     place_moving(world_, state_, w_);
     find_near(far);
     const std::vector<std::pair<int, int>>& near = buffers_.met;
@@ -98,10 +106,10 @@ class FastBodies {
     for (const auto& [a, b] : near) {
       if (share_ >= most * kPart) break;
       const double way = way_between(a, b);
-      if (!(way > kFast * thinnest_) || !std::isfinite(way)) continue;
-      if (way > kFast * width(a, b) && comes_out_elsewhere(solver, a, b, way)) {
-        share_ = std::max(share_, way / width(a, b));
-      } else {
+      if (!std::isfinite(way)) continue;
+      if (way > fast_way(a, b) && comes_out_elsewhere(solver, a, b, way)) {
+        share_ = std::max(share_, kFast * way / fast_way(a, b));
+      } else if (way > kFast * thinnest_) {
         push_apart(solver, a, b);
       }
     }
@@ -117,29 +125,37 @@ class FastBodies {
     Vec2 where;
     const bool touch = passage.in_contact(0.0);
     const double when = touch ? 0.0 : passage.first_contact(0.0, 1.0, where);
-    if (!(when <= 1.0) || !((1.0 - when) * way > kFast * width(a, b))) return false;
+    if (!(when <= 1.0)) return false;
     const Pose at_a = one.at(when), at_b = other.at(when);
     const Overlap first = solver.overlap_at(a, b, at_a, at_b);
     const auto moved = [&](const Pose& from, const Pose& to) {
       return to.position() + rotate(first.point - from.position(), unit(to.theta - from.theta)) - first.point;
     };
     const Vec2 push_b = moved(at_a, one.at(1.0)), push_a = moved(at_b, other.at(1.0));
-    if (touch && dot(first.normal, push_b - push_a) >= 0.0) return false;  // they part
-    if (swing(a, one) + swing(b, other) <= kFast * width(a, b) && is_whole(a) && is_whole(b)) {
-      const Overlap last = solver.overlap_at(a, b, one.at(1.0), other.at(1.0));
-      if (std::isfinite(last.depth) && dot(first.normal, last.normal) > 0.0) return false;
+    const bool whole = is_whole(a) && is_whole(b);
+    const double closing = -dot(first.normal, push_b - push_a);
+    if (touch && whole && closing <= 0.0) return false;  // they part
+    const Overlap last = solver.overlap_at(a, b, one.at(1.0), other.at(1.0));
+    if (std::isfinite(last.depth)) {
+      if (!((1.0 - when) * way > kFast * width(a, b))) return false;
+      const bool swings = swing(a, one) + swing(b, other) > kFast * width(a, b);
+      if (!swings && whole && dot(first.normal, last.normal) > 0.0) return false;
     }
-    push_on(a, at_a, push_a, b);
-    push_on(b, at_b, push_b, a);
+    const Vec2 back = first.normal * std::max(0.0, closing);
+    push_on(a, at_a, push_a, b), push_on(a, at_a, push_b + back, b);
+    push_on(b, at_b, push_b, a), push_on(b, at_b, push_a - back, a);
     return true;
   }
-  /// Look for thin bodies that one of these two, pushed away at the end of the step, would be pushed through.
+  /// Look for thin bodies that one of these two, pushed away at the end of the step, would be pushed through then, or
+  /// on its way past the other one.
   void push_apart(ContactSolver& solver, int a, int b) {
     const Pose &at_a = state_.pose[first_ + a], &at_b = state_.pose[first_ + b];
     const Overlap last = solver.overlap_at(a, b, at_a, at_b);
     if (!(last.depth > kFast * thinnest_)) return;
-    push_on(a, at_a, last.normal * last.depth, b);
-    push_on(b, at_b, last.normal * -last.depth, a);
+    const Vec2 back = last.normal * last.depth;
+    const Stride one = stride(a), other = stride(b);
+    push_on(a, at_a, back, b), push_on(a, one.from, one.by + back, b);
+    push_on(b, at_b, back * -1.0, a), push_on(b, other.from, other.by - back, a);
   }
   /// Look for thin bodies that a body would be pushed through by another one, or would push other bodies through.
   void push_on(int body, const Pose& from, Vec2 push, int by) {

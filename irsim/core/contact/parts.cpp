@@ -93,6 +93,7 @@ void push_in_parts(const World& world, State& state, int w, Workspace& work, con
   for (const int i : world.moving) {
     if (!touched[i]) state.pose[first + i] = buffers.end[i];
   }
+  scene.bent.assign(touched.begin(), touched.end());
 }
 
 }  // namespace irsim

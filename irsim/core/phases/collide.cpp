@@ -105,6 +105,7 @@ void collide(const World& world, State& state, int w) {
   place_moving(world, state, w);
   find_pairs(world, state, w);
   scene.in_motion = false;
+  scene.bent.clear();
   const int first = w * world.objects;
   std::uint8_t* collided = state.collided.data + first;
   std::fill(collided, collided + world.objects, std::uint8_t{0});

@@ -119,6 +119,7 @@ double Passage::first_contact(double begin, double end, Vec2& where) const {
     const std::int64_t since = state_.appeared[w_ * world_.objects + i];
     if (since > 0 && since == state_.count[w_]) return kInfinity;
   }
+  if (!scene_.bent.empty() && (scene_.bent[a] || scene_.bent[b])) return kInfinity;  // contacts looked after them
   if (std::binary_search(scene_.parted.begin(), scene_.parted.end(), Pair{a, b})) return kInfinity;
   if (begin == 0.0 && (!come_near() || stay_apart())) return kInfinity;
   return irsim::first_contact(one, other, begin, end, scene_.swept, where);

@@ -100,10 +100,11 @@ struct Scene {
   std::vector<Meeting> meetings;  // of the last step, sorted by objects
   std::vector<NearPair> near;     // of the last step, if contacts within steps are judged
   std::vector<HeldPair> held;
-  std::vector<Pair> parted;   // objects that pushed each other apart in the last step, sorted
-  std::vector<double> until;  // (N,) time within the step at which each object stopped
-  std::vector<Box> ways;      // round the motions of the moving objects in the step, by slots in `moving`
-  Outlines trial;             // moving objects at poses within the step
+  std::vector<std::uint8_t> bent;  // (N,) whose way contacts have bent in a divided step; empty if it was not divided
+  std::vector<Pair> parted;        // objects that pushed each other apart in the last step, sorted
+  std::vector<double> until;       // (N,) time within the step at which each object stopped
+  std::vector<Box> ways;           // round the motions of the moving objects in the step, by slots in `moving`
+  Outlines trial;                  // moving objects at poses within the step
   SweptBuffers swept;
 };
 
