@@ -13,12 +13,17 @@ BRAKES = (
 SHELF = "\nobstacle: {shape: {name: rectangle, length: 2, width: 1}, state: [9, 5, 0]}"
 
 
+FOLLOW = "behavior: {name: follow, local: {name: footprint_orca, timeHorizon: 1.8}}"
+
+
 @pytest.mark.parametrize(
     ("more", "says", "fix"),
     [
         ("acce: [1, 4], behavior: {name: footprint_orca}}" + SHELF,
          "1.2 m/s at 1 m/s^2 in 1.2 s and 0.72 m, but footprint_orca looks 0.5 s ahead at what stands",
-         "timeHorizonObst: 1.8"),
+         f"where something large stands in the way, {FOLLOW}"),
+        ("acce: [1, 4], behavior: {name: orca, timeHorizonObst: 0.5}}" + SHELF,
+         "0.72 m, but orca looks 0.5 s ahead at what stands", "timeHorizonObst: 1.8"),
         ("acce: [1, 4], number: 2, distribution: {name: random}, behavior: {name: orca, timeHorizon: 1}}" + SHELF,
          "but orca looks 1 s ahead at what moves", "timeHorizon: 1.8"),
         ("acce: [1, 4], number: 2, distribution: {name: random}, "

@@ -238,7 +238,8 @@ OBJECTS: dict[str, Code] = {
         "Behaviors look a time horizon ahead, and with `acce` a robot takes a while to stop: speed / acce. If that is "
         "longer than the horizon, it brakes as hard as it can as soon as it sees what is ahead, and stands close to it "
         "instead of going round. Example: 1.2 m/s at 1 m/s^2 takes 1.2 s and 0.72 m; timeHorizonObst: 0.5 is too "
-        "short, timeHorizonObst: 1.8 leaves time to decide.",
+        "short, timeHorizonObst: 1.8 leaves time to decide. `footprint_orca` stops in time with any; `follow` "
+        "leads it round large things.",
     ),
     "coarse-steps": Code(
         "steps that are long for the size of a body",

@@ -8,11 +8,13 @@ from typing import Any
 from irsim.common.text import metres, seconds
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, hint
-from irsim.scenario.resolve.braking import Braking, braking_of, horizons_that_work, short_horizons
+from irsim.scenario.resolve.braking import Braking, braking_of, follow_text, horizons_that_work, short_horizons
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _WALL_HORIZON = {"rvo": 1.0}
 """Behaviors without a key for it, and how far ahead they look at walls [s]."""
+_STOPS_ANYWAY = ("footprint_orca",)
+"""Behaviors that stop in time before what stands with any horizon, but may stand there."""
 _SEEN = {"timeHorizon": "what moves", "timeHorizonObst": "what stands"}
 
 
@@ -46,6 +48,14 @@ def _finding(
     path = (*context.entry_path(record, key), "local") if routed else context.entry_path(record, key)
     horizon = horizons_that_work(braking)
     looks = " and ".join(f"{seconds(getattr(options, name))} ahead at {_SEEN[name]}" for name in short)
+    if not routed and options.name in _STOPS_ANYWAY and short == ["timeHorizonObst"]:
+        return hint(
+            "brakes-too-late",
+            path,
+            f"{_brakes(record, braking)}, but {options.name} looks {looks}: it stops in time, perhaps instead of going "
+            "round",
+            fix=f"where something large stands in the way, {follow_text(record)}",
+        )
     return hint(
         "brakes-too-late",
         path,
