@@ -12,7 +12,6 @@ BRAKES = (
 )
 SHELF = "\nobstacle: {shape: {name: rectangle, length: 2, width: 1}, state: [9, 5, 0]}"
 
-
 FOLLOW = "behavior: {name: follow, local: {name: footprint_orca, timeHorizon: 1.8}}"
 
 
