@@ -104,6 +104,7 @@ class RvoOptions(_Options):
         neighbor_threshold: float,
         sidestep: float | None,
         turning: str,
+        keep_gap: bool | None,
     ) -> None: ...
 
 class SfmOptions(_Options):
@@ -123,6 +124,7 @@ class SfmOptions(_Options):
         n_velocity: float,
         safety_radius: float,
         sidestep: float | None,
+        keep_gap: bool | None,
         social_groups: Sequence[Sequence[int]] | None,
         force_factor_coherence: float,
         force_factor_group_repulsion: float,

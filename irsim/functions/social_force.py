@@ -102,7 +102,7 @@ class SocialForceModelBatch:
         return len(self.states)
 
     def _next_velocities(self, step_time: float, **parameters: Any) -> Floats:
-        keys = {**self.parameters, "social_groups": self.social_groups, **parameters}
+        keys = {**self.parameters, "social_groups": self.social_groups, "keep_gap": False, **parameters}  # forces alone
         options = behavior_options("sfm", keys)
         grouped = self.social_groups is not None or self.n > 1
         agents, others, lines = self.states, self.neighbor_states, self.line_obs_list

@@ -81,9 +81,9 @@ Vec2 on_route(const SfmOptions& o, const Ego& ego, Vec2 force) {
 /// velocity that would hold the object there: what is left is weaker than the pull to the goal.
 Vec2 on_free_way(const SfmOptions& o, const Decision& decision, int k, const Ego& ego, Vec2 force) {
   const double speed = norm(ego.desired);
-  if (!(speed > 0.0)) return force;
-  const Vec2 ahead = ego.desired * (1.0 / speed);
   const double most = kAgainst * o.vmax * ego.pace * o.force_factor_desired / o.relaxation_time;
+  if (!(speed > 0.0 && most > 0.0)) return force;
+  const Vec2 ahead = ego.desired * (1.0 / speed);
   const double excess = -dot(force, ahead) * o.force_factor_obstacle - most;
   if (!(excess > 0.0)) return force;
   if (!is_free_ahead(decision, k, ego.position, ego.radius - kPadding, kWallLook, ahead)) return force;

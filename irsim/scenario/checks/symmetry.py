@@ -149,8 +149,11 @@ def _catches_up(behind: _Way, ahead: _Way) -> bool:
 
 
 def _pushes(record: ObjectRecord) -> bool:
-    """Whether it moves by social forces alone; as local behavior of ``follow`` they come with a way to keep apart."""
-    return getattr(record.active_behavior, "name", "") == "sfm"
+    """Whether it moves by social forces alone: robots keep gaps by default, and ``follow`` has a way to keep apart."""
+    options: Any = record.active_behavior
+    if getattr(options, "name", "") != "sfm":
+        return False
+    return record.role != "robot" if options.keep_gap is None else not options.keep_gap
 
 
 def _effect(record: ObjectRecord) -> str:
