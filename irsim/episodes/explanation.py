@@ -339,7 +339,7 @@ def _obstruction_message(env: Env, view: ObjectView, held: dict[str, Event]) -> 
     Empty if there is no such object.
     """
     near = find_obstruction(env.simulation, view.row, held)
-    if near is None or not (near.held or near.advice):
+    if near is None or not (near.held or near.pushed or near.advice):
         return ""
     return f", and {near.message}" + (f" ({near.advice})" if near.advice else "")
 

@@ -48,6 +48,8 @@ _TO_AND_FRO_SHARE = 0.5
 """Share of the way driven in the window below which the net movement means driving to and fro."""
 _MAX_OBSTRUCTION_DISTANCE = 0.5
 """Distance [m] up to which an object obstructs one that makes no progress."""
+_PUSHED = 1e-3
+"""Distance [m] below which bodies that push each other are in contact."""
 _MAX_WALL_DISTANCE = 2.0
 """Distance [m] up to which something static obstructs a car that plans no path."""
 REACTIVE = ("rvo", "orca", "avocado", "footprint_orca", "sfm")
@@ -90,11 +92,13 @@ class Obstruction:
     Attributes:
         message: Its name and distance, and the time of the collision that stopped it, if one did.
         held: Whether a collision stopped it.
+        pushed: Whether the two are in contact, in a world whose bodies push each other.
         advice: What the scenario should say instead, None if that is not known.
     """
 
     message: str
     held: bool
+    pushed: bool = False
     advice: str | None = None
 
 
@@ -221,12 +225,15 @@ def find_obstruction(
         since = seconds(held[near.partner].time)
         return Obstruction(f"{where} and has been stopped since a collision at {since}", held=True)
     name = reactive_behavior(record)
+    pushed = simulation.scenario.world.collision_mode == "contact" and near.distance < _PUSHED
+    where = f"it pushes against {quoted(near.partner)}" if pushed else where
     if name is None or near.partner not in still:
-        return Obstruction(where, held=False)
+        return Obstruction(where, held=False, pushed=pushed)
     lacks = ", and a car cannot turn on the spot" if car else ""
     return Obstruction(
         where,
         held=False,
+        pushed=pushed,
         advice=f"{name} plans no path{lacks}: use {follow_text(record)}",
     )
 

@@ -83,6 +83,7 @@ def test_nothing_passes_in_contact_mode(file: Path, step_time: float) -> None:
     file.write_text(CONTACT % step_time)
     shown = " ".join(CliRunner().invoke(app, ["run", file.name]).stdout.split())
     assert "timeout: the robot did not arrive within 30 s" in shown
+    assert "stands still 8.11 m from its goal, and it pushes against 'obstacle_1'" in shown
     found = irsim.run(file.name)
     assert (found.outcome, found.contacts_between_steps) == ("timeout", 0)
     assert found.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)
