@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from irsim.common.event_kinds import EventKind
 from irsim.results.base import Result
 from irsim.results.findings import Finding
 
@@ -18,20 +19,7 @@ HorizonSource = Literal["argument", "scenario", "default", "limits"]
 class EventRecord(Result):
     """Something that happened in an episode."""
 
-    kind: Literal[
-        "arrival",
-        "waypoint",
-        "collision",
-        "no_path",
-        "overshoot",
-        "zone_entry",
-        "zone_exit",
-        "line_crossing",
-        "sight_start",
-        "sight_end",
-        "contact_between_steps",
-        "passed_through",
-    ]
+    kind: EventKind
     """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, or none round
     ``partner``, which stands for good, ``overshoot`` when an object passes its goal within ``goal_threshold``
     between two steps without arriving, ``zone_entry`` and ``zone_exit`` when a body begins and ceases to touch a
