@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from threading import Thread
+from threading import Lock, Thread
 
 __all__ = ["PieceWriter"]
 
@@ -16,25 +16,30 @@ class PieceWriter:
     """
 
     def __init__(self) -> None:
-        self._thread: Thread | None = None
+        self._lock = Lock()
+        self._piece: Callable[[], None] | None = None
         self._error: BaseException | None = None
 
     def submit(self, write: Callable[[], None]) -> None:
         """Begin a piece of work; the one before must be over, see :meth:`wait`."""
-        self._thread = Thread(target=self._do, args=(write,), name="irsim-recorder", daemon=True)
-        self._thread.start()
+        self._piece = write
+        Thread(target=self._do, name="irsim-recorder", daemon=True).start()
 
     def wait(self) -> None:
-        """Wait until the last piece is written, and raise the error that this has raised."""
-        if self._thread is not None:
-            self._thread.join()
-            self._thread = None
+        """Wait until the last piece is written, and raise the error that this has raised.
+
+        A piece whose thread has not begun, because an interrupt came while it was started, is written here.
+        """
+        self._do()
         error, self._error = self._error, None
         if error is not None:
             raise error
 
-    def _do(self, write: Callable[[], None]) -> None:
-        try:
-            write()
-        except BaseException as error:
-            self._error = error
+    def _do(self) -> None:
+        with self._lock:
+            write, self._piece = self._piece, None
+            try:
+                if write is not None:
+                    write()
+            except BaseException as error:
+                self._error = error

@@ -198,9 +198,9 @@ class Recorder:
         if self._done:
             return
         try:
-            self._flush(last=True)
-            if cancelled:
+            if cancelled:  # first: an interrupt in the middle of a piece may have left nothing that can be written
                 self._write_meta(cancelled=True)
+            self._flush(last=True)
             mark_used(self.folder)
         finally:
             self._stop()

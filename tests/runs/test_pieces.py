@@ -5,13 +5,14 @@ from __future__ import annotations
 import threading
 import time
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
 import pytest
 
 import irsim
-from irsim.runs import RunError, open_run
+from irsim.runs import RunError, list_runs, open_run
 from irsim.runs import recorder as recorder_module
 from irsim.runs.files import replace_file
 from irsim.runs.piece_writer import PieceWriter
@@ -115,6 +116,33 @@ def test_the_writer_raises_once_and_goes_on() -> None:
     writer.submit(lambda: done.append(1))
     writer.wait()
     assert done == [1]
+
+
+def test_a_piece_is_written_even_if_an_interrupt_comes_while_its_thread_is_started(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    done: list[int] = []
+
+    def interrupted(self: Thread) -> None:
+        raise KeyboardInterrupt
+
+    writer = PieceWriter()
+    monkeypatch.setattr(Thread, "start", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        writer.submit(lambda: done.append(1))
+    writer.wait()
+    writer.wait()
+    assert done == [1]
+
+
+def test_a_run_that_is_cancelled_while_a_piece_begins_is_cancelled(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(self: PieceWriter) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(PieceWriter, "wait", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        irsim.run(room, seed=0, record=True)
+    assert list_runs()[0].status == "cancelled"
 
 
 @pytest.mark.usefixtures("small_pieces")
