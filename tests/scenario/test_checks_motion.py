@@ -202,6 +202,24 @@ def test_what_is_said_to_hop_over_its_goal_does() -> None:
     assert irsim.run(text=text.format(0.16), seed=0).outcome == "success"
 
 
+@pytest.mark.parametrize("behavior", ["orca", "avocado", "rvo", "sfm", "footprint_orca"])
+def test_goals_that_steps_jump_over_are_told_under_every_behavior(behavior: str) -> None:
+    text = (
+        "world: {{width: 12, height: 12, step_time: 0.5}}\n"
+        "robot: {{kinematics: {{name: diff}}, behavior: {{name: {}}}, state: [2, 2, {}], goal: [9, 8], "
+        "goal_threshold: {}}}\n"
+    )
+
+    def arrivals(threshold: float) -> int:
+        runs = (text.format(behavior, -3 + 0.5 * start, threshold) for start in range(12))
+        return sum(irsim.run(text=run, seed=0, steps=120).outcome == "success" for run in runs)
+
+    hint = next(d for d in read(text.format(behavior, 0, 0.1)).diagnostics if d.code == "goal-overshoot")
+    assert "goal_threshold: 0.26" in str(hint.fix)
+    assert arrivals(0.1) < arrivals(0.26) == 12
+    assert "goal-overshoot" not in {d.code for d in read(text.format(behavior, 0, 0.26)).diagnostics}
+
+
 def test_what_is_said_to_jump_through_a_wall_does() -> None:
     text = (
         "world: {{step_time: {}}}\n"

@@ -19,6 +19,14 @@ class BehaviorOptions(Options):
 
     in_group: ClassVar[bool] = False
     """Whether it may be named under `group_behavior`: it decides for all members at once."""
+    avoids: ClassVar[bool] = False
+    """Whether it avoids other objects."""
+    touches: ClassVar[bool] = False
+    """Whether bodies that it moves touch others now and then."""
+    stops_in_time: ClassVar[bool] = False
+    """Whether it stops before what stands with any `timeHorizonObst`."""
+    wall_horizon: ClassVar[float] = math.inf
+    """How far ahead it looks at walls if it has no `timeHorizonObst` [s]."""
 
     name: str
     """Name of the behavior."""

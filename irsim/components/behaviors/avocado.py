@@ -24,6 +24,7 @@ class Avocado(BehaviorOptions):
     """
 
     in_group: ClassVar[bool] = True
+    avoids: ClassVar[bool] = True
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "avocado", "neighborDist": 5.0}]}
 

@@ -36,6 +36,8 @@ class Follow(BehaviorOptions):
     which needs a reverse gear (`vel_min`).
     """
 
+    avoids: ClassVar[bool] = True
+
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [
             {"name": "follow", "planner": "astar", "local": "dash"},

@@ -22,6 +22,8 @@ class FootprintOrca(BehaviorOptions):
     """
 
     in_group: ClassVar[bool] = True
+    avoids: ClassVar[bool] = True
+    stops_in_time: ClassVar[bool] = True
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "footprint_orca"}]}
 

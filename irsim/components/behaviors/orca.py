@@ -23,6 +23,7 @@ class Orca(BehaviorOptions):
     """
 
     in_group: ClassVar[bool] = True
+    avoids: ClassVar[bool] = True
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "orca", "neighborDist": 10.0, "timeHorizon": 5.0}]}
 

@@ -19,6 +19,9 @@ class Rvo(BehaviorOptions):
     Avoiding nothing, it turns at most at 1.5 rad/s. With `acce` it brakes in time. It stays in dead ends.
     """
 
+    avoids: ClassVar[bool] = True
+    wall_horizon: ClassVar[float] = 1.0
+
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [{"name": "rvo", "vxmax": 1.5, "vymax": 1.5, "acce": 1.0, "factor": 1.0}]
     }

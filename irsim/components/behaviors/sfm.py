@@ -22,6 +22,8 @@ class Sfm(BehaviorOptions):
     """
 
     in_group: ClassVar[bool] = True
+    avoids: ClassVar[bool] = True
+    touches: ClassVar[bool] = True
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "sfm", "vmax": 1.3}]}
 

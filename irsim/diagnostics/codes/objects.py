@@ -176,8 +176,8 @@ OBJECTS: dict[str, Code] = {
     ),
     "goal-overshoot": Code(
         "steps longer than the goal is wide",
-        "'dash' drives at full speed until the goal is within 'goal_threshold'. When one step (vel_max × step_time)"
-        " is longer than twice the threshold, the object can jump over its goal, turn, and jump over it again. "
+        "When one step (vel_max × step_time) is longer than twice 'goal_threshold', an object can jump over its goal, "
+        "turn, and jump over it again: no behavior slows down so much that a step must end at the goal. "
         "Example: 3 m/s × 0.1 s = 0.3 m with goal_threshold 0.1; write goal_threshold: 0.2, or step_time: 0.05. "
         "With a threshold of 0 no object ever arrives. A car under 'follow' cannot turn round on the spot: it shunts "
         "back and forth at its goal, and without reverse it may never get there.",

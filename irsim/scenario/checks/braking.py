@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,10 +12,6 @@ from irsim.scenario.messages.findings import Finding, hint
 from irsim.scenario.resolve.braking import Braking, braking_of, follow_text, horizons_that_work, short_horizons
 from irsim.scenario.resolve.resolved import ObjectRecord
 
-_WALL_HORIZON = {"rvo": 1.0}
-"""Behaviors without a key for it, and how far ahead they look at walls [s]."""
-_STOPS_ANYWAY = ("footprint_orca",)
-"""Behaviors that stop in time before what stands with any horizon, but may stand there."""
 _SEEN = {"timeHorizon": "what moves", "timeHorizonObst": "what stands"}
 
 
@@ -37,8 +34,8 @@ def _findings(context: Context) -> Iterator[Finding]:
         short = [key for key in short_horizons(inner, braking) if relevant[key]]
         if short:
             yield _finding(context, record, inner, braking, short, routed)
-        elif stands and _WALL_HORIZON.get(getattr(inner, "name", ""), braking.time) < braking.time:
-            yield _fixed_horizon(context, record, inner.name, braking)
+        elif stands and getattr(inner, "wall_horizon", math.inf) < braking.time:
+            yield _fixed_horizon(context, record, inner, braking)
 
 
 def _finding(
@@ -48,7 +45,7 @@ def _finding(
     path = (*context.entry_path(record, key), "local") if routed else context.entry_path(record, key)
     horizon = horizons_that_work(braking)
     looks = " and ".join(f"{seconds(getattr(options, name))} ahead at {_SEEN[name]}" for name in short)
-    if not routed and options.name in _STOPS_ANYWAY and short == ["timeHorizonObst"]:
+    if not routed and options.stops_in_time and short == ["timeHorizonObst"]:
         return hint(
             "brakes-too-late",
             path,
@@ -64,12 +61,12 @@ def _finding(
     )
 
 
-def _fixed_horizon(context: Context, record: ObjectRecord, name: str, braking: Braking) -> Finding:
-    ahead = _WALL_HORIZON[name]
+def _fixed_horizon(context: Context, record: ObjectRecord, options: Any, braking: Braking) -> Finding:
+    ahead = options.wall_horizon
     return hint(
         "brakes-too-late",
         context.entry_path(record, "behavior"),
-        f"{_brakes(record, braking)}, but {name} looks {seconds(ahead)} ahead at walls",
+        f"{_brakes(record, braking)}, but {options.name} looks {seconds(ahead)} ahead at walls",
         fix=f"orca with timeHorizonObst: {horizons_that_work(braking):g}, or at most {ahead * braking.acce:g} m/s",
     )
 

@@ -10,8 +10,6 @@ from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, hint
 from irsim.scenario.resolve.resolved import ObjectRecord
 
-_TOUCHING = ("sfm",)
-"""Behaviors that push others away, but let bodies touch now and then."""
 _CROWD = 6
 """Number of people with a way to one goal, as obstacles, from which some are likely to touch."""
 
@@ -48,4 +46,4 @@ def _is_pushed(record: ObjectRecord) -> bool:
     options = getattr(options, "local", options)
     if record.static or record.unobstructed or record.kinematics is None:
         return False
-    return getattr(options, "name", "") in _TOUCHING
+    return bool(getattr(options, "touches", False))

@@ -23,8 +23,6 @@ _MAX_TURNS = 3
 """Full turns of a simulated car after which it counts as circling its goal."""
 _MAX_STEPS = 5000
 """Steps of that simulation; longer ones are skipped."""
-_AVOIDING = ("rvo", "sfm", "orca", "avocado", "footprint_orca", "follow")
-"""Behaviors that avoid other objects."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -159,7 +157,7 @@ def _no_targets(context: Context, record: ObjectRecord, counts: dict[str, int]) 
         if options is None or roles == "all" or isinstance(options, CustomOptions):
             continue
         where = (*context.entry_path(record, key), "target_roles")
-        if options.name not in _AVOIDING:
+        if not options.avoids:
             if "target_roles" in options.model_fields_set:
                 message = f"'{options.name}' avoids no other object: 'target_roles' has no effect"
                 yield hint("ignored-key", where, message, given=roles, fix="remove it")
@@ -196,13 +194,14 @@ def _unobstructed_robot(context: Context, record: ObjectRecord) -> Iterator[Find
 
 
 def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """Goals that ``dash``, and cars on routes, which do not slow down, can overshoot again and again."""
-    options: Any = record.behavior if record.group_behavior is None else None
+    """Goals that a step can jump over again and again; cars on routes shunt there."""
+    options: Any = record.active_behavior
     drive: Any = record.kinematics
     car = getattr(options, "name", "") == "follow" and drive.name == "acker"
     options = getattr(options, "local", options)
     name = getattr(options, "name", "")
-    if not (name == "dash" or car) or record.static or not record.goals or record.goal_threshold <= 0:
+    drives = name == "dash" or getattr(options, "avoids", False)
+    if not drives or record.static or not record.goals or record.goal_threshold <= 0:
         return
     dt = context.scenario.world.step_time
     step = top_speed(record) * dt
@@ -217,8 +216,8 @@ def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     yield report(
         "goal-overshoot",
         record.path,
-        f"'{record.name}' drives {metres(step)} per step and {'a car' if car else repr(name)} does not slow down: "
-        f"{effect}, which counts as reached within {record.goal_threshold:g} m",
+        f"'{record.name}' drives {metres(step)} per step under '{name}': {effect}, which counts as reached within "
+        f"{record.goal_threshold:g} m",
         fix=f"goal_threshold: {threshold:g} or more, a smaller step_time, or a lower vel_max",
     )
 
