@@ -86,6 +86,7 @@ FOUND = [
     (one({"behavior": {"name": "dash", "target_roles": "robot"}}), "ignored-key"),
     (one({"vel_max": [8, 1], "vel_min": [-8, -1]}, WALL), "jumps-through"),
     (one({"vel_max": [1, 1]}, WALL, step_time=0.6), "jumps-through"),
+    (one({"vel_max": [8, 1], "vel_min": [-8, -1], "unobstructed": True}, WALL), "jumps-through"),
     (both({"vel_max": [9, 1], "vel_min": [-9, -1]}, {"state": [9, 9, 0], "goal": [1, 1]}), "jumps-through"),
     (one({**FAST, "goal": [9, 1]}, LONG_WALL), "jumps-through"),
     (one({**FAST, "goal": None, "waypoints": [[5, 1], [5, 8]]}, LONG_WALL), "jumps-through"),

@@ -37,21 +37,22 @@ def check(context: Context) -> Iterator[Finding]:
     if world.collision_mode in (*_PASSABLE, *_CONTINUOUS) or world.contacts == "swept":
         return
     dt, shapes = world.step_time, dict[int, _Shape]()
-    there = [
+    bodies = [
         _Body(record, shapes.setdefault(id(record.shape), _Shape(record.shape)), top_speed(record))
         for record in context.resolved.objects
-        if not record.unobstructed and has_fixed_shape(record.shape)
+        if has_fixed_shape(record.shape)
     ]
+    there = [body for body in bodies if not body.record.unobstructed]  # an unobstructed body itself still collides
     fast = [
         body
-        for body in there
+        for body in bodies
         if body.record.kinematics is not None
         and not body.record.recorded
         and 0 < body.speed < math.inf
         and math.isfinite(body.shape.width)
         and body.speed * dt > body.shape.width
     ]
-    if not fast or len(there) < 2:
+    if not fast:
         return
     thin_first = sorted(there, key=lambda b: (b.shape.width, b.record.id))
     random = {index for placement in context.resolved.placements for index in placement.objects}
