@@ -67,12 +67,13 @@ bool look_around(const RvoOptions& options, const Decision& decision, const Ego&
   WallView& walls = obstacles.walls;
   const double fastest = norm({options.vxmax, options.vymax}) * ego.pace;
   const bool gaps = keeps_gaps(decision, ego, options.keep_gap);
+  const double body = ego.radius - kPadding, stride = fastest * decision.world.step_time;
   decision.work.nearby.clear();
   for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& disc) {
     const bool stands = decision.world.is_static[disc.object];
     if (ego.route == nullptr || !stands) {
       add_disc(options, ego, disc, obstacles);
-      if (gaps) add_nearby(decision, ego, disc, fastest);
+      if (gaps && may_close(disc.centre - ego.position, body + disc.radius, stride)) add_nearby(decision, ego, disc);
       if (!options.sidestep && !meets) meets = tied(decision, ego, disc, options.neighbor_threshold, kTieSpeed);
     } else if (!decision.world.unobstructed[disc.object]) {
       const Vec2 centre = disc.centre - ego.position;
@@ -164,7 +165,7 @@ void rvo(const RvoOptions& options, const Decision& decision, Intent* intents) {
         std::visit([](const auto& drive) { return moves_sideways(drive); }, decision.world.drive[ego.id]);
     intents[k] = sideways ? Intent::of_velocity(velocity)
                           : turning_intent(obstacles, ego, velocity, decision.state.heading(ego.row), turning);
-    keep_gaps(decision, ego, false, intents[k]);
+    if (!decision.work.nearby.empty()) keep_gaps(decision, ego, false, intents[k]);
   }
 }
 

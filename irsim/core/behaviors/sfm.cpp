@@ -28,17 +28,16 @@ Vec2 social_force(const SfmOptions& o, const Decision& decision, int k, const Eg
   const Scene& scene = decision.state.scenes[decision.w()];
   const Neighbors& near = neighbors(world, decision.state, decision.work, decision.w());
   const bool gaps = keeps_gaps(decision, ego, o.keep_gap);
+  const double body = ego.radius - kPadding, stride = o.vmax * ego.pace * world.step_time;
+  const bool breaks_ties = !o.sidestep;
   decision.work.nearby.clear();
   mutual.decide(k);
   forces.clear(world.objects);
   for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& other) {
     if (ego.route != nullptr && world.is_static[other.object]) return;
-    if (gaps) add_nearby(decision, ego, other, o.vmax * ego.pace);
+    if (gaps && may_close(other.centre - ego.position, body + other.radius, stride)) add_nearby(decision, ego, other);
     if (mutual.knows(other.object)) return;
-    if (!o.sidestep && !mutual.both_tied(other.object) &&
-        tied(decision, ego, other, o.neighbor_threshold, kSameSpeed)) {
-      mutual.tie(other.object);
-    }
+    if (breaks_ties && tied(decision, ego, other, o.neighbor_threshold, kSameSpeed)) mutual.tie(other.object);
     forces.add(other.centre - ego.position, ego.velocity - other.velocity);
     // Others see the ego where it sees itself: its origin is the centre of its disc, or they know its origin.
     const Vec2 origin = decision.state.pose[decision.first_row + other.object].position();
@@ -202,7 +201,7 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
     turning.guarantee_time = dt;
     turning.max_rate = decision.state.vel_max[ego.row][1];
     intents[k] = Intent::of_velocity(velocity, turning);
-    keep_gaps(decision, ego, true, intents[k]);
+    if (!decision.work.nearby.empty()) keep_gaps(decision, ego, true, intents[k]);
   }
 }
 

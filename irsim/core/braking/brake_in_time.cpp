@@ -140,7 +140,7 @@ class Borders {
 void brake_in_time(const Decision& decision, int k, Vec3& command) {
   const World& world = decision.world;
   const int object = decision.objects[k], row = decision.row(k);
-  if (!brakes_in_time(world, object) || !is_inert(world, decision.state, row, object)) return;
+  if (!is_inert(world, decision.state, row, object)) return;
   if (decision.state.route_of(row) != nullptr) return;
   Borders borders(decision, k);
   borders.add_movers();

@@ -83,8 +83,6 @@ double squared_to_box(const Box& box, Vec2 a, Vec2 b) {
   return least;
 }
 
-Box grown(Box box, double by) { return {box.x0 - by, box.y0 - by, box.x1 + by, box.y1 + by}; }
-
 /// Upper bound of the distance from a point to the nearest occupied cell [m].
 double reach_to_cells(const OccupancyGrid& grid, Vec2 p) {
   const Vec2 at{(p.x - grid.origin().x) / grid.cell().x, (p.y - grid.origin().y) / grid.cell().y};

@@ -17,7 +17,7 @@ struct Stride {
   /// turns.
   static Stride between(const Pose& from, const Pose& to, double turn, bool arc) {
     double turned = to.theta - from.theta;
-    if (turned != 0.0 || std::fabs(turn) > kPi) turned += kTurn * std::round((turn - turned) / kTurn);
+    if (std::fabs(turn - turned) > kPi) turned += kTurn * std::round((turn - turned) / kTurn);
     // A full circle ends where it began: nothing tells its radius.
     return {from, to.position() - from.position(), turned, arc && turned != 0.0 && std::fabs(turned) < 6.0};
   }

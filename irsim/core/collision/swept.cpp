@@ -116,8 +116,6 @@ double arm_of(const Vec2* vertices, int count) {
   return std::sqrt(most);
 }
 
-Box grown_by(const Box& box, double by) { return {box.x0 - by, box.y0 - by, box.x1 + by, box.y1 + by}; }
-
 /// The box round the motion of some vertices with a radius.
 Box box_of(const Stride& stride, const Vec2* vertices, int count, double radius, double arm) {
   Box box;
@@ -127,7 +125,7 @@ Box box_of(const Stride& stride, const Vec2* vertices, int count, double radius,
     for (int k = 0; k < count; ++k) box.include(pose.position() + rotate(vertices[k], heading));
     if (stride.rests()) break;
   }
-  return grown_by(box, radius + stride.bulge(arm) + kGrain);
+  return grown(box, radius + stride.bulge(arm) + kGrain);
 }
 
 bool is_convex_ring(const Vec2* ring, int edges) {

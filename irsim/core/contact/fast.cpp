@@ -16,8 +16,6 @@ constexpr double kCorners = 0.25;    // the same, of what turns outside of a dis
 constexpr int kMostParts = 4000;     // of a step
 constexpr int kMostPairs = 1000000;  // of near bodies, in all parts of a step; larger crowds move in fewer parts
 
-Box wider(const Box& box, double by) { return {box.x0 - by, box.y0 - by, box.x1 + by, box.y1 + by}; }
-
 class FastBodies {
  public:
   FastBodies(const World& world, State& state, int w, Workspace& work)
@@ -87,9 +85,9 @@ class FastBodies {
     bound_steps(world_, state_, w_, scene_.ways);
     const auto box = [&](int i) { return scene_.ways[scene_.shapes->placed[i].object]; };
     if (!world_.fixed_objects.empty()) {
-      for (const int i : world_.moving) scene_.fixed->grid.query(wider(box(i), reach), [&](int j) { add(i, j); });
+      for (const int i : world_.moving) scene_.fixed->grid.query(grown(box(i), reach), [&](int j) { add(i, j); });
     }
-    if (world_.moving.size() > 1) scene_.sweep.pairs([&](int i) { return wider(box(i), 0.5 * reach); }, add);
+    if (world_.moving.size() > 1) scene_.sweep.pairs([&](int i) { return grown(box(i), 0.5 * reach); }, add);
     std::sort(out.begin(), out.end());
   }
 
@@ -124,6 +122,7 @@ class FastBodies {
     const Passage passage(world_, state_, w_, a, b);
     Vec2 where;
     const bool touch = passage.in_contact(0.0);
+    if (!touch && !come_near(world_, state_, w_, a, b)) return false;
     const double when = touch ? 0.0 : passage.first_contact(0.0, 1.0, where);
     if (!(when <= 1.0)) return false;
     const Pose at_a = one.at(when), at_b = other.at(when);

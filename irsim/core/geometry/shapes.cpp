@@ -101,6 +101,7 @@ std::shared_ptr<const Shapes> Shapes::scaled(const double* factors) const {
     out->centre[i] = centre[i] * factor;
     out->centroid[i] = centroid[i] * factor;
     out->radius[i] *= factor;
+    out->arm[i] = out->arm_of(i);
   }
   return out;
 }
@@ -114,6 +115,14 @@ void Shapes::close(const Slot& first, bool fixed) {
   used.part += end.part - first.part;
   used.vertex += end.vertex - first.vertex;
   body.push_back(end);
+  arm.push_back(arm_of(objects() - 1));
+}
+
+double Shapes::arm_of(int object) const {
+  const Vec2 middle = centre[object];
+  const bool turns_unseen =
+      part_count(object) == 1 && parts[body[object].part].kind == Kind::circle && middle.x == 0.0 && middle.y == 0.0;
+  return turns_unseen ? 0.0 : std::fabs(middle.x) + std::fabs(middle.y) + radius[object];
 }
 
 void Outlines::resize(const Slot& size) {
@@ -124,23 +133,32 @@ void Outlines::resize(const Slot& size) {
 }
 
 void Outlines::place(const Shapes& shapes, int object, const Pose& pose, Vec2 direction) {
-  const bool moves = !shapes.is_map(object);
+  const Slot from = shapes.body[object], to = shapes.placed[object];
+  const Part* parts = shapes.parts.data() + from.part;
+  const bool moves = parts->kind != Kind::cells;
   const Vec2 origin = moves ? pose.position() : Vec2{};
   if (!moves) direction = {1.0, 0.0};
-  const Slot& from = shapes.body[object];
-  const Slot& to = shapes.placed[object];
   centres[to.object] = origin + rotate(shapes.centre[object], direction);
+  const Vec2* own = shapes.vertices.data() + from.vertex;
+  Vec2* placed = vertices.data() + to.vertex;
+  Box* own_boxes = part_boxes.data() + to.part;
+  const int count = shapes.part_count(object);
   Box all;
-  for (int p = 0; p < shapes.part_count(object); ++p) {
-    const Part& part = shapes.parts[from.part + p];
+  for (int p = 0; p < count; ++p) {
+    const Part& part = parts[p];
     Box box;
-    for (int v = part.first; v <= part.last; ++v) {
-      const Vec2 vertex = origin + rotate(shapes.vertices[from.vertex + v], direction);
-      vertices[to.vertex + v] = vertex;
-      box.include(vertex);
+    if (part.kind == Kind::circle) {
+      const Vec2 middle = origin + rotate(own[part.first], direction);
+      placed[part.first] = middle;
+      box = box_around(middle, part.radius);
+    } else {
+      for (int v = part.first; v <= part.last; ++v) {
+        const Vec2 vertex = origin + rotate(own[v], direction);
+        placed[v] = vertex;
+        box.include(vertex);
+      }
     }
-    if (part.kind == Kind::circle) box = box_around(vertices[to.vertex + part.first], part.radius);
-    part_boxes[to.part + p] = box;
+    own_boxes[p] = box;
     all.include(box);
   }
   boxes[to.object] = all;

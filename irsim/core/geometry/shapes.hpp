@@ -58,9 +58,10 @@ struct Shapes {
   std::vector<Vec2> centre;    // (N,) centre of the minimum bounding circle
   std::vector<Vec2> centroid;  // (N,) centroid of a circle or polygon; equal to `centre` for other shapes
   std::vector<double> radius;  // (N,)
-  std::vector<Slot> placed;    // (N,) slots in the `Outlines` of the moving or of the static objects
-  Slot size[2];                // sizes of these two
-  std::vector<double> scale;   // (N,) factor of each object; empty if all are 1
+  std::vector<double> arm;    // (N,) upper bound of what a turn of 1 rad moves a body by; 0 for a disc about its origin
+  std::vector<Slot> placed;   // (N,) slots in the `Outlines` of the moving or of the static objects
+  Slot size[2];               // sizes of these two
+  std::vector<double> scale;  // (N,) factor of each object; empty if all are 1
   std::vector<std::shared_ptr<const OccupancyGrid>> grids;  // keeps the cells of maps alive
 
   int objects() const { return static_cast<int>(centre.size()); }
@@ -77,6 +78,7 @@ struct Shapes {
 
  private:
   void close(const Slot& first, bool fixed);
+  double arm_of(int object) const;
 };
 
 /// World-frame geometry of one object, ready for collision and sensing.

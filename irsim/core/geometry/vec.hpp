@@ -66,6 +66,8 @@ inline Box box_around(Vec2 centre, double radius) {
   return {centre.x - radius, centre.y - radius, centre.x + radius, centre.y + radius};
 }
 
+inline Box grown(const Box& box, double by) { return {box.x0 - by, box.y0 - by, box.x1 + by, box.y1 + by}; }
+
 /// ((a + pi) mod 2 pi) - pi, in [-pi, pi); 0 if `a` is not finite.
 inline double wrap(double a) {
   double m = a + kPi;

@@ -239,6 +239,7 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
   before.clear();
   for (int k = 0; k < count; ++k) before.push_back(all.neighbors[k].index);
   const bool breaks = group >= 0 && breaks_ties(world.behaviors[group].behavior);
+  const bool routes = !state.routes.empty(), routed = state.route_of(w * world.objects + object) != nullptr;
   bool on_line = false;
   for (const int m : before) {
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
@@ -256,13 +257,12 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
     if (breaks && mutual &&
         may_mirror(there.position - agent.position, agent.velocity + there.velocity, options.neighborDist, kLeanSpeed))
       share = clip(share + lean(world, state, w, all, self, m, speed, on_line), 0.0, 1.0);
-    if (mutual && !state.routes.empty()) {
+    if (mutual && routes) {
       const Precedence order = precedence(world, state, w, object, world.moving[m]);
       if (order == Precedence::first) continue;
       if (order == Precedence::second) share = 1.0;
     }
     if (share == 0.0) continue;
-    const bool routed = state.route_of(w * world.objects + object) != nullptr;
     if (routed && avoid_discs(world, state, w, self, m, agent, *other, share, options.timeHorizon, all.planes))
       continue;
     avoid_agent(agent, *other, share, options.timeHorizon, world.step_time, self < m, all.planes.emplace_back());

@@ -28,7 +28,8 @@ void find_pairs(const World& world, State& state, int w) {
       meet(world, state, w, std::min(i, j), std::max(i, j));
     }
   };
-  if (moved) bound_steps(world, state, w, scene.ways);
+  const bool alone = world.moving.size() < 2 && world.fixed_objects.empty();
+  if (moved && !alone) bound_steps(world, state, w, scene.ways);
   const Box* boxes = moved ? scene.ways.data() : scene.moving.boxes.data();
   const Slot* placed = shapes.placed.data();
   const auto box = [=](int i) { return boxes[placed[i].object]; };
@@ -114,7 +115,7 @@ void collide(const World& world, State& state, int w) {
     if (!world.unobstructed[i]) collided[j] = 1;
   }
   log_contacts(world, state, w);
-  log_meetings(world, state, w);
+  if (!scene.meetings.empty()) log_meetings(world, state, w);
   for (int i = 0; i < world.objects; ++i) {
     const bool stops =
         world.collision_mode == kStop || (world.collision_mode == kUnobstructedObstacles && world.is_robot[i]);

@@ -21,6 +21,7 @@ void run_behavior(const World& world, State& state, int w, const BehaviorGroup& 
   const Decision decision{world,         state,         first, work.objects.data(),   count,
                           group.members, group.grouped, work,  state.opinions.data(), state.detours.data()};
   Intent* intents = work.intents.data();
+  const bool brakes = brakes_in_time(world, group.objects.front());
   with(group.behavior, [&](const auto& options) { run(options, decision, intents); });
   for (int k = 0; k < count; ++k) {
     const int object = work.objects[k];
@@ -30,9 +31,10 @@ void run_behavior(const World& world, State& state, int w, const BehaviorGroup& 
       command_velocity(world, state, w, object, intent.velocity, intent.turning);
     } else {
       state.command[first + object] = intent.control;
-      if (!intent.final) face_goal(world, state, first + object, object, state.command[first + object]);
+      if (world.state_arrival[object] && !intent.final)
+        face_goal(world, state, first + object, object, state.command[first + object]);
     }
-    brake_in_time(decision, k, state.command[first + object]);
+    if (brakes && has_inertia(state, first + object)) brake_in_time(decision, k, state.command[first + object]);
   }
 }
 
@@ -55,7 +57,7 @@ void renew_goals(const World& world, State& state, int w, int object) {
 void command_velocity(const World& world, State& state, int w, int object, Vec2 velocity, const Turning& turning) {
   Vec3& command = state.command[w * world.objects + object];
   command = control_for(world, state, w, object, velocity, turning);
-  face_goal(world, state, w * world.objects + object, object, command);
+  if (world.state_arrival[object]) face_goal(world, state, w * world.objects + object, object, command);
 }
 
 Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& wanted) {

@@ -18,6 +18,8 @@ bool stops(const World& world, int object) {
 /// Find when a pair first touches, given when each object has stopped already. Afterwards, a pair of which neither
 /// moves is left alone.
 void examine(const World& world, State& state, int w, const std::vector<double>& until, NearPair& pair) {
+  pair.when = kInfinity;
+  if (until[pair.a] >= 1.0 && until[pair.b] >= 1.0 && !come_near(world, state, w, pair.a, pair.b)) return;
   Passage passage(world, state, w, pair.a, pair.b);
   double begin = 0.0;
   for (const int i : {pair.a, pair.b}) {

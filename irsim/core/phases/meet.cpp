@@ -67,6 +67,7 @@ bool goes_through(const World& world, State& state, int w, int a, int b, const M
 }  // namespace
 
 void meet(const World& world, State& state, int w, int a, int b) {
+  if (!come_near(world, state, w, a, b)) return;
   const Passage passage(world, state, w, a, b);
   Vec2 where;
   const double when = passage.first_contact(0.0, 1.0, where);

@@ -76,8 +76,8 @@ void remember(State& state, int row) {
   const Pose& pose = state.pose[row];
   std::vector<double>& track = state.history[row];
   const double* extra = &state.extra[static_cast<std::size_t>(row) * state.extra_rows];
-  track.insert(track.end(), {pose.x, pose.y, pose.theta});
-  track.insert(track.end(), extra, extra + state.extra_rows);
+  for (const double number : {pose.x, pose.y, pose.theta}) track.push_back(number);
+  for (int k = 0; k < state.extra_rows; ++k) track.push_back(extra[k]);
 }
 
 void finish(const World& world, State& state, int w) {

@@ -23,13 +23,8 @@ Moving moving_of(const World& world, const State& state, int w, int object) {
 
 /// How far a turn in the step may carry an object out of the box that moves with it in a straight line [m].
 double swing_of_step(const World& world, const State& state, int w, int object) {
-  const Shapes& shapes = *state.scenes[w].shapes;
-  const Vec2 centre = shapes.centre[object];
   const Stride stride = stride_of(world, state, w, object);
-  const double aside = stride.bulge(0.0);
-  if (centre.x == 0.0 && centre.y == 0.0 && shapes.parts[shapes.body[object].part].kind == Kind::circle) return aside;
-  const double turn = std::min(std::fabs(stride.turn), 2.0);
-  return turn * (std::fabs(centre.x) + std::fabs(centre.y) + shapes.radius[object]) + aside;
+  return std::min(std::fabs(stride.turn), 2.0) * state.scenes[w].shapes->arm[object] + stride.bulge(0.0);
 }
 
 }  // namespace
@@ -43,6 +38,8 @@ Stride stride_of(const World& world, const State& state, int w, int object) {
 void bound_steps(const World& world, State& state, int w, std::vector<Box>& out) {
   const Scene& scene = state.scenes[w];
   const Slot* placed = scene.shapes->placed.data();
+  const double* arms = scene.shapes->arm.data();
+  const bool arcs = world.integration == kExact;
   const Box* ends = scene.moving.boxes.data();
   const Pose *before = &state.before[w * world.objects], *now = &state.pose[w * world.objects];
   out.resize(scene.moving.boxes.size());
@@ -51,7 +48,8 @@ void bound_steps(const World& world, State& state, int w, std::vector<Box>& out)
     const int slot = placed[i].object;
     const Box end = ends[slot];
     const double x = before[i].x - now[i].x, y = before[i].y - now[i].y;
-    const double swing = before[i].theta == now[i].theta ? 0.0 : swing_of_step(world, state, w, i);
+    const bool swings = before[i].theta != now[i].theta && (arcs || arms[i] > 0.0);
+    const double swing = swings ? swing_of_step(world, state, w, i) : 0.0;
     boxes[slot] = {end.x0 + std::min(x, 0.0) - swing, end.y0 + std::min(y, 0.0) - swing,
                    end.x1 + std::max(x, 0.0) + swing, end.y1 + std::max(y, 0.0) + swing};
   }
@@ -69,22 +67,30 @@ Passage::Passage(const World& world, State& state, int w, int a_, int b_)
 
 void Passage::stop(int object, double time) {
   Moving& body = object == a ? one : other;
+  whole_ = false;
   if (!world_.is_static[object]) body.stride = Stride::resting(body.stride.at(time));
 }
 
-bool Passage::come_near() const {
-  const Shapes& shapes = *scene_.shapes;
-  const auto centre_at_end = [&](int i) {
-    return world_.is_static[i] ? scene_.fixed->outlines.centres[shapes.placed[i].object]
-                               : scene_.moving.centres[shapes.placed[i].object];
-  };
-  const Vec2 to = centre_at_end(b) - centre_at_end(a), from = to - other.stride.by + one.stride.by;
-  const auto slack = [&](int i, const Stride& stride) {
-    if (stride.turn == 0.0) return 0.0;
+bool come_near(const World& world, const State& state, int w, int a, int b) {
+  if (world.unobstructed[a] || world.unobstructed[b]) return false;
+  const Scene& scene = state.scenes[w];
+  const Shapes& shapes = *scene.shapes;
+  double reach = shapes.radius[a] + shapes.radius[b] + kRounding;
+  Vec2 to, from;  // from the centre of the circle of `a` to that of `b`, at both ends of the step
+  const auto add = [&](int i, double sign) {
+    const bool rests = world.is_static[i];
+    const Vec2 end = (rests ? scene.fixed->outlines : scene.moving).centres[shapes.placed[i].object] * sign;
+    to = to + end, from = from + end;
+    if (rests || shapes.is_map(i)) return;
+    const Pose &before = state.before[w * world.objects + i], &now = state.pose[w * world.objects + i];
+    from = from - (now.position() - before.position()) * sign;
     const Vec2 centre = shapes.centre[i];
-    return std::min(std::fabs(stride.turn), 2.0) * (std::fabs(centre.x) + std::fabs(centre.y)) + stride.bulge(0.0);
+    const double arm = std::fabs(centre.x) + std::fabs(centre.y);
+    if (before.theta == now.theta || (arm == 0.0 && world.integration == kEuler)) return;
+    const Stride stride = stride_of(world, state, w, i);
+    reach += std::min(std::fabs(stride.turn), 2.0) * arm + stride.bulge(0.0);
   };
-  const double reach = shapes.radius[a] + shapes.radius[b] + slack(a, one.stride) + slack(b, other.stride) + kRounding;
+  add(a, -1.0), add(b, 1.0);
   return squared(nearest_on_segment(from, to, {})) <= reach * reach;
 }
 
@@ -121,7 +127,7 @@ double Passage::first_contact(double begin, double end, Vec2& where) const {
   }
   if (!scene_.bent.empty() && (scene_.bent[a] || scene_.bent[b])) return kInfinity;  // contacts looked after them
   if (std::binary_search(scene_.parted.begin(), scene_.parted.end(), Pair{a, b})) return kInfinity;
-  if (begin == 0.0 && (!come_near() || stay_apart())) return kInfinity;
+  if (whole_ && stay_apart()) return kInfinity;
   return irsim::first_contact(one, other, begin, end, scene_.swept, where);
 }
 

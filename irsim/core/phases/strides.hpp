@@ -14,15 +14,19 @@ Stride stride_of(const World& world, const State& state, int w, int object);
 /// has put them where the step ends.
 void bound_steps(const World& world, State& state, int w, std::vector<Box>& out);
 
-/// What happens between two objects a < b in a step.
+/// Whether two objects are obstacles for each other whose bounding circles come near each other in the step: no other
+/// pair touches within it.
+bool come_near(const World& world, const State& state, int w, int a, int b);
+
+/// What happens between two objects a < b in a step, which come near each other.
 class Passage {
  public:
   Passage(const World& world, State& state, int w, int a, int b);
 
   /// Let one of them stop at a time and rest until the end of the step.
   void stop(int object, double time);
-  /// The first time in [begin, end] at which they touch; infinite if they do not. It looks at the bounding circles
-  /// first. Objects that are unobstructed touch nothing, and one that appears in this step was not there before.
+  /// The first time in [begin, end] at which they touch; infinite if they do not. Objects that are unobstructed touch
+  /// nothing, and one that appears in this step was not there before.
   double first_contact(double begin, double end, Vec2& where) const;
   /// Distance at a time within the step [m], negative if they overlap.
   double gap(double time) const;
@@ -35,8 +39,6 @@ class Passage {
   Moving one, other;
 
  private:
-  /// Whether their bounding circles come near each other.
-  bool come_near() const;
   /// Whether a line certainly separates them throughout the step.
   bool stay_apart() const;
   Footprint footprint(int object, const Moving& body, double time) const;
@@ -46,6 +48,7 @@ class Passage {
   State& state_;
   Scene& scene_;
   int w_;
+  bool whole_ = true;  // whether neither stops within the step
 };
 
 /// Keep a contact between two steps in `Scene::meetings`.

@@ -44,8 +44,6 @@ class MutualForces {
     tied_[deciding_] = 1;
     if (place_[other] >= 0) tied_[place_[other]] = 1;
   }
-  /// Whether both are known to be mirror images of others, so that nothing is left to find out.
-  bool both_tied(int other) const { return tied_[deciding_] && (place_[other] < 0 || tied_[place_[other]]); }
   /// Whether the object that decides is a mirror image of another one.
   bool tied() const { return tied_[deciding_] != 0; }
 

@@ -9,7 +9,6 @@
 namespace irsim {
 namespace {
 
-constexpr double kShare = 0.4;       // of a gap that is taken in one step
 constexpr double kKept = 0.01;       // part of a gap that is never taken [m]
 constexpr double kRounding = 1e-12;  // smaller differences of speeds are rounding errors [m/s]
 
@@ -28,7 +27,7 @@ double largest_speed(const std::vector<Nearby>& nearby, const World& world, Vec2
   double speed = kInfinity;
   for (const Nearby& other : nearby) {
     const double closing = dot(direction, other.towards) + turn;
-    if (closing > 0.0) speed = std::min(speed, kShare * other.gap / (closing * world.step_time));
+    if (closing > 0.0) speed = std::min(speed, kClosingShare * other.gap / (closing * world.step_time));
   }
   return speed;
 }
@@ -43,7 +42,7 @@ Vec2 slide_along(const std::vector<Nearby>& nearby, const World& world, Vec2 vel
     const Nearby* worst = nullptr;
     double most = kRounding;
     for (const Nearby& other : nearby) {
-      const double excess = dot(velocity, other.towards) - kShare * other.gap / world.step_time;
+      const double excess = dot(velocity, other.towards) - kClosingShare * other.gap / world.step_time;
       const bool equal = worst != nullptr && std::fabs(excess - most) <= kRounding;
       if (equal ? cross(velocity, other.towards) > cross(velocity, worst->towards) : excess > most) {
         worst = &other, most = excess;
@@ -60,11 +59,11 @@ Vec2 slide_along(const std::vector<Nearby>& nearby, const World& world, Vec2 vel
 
 }  // namespace
 
-void add_nearby(const Decision& decision, const Ego& ego, const Disc& disc, double fastest) {
+void add_nearby(const Decision& decision, const Ego& ego, const Disc& disc) {
   const World& world = decision.world;
   const Vec2 way = disc.centre - ego.position;
-  const double touching = ego.radius - kPadding + disc.radius, reach = touching + fastest * world.step_time / kShare;
-  if (squared(way) >= reach * reach || world.unobstructed[disc.object] || world.unobstructed[ego.id]) return;
+  const double touching = ego.radius - kPadding + disc.radius;
+  if (world.unobstructed[disc.object] || world.unobstructed[ego.id]) return;
   const double distance = norm(way);
   if (!(distance > 0.0) || !is_round(decision, ego.id) || !is_round(decision, disc.object)) return;
   decision.work.nearby.push_back({way * (1.0 / distance), std::max(distance - touching - kKept, 0.0)});
@@ -72,7 +71,6 @@ void add_nearby(const Decision& decision, const Ego& ego, const Disc& disc, doub
 
 void keep_gaps(const Decision& decision, const Ego& ego, bool slides, Intent& intent) {
   const std::vector<Nearby>& nearby = decision.work.nearby;
-  if (nearby.empty()) return;
   const World& world = decision.world;
   const Vec3& top = decision.state.vel_max[ego.row];
   int travel = 1;

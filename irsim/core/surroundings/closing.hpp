@@ -23,9 +23,22 @@ struct Nearby {
 /// Whether an object keeps gaps: robots do unless their behavior says otherwise.
 bool keeps_gaps(const Decision& decision, const Ego& ego, std::optional<bool> chosen);
 
-/// Add a disc to `Workspace::nearby` if the ego could take its share of the gap in one step at `fastest` [m/s], and
-/// both bodies are circles: the discs of other bodies are larger than they are.
-void add_nearby(const Decision& decision, const Ego& ego, const Disc& disc, double fastest);
+constexpr double kClosingShare = 0.4;  // of a gap that is taken in one step
+
+/// Whether an object could take more than its share of a gap in one step.
+///
+/// Args:
+///   way: From its centre to that of a round body [m].
+///   touching: Distance of the centres at which they touch [m].
+///   stride: Longest way of a step [m].
+inline bool may_close(Vec2 way, double touching, double stride) {
+  const double reach = touching + stride / kClosingShare;
+  return squared(way) < reach * reach;
+}
+
+/// Add a disc whose gap the ego may close to `Workspace::nearby` if both bodies are circles: the discs of other bodies
+/// are larger than they are.
+void add_nearby(const Decision& decision, const Ego& ego, const Disc& disc);
 
 /// Change what an object wants so that it takes no more than its share of any gap in `Workspace::nearby` in this step.
 /// A drive that can move sideways slides along what is in its way; any other rolls no faster along its heading, and

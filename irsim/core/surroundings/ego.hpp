@@ -72,11 +72,14 @@ void for_facing_walls(const Decision& decision, int id, Vec2 position, double re
   const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
   int ring = -1;
   bool seen = false;
-  for_walls(walls, decision.work.walls, position, reach, [&](const Wall& wall) {
-    if (!is_shown(decision, id, wall.object) || cross(wall.b - wall.a, position - wall.a) > 0.0) return;
+  if (walls.list.empty()) return;
+  walls.facing(position, reach, decision.work.walls);
+  for (const int k : decision.work.walls) {
+    const Wall& wall = walls.list[k];
+    if (!is_shown(decision, id, wall.object)) continue;
     if (wall.ring != ring) ring = wall.ring, seen = walls.rings[ring].is_seen_from(position);
     if (seen) visit(wall);
-  });
+  }
 }
 
 }  // namespace irsim

@@ -43,8 +43,7 @@ Way turn_past(const WallView& view, Vec2 ahead, Vec2 goal, bool to_the_left, dou
 
 }  // namespace
 
-Vec2 past_walls(const Decision& decision, int k, Vec2 position, double radius, double look, Vec2 wanted, bool all) {
-  if (decision.state.scenes[decision.w()].fixed->walls.rings.empty()) return wanted;
+Vec2 past_rings(const Decision& decision, int k, Vec2 position, double radius, double look, Vec2 wanted, bool all) {
   const int row = decision.row(k);
   const double speed = norm(wanted);
   if (!(speed > 0.0) || decision.state.route_of(row) != nullptr) return wanted;

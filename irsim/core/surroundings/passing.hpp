@@ -14,10 +14,14 @@
 #pragma once
 
 #include "decision.hpp"
+#include "world/scene.hpp"
 
 namespace irsim {
 
 constexpr double kWallLook = 3.0;  // distance within which behaviors without an option for it pass walls [m]
+
+/// See `past_walls`, for a world with walls.
+Vec2 past_rings(const Decision& decision, int k, Vec2 position, double radius, double look, Vec2 wanted, bool all);
 
 /// Turn the wanted velocity of object k of a decision past the walls that are in its way. Objects on a route, which
 /// already leads past walls, keep it.
@@ -27,7 +31,11 @@ constexpr double kWallLook = 3.0;  // distance within which behaviors without an
 ///   look: Walls farther away are not in the way [m].
 ///   wanted: Velocity toward the goal, world frame [m/s].
 ///   all: Whether `unobstructed` lines are in the way, too.
-Vec2 past_walls(const Decision& decision, int k, Vec2 position, double radius, double look, Vec2 wanted, bool all);
+inline Vec2 past_walls(const Decision& decision, int k, Vec2 position, double radius, double look, Vec2 wanted,
+                       bool all) {
+  if (decision.state.scenes[decision.w()].fixed->walls.rings.empty()) return wanted;
+  return past_rings(decision, k, position, radius, look, wanted, all);
+}
 
 /// Whether a disc gets `look` [m] far in a direction without meeting a wall that object k sees.
 ///

@@ -12,8 +12,9 @@ constexpr double kMostTurn = 90.0;   // angle at a stand [degrees]
 }  // namespace
 
 Vec2 sidestepped(const Decision& decision, int k, Vec2 wanted, double angle) {
+  if (angle == 0.0) return wanted;
   const double speed = norm(wanted);
-  if (angle == 0.0 || !(speed > 0.0)) return wanted;
+  if (!(speed > 0.0)) return wanted;
   const Ego ego = ego_of(decision, k);
   const Goal& goal = decision.state.goal[ego.row];
   const Vec2 ahead = wanted * (1.0 / speed);

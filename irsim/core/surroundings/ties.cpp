@@ -5,9 +5,10 @@
 namespace irsim {
 namespace {
 
-constexpr double kDirection = 1e-7;  // largest difference of mirrored directions to the goals
-constexpr double kArrived = 0.1;     // objects nearer to their goal than this have no direction [m]
-constexpr double kHorizon = 10.0;    // ways that meet later do not matter yet [s]
+constexpr double kDirection = 1e-7;     // largest difference of mirrored directions to the goals
+constexpr double kArrived = 0.1;        // objects nearer to their goal than this have no direction [m]
+constexpr double kHorizon = 10.0;       // ways that meet later do not matter yet [s]
+constexpr double kAlmost = 1.0 - 1e-9;  // so that rounding does not decide
 
 /// Whether b is the mirror image of a about a line across the unit vector `n`.
 bool mirrors(Vec2 a, Vec2 b, Vec2 n, double tolerance) {
@@ -18,12 +19,14 @@ bool mirrors(Vec2 a, Vec2 b, Vec2 n, double tolerance) {
 
 std::optional<double> mirrored(const State& state, const MirrorPair& pair) {
   const Vec2 here = state.pose[pair.row].position(), there = state.pose[pair.other].position();
-  const Vec2 offset = there - here;
-  const double gap = norm(offset);
+  const Vec2 offset = there - here, way = state.destination(pair.row).position() - here;
+  // Most ways do not meet soon enough, which shows without a root.
+  const double gap2 = squared(offset), soon = 2.0 * kHorizon * pair.speed * dot(way, offset);
+  if (!(soon > 0.0) || soon * soon < kAlmost * gap2 * gap2 * squared(way)) return std::nullopt;
+  const double gap = std::sqrt(gap2);
   if (!(gap > 0.0)) return std::nullopt;
   const Vec2 n = offset * (1.0 / gap);
   if (!mirrors(pair.velocity, pair.its_velocity, n, pair.tolerance)) return std::nullopt;
-  const Vec2 way = state.destination(pair.row).position() - here;
   const Vec2 its_way = state.destination(pair.other).position() - there;
   const double far = norm(way), its_far = norm(its_way);
   if (!(far > kArrived && its_far > kArrived)) return std::nullopt;

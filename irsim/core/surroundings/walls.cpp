@@ -13,6 +13,7 @@ namespace {
 constexpr double kCell = 4.0;                // cell size of the grid of walls [m]
 constexpr int kCorners = 16;                 // corners of the polygon that stands for a circle of a compound
 constexpr double kClosed = 1e-9;             // a line whose ends are this close is closed [m]
+constexpr double kBeyond = 1.0 + 1e-9;       // so that rounding does not decide
 constexpr std::size_t kMaxLinearWalls = 24;  // up to this many walls are searched one by one
 
 /// Whether the edges of a closed outline meet only where one follows the other.
@@ -83,6 +84,27 @@ void add_body(Walls& walls, const Footprint& body, int object) {
                    rings.size() > 1 && twice_area(ring) < 0.0 ? Inside::lining : Inside::solid, object);
 }
 
+/// Write the indices, ascending, of the walls within `reach` [m] of `centre` for which `counts(side)` holds. `side` is
+/// the distance of `centre` from the line of the wall times the length of the wall, positive inside.
+template <class Counts>
+void search(const Walls& walls, Vec2 centre, double reach, std::vector<int>& found, Counts&& counts) {
+  found.clear();
+  const double reach2 = reach * reach;
+  const auto offer = [&](int k) {
+    const Vec2 a = walls.list[k].a, b = walls.list[k].b;
+    const double side = cross(b - a, centre - a);
+    if (!counts(side) || side * side > kBeyond * reach2 * squared(b - a)) return;  // its line is farther away
+    if (squared(nearest_on_segment(a, b, centre) - centre) <= reach2) found.push_back(k);
+  };
+  const int count = static_cast<int>(walls.list.size());
+  if (walls.list.size() <= kMaxLinearWalls || !std::isfinite(reach)) {
+    for (int k = 0; k < count; ++k) offer(k);
+    return;
+  }
+  walls.grid.query(box_around(centre, reach), offer);
+  std::sort(found.begin(), found.end());
+}
+
 }  // namespace
 
 void Walls::add_ring(const Vec2* corners, int count, Inside inside, int object) {
@@ -108,21 +130,11 @@ void Walls::build() {
 }
 
 void Walls::within(Vec2 centre, double reach, std::vector<int>& found) const {
-  found.clear();
-  const double reach2 = reach * reach;
-  const auto near = [&](int k) {
-    const Vec2 nearest = nearest_on_segment(list[k].a, list[k].b, centre);
-    return squared(nearest - centre) <= reach2;
-  };
-  if (list.size() <= kMaxLinearWalls || !std::isfinite(reach)) {
-    for (int k = 0; k < static_cast<int>(list.size()); ++k)
-      if (near(k)) found.push_back(k);
-    return;
-  }
-  grid.query(box_around(centre, reach), [&](int k) {
-    if (near(k)) found.push_back(k);
-  });
-  std::sort(found.begin(), found.end());
+  search(*this, centre, reach, found, [](double) { return true; });
+}
+
+void Walls::facing(Vec2 centre, double reach, std::vector<int>& found) const {
+  search(*this, centre, reach, found, [](double side) { return side <= 0.0; });
 }
 
 Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed) {

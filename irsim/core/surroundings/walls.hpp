@@ -34,6 +34,8 @@ struct Walls {
   void build();
   /// Write the indices, ascending, of the walls within `reach` [m] of `centre` to `found`.
   void within(Vec2 centre, double reach, std::vector<int>& found) const;
+  /// The same, for the walls that face `centre`.
+  void facing(Vec2 centre, double reach, std::vector<int>& found) const;
 };
 
 /// The outlines of static objects other than circles. Linestrings have walls on both sides, also those that are
