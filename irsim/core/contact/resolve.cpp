@@ -23,9 +23,8 @@ Placed ContactSolver::piece(int p) const {
   return {&buffers_.vertices[c.first], &buffers_.normals[c.first], c.count, c.radius};
 }
 
-const Overlap& ContactSolver::overlap(Buffers::Pair& pair) {
+const Overlap& ContactSolver::find_overlap(Buffers::Pair& pair) {
   const Buffers::Body &a = buffers_.bodies[pair.a], &b = buffers_.bodies[pair.b];
-  if (pair.known && pair.a_moves == a.moves && pair.b_moves == b.moves) return pair.overlap;
   pair.known = true;
   pair.a_moves = a.moves, pair.b_moves = b.moves;
   pair.overlap = {};

@@ -60,7 +60,12 @@ class ContactSolver {
   void order_pairs(bool as_given);
 
   Placed piece(int p) const;
-  const Overlap& overlap(Buffers::Pair& pair);
+  /// How a pair overlaps, which `find_overlap` computes again if one of them has moved.
+  const Overlap& overlap(Buffers::Pair& pair) {
+    const Buffers::Body &a = buffers_.bodies[pair.a], &b = buffers_.bodies[pair.b];
+    return pair.known && pair.a_moves == a.moves && pair.b_moves == b.moves ? pair.overlap : find_overlap(pair);
+  }
+  const Overlap& find_overlap(Buffers::Pair& pair);
   /// The deepest overlap of an object with the occupied cells of a map; adjacent cells of a row count as one box.
   Overlap overlap_with_cells(int object, const OccupancyGrid& grid) const;
   /// How far an object gives way along a unit direction, past the block that opposes it most.

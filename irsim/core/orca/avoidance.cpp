@@ -239,7 +239,10 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
   before.clear();
   for (int k = 0; k < count; ++k) before.push_back(all.neighbors[k].index);
   const bool breaks = group >= 0 && breaks_ties(world.behaviors[group].behavior);
-  const bool routes = !state.routes.empty(), routed = state.route_of(w * world.objects + object) != nullptr;
+  const int own_row = w * world.objects + object;
+  const Vec2 origin = state.pose[own_row].position();
+  const TieWay way(state.destination(own_row).position() - origin, speed);
+  const bool routes = !state.routes.empty(), routed = state.route_of(own_row) != nullptr;
   bool on_line = false;
   for (const int m : before) {
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
@@ -255,7 +258,9 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
     }
     const OrcaAgent& there = all.movers[m];
     if (breaks && mutual &&
-        may_mirror(there.position - agent.position, agent.velocity + there.velocity, options.neighborDist, kLeanSpeed))
+        may_mirror(there.position - agent.position, agent.velocity + there.velocity, options.neighborDist,
+                   kLeanSpeed) &&
+        way.may_meet(state.pose[w * world.objects + world.moving[m]].position() - origin))
       share = clip(share + lean(world, state, w, all, self, m, speed, on_line), 0.0, 1.0);
     if (mutual && routes) {
       const Precedence order = precedence(world, state, w, object, world.moving[m]);

@@ -33,15 +33,17 @@ class Nearest {
     Best best{found, most, 0, reach * reach};
     if (start_.empty()) {
       if (points_.size() > kMaxLinearPoints) return 0;  // `build` made no grid, because none of them is finite
-      const double limit2 = std::min(best.limit2, farthest(centre, most, likely, seen));
+      const double farthest2 = farthest(centre, most, likely, seen), limit2 = std::min(best.limit2, farthest2);
       int candidates[kMaxLinearPoints + 1];
       int count = 0;
       for (int i = 0; i < static_cast<int>(points_.size()); ++i) {  // without a branch that nobody could foresee
         candidates[count] = i;
         count += squared(points_[i] - centre) <= limit2;
       }
+      // As many as are wanted are those that are likely, whose order is almost that of now.
+      const int* offered = count == most && farthest2 <= best.limit2 ? likely.data() : candidates;
       for (int k = 0; k < count; ++k) {
-        const int i = candidates[k];
+        const int i = offered[k];
         const double distance2 = squared(points_[i] - centre);
         if (distance2 <= best.limit2 && seen(i)) best.offer({distance2, i});
       }

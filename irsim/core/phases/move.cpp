@@ -76,7 +76,9 @@ void remember(State& state, int row) {
   const Pose& pose = state.pose[row];
   std::vector<double>& track = state.history[row];
   const double* extra = &state.extra[static_cast<std::size_t>(row) * state.extra_rows];
-  for (const double number : {pose.x, pose.y, pose.theta}) track.push_back(number);
+  track.push_back(pose.x);
+  track.push_back(pose.y);
+  track.push_back(pose.theta);
   for (int k = 0; k < state.extra_rows; ++k) track.push_back(extra[k]);
 }
 

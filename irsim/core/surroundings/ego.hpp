@@ -36,14 +36,21 @@ void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& v
   const Neighbors& near = neighbors(world, decision.state, decision.work, w);
   const Shapes& shapes = *decision.state.scenes[w].shapes;
   const double slack = decision.grouped ? std::max(near.off_centre, near.off_origin) : near.off_centre;
+  const double reach2 = reach * reach;
+  Disc copy;
   for_neighbors(world, decision.state, decision.work, w, ego.position, reach + slack, [&](int other) {
     if (!is_shown(decision, ego.id, other)) return;
-    Disc disc = world.is_static[other] ? disc_of(world, decision.state, decision.work, w, other)
-                                       : near.discs[shapes.placed[other].object];
-    if (decision.grouped && world.group[other] == world.group[ego.id]) {
-      disc.centre = decision.state.pose[decision.first_row + other].position();
+    const Disc* disc = &copy;
+    if (world.is_static[other]) {
+      copy = disc_of(world, decision.state, decision.work, w, other);
+    } else {
+      disc = &near.discs[shapes.placed[other].object];
     }
-    if (squared(disc.centre - ego.position) < reach * reach) visit(disc);
+    if (decision.grouped && world.group[other] == world.group[ego.id]) {
+      copy = *disc, disc = &copy;
+      copy.centre = decision.state.pose[decision.first_row + other].position();
+    }
+    if (squared(disc->centre - ego.position) < reach2) visit(*disc);
   });
 }
 

@@ -37,7 +37,11 @@ struct Ring {
   std::vector<Vec2> hull;     // counter-clockwise; the two ends of a ring without area
   std::vector<Vec2> corners;  // of a shell or a lining, the first one again at the end; else empty
 
+  int first = 0, last = 0;  // its walls: `first` .. `last` - 1 of Walls::list
+
   Ring(const std::vector<Vec2>& outline, Inside inside, int object);
+  /// Whether its box meets another one.
+  bool meets(const Box& box) const { return box_.meets(box); }
   /// Distance of `p` from the hull [m]; 0 inside.
   double distance(Vec2 p) const;
   bool can_be_passed() const { return inside == Inside::solid || inside == Inside::shell; }

@@ -5,10 +5,8 @@
 namespace irsim {
 namespace {
 
-constexpr double kDirection = 1e-7;     // largest difference of mirrored directions to the goals
-constexpr double kArrived = 0.1;        // objects nearer to their goal than this have no direction [m]
-constexpr double kHorizon = 10.0;       // ways that meet later do not matter yet [s]
-constexpr double kAlmost = 1.0 - 1e-9;  // so that rounding does not decide
+constexpr double kDirection = 1e-7;  // largest difference of mirrored directions to the goals
+constexpr double kArrived = 0.1;     // objects nearer to their goal than this have no direction [m]
 
 /// Whether b is the mirror image of a about a line across the unit vector `n`.
 bool mirrors(Vec2 a, Vec2 b, Vec2 n, double tolerance) {
@@ -20,10 +18,7 @@ bool mirrors(Vec2 a, Vec2 b, Vec2 n, double tolerance) {
 std::optional<double> mirrored(const State& state, const MirrorPair& pair) {
   const Vec2 here = state.pose[pair.row].position(), there = state.pose[pair.other].position();
   const Vec2 offset = there - here, way = state.destination(pair.row).position() - here;
-  // Most ways do not meet soon enough, which shows without a root.
-  const double gap2 = squared(offset), soon = 2.0 * kHorizon * pair.speed * dot(way, offset);
-  if (!(soon > 0.0) || soon * soon < kAlmost * gap2 * gap2 * squared(way)) return std::nullopt;
-  const double gap = std::sqrt(gap2);
+  const double gap = norm(offset);
   if (!(gap > 0.0)) return std::nullopt;
   const Vec2 n = offset * (1.0 / gap);
   if (!mirrors(pair.velocity, pair.its_velocity, n, pair.tolerance)) return std::nullopt;
@@ -33,7 +28,7 @@ std::optional<double> mirrored(const State& state, const MirrorPair& pair) {
   const Vec2 ahead = way * (1.0 / far);
   if (!mirrors(ahead, its_way * (1.0 / its_far), n, kDirection)) return std::nullopt;
   const double closing = 2.0 * dot(ahead, n);  // per metre that both move: mirrored ways meet midway
-  const bool meet = closing * kHorizon * pair.speed > gap && gap - closing * std::min(far, its_far) < pair.lane;
+  const bool meet = closing * kTieHorizon * pair.speed > gap && gap - closing * std::min(far, its_far) < pair.lane;
   return meet ? std::optional<double>(cross(ahead, n)) : std::nullopt;
 }
 

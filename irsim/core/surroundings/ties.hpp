@@ -9,9 +9,10 @@
 
 namespace irsim {
 
-constexpr double kTieTurn = 10.0;    // turn of a wanted velocity that breaks a tie [degrees]
-constexpr double kTieSpeed = 0.11;   // velocities of a mirrored pair differ by less: two steps of the grid of rvo [m/s]
-constexpr double kLaneMargin = 0.1;  // margin on either side of the lane of two objects [m]
+constexpr double kTieTurn = 10.0;   // turn of a wanted velocity that breaks a tie [degrees]
+constexpr double kTieSpeed = 0.11;  // velocities of a mirrored pair differ by less: two steps of the grid of rvo [m/s]
+constexpr double kTieHorizon = 10.0;  // ways that meet later do not matter yet [s]
+constexpr double kLaneMargin = 0.1;   // margin on either side of the lane of two objects [m]
 
 /// Two objects, the second one seen from the first, world frame.
 struct MirrorPair {
@@ -33,6 +34,22 @@ inline bool may_mirror(Vec2 offset, Vec2 sum, double reach, double tolerance) {
   return std::fabs(dot(sum, offset)) <= tolerance * reach;
 }
 
+/// The way of an object to its goal, and how fast it wants to get on.
+struct TieWay {
+  Vec2 ahead;   // the way times the speed, and twice the time within which ways that meet matter [m^2]
+  double far2;  // square of the length of the way [m^2]
+
+  TieWay(Vec2 way, double speed) : ahead(way * (2.0 * kTieHorizon * speed)), far2(squared(way)) {}
+  /// Whether the ways of a mirrored pair may meet soon, a test without a root. `offset`: to the other one [m].
+  bool may_meet(Vec2 offset) const {
+    const double soon = dot(ahead, offset), gap2 = squared(offset);
+    return soon > 0.0 && soon * soon >= kAlmost * gap2 * gap2 * far2;
+  }
+
+ private:
+  static constexpr double kAlmost = 1.0 - 1e-9;  // so that rounding does not decide
+};
+
 /// The sine of the angle from the way of the first object of a mirrored pair to the other one, positive on the left;
 /// nothing if the objects are no mirror images or their ways do not meet.
 ///
@@ -46,9 +63,9 @@ inline bool tied(const Decision& decision, const Ego& ego, const Disc& other, do
   const Vec2 offset = decision.state.pose[row].position() - ego.position;
   if (!may_mirror(offset, ego.velocity + other.velocity, reach, tolerance)) return false;
   if (decision.world.is_static[other.object]) return false;
-  const double lane = ego.radius + other.radius + kPadding + kLaneMargin;
-  return mirrored(decision.state, {ego.row, row, ego.velocity, other.velocity, norm(ego.desired), lane, tolerance})
-      .has_value();
+  const double lane = ego.radius + other.radius + kPadding + kLaneMargin, speed = norm(ego.desired);
+  if (!TieWay(decision.state.destination(ego.row).position() - ego.position, speed).may_meet(offset)) return false;
+  return mirrored(decision.state, {ego.row, row, ego.velocity, other.velocity, speed, lane, tolerance}).has_value();
 }
 
 /// A wanted velocity turned to the right by an angle [degrees].

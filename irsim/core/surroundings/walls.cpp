@@ -96,12 +96,15 @@ void search(const Walls& walls, Vec2 centre, double reach, std::vector<int>& fou
     if (!counts(side) || side * side > kBeyond * reach2 * squared(b - a)) return;  // its line is farther away
     if (squared(nearest_on_segment(a, b, centre) - centre) <= reach2) found.push_back(k);
   };
-  const int count = static_cast<int>(walls.list.size());
+  const Box area = box_around(centre, reach * kBeyond);
   if (walls.list.size() <= kMaxLinearWalls || !std::isfinite(reach)) {
-    for (int k = 0; k < count; ++k) offer(k);
+    for (const Ring& ring : walls.rings) {
+      if (!ring.meets(area)) continue;
+      for (int k = ring.first; k < ring.last; ++k) offer(k);
+    }
     return;
   }
-  walls.grid.query(box_around(centre, reach), offer);
+  walls.grid.query(area, offer);
   std::sort(found.begin(), found.end());
 }
 
@@ -115,7 +118,8 @@ void Walls::add_ring(const Vec2* corners, int count, Inside inside, int object) 
     list.push_back({bends[k], bends[(k + 1) % n], object, first + (k + 1) % n, first + (k + n - 1) % n,
                     static_cast<int>(rings.size())});
   }
-  rings.emplace_back(bends, inside, object);
+  Ring& ring = rings.emplace_back(bends, inside, object);
+  ring.first = first, ring.last = first + n;
 }
 
 void Walls::build() {
