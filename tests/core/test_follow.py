@@ -101,6 +101,25 @@ def test_no_path() -> None:
     assert "no path" in str(result.reason)
 
 
+def test_a_car_that_left_its_plan_and_finds_no_other_says_so() -> None:
+    """Its wheels turn so slowly, and its steps are so long, that it ends where no plan leads on."""
+    text = """
+world: {width: 10, height: 10, step_time: 0.5}
+robot:
+  kinematics: {name: acker}
+  shape: {name: rectangle, length: 1, width: 0.5, wheelbase: 0.7}
+  state: [1.28, 1.67, 1.62, 0]
+  goal: [1.66, 3.9, -0.99]
+  acce: [1, 0.15]
+  vel_min: [-1, -1]
+  behavior: {name: follow}
+obstacle: {shape: {name: rectangle, length: 0.74, width: 0.8}, state: [2.12, 4.12, -0.54]}
+"""
+    result = irsim.run(text=text, seed=1, steps=250)
+    assert result.outcome == "timeout"
+    assert "there is no path to it" in str(result.reason)
+
+
 def test_replans_only_for_a_reason() -> None:
     sim = simulation(maze())
     sim.step()

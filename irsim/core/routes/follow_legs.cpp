@@ -6,7 +6,7 @@ namespace {
 
 constexpr double kLegEnd = 0.01;       // a leg with less than this left is finished [m], or [rad] of a turn
 constexpr double kLegGain = 2.0;       // gain of turning back to the line of a leg [1/s], [rad/(m s)]
-constexpr double kParkingShare = 0.5;  // part of the way ahead in which the wheels of a car that parks turn round
+constexpr double kParkingShare = 0.5;  // part of the way ahead in which the wheels of a car that parks turn
 constexpr int kMaxBlockedSteps = 30;   // a leg that is blocked for more steps than this is planned again
 
 }  // namespace
@@ -130,9 +130,10 @@ void Follower::follow_legs_by_pursuit(Vec3& u) {
     const double psi = clip(std::atan(2.0 * point.y / squared(point) * car.wheelbase), -most, most);
     const double now = state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
     double fastest = std::min(top_speed(way), 0.4 * ahead / world_.step_time);
-    if (parks()) {  // the wheels must turn from one side to the other within a short way
+    if (parks()) {  // the wheels must get to where they are wanted, or turn half round, within a short way
       const double rate = car.mode == Steering::steer ? state_.acce[row_][1] : state_.vel_max[row_][1];
-      if (rate > 0.0) fastest = std::min(fastest, kParkingShare * ahead * rate / (2.0 * most));
+      const double turn = std::max(std::fabs(psi - now), most);
+      if (rate > 0.0) fastest = std::min(fastest, kParkingShare * ahead * rate / turn);
     }
     u[0] = way * stopping_speed(left, 0, fastest);
     u[1] = car.mode == Steering::steer ? psi : (psi - now) / world_.step_time;

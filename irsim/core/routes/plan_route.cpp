@@ -219,6 +219,7 @@ void Follower::plan_parking() {
   path.swap(route_.path);
   if (find_legs(extent_of(shapes_, object_).reach)) {
     route_.wall_margin = kLegMargin;
+    route_.next = 1;
   } else {
     route_.path.swap(path);
   }
