@@ -125,14 +125,14 @@ def test_a_car_parks_at_a_pose_beside_it(goal: str) -> None:
 @pytest.mark.parametrize(("acce", "most"), [("[1, 1]", 30), ("[1, 0.5]", 75)])
 def test_a_car_whose_wheels_turn_slowly_parks_in_reasonable_time(acce: str, most: float) -> None:
     text = (
-        "world: {{width: 12, height: 12}}\n"
+        "world: {{width: 12, height: 12, time_limit: 90}}\n"
         "robot: {{kinematics: {{name: acker}}, shape: {{name: rectangle, length: 1, width: 0.5, wheelbase: 0.7}}, "
         "acce: {}, state: [{}, 0], goal: [9, 8, 0.5], arrive_mode: state, behavior: {{name: follow}}}}\n"
     )
     for start in ("2, 2, 0", "2, 8, 1", "8, 3, 2"):
         result = irsim.run(text=text.format(acce, start), seed=1)
         assert result.outcome == "success", result.reason
-        assert result.sim_time < most
+        assert result.sim_time < most, start
 
 
 def test_a_car_backs_into_a_bay() -> None:
