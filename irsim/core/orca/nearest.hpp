@@ -40,10 +40,12 @@ class Nearest {
         candidates[count] = i;
         count += squared(points_[i] - centre) <= limit2;
       }
-      // As many as are wanted are those that are likely, whose order is almost that of now.
-      const int* offered = count == most && farthest2 <= best.limit2 ? likely.data() : candidates;
+      if (count == most && farthest2 <= best.limit2) {  // these are the likely ones, whose order has hardly changed
+        for (int k = 0; k < most; ++k) best.offer({squared(points_[likely[k]] - centre), likely[k]});
+        return best.count;
+      }
       for (int k = 0; k < count; ++k) {
-        const int i = offered[k];
+        const int i = candidates[k];
         const double distance2 = squared(points_[i] - centre);
         if (distance2 <= best.limit2 && seen(i)) best.offer({distance2, i});
       }

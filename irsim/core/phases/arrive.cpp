@@ -72,7 +72,7 @@ void arrive(const World& world, State& state, int w) {
       continue;
     }
     const Pose& pose = state.pose[row];
-    if (is_settled(world, state, row, i)) {
+    if (state.arrived[row] && is_settled(world, state, row, i)) {
       if (world.after_arrival == kFreeze) state.stopped[row] = 1;
       continue;
     }

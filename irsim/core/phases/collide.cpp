@@ -19,30 +19,28 @@ void find_pairs(const World& world, State& state, int w) {
   scene.meetings.clear(), scene.near.clear(), scene.parted.clear();
   for (const Contact& contact : scene.contacts) scene.parted.emplace_back(contact.a, contact.b);
   std::sort(scene.parted.begin(), scene.parted.end());
-  const auto examine = [&](int i, int j, const Footprint& a, const Footprint& b) {
+  const Slot* placed = shapes.placed.data();
+  const Outlines& moving = scene.moving;
+  const auto examine = [&](int i, int j, const Outlines& others) {
+    const int a = std::min(i, j), b = std::max(i, j);
     if (judged) {
-      scene.near.push_back({std::min(i, j), std::max(i, j), kInfinity, {}, false});
-    } else if (a.box.meets(b.box) && touch(a, b)) {
-      pairs.emplace_back(std::min(i, j), std::max(i, j));
+      scene.near.push_back({a, b, kInfinity, {}, false});
+    } else if (moving.boxes[placed[i].object].meets(others.boxes[placed[j].object]) &&
+               touch(moving.footprint(shapes, i), others.footprint(shapes, j))) {
+      pairs.emplace_back(a, b);
     } else if (moved) {
-      meet(world, state, w, std::min(i, j), std::max(i, j));
+      meet(world, state, w, a, b);
     }
   };
   const bool alone = world.moving.size() < 2 && world.fixed_objects.empty();
   if (moved && !alone) bound_steps(world, state, w, scene.ways);
-  const Box* boxes = moved ? scene.ways.data() : scene.moving.boxes.data();
-  const Slot* placed = shapes.placed.data();
+  const Box* boxes = moved ? scene.ways.data() : moving.boxes.data();
   const auto box = [=](int i) { return boxes[placed[i].object]; };
   if (!world.fixed_objects.empty()) {
-    for (const int i : world.moving) {
-      const Footprint body = scene.moving.footprint(shapes, i);
-      fixed.grid.query(box(i), [&](int j) { examine(i, j, body, fixed.outlines.footprint(shapes, j)); });
-    }
+    for (const int i : world.moving) fixed.grid.query(box(i), [&](int j) { examine(i, j, fixed.outlines); });
   }
   if (world.moving.size() > 1) {
-    scene.sweep.pairs(box, [&](int i, int j) {
-      examine(i, j, scene.moving.footprint(shapes, i), scene.moving.footprint(shapes, j));
-    });
+    scene.sweep.pairs(box, [&](int i, int j) { examine(i, j, moving); });
   }
   if (judged) judge(world, state, w);
   if (pairs.size() > 1) std::sort(pairs.begin(), pairs.end());
@@ -71,7 +69,7 @@ void log_contacts(const World& world, State& state, int w) {
   for (const Pair& pair : scene.pairs) {
     while (old != scene.previous_pairs.end() && *old < pair) ++old;
     const auto [i, j] = pair;
-    const NearPair* judged = judged_contact(scene, i, j);
+    const NearPair* judged = scene.near.empty() ? nullptr : judged_contact(scene, i, j);
     const bool was_there = old != scene.previous_pairs.end() && *old == pair;
     if (was_there && (judged == nullptr || !judged->begins)) continue;  // not one contact after the other
     // An event needs a moving object or a robot that has met something obstructing.

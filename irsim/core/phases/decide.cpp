@@ -74,7 +74,7 @@ Vec3 control_for(const World& world, const State& state, int w, int object, Vec2
 
 void decide(const World& world, State& state, int w, Workspace& work) {
   const int first = w * world.objects;
-  work.neighbors.known = work.orca.known = work.stops.known = false;
+  work.neighbors.known = work.orca.known = work.stops.known = work.walls.known = false;
   for (const int i : world.moving) {
     const int row = first + i;
     if (state.stopped[row]) continue;
@@ -93,7 +93,7 @@ void decide(const World& world, State& state, int w, Workspace& work) {
 }
 
 void decide(const World& world, State& state, int w, Workspace& work, int object) {
-  work.neighbors.known = work.orca.known = work.stops.known = false;
+  work.neighbors.known = work.orca.known = work.stops.known = work.walls.known = false;
   state.command[w * world.objects + object] = {};
   find_routes(world, state, w, work, object);
   for (const BehaviorGroup& group : world.behaviors) {

@@ -37,20 +37,26 @@ void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& v
   const Shapes& shapes = *decision.state.scenes[w].shapes;
   const double slack = decision.grouped ? std::max(near.off_centre, near.off_origin) : near.off_centre;
   const double reach2 = reach * reach;
-  Disc copy;
-  for_neighbors(world, decision.state, decision.work, w, ego.position, reach + slack, [&](int other) {
-    if (!is_shown(decision, ego.id, other)) return;
+  const auto* is_static = world.is_static.data();
+  const Slot* placed = shapes.placed.data();
+  const Disc* discs = near.discs.data();
+  const bool sees_all = world.target_roles[ego.id] == 0, grouped = decision.grouped;
+  const Vec2 position = ego.position;
+  const int self = ego.id;
+  Disc copy{};
+  for_neighbors(world, decision.state, decision.work, w, position, reach + slack, [&](int other) {
+    if (other == self || !(sees_all || is_shown(decision, self, other))) return;
     const Disc* disc = &copy;
-    if (world.is_static[other]) {
+    if (is_static[other]) {
       copy = disc_of(world, decision.state, decision.work, w, other);
     } else {
-      disc = &near.discs[shapes.placed[other].object];
+      disc = &discs[placed[other].object];
     }
-    if (decision.grouped && world.group[other] == world.group[ego.id]) {
+    if (grouped && world.group[other] == world.group[self]) {
       copy = *disc, disc = &copy;
       copy.centre = decision.state.pose[decision.first_row + other].position();
     }
-    if (squared(disc->centre - ego.position) < reach2) visit(*disc);
+    if (squared(disc->centre - position) < reach2) visit(*disc);
   });
 }
 
@@ -81,7 +87,7 @@ void for_facing_walls(const Decision& decision, int id, Vec2 position, double re
   bool seen = false;
   if (walls.list.empty()) return;
   walls.facing(position, reach, decision.work.walls);
-  for (const int k : decision.work.walls) {
+  for (const int k : decision.work.walls.found) {
     const Wall& wall = walls.list[k];
     if (!is_shown(decision, id, wall.object)) continue;
     if (wall.ring != ring) ring = wall.ring, seen = walls.rings[ring].is_seen_from(position);

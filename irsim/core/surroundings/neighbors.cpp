@@ -66,13 +66,17 @@ const std::vector<int>& neighbors_within(const World& world, const State& state,
   bool sorted = true;
   if (near.bounds.size() <= kMaxLinearObjects || !std::isfinite(reach)) {
     const double reach2 = reach * reach;
-    std::size_t count = 0;
-    found.resize(near.bounds.size());
-    for (std::size_t m = 0; m < near.bounds.size(); ++m) {  // without a branch, which the processor could not foresee
-      found[count] = world.moving[m];
-      count += squared(near.bounds[m] - centre) <= reach2;
+    const std::size_t total = near.bounds.size();
+    if (near.tested.size() < total) near.tested.resize(total);
+    const Vec2* bounds = near.bounds.data();
+    const int* ids = world.moving.data();
+    int* const first = near.tested.data();
+    int* end = first;
+    for (std::size_t m = 0; m < total; ++m) {  // without a branch, which the processor could not foresee
+      *end = ids[m];
+      end += squared(bounds[m] - centre) <= reach2;
     }
-    found.resize(count);
+    found.assign(first, end);
   } else {
     sorted = false;
     level_for(near, reach).query(centre, reach, [&](int m) { found.push_back(world.moving[m]); });

@@ -37,6 +37,7 @@ struct Neighbors {
   std::vector<Level> levels;  // grids of `bounds`; the first `used` belong to the present step
   std::size_t used = 0;
   std::vector<int> found;     // result of the last query
+  std::vector<int> tested;    // scratch memory of a query
   std::vector<double> extra;  // copy of a row of State::extra
 };
 

@@ -32,4 +32,14 @@ std::optional<double> mirrored(const State& state, const MirrorPair& pair) {
   return meet ? std::optional<double>(cross(ahead, n)) : std::nullopt;
 }
 
+bool is_tied(const Decision& decision, const Ego& ego, const Disc& other, double tolerance) {
+  if (decision.world.is_static[other.object]) return false;
+  const State& state = decision.state;
+  const int row = decision.first_row + other.object;
+  const double lane = ego.radius + other.radius + kPadding + kLaneMargin, speed = norm(ego.desired);
+  const TieWay way(state.destination(ego.row).position() - ego.position, speed);
+  if (!way.may_meet(state.pose[row].position() - ego.position)) return false;
+  return mirrored(state, {ego.row, row, ego.velocity, other.velocity, speed, lane, tolerance}).has_value();
+}
+
 }  // namespace irsim

@@ -57,15 +57,14 @@ struct TieWay {
 /// side, and one that follows another are no such pair.
 std::optional<double> mirrored(const State& state, const MirrorPair& pair);
 
+/// See `tied`, for two whose velocities may be those of a mirrored pair.
+bool is_tied(const Decision& decision, const Ego& ego, const Disc& other, double tolerance);
+
 /// Whether the ego and another object, within `reach` [m], are a mirrored pair; `tolerance` is that for the velocities.
 inline bool tied(const Decision& decision, const Ego& ego, const Disc& other, double reach, double tolerance) {
-  const int row = decision.first_row + other.object;
-  const Vec2 offset = decision.state.pose[row].position() - ego.position;
+  const Vec2 offset = decision.state.pose[decision.first_row + other.object].position() - ego.position;
   if (!may_mirror(offset, ego.velocity + other.velocity, reach, tolerance)) return false;
-  if (decision.world.is_static[other.object]) return false;
-  const double lane = ego.radius + other.radius + kPadding + kLaneMargin, speed = norm(ego.desired);
-  if (!TieWay(decision.state.destination(ego.row).position() - ego.position, speed).may_meet(offset)) return false;
-  return mirrored(decision.state, {ego.row, row, ego.velocity, other.velocity, speed, lane, tolerance}).has_value();
+  return is_tied(decision, ego, other, tolerance);
 }
 
 /// A wanted velocity turned to the right by an angle [degrees].

@@ -137,8 +137,10 @@ void Walls::within(Vec2 centre, double reach, std::vector<int>& found) const {
   search(*this, centre, reach, found, [](double) { return true; });
 }
 
-void Walls::facing(Vec2 centre, double reach, std::vector<int>& found) const {
-  search(*this, centre, reach, found, [](double side) { return side <= 0.0; });
+void Walls::facing(Vec2 centre, double reach, FacingWalls& last) const {
+  if (last.known && last.centre.x == centre.x && last.centre.y == centre.y && last.reach == reach) return;
+  last.known = true, last.centre = centre, last.reach = reach;
+  search(*this, centre, reach, last.found, [](double side) { return side <= 0.0; });
 }
 
 Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed) {

@@ -22,6 +22,14 @@ struct Wall {
   int ring;            // index in Walls::rings
 };
 
+/// The walls within `reach` [m] that face a place: scratch memory that keeps the last answer of a step.
+struct FacingWalls {
+  bool known = false;  // whether it holds an answer of the present step
+  Vec2 centre;
+  double reach = 0.0;
+  std::vector<int> found;
+};
+
 /// Segments in rings, and a grid to find them. The walls of a ring are in a row.
 struct Walls {
   std::vector<Wall> list;
@@ -34,8 +42,8 @@ struct Walls {
   void build();
   /// Write the indices, ascending, of the walls within `reach` [m] of `centre` to `found`.
   void within(Vec2 centre, double reach, std::vector<int>& found) const;
-  /// The same, for the walls that face `centre`.
-  void facing(Vec2 centre, double reach, std::vector<int>& found) const;
+  /// The same, for the walls that face `centre`; nothing is done if `last` is the answer already.
+  void facing(Vec2 centre, double reach, FacingWalls& last) const;
 };
 
 /// The outlines of static objects other than circles. Linestrings have walls on both sides, also those that are

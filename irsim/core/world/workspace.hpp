@@ -15,6 +15,7 @@
 #include "sfm/social_force.hpp"
 #include "surroundings/closing.hpp"
 #include "surroundings/neighbors.hpp"
+#include "surroundings/walls.hpp"
 
 namespace irsim {
 
@@ -46,7 +47,7 @@ struct Workspace {
   MutualForces mutual_forces;
   SocialForces social_forces;
   ContactBuffers contacts;
-  std::vector<int> walls;  // walls found near an object
+  FacingWalls walls;  // near an object
   VelocityObstacles velocity_obstacles;
   WallView wall_view;          // walls in the way of an object
   std::vector<Nearby> nearby;  // what an object could reach in one step
