@@ -28,7 +28,8 @@ class EventRecord(Result):
     within a step and are apart at its beginning and at its end, and ``passed_through`` if the middle of one of them
     went through the other then."""
     time: float
-    """Simulated time [s]; of a contact between steps, within the step."""
+    """Simulated time [s]; of a contact between steps, and of a collision with ``world.contacts: swept``, when the two
+    first touch within the step."""
     step: int
     """Steps executed; 0 is the initial state."""
     object: str

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -167,3 +168,60 @@ def test_a_robot_that_slides_along_a_wall_stops_at_the_next_one() -> None:
         assert state.pose[0, 0] <= WALL_X - 0.1 + 1e-3, angle
         assert state.pose[0, 1] <= -0.1 + 1e-3, angle
         assert told(state) == [], angle
+
+
+ROOM = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0), (0.0, 0.0)]
+
+
+def walls_of_a_room(kind: str) -> list[core.ObjectSpec]:
+    """The walls round a room of 3 m, written in one of several ways."""
+    if kind == "line":
+        return [obstacle(parts=[line(*ROOM)])]
+    if kind == "boundary":
+        return [obstacle(parts=[core.Room(vertices=ROOM)])]
+    if kind == "lines":
+        return [obstacle(parts=[line(p, q)]) for p, q in pairwise(ROOM)]
+    cells = np.ones((62, 62), bool)
+    cells[1:-1, 1:-1] = False
+    return [obstacle(parts=[core.GridCells(grid=core.OccupancyGrid(cells, (-0.05, -0.05), (0.05, 0.05)))])]
+
+
+def leave_a_room(kind: str, seed: int, steps: int = 5) -> list[tuple[int, int]]:
+    """Where a random scene of robots and bodies that they push leaves its room: (step, row)."""
+    draw = np.random.default_rng(seed)
+    dt, speed = draw.choice([0.05, 0.1, 0.2, 0.5, 1.0]), 10 ** draw.uniform(-0.3, 2.0)
+    places = [(0.7, 0.7), (2.3, 0.7), (0.7, 2.3), (2.3, 2.3)]
+    parts = [[circle(0.2)], [rectangle(0.5, 0.02)], [rectangle(0.3, 0.2), circle(0.1, (0.2, 0.1))], [circle(0.08)]]
+    robots, count = int(draw.integers(1, 4)), int(draw.integers(1, 5))
+    drives, objects = ["diff", "omni", "omni_angular", "angular"], []
+    for row in range(max(robots, count)):
+        pose = [*places[row], draw.uniform(-3.1, 3.1)]
+        body = {"pose": pose, "parts": parts[draw.integers(4)], "mass": draw.choice([0.3, 3.0, 30.0])}
+        if row < robots:
+            drive = DRIVES[drives[draw.integers(4)]]
+            objects.append(fast_robot(speed, drive=drive, friction=draw.choice([0.5, 1000.0]), **body))
+        else:
+            objects.append(pushed(friction=draw.choice([0.0, 0.3]), restitution=draw.choice([0.0, 0.5]), **body))
+    world, state = scene(*objects, *walls_of_a_room(kind), mode=CONTACT, step_time=dt)
+    world.integration = int(draw.integers(2))
+    for step in range(steps):
+        controls = [
+            [speed * draw.choice([1, 1, -1]), draw.uniform(-20, 20), draw.uniform(-20, 20)] for _ in range(robots)
+        ]
+        run(world, state, 1, *controls)
+        place = state.pose[: len(objects), :2]
+        outside = np.flatnonzero(~((place > -1e-3) & (place < 3.001)).all(axis=1))
+        if len(outside):
+            return [(step, int(row)) for row in outside]
+    return []
+
+
+@pytest.mark.parametrize("kind", ["line", "lines", "boundary", "map"])
+def test_nothing_leaves_a_room(kind: str) -> None:
+    assert {seed: gone for seed in range(40) if (gone := leave_a_room(kind, seed))} == {}
+
+
+@pytest.mark.slow(60)
+@pytest.mark.parametrize("kind", ["line", "lines", "boundary", "map"])
+def test_nothing_ever_leaves_a_room(kind: str) -> None:
+    assert {seed: gone for seed in range(1000, 2500) if (gone := leave_a_room(kind, seed))} == {}

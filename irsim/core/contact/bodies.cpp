@@ -108,6 +108,44 @@ double width_of(const Bodies& bodies, int object) {
   return least;
 }
 
+constexpr double kShell = 0.25;  // share of the width of a piece that is left away from its core on each side
+
+/// A convex ring without what is less than `by` [m] inside of its edges.
+std::vector<Vec2> inset(const Bodies& bodies, const Convex& piece, double by) {
+  std::vector<Vec2> ring(&bodies.vertices[piece.first], &bodies.vertices[piece.first] + piece.count), kept;
+  for (int k = piece.first; k < piece.first + piece.count; ++k) {
+    const auto inside = [&](Vec2 p) { return dot(bodies.normals[k], bodies.vertices[k] - p) - by; };
+    kept.clear();
+    for (std::size_t v = 0; v < ring.size(); ++v) {
+      const Vec2 from = ring[v], to = ring[v + 1 < ring.size() ? v + 1 : 0];
+      const double at_from = inside(from), at_to = inside(to);
+      if (at_from >= 0.0) kept.push_back(from);
+      if ((at_from < 0.0) != (at_to < 0.0)) kept.push_back(from + (to - from) * (at_from / (at_from - at_to)));
+    }
+    std::swap(ring, kept);
+  }
+  return ring;
+}
+
+void add_core(Bodies& bodies, const Convex& piece) {
+  std::vector<Vec2>& vertices = bodies.core_vertices;
+  const Vec2* corners = &bodies.vertices[piece.first];
+  const int first = static_cast<int>(vertices.size());
+  const double by = kShell * width_of(bodies, piece);
+  if (piece.count == 1) {
+    vertices.push_back(*corners);
+    bodies.cores.push_back({Kind::circle, first, first, piece.radius - by, 0.0});
+    return;
+  }
+  const std::vector<Vec2> ring = piece.count > 2 ? inset(bodies, piece, by) : std::vector<Vec2>{};
+  const bool thick = ring.size() > 2;
+  const Vec2* begin = thick ? ring.data() : corners;
+  vertices.insert(vertices.end(), begin, begin + (thick ? ring.size() : piece.count));
+  if (piece.count > 2) vertices.push_back(*begin);
+  const int last = static_cast<int>(vertices.size()) - 1;
+  bodies.cores.push_back({piece.count > 2 ? Kind::polygon : Kind::linestring, first, last, 0.0, 1.0});
+}
+
 /// Radius of the largest disc round the origin inside a piece of an object, 0 if there is none.
 double inner_of(const Bodies& bodies, int object) {
   double most = 0.0;
@@ -148,6 +186,13 @@ std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shap
     bodies->cells.push_back(shapes.is_map(i) ? shapes.parts[shapes.body[i].part].cells : nullptr);
     bodies->begin.push_back(static_cast<int>(bodies->pieces.size()));
     bodies->width.push_back(width_of(*bodies, i));
+    const bool pushable = world.dynamics[i].pushable;
+    for (int p = bodies->begin[i]; pushable && p < bodies->begin[i + 1]; ++p) add_core(*bodies, bodies->pieces[p]);
+    bodies->core_begin.push_back(static_cast<int>(bodies->cores.size()));
+    if (!world.unobstructed[i]) {
+      bodies->thinnest = std::min(bodies->thinnest, bodies->width[i]);
+      if (pushable) bodies->lightest = std::min(bodies->lightest, bodies->width[i]);
+    }
     bodies->inner.push_back(inner_of(*bodies, i));
     Vec2 centre = whole.size > 0.0 ? whole.moment * (1.0 / whole.size) : shapes.centre[i];
     const std::vector<double>& given = world.specs[i].centroid;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "contact/hold.hpp"
 #include "contact/parts.hpp"
 #include "contact/push.hpp"
 #include "contact/solver.hpp"
@@ -124,7 +125,13 @@ void ContactSolver::place_moving() {
 void push_apart(const World& world, State& state, int w, Workspace& work) {
   const int parts = parts_of_step(world, state, w, work);
   const Resolution usual{32, 480, 1e-6, world.step_time / parts};
-  if (parts == 1) {
+  if (parts == 1 && state.scenes[w].in_motion) {
+    std::vector<Pose>& from = work.contacts.from;
+    std::vector<double>& turned = work.contacts.turned;
+    from.clear(), turned.clear();
+    for (const Stride& stride : work.contacts.strides) from.push_back(stride.from), turned.push_back(stride.turn);
+    push_and_hold(world, state, w, work, usual, {from, turned});
+  } else if (parts == 1) {
     push_apart(world, state, w, work, usual, nullptr);
   } else {
     push_in_parts(world, state, w, work, usual, parts);

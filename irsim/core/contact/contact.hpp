@@ -70,6 +70,12 @@ struct ContactBuffers {
   std::vector<Stride> strides;        // of the moving objects
   std::vector<std::uint8_t> touched;  // (N,)
   std::vector<std::pair<int, int>> met;
+  // of motions that are held
+  std::vector<Pose> from;      // of the moving objects, where a step or a part of it begins
+  std::vector<double> turned;  // of the moving objects, by how much they turn in it [rad]
+  std::vector<Stride> went;    // of the moving objects
+  std::vector<double> until;   // (N,) share of its motion that each object makes
+  std::vector<Contact> held;
 };
 
 }  // namespace irsim

@@ -10,7 +10,6 @@
 namespace irsim {
 namespace {
 
-constexpr double kFast = 0.5;        // share of the widths of two bodies; past it, the way out is on the far side
 constexpr double kPart = 0.25;       // the same, for how far bodies move in a part of a step
 constexpr double kCorners = 0.25;    // the same, of what turns outside of a disc that always stays in a body
 constexpr int kMostParts = 4000;     // of a step
@@ -30,18 +29,13 @@ class FastBodies {
 
   int parts() {
     buffers_.strides.clear();
-    double far = 0.0, lightest = kInfinity, least = kInfinity;
+    double far = 0.0;
     for (const int i : world_.moving) {
       buffers_.strides.push_back(stride_of(world_, state_, w_, i));
       far = std::max(far, swing(i, buffers_.strides.back()) + norm(buffers_.strides.back().by));
     }
-    for (int i = 0; i < world_.objects; ++i) {
-      if (world_.unobstructed[i]) continue;
-      least = std::min(least, bodies_.width[i]);
-      if (world_.dynamics[i].pushable) lightest = std::min(lightest, bodies_.width[i]);
-    }
-    thinnest_ = lightest + least;
-    if (!(2.0 * far > std::min(kFast * thinnest_, lightest))) return 1;
+    thinnest_ = bodies_.lightest + bodies_.thinnest;
+    if (!(2.0 * far > std::min(kFast * thinnest_, bodies_.lightest))) return 1;
     return examine(far);
   }
 
@@ -89,6 +83,19 @@ class FastBodies {
     }
     if (world_.moving.size() > 1) scene_.sweep.pairs([&](int i) { return grown(box(i), 0.5 * reach); }, add);
     std::sort(out.begin(), out.end());
+  }
+  /// List the near objects of each object.
+  void link() {
+    if (linked_) return;
+    linked_ = true;
+    std::vector<int>&first = buffers_.first_link, &next = buffers_.distance;
+    first.assign(world_.objects + 1, 0);
+    for (const auto& [a, b] : buffers_.met) ++first[a], ++first[b];
+    int sum = 0;
+    for (int& begin : first) sum += begin, begin = sum - begin;
+    next.assign(first.begin(), first.end());
+    buffers_.links.resize(2 * buffers_.met.size());
+    for (const auto& [a, b] : buffers_.met) buffers_.links[next[a]++] = b, buffers_.links[next[b]++] = a;
   }
 
   int examine(double far) {
@@ -160,6 +167,7 @@ class FastBodies {
   void push_on(int body, const Pose& from, Vec2 push, int by) {
     const double way = norm(push);
     if (!world_.dynamics[body].pushable || !(way > kFast * thinnest_)) return;
+    link();
     buffers_.reached.assign(world_.objects, 0);
     buffers_.reached[body] = buffers_.reached[by] = 1;
     buffers_.queue.assign(1, body);
@@ -168,9 +176,8 @@ class FastBodies {
       const Pose at = now == body ? from : state_.pose[first_ + now];
       scene_.trial.resize(scene_.shapes->size[0]);
       scene_.trial.place(*scene_.shapes, now, at, unit(at.theta));
-      for (const auto& [i, j] : buffers_.met) {
-        if (i != now && j != now) continue;
-        const int next = i == now ? j : i;
+      for (int k = buffers_.first_link[now]; k < buffers_.first_link[now + 1]; ++k) {
+        const int next = buffers_.links[k];
         if (buffers_.reached[next] || !meets(now, at, push, next)) continue;
         buffers_.reached[next] = 1;
         if (way > kFast * width(now, next))
@@ -198,6 +205,7 @@ class FastBodies {
   Scene& scene_;
   const Bodies& bodies_;
   const int first_;
+  bool linked_ = false;
   double thinnest_ = kInfinity;  // least width of two bodies that can meet
   double share_ = 0.0;           // largest of those ways through which a body would pass another, in their widths
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/hold.hpp"
 #include "phases.hpp"
 #include "phases/strides.hpp"
 
@@ -10,25 +11,6 @@ namespace {
 
 // Of the parts of a step together. The last part has as many as a whole step.
 constexpr int kFewSweeps = 8, kExtraSweeps = 160;
-
-bool is_before(const Contact& p, const Contact& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; }
-
-/// Add the contacts of a part to all of them, which are sorted by objects.
-void merge(std::vector<Contact>& all, const std::vector<Contact>& now, double share) {
-  const std::size_t known = all.size();
-  for (const Contact& contact : now) {
-    const auto same = std::lower_bound(all.begin(), all.begin() + known, contact, is_before);
-    if (same == all.begin() + known || is_before(contact, *same)) {
-      all.push_back(contact);
-      all.back().force *= share;
-      continue;
-    }
-    const double force = same->force + contact.force * share;
-    if (contact.depth > same->depth) *same = contact;
-    same->force = force;
-  }
-  if (all.size() > known) std::sort(all.begin(), all.end(), is_before);
-}
 
 /// Largest speed of a point of a moving object [m/s].
 double fastest(const World& world, const State& state, int w) {
@@ -61,7 +43,7 @@ void push_in_parts(const World& world, State& state, int w, Workspace& work, con
   touched.assign(world.objects, 0);
   const auto collect = [&](double share) {
     for (const Contact& contact : scene.contacts) touched[contact.a] = touched[contact.b] = 1;
-    merge(buffers.merged, scene.contacts, share);
+    merge_contacts(buffers.merged, scene.contacts, share);
   };
   // What the last step left in an overlap parts as fast as in a step that is not divided.
   Resolution some{std::max(kFewSweeps, options.sweeps / parts), kExtraSweeps / parts, options.slop, world.step_time};
@@ -69,12 +51,14 @@ void push_in_parts(const World& world, State& state, int w, Workspace& work, con
   collect(0.0);
   some.step_time = options.step_time, some.share = 1.0 / parts;
   for (int part = 0; part < parts; ++part) {
+    buffers.from.clear(), buffers.turned.clear();
     for (std::size_t m = 0; m < world.moving.size(); ++m) {
       const int i = world.moving[m];
       const double begin = static_cast<double>(part) / parts, end = static_cast<double>(part + 1) / parts;
       const Pose from = strides[m].at(begin), to = strides[m].at(end);
       Pose& pose = state.pose[first + i];
       const Vec3& drift = buffers.drift[i];
+      buffers.from.push_back(pose), buffers.turned.push_back(to.theta - from.theta + drift[2]);
       pose.x += to.x - from.x + drift[0], pose.y += to.y - from.y + drift[1];
       pose.theta =
           into_range(wrap(pose.theta + (to.theta - from.theta) + drift[2]), world.angle_low[i], world.angle_high[i]);
@@ -82,7 +66,7 @@ void push_in_parts(const World& world, State& state, int w, Workspace& work, con
     }
     some.fastest = fastest(world, state, w);
     if (part + 1 == parts) some.sweeps = options.sweeps, some.extra_sweeps = options.extra_sweeps;
-    push_apart(world, state, w, work, some, nullptr);
+    push_and_hold(world, state, w, work, some, {buffers.from, buffers.turned});
     for (const int i : world.moving) {
       for (int c = 0; c < 3; ++c)
         buffers.drift[i][c] += (state.twist[first + i][c] - buffers.twists[i][c]) * options.step_time;
