@@ -135,6 +135,21 @@ def test_a_car_whose_wheels_turn_slowly_parks_in_reasonable_time(acce: str, most
         assert result.sim_time < most, start
 
 
+@pytest.mark.parametrize("limit", ["", ", psi_max: 0.6"])
+def test_a_car_whose_steering_rate_is_commanded_arrives(limit: str) -> None:
+    """Without a limit of its own, its wheels could turn so far that they come back too late."""
+    for behavior, mode in (("follow", "position"), ("follow", "state"), ("orca", "position"), ("rvo", "position")):
+        for start in ("3, 3, 2", "3, 12, -3", "12, 4, 0", "8, 12, 1.5"):
+            text = (
+                "world: {width: 16, height: 16, time_limit: 60}\n"
+                f"robot: {{kinematics: {{name: acker, mode: angular{limit}}}, shape: {{name: rectangle, length: 1, "
+                f"width: 0.5, wheelbase: 0.7}}, state: [{start}, 0], goal: [9, 8, 0.5], goal_threshold: 0.3, "
+                f"arrive_mode: {mode}, behavior: {{name: {behavior}}}}}\n"
+            )
+            result = irsim.run(text=text, seed=1)
+            assert result.outcome == "success", (behavior, mode, start, result.reason)
+
+
 def test_a_car_backs_into_a_bay() -> None:
     text = CAR.format(state="[4, 10, 0]", goal="[10, 8, 1.57]", back=-1, acce="[2, 2]", local="dash")
     text += (

@@ -37,7 +37,8 @@ class Acker(KinematicsOptions):
     mode: Literal["steer", "angular"] = "steer"
     """Second control: `steer` is the steering angle, `angular` the rate at which it changes."""
     psi_max: Annotated[Radians, Field(gt=0)] | None = None
-    """Largest steering angle; null leaves it to `vel_max` in `steer` mode and unlimited in `angular` mode."""
+    """Largest steering angle; null leaves it to `vel_max` in `steer` mode and unlimited in `angular` mode, in which
+    behaviors then steer up to 45 degrees. `dash` steers for mode `steer`: in the other one, `follow` arrives."""
 
 
 KINEMATICS.register(Acker, kernel=core.AckerOptions)

@@ -38,6 +38,12 @@ inline Vec3 constrain(const AckerOptions& options, Vec3 control) {
   return control;
 }
 
+/// The largest angle to which behaviors steer the wheels. Where these turn at a limited rate and have no limit of their
+/// own, that is 45 degrees: from larger angles they would come back too late.
+inline double steering_range(const AckerOptions& options) {
+  return options.mode == Steering::steer ? options.psi_max : std::min(options.psi_max, 0.25 * kPi);
+}
+
 /// Steer straight toward the wanted direction; in mode `angular` the wheels turn there at a limited rate. A car turns
 /// only while it rolls, so it creeps where other drives would turn on the spot.
 inline Vec3 follow(const AckerOptions& options, const Wish& wish) {

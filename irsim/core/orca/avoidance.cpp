@@ -89,7 +89,8 @@ Vec3 car_control(const AckerOptions& car, const World& world, const State& state
     const double error = std::atan2(cross(heading, velocity), dot(heading, velocity));
     target = std::atan(error * wheelbase / (rolling * dt) - std::tan(psi) * control[0] / rolling);
   }
-  control[1] = car.mode == Steering::steer ? target : (target - psi) / dt;
+  const double range = steering_range(car);
+  control[1] = car.mode == Steering::steer ? target : (clip(target, -range, range) - psi) / dt;
   return control;
 }
 

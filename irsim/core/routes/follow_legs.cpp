@@ -12,7 +12,7 @@ constexpr int kMaxBlockedSteps = 30;   // a leg that is blocked for more steps t
 }  // namespace
 
 double Follower::max_steering(const AckerOptions& car) const {
-  const double psi = std::min(car.psi_max, 1.4);
+  const double psi = std::min(steering_range(car), 1.4);
   return car.mode == Steering::steer ? std::min(psi, state_.vel_max[row_][1]) : psi;
 }
 

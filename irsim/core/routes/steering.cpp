@@ -41,9 +41,9 @@ void Follower::steer_to_corner(Vec3& u) {
           {std::fabs(top[0]) / std::max(std::fabs(c), 1e-9), std::fabs(top[1]) / std::max(std::fabs(s), 1e-9), most});
       u[0] = speed * c, u[1] = speed * s;
     } else if constexpr (std::is_same_v<Drive, AckerOptions>) {
-      if (drive.mode != Steering::steer) return;
-      const double most_psi = std::min({top[1], drive.psi_max, 1.4});
-      u[1] = clip(error, -most_psi, most_psi);
+      const double most_psi = max_steering(drive), psi = clip(error, -most_psi, most_psi);
+      const double now = state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
+      u[1] = drive.mode == Steering::steer ? psi : (psi - now) / world_.step_time;
       u[0] = std::min(u[0], std::max(most, 0.3 * top[0]));
     }
   });
