@@ -15,14 +15,8 @@ class ChangedScene(NamedTuple):
 
 
 CHANGED_SCENES: dict[str, ChangedScene] = {
-    "templates/bottleneck": ChangedScene(
-        "D25", "people start as mirror images of each other on both sides of the exit"
-    ),
     "templates/room-evacuation": ChangedScene(
         "D25", "people start as mirror images of each other on both sides of the door"
-    ),
-    "templates/walking-group": ChangedScene(
-        "D25", "the robot and a person start as mirror images of each other on ways that cross"
     ),
     "templates/circle-swap": ChangedScene("D27", "robots with `rvo` and a `diff` drive avoid each other"),
     "templates/crowd": ChangedScene("D27", "the robot, with `rvo` and a `diff` drive, avoids people"),

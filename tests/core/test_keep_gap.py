@@ -64,6 +64,18 @@ def test_people_and_robots_that_say_so_go_on_as_in_2_12() -> None:
     assert gaps(PAIR.format(role="obstacle", more="keep_gap: true"), 0, 80, 2)[0] == pytest.approx(apart[""])
 
 
+@pytest.mark.parametrize(("radius", "count"), [(0.3, 2), (0.3, 5), (0.2, 8)])
+def test_wheels_turn_until_they_roll_along_what_is_in_the_way(radius: float, count: int) -> None:
+    """Two whose headings were within the dead band of turns stood before each other for ever."""
+    text = (
+        f"world: {{width: 20, height: 20, time_limit: 60}}\nrobot:\n  - number: {count}\n"
+        "    distribution: {name: circle, center: [10, 10], radius: 6}\n"
+        f"    kinematics: {{name: diff}}\n    shape: {{name: circle, radius: {radius}}}\n    goal_threshold: 0.2\n"
+        "    behavior: {name: sfm}\n"
+    )
+    assert irsim.run(text=text, seed=0).outcome == "success"
+
+
 def test_those_that_are_held_up_slide_past() -> None:
     batch = irsim.batch(read_scenario(text=PAIR.format(role="robot", more=""), strict=False)[0], 1, seeds=[0])
     for _ in range(150):

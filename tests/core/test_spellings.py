@@ -124,6 +124,35 @@ def test_a_block_of_a_map_is_a_box(behavior: str, tmp_path: Path) -> None:
     assert_equal([boxed, mapped], 120)
 
 
+@pytest.mark.parametrize("behavior", BEHAVIORS)
+@pytest.mark.parametrize("drive", ["diff", "omni"])
+@pytest.mark.parametrize("start", [0.0, 0.13])
+def test_walls_on_decimal_places_give_the_same_motion_to_the_bit(
+    behavior: str, drive: str, start: float, tmp_path: Path
+) -> None:
+    """Sums such as 10.1 + 0.25 differ in their last bit from one spelling to another, and one bit decides a step."""
+    corners = [[-1, -1], [1, -1], [1, -0.6], [-0.6, -0.6], [-0.6, 1], [-1, 1]]
+    parts = [([0, -0.8], 2, 0.4), ([-0.8, 0.2], 0.4, 1.6)]
+    boxes = [{"name": "rectangle", "length": a, "width": b, "pose": [*at, 0]} for at, a, b in parts]
+    shapes = [
+        polygon(corners),
+        polygon(corners[3:] + corners[:3]),
+        line(corners),
+        line(corners[::-1]),
+        {"name": "compound", "parts": boxes},
+    ]
+    scenes = [scene(behavior, drive, shape, [10, 10.1, 0], start) for shape in shapes]
+    picture = np.full((400, 400), 255, dtype=np.uint8)
+    picture[400 - 190 : 400 - 182, 180:220] = 0
+    picture[400 - 222 : 400 - 182, 180:188] = 0
+    Image.fromarray(picture).save(tmp_path / "ell.png")
+    mapped = {**scenes[0], "world": {**scenes[0]["world"], "obstacle_map": str(tmp_path / "ell.png")}}
+    del mapped["obstacle"]
+    first, *others = (trace(one, 200) for one in [*scenes, mapped])
+    for k, other in enumerate(others, start=1):
+        np.testing.assert_array_equal(other, first, err_msg=f"spelling {k}")
+
+
 @pytest.mark.parametrize("behavior", ["rvo", "sfm", "orca", "avocado"])
 @pytest.mark.parametrize("drive", ["diff", "omni"])
 @pytest.mark.parametrize(

@@ -40,8 +40,37 @@ def test_the_noise_of_avocado_chooses_a_side() -> None:
 def test_cars_that_would_not_pass_are_told_of_the_behavior_that_does(law: str) -> None:
     text = pair(f"name: {law}", "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]").replace("omni", "acker")
     [finding] = [one for one in irsim.validate(text=text).findings if one.code == "exact-symmetry"]
-    assert "use 'orca'" in (finding.fix or "")
-    cured = text.replace(f"name: {law}", "name: orca")
+    assert "'follow' with 'local: {name: footprint_orca}'" in (finding.fix or "")
+    cured = text.replace(f"name: {law}", "name: follow, local: {name: footprint_orca}")
+    assert "exact-symmetry" not in codes(cured)
+    assert irsim.run(text=cured, seed=0).outcome == "success"
+
+
+RING = (
+    "world: {{width: 26, height: 26, time_limit: 100}}\nrobot:\n  - {{number: {count}, kinematics: {{{drive}}}, "
+    "distribution: {{name: circle, center: [13, 13], radius: 9}}, vel_max: [1, 1], vel_min: [-1, -1], "
+    "shape: {{name: circle, radius: 0.2}}, goal_threshold: 0.3, behavior: {{{behavior}}}}}\n"
+)
+
+
+@pytest.mark.parametrize("law", ["rvo", "sfm"])
+@pytest.mark.parametrize("count", [3, 4, 8])
+def test_what_is_said_to_rings_of_cars_lets_them_pass(law: str, count: int) -> None:
+    """Under ``orca`` four of these cars stand for ever."""
+    drive, cure = "name: acker, wheelbase: 1", "name: follow, local: {name: footprint_orca}"
+    text = RING.format(count=count, drive=drive, behavior=f"name: {law}")
+    [finding] = [one for one in irsim.validate(text=text).findings if one.code == "exact-symmetry"]
+    assert "footprint_orca" in (finding.fix or "")
+    assert irsim.run(text=RING.format(count=count, drive=drive, behavior=cure), seed=0).outcome == "success"
+
+
+@pytest.mark.parametrize("drive", ["name: diff", "name: omni"])
+@pytest.mark.parametrize("count", [8, 9, 16, 20])
+def test_rings_under_social_forces_are_reported_where_they_stand(drive: str, count: int) -> None:
+    text = RING.format(count=count, drive=drive, behavior="name: sfm")
+    stands = irsim.run(text=text, seed=0).outcome != "success"
+    assert ("exact-symmetry" in codes(text)) == stands == (count > 9)
+    cured = text.replace("name: sfm", "name: footprint_orca")
     assert "exact-symmetry" not in codes(cured)
     assert irsim.run(text=cured, seed=0).outcome == "success"
 

@@ -15,12 +15,10 @@ from irsim.options.units import Count, Degrees, Fraction, Hertz, Meters, MetersP
 class Avocado(BehaviorOptions):
     """Avoid others as `orca` does, but learn from what each of them does how much of the avoidance is left to make.
 
-    It forms an opinion of every moving object near it: the robot makes more of the change of velocity that avoids one
-    that does not react, and less for one that gives way. `orca` is told who gives way; this is for people and robots
-    whose behavior is unknown. An opinion starts neutral, which is the half that `orca` makes, and is forgotten when the
-    other is no longer among those considered. Walls, limits of speed and turning, `acce`, cars and goals are as in
-    `orca`. A wall that stands free is passed on the nearer side; it does not get out of dead ends. Its weak noise
-    breaks exact symmetry, and follows the seed.
+    It forms an opinion of every moving object near it, and makes more of the change of velocity for one that does not
+    react, less for one that gives way. Take it where nobody knows who gives way. An opinion starts neutral, which is
+    the half that `orca` makes. Walls and dead ends, limits of speed and turning, `acce` and goals are as in `orca`, but
+    cars touch where many meet: take `orca` for them. Its weak noise breaks symmetry, and follows the seed.
     """
 
     in_group: ClassVar[bool] = True

@@ -17,9 +17,9 @@ class Orca(BehaviorOptions):
 
     It makes the whole change for moving objects that run no kind of orca, and never drives into static ones.
     It respects walls, limits of speed and turning, the steering of a car, and `acce`: it brakes in time, whatever its
-    horizons. Every object counts as the circle round its footprint. Robots that have arrived still give way: they leave
-    their goals and come back. A wall that stands free is passed on the nearer side; it does not get out of dead ends:
-    use it as the `local` of `follow`.
+    horizons. Every object counts as the circle round its footprint. Robots that have arrived still give way and come
+    back. A wall that stands free is passed on the nearer side. Boxes that touch are walls of their own; a `compound` is
+    one. It does not get out of dead ends: use it as the `local` of `follow`.
     """
 
     in_group: ClassVar[bool] = True
@@ -36,7 +36,7 @@ class Orca(BehaviorOptions):
     """Time horizon for collisions with moving objects. A long one makes crowds slow."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 10.0
     """The same for walls and static circles. Near walls set 1 to 2 s: with the default, robots are slow in corridors
-    and approach goals near walls very slowly."""
+    and at goals near walls."""
     safe_radius: Annotated[Meters, Field(ge=0)] = 0.1
     """Margin added to the radius of the object itself."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None

@@ -16,6 +16,7 @@ class Rvo(BehaviorOptions):
     """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
 
     A wall that stands free is passed on the nearer side; a wall round the object blocks what reaches it within 1 s.
+    Boxes that touch are walls of their own; a `compound` is one.
     Avoiding nothing, it turns at most at 1.5 rad/s. With `acce` it brakes in time. It stays in dead ends.
     """
 

@@ -18,7 +18,7 @@ class Sfm(BehaviorOptions):
     It starts from rest and does not brake at its goal: it overshoots and swings back, so use a `goal_threshold` of
     about 0.3 m, and keep the goals of several objects a metre apart. One that touches another stops for good, unless
     `world.collision_mode` is `unobstructed_obstacles`. A wall that stands free is passed on the nearer
-    side; it stays in dead ends.
+    side; boxes that touch are walls of their own, a `compound` is one. It stays in dead ends.
     """
 
     in_group: ClassVar[bool] = True

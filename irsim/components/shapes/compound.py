@@ -47,7 +47,7 @@ Part = Annotated[Any, Select(Choices("shape", _PARTS), folded=True)]
 
 
 class Compound(ShapeOptions):
-    """The union of circles, rectangles and polygons, fixed to one body."""
+    """The union of circles, rectangles and polygons, fixed to one body. Parts that touch are one wall."""
 
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [

@@ -29,7 +29,8 @@ Vec2 social_force(const SfmOptions& o, const Decision& decision, int k, const Eg
   const Neighbors& near = neighbors(world, decision.state, decision.work, decision.w());
   const bool gaps = keeps_gaps(decision, ego, o.keep_gap);
   const double body = ego.radius - kPadding, stride = o.vmax * ego.pace * world.step_time;
-  const bool breaks_ties = !o.sidestep;
+  // At rest no force has shown yet whether what surrounds a pair is mirrored, too.
+  const bool breaks_ties = !o.sidestep && squared(ego.velocity) > 0.0;
   decision.work.nearby.clear();
   mutual.decide(k);
   forces.clear(world.objects);

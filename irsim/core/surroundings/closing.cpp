@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kKept = 0.01;       // part of a gap that is never taken [m]
 constexpr double kRounding = 1e-12;  // smaller differences of speeds are rounding errors [m/s]
+constexpr double kAlong = 1e-9;      // a smaller sine of the angle to a tangent is a rounding error
 
 bool is_round(const Decision& decision, int object) {
   const Shapes& shapes = *decision.state.scenes[decision.w()].shapes;
@@ -27,7 +28,7 @@ double largest_speed(const std::vector<Nearby>& nearby, const World& world, Vec2
   double speed = kInfinity;
   for (const Nearby& other : nearby) {
     const double closing = dot(direction, other.towards) + turn;
-    if (closing > 0.0) speed = std::min(speed, kClosingShare * other.gap / (closing * world.step_time));
+    if (closing > kAlong) speed = std::min(speed, kClosingShare * other.gap / (closing * world.step_time));
   }
   return speed;
 }
@@ -76,7 +77,12 @@ void keep_gaps(const Decision& decision, const Ego& ego, bool slides, Intent& in
   int travel = 1;
   with(world.drive[ego.id], [&](const auto& options) { travel = rows(options).travel; });
   const double fastest = travel > 1 ? std::min(top[0], top[1]) : top[0];
-  if (slides || travel > 1) intent.velocity = slide_along(nearby, world, intent.velocity, fastest);
+  if (slides || travel > 1) {
+    const Vec2 wanted = intent.velocity;
+    intent.velocity = slide_along(nearby, world, wanted, fastest);
+    // Where nothing is left of a gap, a heading that is nearly along it leads nowhere, however small the error.
+    if (std::fabs(cross(wanted, intent.velocity)) > kRounding) intent.turning.tolerance = 0.0;
+  }
   if (travel > 1) return;
   const double most = largest_speed(nearby, world, decision.state.heading(ego.row), top[1]);
   intent.turning.max_forward = std::min(intent.turning.max_forward, most);

@@ -9,18 +9,28 @@ namespace {
 constexpr double kSamePlace = 1e-9;       // corners this close are one [m]
 constexpr double kTouching = 1.0 - 1e-6;  // at its full distance the tangent of a corner is a root of a rounding error
 constexpr double kStraight = 1e-9;        // a smaller sine of a turn is a rounding error
+constexpr double kMicrometres = 1e6;      // in a metre
+constexpr double kSumError = 1e-13;       // relative; coordinates this close to a micrometre are meant to be there
 
 bool goes_straight(Vec2 a, Vec2 b, Vec2 c) {
   const Vec2 in = b - a, out = c - b;
   return dot(in, out) > 0.0 && std::fabs(cross(in, out)) <= kStraight * norm(in) * norm(out);
 }
 
+/// A coordinate without the rounding errors of sums such as 10.1 + 0.25, which differ from one spelling to another.
+double written(double x) {
+  const double whole = std::round(x * kMicrometres) / kMicrometres;
+  return std::fabs(x - whole) <= kSumError * (1.0 + std::fabs(x)) ? whole : x;
+}
+
 }  // namespace
 
 std::vector<Vec2> bends_of(const Vec2* corners, int count) {
   std::vector<Vec2> distinct, bends;
-  for (int k = 0; k < count; ++k)
-    if (distinct.empty() || norm(corners[k] - distinct.back()) > kSamePlace) distinct.push_back(corners[k]);
+  for (int k = 0; k < count; ++k) {
+    const Vec2 corner{written(corners[k].x), written(corners[k].y)};
+    if (distinct.empty() || norm(corner - distinct.back()) > kSamePlace) distinct.push_back(corner);
+  }
   while (distinct.size() > 1 && norm(distinct.front() - distinct.back()) <= kSamePlace) distinct.pop_back();
   const std::size_t n = distinct.size();
   for (std::size_t k = 0; k < n; ++k)

@@ -16,6 +16,9 @@ constexpr double kClosed = 1e-9;             // a line whose ends are this close
 constexpr double kBeyond = 1.0 + 1e-9;       // so that rounding does not decide
 constexpr std::size_t kMaxLinearWalls = 24;  // up to this many walls are searched one by one
 
+/// Whether a corner is left of another one, or below it.
+bool is_before(Vec2 a, Vec2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
+
 /// Whether the edges of a closed outline meet only where one follows the other.
 bool is_simple(const std::vector<Vec2>& ring) {
   const std::size_t n = ring.size();
@@ -111,7 +114,8 @@ void search(const Walls& walls, Vec2 centre, double reach, std::vector<int>& fou
 }  // namespace
 
 void Walls::add_ring(const Vec2* corners, int count, Inside inside, int object) {
-  const std::vector<Vec2> bends = bends_of(corners, count);
+  std::vector<Vec2> bends = bends_of(corners, count);
+  std::rotate(bends.begin(), std::min_element(bends.begin(), bends.end(), is_before), bends.end());
   const int first = static_cast<int>(list.size()), n = static_cast<int>(bends.size());
   if (n < 2) return;
   for (int k = 0; k < n; ++k) {

@@ -315,8 +315,9 @@ OBJECTS: dict[str, Code] = {
         "starts too symmetric to pass each other",
         "One with orca, or with avocado without noise, straight behind a slower one trails it; 'sidestep: 10' makes it "
         "pass on the right. Two that meet head-on, or a ring, pass on their right by themselves, except with "
-        "'sidestep: 0', the law of IR-SIM, and except for cars under rvo and sfm and rings of 16 and more under sfm: "
-        "use orca there. Example: behavior: {name: orca, sidestep: 10}.",
+        "'sidestep: 0', the law of IR-SIM, except under sfm in rings of bodies that are 4 m wide side by side "
+        "(footprint_orca passes), and except for cars under rvo and sfm (follow with local: {name: footprint_orca} "
+        "passes). Example: behavior: {name: orca, sidestep: 10}.",
     ),
     "vel-min-default": Code(
         "vel_min keeps its default", "Raising vel_max alone leaves vel_min at -1 for each component."

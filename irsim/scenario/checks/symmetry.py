@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context, distinct
+from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.messages.findings import Finding, warning
 from irsim.scenario.resolve.body_size import top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
@@ -20,8 +21,8 @@ _PASSING = ("rvo", "sfm")
 """Those of them that pass a slower object straight ahead all the same; `sfm` only where it breaks ties."""
 _NOT_FOR_CARS = ("rvo", "sfm")
 """Those of them that choose velocities which a car cannot take up, whatever side they choose."""
-_CROWDED = 16
-"""Social forces push rings of so many, and more, into each other in their middle."""
+_CROWDED = 4.0
+"""Social forces wedge rings of bodies that are so wide, side by side, and stand on their circles for ever [m]."""
 _ANGLE = 10.0
 """Angle that is proposed [degrees]."""
 _OFF_LINE = 0.01
@@ -56,9 +57,9 @@ def _findings(context: Context) -> Iterator[Finding]:
     for ring in _rings(records):
         if not _meets_badly(ring[0], len(ring)):
             continue
-        end = "touch or stand" if _options(ring[0]).name == "sfm" else "brake, and may stand there for ever"
+        end = "touch or stand" if _pushes(ring[0]) else "brake, and may stand there for ever"
         what = f"meets {len(ring) - 1} others in the middle of their ways, all at the same time: they {end}"
-        yield _finding(context, ring[0], what, _cure(ring[0]))
+        yield _finding(context, ring[0], what, _cure(ring[0], len(ring)))
     for ways in _lines(records):
         for a, b in itertools.pairwise(sorted(ways, key=lambda way: way.start)):
             if b.start == a.start:
@@ -66,7 +67,7 @@ def _findings(context: Context) -> Iterator[Finding]:
             if a.end > a.start and b.end < b.start and a.end > b.end:
                 if _meets_badly(a.record, 2):
                     what = f"meets '{b.record.name}' exactly head-on: {_effect(a.record)}"
-                    yield _finding(context, a.record, what, _cure(a.record))
+                    yield _finding(context, a.record, what, _cure(a.record, 2))
                 continue
             behind, ahead = (a, b) if a.end > a.start and b.end > b.start else (b, a)
             name = _options(behind.record).name
@@ -90,16 +91,22 @@ def _keeps_ties(record: ObjectRecord) -> bool:
 
 def _meets_badly(record: ObjectRecord, count: int) -> bool:
     """Whether so many that meet at one point brake for ever, or touch."""
-    return _keeps_ties(record) or _is_car(record) or (_options(record).name == "sfm" and count >= _CROWDED)
+    return _keeps_ties(record) or _needs_other(record, count)
+
+
+def _needs_other(record: ObjectRecord, count: int) -> bool:
+    """Whether another behavior alone lets so many pass."""
+    crowded = _options(record).name == "sfm" and count > 2 and 2 * reach_of(record.shape) * count >= _CROWDED
+    return crowded or _is_car(record)
 
 
 def _is_car(record: ObjectRecord) -> bool:
     return _options(record).name in _NOT_FOR_CARS and getattr(record.kinematics, "name", "") == "acker"
 
 
-def _cure(record: ObjectRecord) -> str:
-    """What lets such objects pass: a side, the default of ``sidestep``, or another behavior."""
-    return "default" if _keeps_ties(record) and not _is_car(record) else "orca"
+def _cure(record: ObjectRecord, count: int) -> str:
+    """What lets so many objects pass: the default of ``sidestep``, or another behavior."""
+    return "footprint_orca" if _needs_other(record, count) else "default"
 
 
 def _options(record: ObjectRecord) -> Any:
@@ -169,8 +176,9 @@ def _finding(context: Context, record: ObjectRecord, what: str, cure: str) -> Fi
     where = (*path, inner) if inner else path
     name = _options(record).name
     key_path = (*where, "sidestep")
-    if cure == "orca":
-        fix, edit = f"use 'orca' instead of {name}", None
+    if cure == "footprint_orca":
+        other = "'follow' with 'local: {name: footprint_orca}'" if _is_car(record) and not inner else "'footprint_orca'"
+        fix, edit = f"use {other} instead of {name}", None
     elif cure == "default":
         fix, edit = f"remove 'sidestep: 0' from {name}", Edit("remove", key_path, safe=False)
     else:
