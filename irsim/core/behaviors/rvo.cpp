@@ -67,13 +67,13 @@ bool look_around(const RvoOptions& options, const Decision& decision, const Ego&
   WallView& walls = obstacles.walls;
   const double fastest = norm({options.vxmax, options.vymax}) * ego.pace;
   const bool gaps = keeps_gaps(decision, ego, options.keep_gap);
-  const double body = ego.radius - kPadding, stride = fastest * decision.world.step_time;
+  const double body = ego.radius - kPadding, ahead = fastest * decision.world.step_time / kClosingShare;
   decision.work.nearby.clear();
   for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& disc) {
     const bool stands = decision.world.is_static[disc.object];
     if (ego.route == nullptr || !stands) {
       add_disc(options, ego, disc, obstacles);
-      if (gaps && may_close(disc.centre - ego.position, body + disc.radius, stride)) add_nearby(decision, ego, disc);
+      if (gaps && may_close(disc.centre - ego.position, body + disc.radius, ahead)) add_nearby(decision, ego, disc);
       if (!options.sidestep && !meets) meets = tied(decision, ego, disc, options.neighbor_threshold, kTieSpeed);
     } else if (!decision.world.unobstructed[disc.object]) {
       const Vec2 centre = disc.centre - ego.position;

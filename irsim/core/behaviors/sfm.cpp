@@ -28,7 +28,7 @@ Vec2 social_force(const SfmOptions& o, const Decision& decision, int k, const Eg
   const Scene& scene = decision.state.scenes[decision.w()];
   const Neighbors& near = neighbors(world, decision.state, decision.work, decision.w());
   const bool gaps = keeps_gaps(decision, ego, o.keep_gap);
-  const double body = ego.radius - kPadding, stride = o.vmax * ego.pace * world.step_time;
+  const double body = ego.radius - kPadding, ahead = o.vmax * ego.pace * world.step_time / kClosingShare;
   // At rest no force has shown yet whether what surrounds a pair is mirrored, too.
   const bool breaks_ties = !o.sidestep && squared(ego.velocity) > 0.0;
   decision.work.nearby.clear();
@@ -36,7 +36,7 @@ Vec2 social_force(const SfmOptions& o, const Decision& decision, int k, const Eg
   forces.clear(world.objects);
   for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& other) {
     if (ego.route != nullptr && world.is_static[other.object]) return;
-    if (gaps && may_close(other.centre - ego.position, body + other.radius, stride)) add_nearby(decision, ego, other);
+    if (gaps && may_close(other.centre - ego.position, body + other.radius, ahead)) add_nearby(decision, ego, other);
     if (mutual.knows(other.object)) return;
     if (breaks_ties && tied(decision, ego, other, o.neighbor_threshold, kSameSpeed)) mutual.tie(other.object);
     forces.add(other.centre - ego.position, ego.velocity - other.velocity);

@@ -40,14 +40,15 @@ class Nearest {
         candidates[count] = i;
         count += squared(points_[i] - centre) <= limit2;
       }
-      if (count == most && farthest2 <= best.limit2) {  // these are the likely ones, whose order has hardly changed
-        for (int k = 0; k < most; ++k) best.offer({squared(points_[likely[k]] - centre), likely[k]});
-        return best.count;
-      }
+      int kept = 0;
       for (int k = 0; k < count; ++k) {
-        const int i = candidates[k];
-        const double distance2 = squared(points_[i] - centre);
-        if (distance2 <= best.limit2 && seen(i)) best.offer({distance2, i});
+        if (seen(candidates[k])) candidates[kept++] = candidates[k];
+      }
+      // Usually these are the likely ones, whose order has hardly changed.
+      const int* offered = kept == most && farthest2 <= best.limit2 ? likely.data() : candidates;
+      for (int k = 0; k < kept; ++k) {
+        const double distance2 = squared(points_[offered[k]] - centre);
+        if (distance2 <= best.limit2) best.offer({distance2, offered[k]});
       }
       return best.count;
     }

@@ -30,9 +30,9 @@ constexpr double kClosingShare = 0.4;  // of a gap that is taken in one step
 /// Args:
 ///   way: From its centre to that of a round body [m].
 ///   touching: Distance of the centres at which they touch [m].
-///   stride: Longest way of a step [m].
-inline bool may_close(Vec2 way, double touching, double stride) {
-  const double reach = touching + stride / kClosingShare;
+///   ahead: Gap of which the longest way of a step is the share [m].
+inline bool may_close(Vec2 way, double touching, double ahead) {
+  const double reach = touching + ahead;
   return squared(way) < reach * reach;
 }
 

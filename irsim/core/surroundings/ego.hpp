@@ -41,10 +41,9 @@ void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& v
   const Slot* placed = shapes.placed.data();
   const Disc* discs = near.discs.data();
   const bool sees_all = world.target_roles[ego.id] == 0, grouped = decision.grouped;
-  const Vec2 position = ego.position;
   const int self = ego.id;
   Disc copy{};
-  for_neighbors(world, decision.state, decision.work, w, position, reach + slack, [&](int other) {
+  for_neighbors(world, decision.state, decision.work, w, ego.position, reach + slack, [&](int other) {
     if (other == self || !(sees_all || is_shown(decision, self, other))) return;
     const Disc* disc = &copy;
     if (is_static[other]) {
@@ -56,7 +55,7 @@ void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& v
       copy = *disc, disc = &copy;
       copy.centre = decision.state.pose[decision.first_row + other].position();
     }
-    if (squared(disc->centre - position) < reach2) visit(*disc);
+    if (squared(disc->centre - ego.position) < reach2) visit(*disc);
   });
 }
 
