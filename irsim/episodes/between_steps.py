@@ -81,7 +81,8 @@ def between_steps_message(env: Env, found: BetweenSteps, hits: Sequence[Event], 
         hits: Collisions of robots.
         brief: Leave out the step and the advice, which another message has.
     """
-    judged = {(event.step, event.object, event.partner) for event in hits}
+    swept = env.scenario.world.contacts == "swept"
+    judged = {(event.step, event.object, event.partner) for event in hits} if swept else set()
     mine = [event for event in found.of_robots if (event.step, event.object, event.partner) not in judged]
     if not mine:
         return None

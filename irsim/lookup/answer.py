@@ -12,7 +12,7 @@ from irsim.diagnostics.errors import CodedError
 
 __all__ = ["Answer", "Answers", "Key", "Kind", "TopicError"]
 
-Kind = Literal["index", "key", "component", "template", "code", "guide", "metric", "policy", "search", "suite"]
+Kind = Literal["index", "key", "component", "template", "code", "event", "guide", "metric", "policy", "search", "suite"]
 
 
 class _Data(BaseModel):

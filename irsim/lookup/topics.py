@@ -7,6 +7,7 @@ import re
 from irsim.bundled import templates
 from irsim.compat import DIFFERENCES
 from irsim.lookup.answer import Answer, Key, TopicError
+from irsim.lookup.events import event_answer, events_answer
 from irsim.lookup.examples import example_of
 from irsim.lookup.full_text import words_of
 from irsim.lookup.guides import GUIDES
@@ -74,6 +75,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return index_answer()
     lists = {
         "codes": codes_answer,
+        "events": events_answer,
         "guides": guides_answer,
         "metric": all_metrics,
         "metrics": all_metrics,
@@ -112,6 +114,9 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     if guide is not None:
         asked = f"metric {name}"
         return guide_answer(guide, ([asked] if asked in METRIC_TOPICS else []) + named(topic)[:MAX_HITS])
+    event = event_answer(name)
+    if event is not None:
+        return event
     policy = policy_answer(topic)
     if policy is not None:
         return policy

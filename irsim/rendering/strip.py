@@ -11,7 +11,8 @@ from PIL import Image, ImageDraw, ImageFont
 from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.figure.figure import SceneFigure
 from irsim.graphics.figure.layers import opaque_colors
-from irsim.graphics.scene.scene import Scene
+from irsim.graphics.scene.palette import Palette
+from irsim.graphics.scene.scene import Region, Scene
 from irsim.objects.views import views
 from irsim.rendering.readability import can_move
 from irsim.rendering.snapshot import Extra, legible_scene, png_of
@@ -30,6 +31,9 @@ _PX_PER_DPI = 4.0
 """Pixels of the longer side of a tile per dot per inch, so that small tiles have smaller text."""
 MAX_OBSTACLE_NAMES = 12
 """Obstacles are named only if there are at most this many."""
+_LEGENDS = ("contact between two steps", "between two steps", "contact")
+"""What the diamonds mean, beside the time of the first tile that has one; the longest that fits."""
+_DIAMOND_PX = 4
 _FRAME_COLOR = "#868e96"
 _TEXT_COLOR = "black"
 
@@ -58,6 +62,7 @@ class Strip:
         self._colors: dict[tuple[int, int, int], None] = {}
         self._columns, self._tile = 1, (1, 1)
         self._title = ""
+        self._first_contact: int | None = None
 
     def add(self, simulation: Simulation, extra: Extra | None = None) -> None:
         """Add a tile that shows the present moment."""
@@ -69,6 +74,8 @@ class Strip:
             side = self._size - (_LINE_HEIGHT_PX if self._title else 0)
             self._columns, self._tile = tiling(self._count, x1 - x0, y1 - y0, side)
         _simplify(scene, simulation, first=not self._tiles)
+        if self._first_contact is None and _marks_contact(scene):
+            self._first_contact = len(self._tiles)
         dpi = min(MAX_DPI, max(MIN_DPI, max(self._tile) / _PX_PER_DPI))
         figure = SceneFigure(self._tile, dpi, axis=False, tight=False, pictures=pictures, halo=True)
         figure.figure.subplots_adjust(left=0, right=1, bottom=0, top=1)
@@ -93,7 +100,37 @@ class Strip:
             draw.rectangle((left - 1, top - 1, left + width, top + height), outline=_FRAME_COLOR)
             short = text if draw.textlength(text, font=font) <= width else text.partition("  ")[0]
             draw.text((left, top - 3), short, fill=_TEXT_COLOR, font=font, anchor="ls")
+            if number == self._first_contact:
+                _add_legend(draw, font, left + draw.textlength(short, font=font), (left + width, top - 3))
         return png_of(sheet, list(self._colors))
+
+
+def _marks_contact(scene: Scene) -> bool:
+    """Whether a contact between two steps is marked within what a scene shows."""
+    x0, x1, y0, y1 = scene.extent
+    shapes = [mark.geometry for mark in scene.marks if mark.object < 0 and mark.part == "contact"]
+    places = [shape.rings[0].mean(axis=0) for shape in shapes if isinstance(shape, Region)]
+    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in places)
+
+
+def _add_legend(
+    draw: ImageDraw.ImageDraw,
+    font: ImageFont.FreeTypeFont | ImageFont.ImageFont,
+    begin: float,
+    end: tuple[float, float],
+) -> None:
+    """Say what the diamonds mean, right-aligned at ``end``, and not before ``begin`` [px]."""
+    right, base = end
+    for text in _LEGENDS:
+        middle = right - draw.textlength(text, font=font) - 2 * _DIAMOND_PX
+        if middle - 3 * _DIAMOND_PX < begin:
+            continue
+        draw.text((right, base), text, fill=_TEXT_COLOR, font=font, anchor="rs")
+        up, side = 1.2 * _DIAMOND_PX, _DIAMOND_PX
+        y = base - _DIAMOND_PX
+        corners = [(middle, y - up), (middle + side, y), (middle, y + up), (middle - side, y)]
+        draw.line([*corners, corners[0]], fill=Palette().contact, width=2)
+        return
 
 
 def _simplify(scene: Scene, simulation: Simulation, *, first: bool) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import pytest
 
 from irsim.bundled import templates
+from irsim.common.event_kinds import EVENTS, EventKind
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup import as_brief_text, as_text, lookup
 from irsim.metrics import EPISODE_METRICS, METRICS
@@ -276,3 +279,11 @@ def test_everyday_words_lead_to_the_part_of_the_language(word: str, topic: str) 
 
 def test_title_is_the_key_of_pictures() -> None:
     assert lookup("title").topic == "world.plot.title"
+
+
+@pytest.mark.parametrize("kind", ["contact_between_steps", "passed_through", "overshoot"])
+def test_kinds_of_events_have_pages(kind: EventKind) -> None:
+    answer = lookup(kind)
+    assert (answer.topic, answer.kind) == (kind, "event")
+    assert answer.text == EVENTS[kind]
+    assert {line.name for line in lookup("events").groups["events"]} == set(get_args(EventKind))

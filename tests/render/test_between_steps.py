@@ -41,3 +41,11 @@ def test_a_strip_marks_it_in_the_moments_after_it() -> None:
 def test_what_others_pass_through_has_no_mark() -> None:
     text = scene(post=", unobstructed: true", board=", unobstructed: true")
     assert reds(snapshot(text=text, steps=30, region=PLACE, overlays=["names"], size=600).png) == 0
+
+
+@pytest.mark.parametrize(("steps", "said"), [(20, False), (30, True)])
+def test_a_strip_says_what_the_marks_mean(steps: int, said: bool) -> None:
+    png = snapshot(text=scene(), steps=steps, strip=2, region=PLACE, overlays=["names"], size=600).png
+    pixels = np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=int)
+    captions = pixels[len(pixels) // 2 :][:20]  # of the second of two tiles, one above the other
+    assert bool((np.abs(captions - RED).max(axis=2) < 70).any()) == said

@@ -10,10 +10,10 @@
 namespace irsim {
 namespace {
 
-constexpr double kPart = 0.25;       // the same, for how far bodies move in a part of a step
-constexpr double kCorners = 0.25;    // the same, of what turns outside of a disc that always stays in a body
-constexpr int kMostParts = 4000;     // of a step
-constexpr int kMostPairs = 1000000;  // of near bodies, in all parts of a step; larger crowds move in fewer parts
+constexpr double kPart = 0.25;      // the same, for how far bodies move in a part of a step
+constexpr double kCorners = 0.25;   // the same, of what turns outside of a disc that always stays in a body
+constexpr int kMostParts = 4000;    // of a step
+constexpr int kMostPairs = 800000;  // of near bodies, in all parts of a step; larger crowds move in fewer parts
 
 class FastBodies {
  public:

@@ -48,11 +48,9 @@ class Holder {
     ContactSolver solver(world_, state_, w_, work_, none);
     solver.place_moving();
     bool any = false;
-    const bool crowded = work_.contacts.met.size() > kMaxPairsHeld;
     for (const auto& [a, b] : work_.contacts.met) {
       const double way = way_of(a, stride(a)) + way_of(b, stride(b));
       const bool both = world_.dynamics[a].pushable && world_.dynamics[b].pushable;
-      if (both && crowded) continue;
       if ((both || !deep) && !(way > kFast * (bodies_.width[a] + bodies_.width[b]))) continue;
       if (!(way > 0.0)) continue;
       const double when = time_of_meeting(solver, a, b);
@@ -103,7 +101,8 @@ class Holder {
     if (!world_.fixed_objects.empty()) {
       for (const int i : world_.moving) scene_.fixed->grid.query(box_of(i), [&](int j) { add(i, j); });
     }
-    if (world_.moving.size() > 1) scene_.sweep.pairs([&](int i) { return box_of(i); }, add);
+    const bool crowded = work_.contacts.pairs.size() > kMaxPairsHeld;
+    if (world_.moving.size() > 1 && !crowded) scene_.sweep.pairs([&](int i) { return box_of(i); }, add);
     std::sort(met.begin(), met.end());
   }
   /// The core of a body that can be pushed, or all of another one.
@@ -177,7 +176,7 @@ void push_and_hold(const World& world, State& state, int w, Workspace& work, con
   Holder holder(world, state, w, work, begun);
   std::vector<Contact>&now = state.scenes[w].contacts, &all = work.contacts.held;
   for (int round = 0; holder.hold(); ++round) {
-    if (round == std::min(kRounds, kMaxPairsSolved / static_cast<int>(work.contacts.met.size()))) return;
+    if (round == std::min(kRounds, kMaxPairsSolved / static_cast<int>(work.contacts.pairs.size() + 1))) return;
     if (round == 0) std::sort(now.begin(), now.end(), is_before);
     std::swap(all, now);
     push_apart(world, state, w, work, options, nullptr);
