@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
+import random
 from typing import Any
 
 import numpy as np
@@ -125,3 +126,28 @@ def test_nobody_jams_from_starts_that_are_a_little_different(name: str, drive: s
 @pytest.mark.parametrize("name", list(SCENES))
 def test_cars_do_not_jam_from_starts_that_are_a_little_different(name: str) -> None:
     assert_all_arrive(name, "acker", range(10), 0.98)
+
+
+@pytest.mark.parametrize("seed", [121, 172, 223, 238, 257, 356])
+def test_cars_that_brake_slowly_do_not_touch_the_walls_of_a_crowded_room(seed: int) -> None:
+    """A car that is suddenly blocked brakes with the steering with which its stop was free."""
+    draw = random.Random(seed)
+
+    def place(*ranges: tuple[float, float]) -> list[float]:
+        return [round(draw.uniform(*limits), 2) for limits in ranges]
+
+    local = draw.choice(["rvo", "sfm", "orca", "dash"])
+    draw.choice(["acker", "acker", "diff"])
+    inside = ((1, 9), (1, 9))
+    cars = [
+        f"  - {{kinematics: {{name: acker}}, shape: {{name: rectangle, length: 0.8, width: 0.4, wheelbase: 0.5}}, "
+        f"vel_max: [1.2, 1], vel_min: [-1.2, -1], acce: [1, 3], state: {place(*inside, (-3, 3))}, "
+        f"goal: {[*place(*inside), 0]}, goal_threshold: 0.3, behavior: {{name: follow, local: {{name: {local}}}}}}}"
+        for _ in range(4)
+    ]
+    integration = draw.choice(["euler", "exact"])
+    world = f"world: {{width: 10, height: 10, boundary: walls, integration: {integration}}}"
+    result = irsim.run(text="\n".join([world, "robot:", *cars]), seed=1, steps=400)
+    starts = {event.object for event in result.events if event.kind == "collision" and event.step <= 1}
+    hits = [event for event in result.events if event.kind == "collision" and "boundary" in str(event.partner)]
+    assert [event for event in hits if event.object not in starts] == []

@@ -40,6 +40,7 @@ void Follower::follow_legs(Vec3& u) {
     return;
   }
   u = {};
+  if (std::holds_alternative<AckerOptions>(world_.drive[object_])) hold_steering(u);
   if (++route_.blocked_steps > kMaxBlockedSteps && !route_.retreats) {
     route_.blocked_steps = 0;
     plan();

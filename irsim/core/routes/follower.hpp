@@ -37,6 +37,7 @@ class Follower {
  private:
   static constexpr double kMaxHeadingError = 0.35;  // larger errors are corrected by turning on the spot [rad]
 
+  void adjust(Vec3& u);
   Vec2 position() const;
   Box bounds() const;
   const Region* region() const { return within_ ? &*within_ : nullptr; }
@@ -121,6 +122,9 @@ class Follower {
   void keep_apart(Vec3& u);
   /// Slow down, veer or back up where the command would end in a collision with a static object.
   void keep_clear(Vec3& u);
+  /// A car that stops because no command is free keeps its last steering if it would touch something static with the
+  /// wanted one: a step ago the stop with that steering was free.
+  void hold_steering(Vec3& u);
   /// Set the gap to walls that the next command must keep: that of the route, or a little less than the present one.
   void measure_gap();
   /// Whether the body at a pose touches nothing static, keeps the gap to it, and stays on its `Workspace::sides`.

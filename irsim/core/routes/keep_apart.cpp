@@ -97,6 +97,7 @@ void Follower::keep_apart(Vec3& u) {
     if (std::fabs(psi) > kRounding) u[1] = drive.mode == Steering::steer ? 0.0 : -psi / world_.step_time;
   }
   work_.sides.clear();
+  if (!found && car) hold_steering(u);
 }
 
 }  // namespace irsim

@@ -44,6 +44,11 @@ void Follower::update_target() {
 
 void Follower::adjust_command() {
   Vec3& u = state_.command[row_];
+  adjust(u);
+  route_.steering = u[1];
+}
+
+void Follower::adjust(Vec3& u) {
   if (std::isnan(state_.goal[row_].x)) return;
   if (route_.path.empty()) {
     u = {};

@@ -121,6 +121,13 @@ void Follower::keep_clear(Vec3& u) {
     return;
   }
   u = scaled(0.0, car ? 1.0 : 0.0);
+  if (car) hold_steering(u);
+}
+
+void Follower::hold_steering(Vec3& u) {
+  if (clear_after(u)) return;
+  const Vec3 held{{0.0, route_.steering, 0.0}};
+  if (clear_after(held)) u = held;
 }
 
 void Follower::measure_gap() {
