@@ -237,18 +237,23 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
   };
   std::vector<int>& before = all.neighbors_before[self];
   const int count = all.nearest.find(agent.position, options.neighborDist, most, before, seen, all.neighbors.data());
-  before.clear();
-  for (int k = 0; k < count; ++k) before.push_back(all.neighbors[k].index);
+  before.resize(count);
+  const Nearest::Found* found = all.neighbors.data();
+  for (int* note = before.data(); found != all.neighbors.data() + count; ++found) *note++ = found->index;
   const bool breaks = group >= 0 && breaks_ties(world.behaviors[group].behavior);
   const int own_row = w * world.objects + object;
-  const Vec2 origin = state.pose[own_row].position();
-  const TieWay way(state.destination(own_row).position() - origin, speed);
+  const TieWay way(state.destination(own_row).position() - state.pose[own_row].position(), speed);
+  // Ties are of origins, which are not always the centres.
+  const double off = 2.0 * all.off_origin,
+               slack = off > 0.0 ? off * (2.0 * options.neighborDist + norm(way.ahead)) : 0.0;
+  const double tolerance = kLeanSpeed * options.neighborDist;
+  const int* groups = all.group.data();
   const bool routes = !state.routes.empty(), routed = state.route_of(own_row) != nullptr;
   bool on_line = false;
   for (const int m : before) {
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
     // not give way.
-    const bool mutual = all.group[m] >= 0 && (all.group[m] == group || targets_role(world, world.moving[m], object));
+    const bool mutual = groups[m] >= 0 && (groups[m] == group || targets_role(world, world.moving[m], object));
     double share = options.responsibility ? *options.responsibility : mutual ? 0.5 : 1.0;
     const OrcaAgent* other = &all.movers[m];
     OrcaAgent taken;
@@ -258,10 +263,9 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
       other = &taken;
     }
     const OrcaAgent& there = all.movers[m];
-    if (breaks && mutual &&
-        may_mirror(there.position - agent.position, agent.velocity + there.velocity, options.neighborDist,
-                   kLeanSpeed) &&
-        way.may_meet(state.pose[w * world.objects + world.moving[m]].position() - origin))
+    const Vec2 offset = there.position - agent.position;
+    if (breaks && mutual && may_mirror(offset, agent.velocity + there.velocity, 1.0, tolerance) &&
+        way.may_meet(offset, squared(offset) - slack))
       share = clip(share + lean(world, state, w, all, self, m, speed, on_line), 0.0, 1.0);
     if (mutual && routes) {
       const Precedence order = precedence(world, state, w, object, world.moving[m]);

@@ -37,12 +37,15 @@ OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w)
   all.member_of.assign(count, -1);
   if (all.neighbors_before.size() != count) all.neighbors_before.assign(count, {});
   all.nearest.clear();
+  double off2 = 0.0;
   for (std::size_t m = 0; m < count; ++m) {
     const int i = world.moving[m], row = w * world.objects + i;
     const Vec2 centre = state.pose[row].position() + rotate(shapes.centre[i], state.heading(row));
     all.movers[m] = {centre, near.discs[m].velocity, shapes.radius[i]};
     all.nearest.add(centre);
+    off2 = std::max(off2, squared(shapes.centre[i]));
   }
+  all.off_origin = std::sqrt(off2);
   all.nearest.build();
   for (std::size_t g = 0; g < world.behaviors.size(); ++g) {
     const BehaviorGroup& behavior = world.behaviors[g];

@@ -37,8 +37,9 @@ bool is_tied(const Decision& decision, const Ego& ego, const Disc& other, double
   const State& state = decision.state;
   const int row = decision.first_row + other.object;
   const double lane = ego.radius + other.radius + kPadding + kLaneMargin, speed = norm(ego.desired);
+  const Vec2 offset = state.pose[row].position() - ego.position;
   const TieWay way(state.destination(ego.row).position() - ego.position, speed);
-  if (!way.may_meet(state.pose[row].position() - ego.position)) return false;
+  if (!way.may_meet(offset, squared(offset))) return false;
   return mirrored(state, {ego.row, row, ego.velocity, other.velocity, speed, lane, tolerance}).has_value();
 }
 

@@ -34,20 +34,21 @@ inline bool may_mirror(Vec2 offset, Vec2 sum, double reach, double tolerance) {
   return std::fabs(dot(sum, offset)) <= tolerance * reach;
 }
 
-/// The way of an object to its goal, and how fast it wants to get on.
+/// How far an object comes on its way to the goal until ways that meet matter no more.
 struct TieWay {
-  Vec2 ahead;   // the way times the speed, and twice the time within which ways that meet matter [m^2]
-  double far2;  // square of the length of the way [m^2]
+  Vec2 ahead;  // twice that, along the way [m]; not a number at the goal, where nothing meets
 
-  TieWay(Vec2 way, double speed) : ahead(way * (2.0 * kTieHorizon * speed)), far2(squared(way)) {}
-  /// Whether the ways of a mirrored pair may meet soon, a test without a root. `offset`: to the other one [m].
-  bool may_meet(Vec2 offset) const {
-    const double soon = dot(ahead, offset), gap2 = squared(offset);
-    return soon > 0.0 && soon * soon >= kAlmost * gap2 * gap2 * far2;
-  }
+  /// `way`: to the goal [m]. `speed`: at which the object wants to move [m/s].
+  TieWay(Vec2 way, double speed) : ahead(way * (kAlmost * 2.0 * kTieHorizon * speed / norm(way))) {}
+  /// Whether the ways of a mirrored pair may meet soon: the cheapest part of the test.
+  ///
+  /// Args:
+  ///   offset: To the other one [m].
+  ///   gap2: Its square [m^2], less what both may be wrong by.
+  bool may_meet(Vec2 offset, double gap2) const { return dot(ahead, offset) >= gap2; }
 
  private:
-  static constexpr double kAlmost = 1.0 - 1e-9;  // so that rounding does not decide
+  static constexpr double kAlmost = 1.0 + 1e-9;  // so that rounding does not decide
 };
 
 /// The sine of the angle from the way of the first object of a mirrored pair to the other one, positive on the left;
