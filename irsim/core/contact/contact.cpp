@@ -130,7 +130,7 @@ void push_apart(const World& world, State& state, int w, Workspace& work) {
     std::vector<double>& turned = work.contacts.turned;
     from.clear(), turned.clear();
     for (const Stride& stride : work.contacts.strides) from.push_back(stride.from), turned.push_back(stride.turn);
-    push_and_hold(world, state, w, work, usual, {from, turned});
+    push_and_hold(world, state, w, work, usual, {from, turned, 1});
   } else if (parts == 1) {
     push_apart(world, state, w, work, usual, nullptr);
   } else {

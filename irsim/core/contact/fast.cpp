@@ -45,7 +45,7 @@ class FastBodies {
   double swing(int object, const Stride& stride) const {
     const Shapes& shapes = *scene_.shapes;
     const double outer = norm(shapes.centre[object]) + shapes.radius[object];
-    const double way = std::min(std::fabs(stride.turn) * outer, outer - bodies_.inner[object]);
+    const double way = std::max(0.0, std::min(std::fabs(stride.turn) * outer, outer - bodies_.inner[object]));
     return std::isfinite(stride.by.x + stride.by.y) ? way + 2.0 * stride.bulge(0.0) : 0.0;
   }
   Stride stride(int i) const {

@@ -9,7 +9,8 @@
 namespace irsim {
 namespace {
 
-constexpr int kRounds = 6;                     // of holding and pushing apart
+constexpr int kRounds = 6;                     // of holding and pushing apart, in a step or a part of one
+constexpr int kRoundsOfStep = 256;             // the same of all parts together, after which bodies are only held
 constexpr int kMaxPairsSolved = 20000;         // in all rounds together; larger crowds are only held
 constexpr std::size_t kMaxPairsHeld = 100000;  // in larger crowds bodies are only held at what cannot be pushed
 constexpr double kApart = 1e-6;                // gap that is left where a body is held [m]
@@ -77,11 +78,11 @@ class Holder {
   const Stride& stride(int i) const {
     return world_.is_static[i] ? rest_ : work_.contacts.went[scene_.shapes->placed[i].object];
   }
-  /// How far a point of a body goes at most [m].
+  /// How far a point of a body goes at most [m]. Walls round the world have no radius.
   double way_of(int i, const Stride& stride) const {
     const Shapes& shapes = *scene_.shapes;
     const double outer = norm(shapes.centre[i]) + shapes.radius[i];
-    return norm(stride.by) + std::min(std::fabs(stride.turn) * outer, outer - bodies_.inner[i]);
+    return norm(stride.by) + std::max(0.0, std::min(std::fabs(stride.turn) * outer, outer - bodies_.inner[i]));
   }
   Box box_of(int i) const {
     const Shapes& shapes = *scene_.shapes;
@@ -155,6 +156,7 @@ class Holder {
     Pose pose = stride(i).at(time);
     pose.theta = into_range(wrap(pose.theta), world_.angle_low[i], world_.angle_high[i]);
     state_.pose[first_ + i] = pose;
+    work_.contacts.touched[i] = 1;
   }
 
   const World& world_;
@@ -173,10 +175,13 @@ class Holder {
 void push_and_hold(const World& world, State& state, int w, Workspace& work, const Resolution& options,
                    const Begun& begun) {
   push_apart(world, state, w, work, options, nullptr);
+  work.contacts.touched.resize(world.objects);
   Holder holder(world, state, w, work, begun);
   std::vector<Contact>&now = state.scenes[w].contacts, &all = work.contacts.held;
+  const int solved = kMaxPairsSolved / static_cast<int>(work.contacts.pairs.size() + 1);
+  const int rounds = std::min({kRounds, kRoundsOfStep / begun.parts, solved});
   for (int round = 0; holder.hold(); ++round) {
-    if (round == std::min(kRounds, kMaxPairsSolved / static_cast<int>(work.contacts.pairs.size() + 1))) return;
+    if (round == rounds) return;
     if (round == 0) std::sort(now.begin(), now.end(), is_before);
     std::swap(all, now);
     push_apart(world, state, w, work, options, nullptr);

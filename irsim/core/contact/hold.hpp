@@ -12,6 +12,7 @@ namespace irsim {
 struct Begun {
   const std::vector<Pose>& from;
   const std::vector<double>& turn;
+  int parts;  // of the whole step
 };
 
 /// Push overlapping bodies apart where their motion ended. Bodies whose cores would have gone through each other, or

@@ -47,7 +47,9 @@ void push_in_parts(const World& world, State& state, int w, Workspace& work, con
   };
   // What the last step left in an overlap parts as fast as in a step that is not divided.
   Resolution some{std::max(kFewSweeps, options.sweeps / parts), kExtraSweeps / parts, options.slop, world.step_time};
-  push_apart(world, state, w, work, some, nullptr);
+  buffers.from.clear(), buffers.turned.assign(world.moving.size(), 0.0);
+  for (const int i : world.moving) buffers.from.push_back(state.pose[first + i]);
+  push_and_hold(world, state, w, work, some, {buffers.from, buffers.turned, parts});
   collect(0.0);
   some.step_time = options.step_time, some.share = 1.0 / parts;
   for (int part = 0; part < parts; ++part) {
@@ -66,7 +68,7 @@ void push_in_parts(const World& world, State& state, int w, Workspace& work, con
     }
     some.fastest = fastest(world, state, w);
     if (part + 1 == parts) some.sweeps = options.sweeps, some.extra_sweeps = options.extra_sweeps;
-    push_and_hold(world, state, w, work, some, {buffers.from, buffers.turned});
+    push_and_hold(world, state, w, work, some, {buffers.from, buffers.turned, parts});
     for (const int i : world.moving) {
       for (int c = 0; c < 3; ++c)
         buffers.drift[i][c] += (state.twist[first + i][c] - buffers.twists[i][c]) * options.step_time;
