@@ -225,3 +225,27 @@ def test_nothing_leaves_a_room(kind: str) -> None:
 @pytest.mark.parametrize("kind", ["line", "lines", "boundary", "map"])
 def test_nothing_ever_leaves_a_room(kind: str) -> None:
     assert {seed: gone for seed in range(1000, 2500) if (gone := leave_a_room(kind, seed))} == {}
+
+
+@pytest.mark.parametrize("kind", ["line", "map"])
+def test_held_bodies_move_the_same_in_any_batch_on_threads(kind: str) -> None:
+    places = [(0.7, 0.7), (2.3, 0.7), (0.7, 2.3), (2.3, 2.3), (1.5, 1.5)]
+    parts = [[circle(0.2)], [rectangle(0.5, 0.02)], [circle(0.08)], [circle(0.2)], [rectangle(0.3, 0.2)]]
+    bodies = [pushed(pose=[*places[k], 0.3 * k], parts=parts[k]) for k in range(3, 5)]
+    robots = [fast_robot(40.0, pose=[*places[k], 2.0 * k], parts=parts[k]) for k in range(3)]
+    draw = np.random.default_rng(4)
+    controls = draw.uniform(-40, 40, (6, 12, 3, 2))
+
+    def moved(worlds: list[int], threads: int) -> np.ndarray:
+        world, state = scene(*robots, *bodies, *walls_of_a_room(kind), seeds=worlds, mode=CONTACT, step_time=0.2)
+        for step in controls:
+            for place, number in enumerate(worlds):
+                rows = slice(place * world.objects, place * world.objects + len(robots))
+                state.command[rows, :2] = step[number]
+                state.given[rows] = 1
+            core.advance(world, state, 1, threads=threads)
+        return state.pose.reshape(len(worlds), world.objects, 3)[:, :5].copy()
+
+    together = moved(list(range(12)), 1)
+    np.testing.assert_array_equal(moved(list(range(12)), 4), together)
+    np.testing.assert_array_equal(np.concatenate([moved([number], 1) for number in range(12)]), together)
