@@ -25,11 +25,11 @@ SIGHTS: tuple[EventKind, ...] = ("sight_start", "sight_end")
 """Kinds of events of fields of view."""
 BETWEEN_STEPS: tuple[EventKind, ...] = ("contact_between_steps", "passed_through")
 """Kinds of contacts that begin and end within one step; a contact has one of them."""
-EVENTS: dict[EventKind, str] = {
+EVENTS: dict[str, str] = {
     "arrival": "The last goal is reached.",
     "waypoint": "A goal is reached, and another one follows.",
-    "collision": "A contact of two objects begins; it is reported once, not at every step. It has the time of the end "
-    "of the step, and with world.contacts: swept that of the first touch.",
+    "collision": "A contact of two objects begins; it is reported once, not at every step. Its time is the end of the "
+    "step, or the first touch with world.contacts: swept.",
     "no_path": "The behavior follow has found no path, or none round the object partner, which stands for good.",
     "overshoot": "An object passed its goal within goal_threshold between two steps without arriving; reported once "
     "per goal.",
@@ -41,12 +41,12 @@ EVENTS: dict[EventKind, str] = {
     "contact_between_steps": "Two objects that are apart at the beginning and at the end of a step touch within it. It "
     "has the time of the first touch and the depth of the deepest overlap, and counts as no collision: "
     "world.contacts: swept makes it one, a smaller world.step_time makes it rare. The metric contacts_between_steps "
-    "counts those of each robot; the summary of a run begins with the first; pictures and pages mark it by a red "
+    "counts them for each robot. The summary of a run names the first one, and pictures and pages mark it with a red "
     "diamond.",
     "passed_through": "Two objects that are apart at the beginning and at the end of a step touch within it, and the "
     "middle of one of them goes through the other, as a fast robot through a thin wall. It counts as no collision: "
     "world.contacts: swept makes it one, world.collision_mode: contact stops the robot at the wall, a smaller "
     "world.step_time makes it rare. Before a run, irsim validate warns of it with jumps-through. The metric "
-    "contacts_between_steps counts it, too; pictures and pages mark it by a red diamond.",
+    "contacts_between_steps counts it, too; pictures and pages mark it with a red diamond.",
 }
 """What each kind of event means."""

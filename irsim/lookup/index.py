@@ -1,10 +1,11 @@
-"""Answers that need no search: the index, lists of codes, guides and templates, and single entries of these lists."""
+"""Answers that need no search: the index, and lists of codes, events, guides and templates with their entries."""
 
 from __future__ import annotations
 
 from irsim.benchmarks.suite_files import suite_names
 from irsim.bundled import templates
 from irsim.bundled.templates import Template
+from irsim.common.event_kinds import BETWEEN_STEPS, EVENTS
 from irsim.compat import DIFFERENCES
 from irsim.diagnostics.codes import CODES, TOOL_CODES, Code
 from irsim.diagnostics.examples import EXAMPLES
@@ -22,6 +23,8 @@ __all__ = [
     "code_answer",
     "codes_answer",
     "difference_answer",
+    "event_answer",
+    "events_answer",
     "guide_answer",
     "guides_answer",
     "index_answer",
@@ -158,3 +161,22 @@ def template_answer(template: Template) -> Answer:
         example=f"irsim new {template.name}{setting}",
         see=["templates"],
     )
+
+
+def event_answer(kind: str) -> Answer:
+    """Describe a kind of event."""
+    more = ["world.contacts", "contacts_between_steps", "jumps-through", "outcomes"] if kind in BETWEEN_STEPS else []
+    return Answer(
+        topic=kind,
+        kind="event",
+        title=f"event {kind}",
+        text=EVENTS[kind],
+        example="irsim run scenario.yaml --json  # events have kind, time, step, object, partner, x, y",
+        see=[*more, "events"],
+    )
+
+
+def events_answer() -> Answer:
+    """List the kinds of events."""
+    lines = [Key(name=name, text=text) for name, text in EVENTS.items()]
+    return Answer(topic="events", kind="index", title="Kinds of events", groups={"events": lines})

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from irsim.bundled import templates
+from irsim.common.event_kinds import EVENTS
 from irsim.compat import DIFFERENCES
 from irsim.lookup.answer import Answer, Key, TopicError
-from irsim.lookup.events import event_answer, events_answer
 from irsim.lookup.examples import example_of
 from irsim.lookup.full_text import words_of
 from irsim.lookup.guides import GUIDES
@@ -16,6 +16,8 @@ from irsim.lookup.index import (
     code_answer,
     codes_answer,
     difference_answer,
+    event_answer,
+    events_answer,
     guide_answer,
     guides_answer,
     index_answer,
@@ -114,9 +116,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     if guide is not None:
         asked = f"metric {name}"
         return guide_answer(guide, ([asked] if asked in METRIC_TOPICS else []) + named(topic)[:MAX_HITS])
-    event = event_answer(name)
-    if event is not None:
-        return event
+    if name in EVENTS:
+        return event_answer(name)
     policy = policy_answer(topic)
     if policy is not None:
         return policy

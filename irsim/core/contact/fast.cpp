@@ -10,8 +10,8 @@
 namespace irsim {
 namespace {
 
-constexpr double kPart = 0.25;      // the same, for how far bodies move in a part of a step
-constexpr double kCorners = 0.25;   // the same, of what turns outside of a disc that always stays in a body
+constexpr double kPart = 0.25;      // share of the widths of two bodies by which they move in a part of a step
+constexpr double kCorners = 0.25;   // share of these widths by which their corners may swing unseen
 constexpr int kMostParts = 4000;    // of a step
 constexpr int kMostPairs = 800000;  // of near bodies, in all parts of a step; larger crowds move in fewer parts
 

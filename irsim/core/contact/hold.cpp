@@ -29,7 +29,7 @@ class Holder {
         begun_(begun),
         first_(w * world.objects) {}
 
-  /// Put back whoever went through something. Returns whether there was any.
+  /// Put back every body that went through another one. Returns whether any did.
   bool hold() {
     double far = 0.0;
     work_.contacts.went.clear();

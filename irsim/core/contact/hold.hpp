@@ -1,4 +1,4 @@
-// Nothing is pushed, or goes on, through the middle of anything: whoever would is held where it met the other.
+// Bodies that would be pushed, or would move on, through the middle of another body are held where the two met.
 #pragma once
 
 #include <vector>

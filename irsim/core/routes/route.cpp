@@ -67,7 +67,7 @@ void Follower::adjust(Vec3& u) {
   if (!route_.legs.empty()) {
     follow_legs(u);
     if (!route_.legs.empty()) return keep_apart(u);
-    if (route_.path.empty()) return;  // the legs were blocked, and there is no other way
+    if (route_.path.empty()) return;  // the legs are blocked, and no other path was found
   }
   if (route_.uncertain) report_if_stuck();
   if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) steer_to_corner(u);

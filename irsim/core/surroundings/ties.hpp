@@ -58,7 +58,7 @@ struct TieWay {
 /// side, and one that follows another are no such pair.
 std::optional<double> mirrored(const State& state, const MirrorPair& pair);
 
-/// See `tied`, for two whose velocities may be those of a mirrored pair.
+/// The rest of `tied`, for a pair that passes `may_mirror`.
 bool is_tied(const Decision& decision, const Ego& ego, const Disc& other, double tolerance);
 
 /// Whether the ego and another object, within `reach` [m], are a mirrored pair; `tolerance` is that for the velocities.
