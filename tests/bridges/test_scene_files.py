@@ -72,6 +72,17 @@ def test_a_scene_has_bodies_map_and_walls(scene: SceneDescription) -> None:
     assert 0 < scene.grid.occupied.sum() < 24 * 16
 
 
+def test_polygons_of_a_scene_run_counterclockwise() -> None:
+    corners = [[0, 0], [1, 2], [2, 0]]
+    for given in (corners, corners[::-1]):
+        text = f"obstacle: {{shape: {{name: polygon, vertices: {given}}}, state: [5, 5, 0]}}"
+        made = irsim.Env(read_scenario(text=text, strict=True)[0], seed=0, headless=True, log_level="ERROR")
+        [polygon] = describe_scene(made.simulation).agents[0].parts
+        assert sorted(polygon.corners.tolist()) == sorted(corners)  # type: ignore[union-attr]
+        x, y = polygon.corners.T  # type: ignore[union-attr]
+        assert x @ np.roll(y, -1) - y @ np.roll(x, -1) == pytest.approx(4)
+
+
 def test_a_scene_crosses_json(scene: SceneDescription, tmp_path: Path) -> None:
     save_scene(scene, tmp_path / "scene.json")
     again = load_scene(tmp_path / "scene.json")

@@ -77,6 +77,34 @@ def test_body_frame_geometry(make: Make) -> None:
     assert compound.goal_vertices is None
 
 
+def test_outlines_of_disks_and_walls(make: Make) -> None:
+    env = make(TEXT.replace("height: 10", "height: 10, boundary: walls"))
+    disk, walls = env.robot_list[1], env.obstacle_list[-1]
+    assert (disk.length, disk.width) == pytest.approx((0.4, 0.4))
+    middle = np.array([5, 3]) + 0.1 * np.array([math.cos(0.3), math.sin(0.3)])
+    angles = 0.3 - np.arange(64) * math.tau / 64  # clockwise, from its heading on, as in IR-SIM
+    around = middle[:, None] + 0.2 * np.array([np.cos(angles), np.sin(angles)])
+    np.testing.assert_allclose(disk.vertices, around)
+    assert len(disk.geometry.exterior.coords) == 64 + 1
+    assert walls.geometry.is_ring
+    assert walls.geometry.length == pytest.approx(4 * 10)
+
+
+@pytest.mark.parametrize("name", ["state", "velocity", "goal", "position", "init_state", "vel_max", "velocity_xy"])
+def test_what_is_read_cannot_be_written_into(make: Make, name: str) -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        getattr(make(TEXT).robot, name)[0, 0] = 5.0
+
+
+def test_what_is_unobstructed_is_not_among_what_it_touches(make: Make) -> None:
+    env = make(TEXT)
+    disc, ghost = env.obstacle_list[3], env.obstacle_list[2]
+    for other in (disc, ghost):
+        other.set_state([1.2, 1, 0])
+    env.step()
+    assert env.robot.collision_obj == [disc]
+
+
 def test_checks_of_arrival(make: Make) -> None:
     robot = make(TEXT).robot
     assert not robot.check_arrive(None)

@@ -52,6 +52,19 @@ def test_a_made_object_is_not_in_the_world(make: Callable[..., Env]) -> None:
     assert made.external_objects == env.objects[:-1]
 
 
+def test_a_made_object_knows_what_it_would_touch(make: Callable[..., Env]) -> None:
+    env = make()
+    bar = env.create_obstacle(shape={"name": "rectangle", "length": 4, "width": 0.2}, state=[9, 9, 0])
+    disk = env.create_obstacle(shape={"name": "circle", "radius": 0.3}, state=[5, 5, 0])
+    env.add_objects([bar, disk])
+    made = env.create_obstacle(shape={"name": "rectangle", "length": 0.2, "width": 1}, state=[7.2, 9.3, 0])
+    assert made.possible_collision_objects == [bar]
+    made.set_state([5, 4.4, 0])
+    assert made.possible_collision_objects == [disk]
+    made.set_state([5, 3.5, 0])
+    assert made.possible_collision_objects == []
+
+
 def test_an_added_robot_drives_and_collides(make: Callable[..., Env]) -> None:
     env = make()
     robot = env.create_robot({"name": "diff"}, shape={"name": "circle", "radius": 0.2}, state=[5, 5, 0],

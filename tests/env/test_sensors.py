@@ -111,6 +111,14 @@ def test_a_sensor_of_user_code(make: Make) -> None:
     assert again.data == first  # the draws belong to the moment
 
 
+def test_the_lidar_is_found_behind_other_sensors(make: Make) -> None:
+    SENSORS.register(Odometer)(odometer)
+    lidar, other = "{name: lidar2d, number: 3}", "{name: odometer, error: 0.1}"
+    robot = make(ODOMETER.replace(f"[{lidar}, {other}]", f"[{other}, {lidar}]"), seed=1).robot
+    assert robot.lidar is robot.sensors[1]
+    assert len(robot.get_lidar_scan()["ranges"]) == 3
+
+
 def test_rollouts_and_batches_measure_alike(make: Make) -> None:
     SENSORS.register(Odometer)(odometer)
     env = make(ODOMETER, seed=1)

@@ -72,6 +72,20 @@ def test_a_class_is_constructed_once_per_object_and_called_in_every_step(make: M
     assert velocities(env)[0][0] == pytest.approx(0.1), "a new scene has new ones"
 
 
+@pytest.mark.parametrize(("roles", "seen"), [("all", [1, 2]), ("robot", [1]), ("obstacle", [2])])
+def test_target_roles_choose_what_it_sees(make: Make, roles: str, seen: list[int]) -> None:
+    told: list[list[int]] = []
+
+    @register_behavior("diff", "looking")
+    def looking(ego_object: Any, external_objects: list[Any], **_: Any) -> Any:
+        told.append([other.id for other in external_objects])
+        return [0, 0]
+
+    others = f"{{name: looking, target_roles: {roles}}}"
+    make(two(behavior=others) + "obstacle: {shape: {name: circle, radius: 0.2}, state: [5, 8, 0]}").step()
+    assert told[0] == seen
+
+
 def test_a_class_wins_over_a_function_and_over_what_is_built_in(make: Make) -> None:
     register_behavior("diff", "both")(lambda **_: [0.1, 0.0])
     register_behavior_class("diff", "both")(lambda info, **_: lambda **_: [0.5, 0.0])

@@ -56,6 +56,18 @@ def test_patched_methods_are_called_at_their_moments(make: Make) -> None:
     assert len(env.robot.trajectory) == 31
 
 
+def test_parts_of_a_step_are_called_in_order_without_a_step_of_its_own(make: Make) -> None:
+    env = make(SCENARIO)
+    log: list[Any] = []
+    names = ["pre_process", "gen_behavior_vel", "mid_process", "post_process"]
+    for name in names:
+        spy(env.robot, name, log)
+    start = env.robot.state[:, 0].tolist()
+    env.step()
+    assert [name for name, _ in log] == names
+    assert [pose for _, pose in log] == [start, start, start, env.robot.state[:, 0].tolist()]
+
+
 @pytest.mark.parametrize("name", HOOKS)
 def test_each_alone_changes_nothing_by_being_patched(make: Make, name: str) -> None:
     env, plain = make(SCENARIO), make(SCENARIO)
@@ -120,6 +132,25 @@ def test_a_subclass_takes_part_by_what_it_overrides(make: Make) -> None:
     assert patrol.overridden() == {"pre_process", "gen_behavior_vel"}
     env.step()
     assert patrol.calls == 1
+    assert env.robot.velocity[0, 0] == pytest.approx(0.5)
+
+
+def test_a_subclass_of_a_subclass_takes_part_by_what_both_override(make: Make) -> None:
+    class Slow(ObjectView):
+        def gen_behavior_vel(self, velocity: Any = None) -> Any:
+            return 0.5 * super().gen_behavior_vel(velocity)
+
+    class SlowAndCounting(Slow):
+        steps = 0
+
+        def post_process(self) -> None:
+            self.steps += 1
+
+    env = make(SCENARIO)
+    robot = SlowAndCounting(env.simulation, 0)
+    assert robot.overridden() == {"gen_behavior_vel", "post_process"}
+    env.step()
+    assert robot.steps == 1
     assert env.robot.velocity[0, 0] == pytest.approx(0.5)
 
 

@@ -55,6 +55,16 @@ def test_what_is_written_to_a_grid_counts(tmp_path: Path) -> None:
     assert [env_map.is_collision(point) for point in cells] == [False, True]
 
 
+def test_a_disk_is_in_the_way_where_it_stands(tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(
+        "world: {width: 10, height: 10, obstacle_map: {name: perlin, resolution: 0.1, fill: 0}}\n"
+        "robot: {shape: {name: circle, radius: 0.2}, state: [1, 1]}\n"
+        "obstacle: {shape: {name: circle, radius: 0.5, center: [1, 0]}, state: [5, 5, 1.5707963]}\n"
+    )
+    disk = irsim.make(tmp_path / "scene.yaml", headless=True, log_level="ERROR").get_map(0.1)
+    assert [disk.is_collision(shapely.Point(5, y)) for y in (5, 5.6, 6.4, 6.6)] == [False, True, True, False]
+
+
 def test_resolutions(env: irsim.Env) -> None:
     with pytest.warns(UserWarning, match="merged"):
         joined = env.get_map(0.2)
