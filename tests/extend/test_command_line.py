@@ -6,6 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+from irsim.api.run_scenario import import_modules
 from tests.warm import warm
 
 MODULE = '''
@@ -57,3 +60,19 @@ def test_drives_and_behaviors_of_an_imported_module(tmp_path: Path) -> None:
     assert run(tmp_path, "validate", "scenario.yaml", "--import", "own_code").returncode == 0
     done = run(tmp_path, "run", "scenario.yaml", "--strict", "--import", "own_code", "--require-success", "--json")
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("name", ["modules_beside/own_place.py", "modules_beside.own_place"])
+def test_modules_below_the_current_folder_are_found_by_any_start(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    (tmp_path / "modules_beside").mkdir()
+    (tmp_path / "modules_beside" / "own_place.py").write_text("SEEN = True\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [path for path in sys.path if path])  # as the installed command starts
+    try:
+        import_modules([name])
+        assert sys.modules["modules_beside.own_place"].SEEN
+    finally:
+        for module in ("modules_beside.own_place", "modules_beside"):
+            sys.modules.pop(module, None)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import os
+import subprocess
 import sys
 from dataclasses import fields
 from pathlib import Path
@@ -246,7 +247,6 @@ def test_workers_get_few_variables_and_a_session(monkeypatch: pytest.MonkeyPatch
 def test_limits_of_the_system_are_set() -> None:
     """In a process of its own, since a limit that is set stays."""
     import resource
-    import subprocess
 
     limits = ServerLimits()
     code = (
@@ -262,6 +262,18 @@ def test_limits_of_the_system_are_set() -> None:
     assert (seconds, written, core) == (7, limits.written, 0)
     assert 0 < files <= job._MAX_FILES
     assert resource.getrlimit(resource.RLIMIT_CPU)[0] != 7
+
+
+@POSIX
+def test_a_lower_limit_of_the_system_stays() -> None:
+    code = (
+        "import resource\nfrom irsim_mcp import job\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 5000))\n"
+        "job._limit({'memory': 10**10, 'cpu': 7, 'written': 3000})\n"
+        "print(*resource.getrlimit(resource.RLIMIT_FSIZE))"
+    )
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert told.split() == ["1000", "5000"]
 
 
 def test_limits_are_those_documented() -> None:
