@@ -18,7 +18,7 @@ from tests.faults.table import ROOT, Fault, holder
 
 __all__ = ["Copy"]
 
-LEFT_OUT = (".*", "build", "dist", "evals-results", "*.egg-info")
+LEFT_OUT = (".git", ".venv", ".nox", ".irsim", ".*_cache", ".hypothesis", "build", "dist", "evals-results", "*.egg-info")
 LONGEST = 600.0
 """Seconds after which the tests of one fault are ended."""
 
