@@ -40,12 +40,11 @@ double top_speed(const OrcaSettings& options, const World& world, const State& s
 
 /// Toward the goal, at full speed or as `approach_time` says; zero without a goal or within `goal_threshold` of it. As
 /// in IR-SIM, an `omni` drive with unequal limits leans toward the axis of the world with the larger limit.
+///
+/// Args:
+///   way: To the goal, `distance` [m] away; not a number without one.
 Vec2 preferred_velocity(const OrcaSettings& options, const World& world, const State& state, int row, int object,
-                        double speed) {
-  const Goal& goal = state.destination(row);
-  if (std::isnan(goal.x)) return {};
-  Vec2 way = goal.position() - state.pose[row].position();
-  const double distance = norm(way);
+                        double speed, Vec2 way, double distance) {
   if (!(distance > 0.0 && distance >= world.goal_threshold[object])) return {};
   if (options.approach_time) speed = std::min(speed, distance / *options.approach_time);
   const Vec3& top = state.vel_max[row];
@@ -201,20 +200,27 @@ bool avoid_discs(const World& world, const State& state, int w, int self, int ot
   return true;
 }
 
-/// Whether objects of a behavior break ties: the share that one of a pair takes over is left to it by the other.
+/// Whether objects with these settings break ties: the share that one of a pair takes over is left to it by the other.
+bool breaks_ties(const OrcaSettings& options) { return !options.sidestep && !options.responsibility; }
 bool breaks_ties(const Behavior& behavior) {
-  if (const auto* orca = std::get_if<OrcaOptions>(&behavior)) return !orca->sidestep && !orca->responsibility;
+  if (const auto* orca = std::get_if<OrcaOptions>(&behavior)) return breaks_ties(*orca);
   const auto* avocado = std::get_if<AvocadoOptions>(&behavior);
-  return avocado != nullptr && !avocado->sidestep;
+  return avocado != nullptr && breaks_ties(*avocado);
 }
 
+/// Largest difference of the squared speeds of a mirrored pair, one of which is `speed2` [m^2/s^2]. Both velocities
+/// differ by at most 2 kLeanSpeed times the sum of both speeds, and no speed exceeds 1 + speed2.
+double same_speed2(double speed2) { return 4.0 * kLeanSpeed * (2.0 + speed2); }
+
 /// The share that an object takes over from another one of `all` if their motion is mirrored: some of that for one on
-/// its right, less than nothing for one on its left. `on_line` is set if the other one is on neither side.
+/// its right, less than nothing for one on its left. `on_line` is set if the other one, within `reach`, is on neither
+/// side.
 double lean(const World& world, const State& state, int w, const OrcaCrowd& all, int self, int m, double speed,
-            bool& on_line) {
+            double reach, bool& on_line) {
+  const OrcaAgent &agent = all.movers[self], &other = all.movers[m];
+  if (!may_mirror(other.position - agent.position, agent.velocity + other.velocity, reach, kLeanSpeed)) return 0.0;
   if (!breaks_ties(world.behaviors[all.group[m]].behavior)) return 0.0;
   const int first = w * world.objects;
-  const OrcaAgent &agent = all.movers[self], &other = all.movers[m];
   const std::optional<double> side =
       mirrored(state, {first + world.moving[self], first + world.moving[m], agent.velocity, other.velocity, speed,
                        agent.radius + other.radius, kLeanSpeed});
@@ -226,7 +232,7 @@ double lean(const World& world, const State& state, int w, const OrcaCrowd& all,
 
 /// Add half-planes of the nearest movers. Returns whether the object and one of them meet head-on, on one line.
 bool avoid_movers(const OrcaSettings& options, const World& world, const State& state, int w, int self, double speed,
-                  Reciprocity* reciprocity, OrcaCrowd& all) {
+                  const TieWay& way, Reciprocity* reciprocity, OrcaCrowd& all) {
   const int object = world.moving[self], group = all.member_of[self];
   const OrcaAgent& agent = all.movers[self];
   const int most = std::min(options.maxNeighbors, static_cast<int>(all.movers.size()) - 1);
@@ -238,19 +244,16 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
   std::vector<int>& before = all.neighbors_before[self];
   const int count = all.nearest.find(agent.position, options.neighborDist, most, before, seen, all.neighbors.data());
   before.resize(count);
-  const Nearest::Found* found = all.neighbors.data();
-  for (int* note = before.data(); found != all.neighbors.data() + count; ++found) *note++ = found->index;
-  const bool breaks = group >= 0 && breaks_ties(world.behaviors[group].behavior);
+  const Nearest::Found *near = all.neighbors.data(), *const end = near + count;
+  for (int* note = before.data(); near != end; ++near) *note++ = near->index;
   const int own_row = w * world.objects + object;
-  const TieWay way(state.destination(own_row).position() - state.pose[own_row].position(), speed);
-  // Ties are of origins, which are not always the centres.
-  const double off = 2.0 * all.off_origin,
-               slack = off > 0.0 ? off * (2.0 * options.neighborDist + norm(way.ahead)) : 0.0;
-  const double tolerance = kLeanSpeed * options.neighborDist;
+  // Few neighbors are ahead at the same speed, which is asked in as few instructions as possible.
+  const double speed2 = all.speed2[self], same = same_speed2(speed2);
   const int* groups = all.group.data();
   const bool routes = !state.routes.empty(), routed = state.route_of(own_row) != nullptr;
   bool on_line = false;
-  for (const int m : before) {
+  for (near = all.neighbors.data(); near != end; ++near) {
+    const int m = near->index;
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
     // not give way.
     const bool mutual = groups[m] >= 0 && (groups[m] == group || targets_role(world, world.moving[m], object));
@@ -262,11 +265,8 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
       share = reciprocity->share(m, taken);
       other = &taken;
     }
-    const OrcaAgent& there = all.movers[m];
-    const Vec2 offset = there.position - agent.position;
-    if (breaks && mutual && may_mirror(offset, agent.velocity + there.velocity, 1.0, tolerance) &&
-        way.may_meet(offset, squared(offset) - slack))
-      share = clip(share + lean(world, state, w, all, self, m, speed, on_line), 0.0, 1.0);
+    if (way.may_meet(all.movers[m].position, near->distance2) && std::fabs(all.speed2[m] - speed2) <= same && mutual)
+      share = clip(share + lean(world, state, w, all, self, m, speed, options.neighborDist, on_line), 0.0, 1.0);
     if (mutual && routes) {
       const Precedence order = precedence(world, state, w, object, world.moving[m]);
       if (order == Precedence::first) continue;
@@ -288,12 +288,15 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
   const Scene& scene = state.scenes[decision.w()];
   const Fixed& fixed = *scene.fixed;
   OrcaCrowd& all = crowd(world, state, decision.work, decision.w());
+  const bool breaks = breaks_ties(options);
   for (int k = 0; k < decision.count; ++k) {
     const int i = decision.objects[k], row = decision.row(k), self = scene.shapes->placed[i].object;
     const OrcaAgent& agent = all.movers[self];
     const double speed = top_speed(options, world, state, row, i);
     all.planes.clear();
-    const Vec2 straight = preferred_velocity(options, world, state, row, i, speed);
+    const Vec2 way = state.destination(row).position() - state.pose[row].position();
+    const double far = norm(way);
+    const Vec2 straight = preferred_velocity(options, world, state, row, i, speed, way, far);
     const Vec2 past = past_walls(decision, k, agent.position, agent.radius, kWallLook, straight, false);
     Vec2 preferred = sidestepped(decision, k, past, options.sidestep.value_or(0.0));
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
@@ -306,7 +309,10 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
     }
     const int hard = static_cast<int>(all.planes.size());
     if (reciprocity != nullptr) reciprocity->begin(k, self);
-    if (avoid_movers(options, world, state, decision.w(), self, speed, reciprocity, all)) {
+    // Ties are of origins, which are not always the centres.
+    const double off = 2.0 * all.off_origin;
+    const TieWay tie_way = breaks ? TieWay(agent.position, way, far, speed, off, options.neighborDist) : TieWay();
+    if (avoid_movers(options, world, state, decision.w(), self, speed, tie_way, reciprocity, all)) {
       preferred = keep_right(preferred, kLeanTurn);
     }
     Vec2 velocity;

@@ -33,6 +33,7 @@ OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w)
   const Shapes& shapes = *state.scenes[w].shapes;
   const std::size_t count = world.moving.size();
   all.movers.resize(count);
+  all.speed2.resize(count);
   all.group.assign(count, -1);
   all.member_of.assign(count, -1);
   if (all.neighbors_before.size() != count) all.neighbors_before.assign(count, {});
@@ -43,6 +44,7 @@ OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w)
     const Vec2 centre = state.pose[row].position() + rotate(shapes.centre[i], state.heading(row));
     all.movers[m] = {centre, near.discs[m].velocity, shapes.radius[i]};
     all.nearest.add(centre);
+    all.speed2[m] = squared(near.discs[m].velocity);
     off2 = std::max(off2, squared(shapes.centre[i]));
   }
   all.off_origin = std::sqrt(off2);

@@ -23,6 +23,7 @@ struct OrcaCrowd {
   std::vector<int> group;         // index in World::behaviors of the group that moves each now; -1 without one
   std::vector<int> member_of;     // the same, also for objects that are stopped or have a given command
   Nearest nearest;                // positions of the movers
+  std::vector<double> speed2;     // of the movers, squared [m^2/s^2]
   double off_origin = 0;          // largest distance of a mover's origin from its position [m]
   std::vector<std::vector<int>> neighbors_before;  // movers that each mover has avoided in an earlier step
   // for the object that decides

@@ -34,21 +34,35 @@ inline bool may_mirror(Vec2 offset, Vec2 sum, double reach, double tolerance) {
   return std::fabs(dot(sum, offset)) <= tolerance * reach;
 }
 
-/// How far an object comes on its way to the goal until ways that meet matter no more.
+/// How far an object comes on its way to the goal until ways that meet matter no more. It is made once for an object,
+/// and asked for each of its neighbors before anything else: that takes two products.
 struct TieWay {
-  Vec2 ahead;  // twice that, along the way [m]; not a number at the goal, where nothing meets
+  Vec2 ahead;               // twice that, along the way [m]
+  double from = kInfinity;  // product of `ahead` and where the object is, less what it may be wrong by [m^2]
 
-  /// `way`: to the goal [m]. `speed`: at which the object wants to move [m/s].
-  TieWay(Vec2 way, double speed) : ahead(way * (kAlmost * 2.0 * kTieHorizon * speed / norm(way))) {}
-  /// Whether the ways of a mirrored pair may meet soon: the cheapest part of the test.
+  /// Of an object that breaks no ties: nothing meets.
+  TieWay() = default;
+  /// Args:
+  ///   here: Where the object is [m].
+  ///   way: To the goal, `far` [m] away.
+  ///   speed: At which the object wants to move [m/s].
+  ///   off: How far `here` and where others are may be from the origins, together [m].
+  ///   reach: Others are nearer than this [m].
+  TieWay(Vec2 here, Vec2 way, double far, double speed, double off, double reach) {
+    const double length = 2.0 * kTieHorizon * speed;
+    ahead = way * (length / far);
+    const double wrong = off + kRounding * (std::fabs(here.x) + std::fabs(here.y) + reach);
+    from = dot(ahead, here) - wrong * (length + 2.0 * reach);
+  }
+  /// Whether the ways of a mirrored pair may meet soon: the cheapest part of the test. What is not a number may.
   ///
   /// Args:
-  ///   offset: To the other one [m].
-  ///   gap2: Its square [m^2], less what both may be wrong by.
-  bool may_meet(Vec2 offset, double gap2) const { return dot(ahead, offset) >= gap2; }
+  ///   there: Where the other one is [m].
+  ///   gap2: Square of the distance [m^2].
+  bool may_meet(Vec2 there, double gap2) const { return !(dot(ahead, there) - from < gap2); }
 
  private:
-  static constexpr double kAlmost = 1.0 + 1e-9;  // so that rounding does not decide
+  static constexpr double kRounding = 1e-12;  // error of a position, as a share of it, so that rounding does not decide
 };
 
 /// The sine of the angle from the way of the first object of a mirrored pair to the other one, positive on the left;
