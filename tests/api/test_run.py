@@ -54,6 +54,14 @@ def test_success_needs_no_reason() -> None:
     assert irsim.run(text=text()).reason is None
 
 
+@pytest.mark.parametrize("heading", [3.1, -3.1, 3.1 - 4 * np.pi])
+def test_the_error_of_a_heading_goes_the_short_way(heading: float) -> None:
+    arrives = ", goal_threshold: 0.01, arrive_mode: state"
+    scene = text(extra=DASH + arrives).replace("[1, 3]", f"[1, 3, {heading}]").replace("[4, 3]", "[4, 3, -3]")
+    [robot] = irsim.run(text=scene, steps=0).robots
+    assert robot.heading_error == pytest.approx(abs(np.angle(np.exp(1j * (heading + 3)))))
+
+
 def test_who_leaves_the_world_is_told_wherever_it_goes(tmp_path: Path) -> None:
     """Though it arrives, and also when it comes back: when, who, and what would keep it in."""
 

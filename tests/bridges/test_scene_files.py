@@ -66,6 +66,7 @@ def test_a_scene_has_bodies_map_and_walls(scene: SceneDescription) -> None:
     assert [type(part) for part in pair.parts] == [Circle, Polygon]
     assert isinstance(walls.parts[0], Line)
     assert walls.parts[0].closed
+    assert scene.walls
     assert (scene.low, scene.high) == ((-2, 1), (10, 9))
     assert scene.grid is not None
     assert scene.grid.occupied.shape == (24, 16)

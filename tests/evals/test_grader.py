@@ -14,7 +14,7 @@ from irsim_evals.cases.store import Answer, case_ids, case_of, golds_of, raw_cas
 from irsim_evals.cli.schema import schema_text
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.hues import discernible
-from irsim_evals.grader.limited import grade_answer, grade_folder
+from irsim_evals.grader.limited import grade_answer, grade_folder, run_limited
 from irsim_evals.grader.matching import Match, matches
 from irsim_evals.grader.outcome import Verdict
 from irsim_evals.grader.units import quantity
@@ -167,6 +167,14 @@ def test_a_grading_that_takes_too_long_is_ended() -> None:
     assert not verdict.strict
     assert "took more than" in verdict.outcomes[0].observed
     assert time.monotonic() - begin < 20
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
+@pytest.mark.parametrize(("kind", "most"), [("AS", 6 * 1024**3), ("FSIZE", 64 * 1024**2), ("CORE", 0), ("CPU", 15)])
+def test_a_grading_has_limits(kind: str, most: int) -> None:
+    import resource
+
+    assert run_limited(resource.getrlimit, (getattr(resource, f"RLIMIT_{kind}"),), 10, "asking")[0] == most
 
 
 def test_an_empty_answer_fails_every_case() -> None:

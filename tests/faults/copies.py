@@ -18,7 +18,18 @@ from tests.faults.table import ROOT, Fault, holder
 
 __all__ = ["Copy"]
 
-LEFT_OUT = (".git", ".venv", ".nox", ".irsim", ".*_cache", ".hypothesis", "build", "dist", "evals-results", "*.egg-info")
+LEFT_OUT = (
+    ".git",
+    ".venv",
+    ".nox",
+    ".irsim",
+    ".*_cache",
+    ".hypothesis",
+    "build",
+    "dist",
+    "evals-results",
+    "*.egg-info",
+)
 LONGEST = 600.0
 """Seconds after which the tests of one fault are ended."""
 
@@ -63,8 +74,13 @@ class Copy:
         os.utime(path, (self._stamp, self._stamp))
 
     def pytest(self, tests: Sequence[str]) -> tuple[int | None, str]:
-        """Run tests until one fails: pytest's exit code, None if they took too long; and what it printed."""
-        command = [str(self.python), "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
+        """Run tests until one fails: pytest's exit code, None if they took too long; and what it printed.
+
+        Args:
+            tests: What is run, slow tests too; all quick tests if it is empty.
+        """
+        command = [str(self.python), "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
+        command += ["-m", "", *tests] if tests else []
         with subprocess.Popen(
             command, cwd=self.root, text=True, stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True,

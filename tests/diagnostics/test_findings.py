@@ -1,0 +1,40 @@
+"""What every finding has, whoever reports it: its place, the word that was meant, an edit that is safe to make."""
+
+from __future__ import annotations
+
+import pytest
+
+from irsim.diagnostics.diagnostic import Diagnostic, Edit, format_path, nearest
+from irsim.episodes.episode import as_finding
+
+
+def finding(edit: Edit | None = None, given: object = None) -> Diagnostic:
+    return Diagnostic("unknown-key", "error", ("robot", 0, "shape"), "there is no such key", given=given, edit=edit)
+
+
+@pytest.mark.parametrize(
+    ("word", "meant"), [("DIFF", "diff"), ("Dif", "diff"), ("omni_anglar", "omni_angular"), ("boat", None), (7, None)]
+)
+def test_the_word_that_was_meant_is_found_in_any_case(word: object, meant: str | None) -> None:
+    assert nearest(word, ["diff", "omni", "omni_angular", "acker"]) == meant
+
+
+def test_places_are_told_as_in_python() -> None:
+    assert format_path(("robot", 0, "shape", "vertices", 3, 1)) == "robot[0].shape.vertices[3][1]"
+    assert format_path(()) == "(document)"
+
+
+def test_only_edits_that_are_surely_meant_are_told() -> None:
+    edit = Edit("rename", ("robot", 0, "shap"), "shape")
+    told = as_finding(finding(edit)).edit
+    assert told is not None
+    assert told.model_dump() == {"action": "rename", "path": "robot[0].shap", "value": "shape"}
+    assert as_finding(finding(Edit("remove", ("robot", 0, "shap"), safe=False))).edit is None
+
+
+def test_long_values_are_told_by_their_beginning() -> None:
+    assert as_finding(finding(given=[1, 2])).given == [1, 2]
+    told = as_finding(finding(given=list(range(1000)))).given
+    assert isinstance(told, str)
+    assert len(told) <= 201
+    assert told.startswith("[0, 1, 2")

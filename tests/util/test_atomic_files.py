@@ -1,0 +1,63 @@
+"""Files are written in one step: whoever looks sees the old content or the new one, and nothing else is left."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from irsim.common.files import replace_bytes, replacing, write_atomically, write_new
+
+
+def stop(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def test_a_write_that_is_stopped_leaves_what_was_there_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "result.json"
+    target.write_text("old")
+    monkeypatch.setattr(os, "replace", stop)
+    for write in (lambda: replace_bytes(target, b"new"), lambda: write_atomically(target, "new")):
+        with pytest.raises(KeyboardInterrupt):
+            write()
+    with pytest.raises(KeyboardInterrupt):
+        write_new(tmp_path / "other.json", "new")
+    assert [path.name for path in tmp_path.iterdir()] == ["result.json"]
+    assert target.read_text() == "old"
+
+
+def test_the_name_has_its_content_only_at_the_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target, seen = tmp_path / "result.json", []
+    target.write_text("old")
+    rename = os.replace
+
+    def look(source: str, name: str) -> None:
+        seen.append((target.read_text(), Path(source).read_text()))
+        rename(source, name)
+
+    monkeypatch.setattr(os, "replace", look)
+    replace_bytes(target, b"n", b"ew")
+    assert seen == [("old", "new")]
+    assert target.read_text() == "new"
+
+
+def test_an_encoder_that_fails_leaves_what_was_there_and_nothing_else(tmp_path: Path) -> None:
+    target = tmp_path / "film.gif"
+    target.write_text("old")
+
+    def encode(fails: bool) -> None:
+        with replacing(target) as temporary:
+            assert temporary.suffix == ".gif"
+            temporary.write_text("new")
+            if fails:
+                stop()
+
+    with pytest.raises(KeyboardInterrupt):
+        encode(fails=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["film.gif"]
+    assert target.read_text() == "old"
+    encode(fails=False)
+    assert target.read_text() == "new"
