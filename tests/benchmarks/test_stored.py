@@ -159,3 +159,9 @@ def test_decisions_of_behaviors_are_timed_in_an_episode_of_their_own(tmp_path: P
     [timed] = json.loads((tmp_path / "timing.json").read_text())["policies"].values()
     assert (timed["episodes"], timed["episodes_in_all"], timed["decisions"]) == (1, 2, first.steps - 1)
     assert 0 < timed["per_robot"]["mean_ms"] < timed["per_decision"]["mean_ms"]
+
+
+def test_the_folder_of_a_plan_is_named_by_twelve_digits_of_its_hash(suite: Path) -> None:
+    name, _, digits = default_folder(suite_plan(str(suite))).name.rpartition("-")
+    assert (name, len(digits)) == ("small", 12)
+    assert set(digits) <= set("0123456789abcdef")

@@ -86,3 +86,23 @@ def test_a_missing_file_and_an_unknown_template_are_said() -> None:
 
 def test_bundled_tasks_are_opened_by_their_name() -> None:
     assert open_task("goal_lidar") == open_task(bundled_task("goal_lidar"))
+
+
+def test_a_file_of_the_current_folder_comes_before_a_bundled_task_of_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name = bundled_tasks()[0]
+    own = yaml.safe_load(bundled_task(name).read_text(encoding="utf-8")) | {"version": 77}
+    (tmp_path / name).write_text(yaml.safe_dump(own))
+    assert open_task(name)[0].version != 77
+    monkeypatch.chdir(tmp_path)
+    assert open_task(name)[0].version == 77
+
+
+def test_an_unknown_key_is_marked_itself(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(bundled_task(bundled_tasks()[0]).read_text(encoding="utf-8") + "\nnumbr: 5\n")
+    with pytest.raises(TaskError) as refused:
+        open_task(path)
+    [found] = refused.value.diagnostics
+    assert (found.code, found.column, found.length) == ("unknown-key", 1, len("numbr"))

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import base64
+import hashlib
 import json
 import re
 from collections import Counter
@@ -11,12 +13,12 @@ from typer.testing import CliRunner
 import irsim
 from irsim.cli.app import app
 from irsim.common.files import TargetError
-from irsim.runs import Run, RunError
+from irsim.runs import Run, RunError, replay
 from irsim.runs.replay.page import bundle, page
 from tests.replay.conftest import HOSTILE, recorded, scene
 from tests.replay.reading import data_in, unpacked
 
-SOURCES = Path(irsim.__file__).parent / "replay" / "web"
+SOURCES = Path(replay.__file__).with_name("web")
 
 
 def test_modules_share_no_names() -> None:
@@ -29,8 +31,18 @@ def test_modules_share_no_names() -> None:
 def test_every_module_is_in_the_page() -> None:
     text = bundle()
     assert not re.search(r"^(import|export)\b", text, re.MULTILINE)
-    for path in SOURCES.glob("*.js"):
+    modules = sorted(SOURCES.glob("*.js"))
+    assert len(modules) > 5
+    for path in modules:
         assert path.read_text().splitlines()[0] in text, path.name
+
+
+def test_the_policy_of_the_page_lists_the_hashes_of_what_it_holds() -> None:
+    text = page(b"x")
+    for kind, tag in (("style", "style"), ("script", "script")):
+        inside = re.findall(rf"<{tag}>(.*?)</{tag}>", text, re.DOTALL)
+        known = [base64.b64encode(hashlib.sha256(part.encode()).digest()).decode() for part in inside]
+        assert re.findall(rf"{kind}-src 'sha256-(.*?)'", text) == known
 
 
 def test_the_empty_page() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+import zipfile
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -155,3 +156,16 @@ def test_runs_with_python_behaviors_have_every_row(room: Path) -> None:
     trace = open_run(str(irsim.run(room, seed=0, steps=43, record=True).run_id)).trace()
     np.testing.assert_array_equal(trace.step, np.arange(44))
     np.testing.assert_allclose(trace.pose[:, 0, 2], 0.03 * np.arange(44), atol=1e-12)
+
+
+def test_a_piece_that_was_compressed_is_not_read(room: Path) -> None:
+    run = open_run(str(irsim.run(room, seed=4, steps=5, record=True).run_id))
+    [piece] = run.folder.glob("trace-*")
+    with zipfile.ZipFile(piece) as archive:
+        entries = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(piece, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in entries.items():
+            archive.writestr(name, content)
+        archive.writestr("zeros", bytes(10**6))
+    with pytest.raises(RunError, match="compressed or too large"):
+        open_run(run.id).trace()
