@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -104,6 +105,17 @@ def test_states_cross_npz(tmp_path: Path) -> None:
     for one, two in zip(states, again, strict=True):
         assert np.array_equal(one.pose, two.pose)
         assert np.array_equal(one.ranges["robot_0/0"], two.ranges["robot_0/0"])
+
+
+@pytest.mark.parametrize(
+    "part",
+    [Line(np.zeros((1, 2))), Polygon(np.zeros((2, 2))), Circle((0.0, 0.0), 0.0)],
+    ids=["line of one point", "polygon of two corners", "circle without a radius"],
+)
+def test_bodies_without_extent_are_refused(scene: SceneDescription, part: Any) -> None:
+    data = scene_as_json(replace(scene, agents=(replace(scene.agents[1], index=0, parts=(part,)),)))
+    with pytest.raises(BridgeError, match="of agent 0 has"):
+        scene_of(data)
 
 
 @pytest.mark.parametrize(

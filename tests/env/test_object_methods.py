@@ -114,6 +114,8 @@ def test_checks_of_arrival(make: Make) -> None:
     robot.set_goal([[1, 1, 0], [8, 8, 0]])
     robot.check_arrive_status()
     assert (robot.arrive_flag, robot.goal[:, 0].tolist()) == (False, [8, 8, 0])
+    robot.check_arrive_status()
+    assert not robot.arrive_flag, "it is not there yet"
     robot.set_goal([1, 1, 0])
     robot.check_status()
     assert robot.arrive_flag
