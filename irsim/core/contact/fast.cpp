@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "collision/touch.hpp"
+#include "contact/near.hpp"
 #include "contact/parts.hpp"
 #include "contact/solver.hpp"
 #include "phases.hpp"
@@ -40,12 +41,9 @@ class FastBodies {
   }
 
  private:
-  /// How far the turn and the bend of its way carry the sides of a body out of the straight motion of its origin [m]. A
-  /// turn carries them over what is outside of the disc that always stays in the body.
+  /// How far the turn and the bend of its way carry the sides of a body out of the straight motion of its origin [m].
   double swing(int object, const Stride& stride) const {
-    const Shapes& shapes = *scene_.shapes;
-    const double outer = norm(shapes.centre[object]) + shapes.radius[object];
-    const double way = std::max(0.0, std::min(std::fabs(stride.turn) * outer, outer - bodies_.inner[object]));
+    const double way = way_of_turn(*scene_.shapes, bodies_, object, stride.turn);
     return std::isfinite(stride.by.x + stride.by.y) ? way + 2.0 * stride.bulge(0.0) : 0.0;
   }
   Stride stride(int i) const {
@@ -70,19 +68,11 @@ class FastBodies {
 
   /// The pairs of objects whose boxes in the step come within `reach` of each other, and of which one can be pushed.
   void find_near(double reach) {
-    std::vector<std::pair<int, int>>& out = buffers_.met;
-    out.clear();
-    const auto add = [&](int i, int j) {
-      if (world_.unobstructed[i] || world_.unobstructed[j]) return;
-      if (world_.dynamics[i].pushable || world_.dynamics[j].pushable) out.emplace_back(std::min(i, j), std::max(i, j));
-    };
     bound_steps(world_, state_, w_, scene_.ways);
-    const auto box = [&](int i) { return scene_.ways[scene_.shapes->placed[i].object]; };
-    if (!world_.fixed_objects.empty()) {
-      for (const int i : world_.moving) scene_.fixed->grid.query(grown(box(i), reach), [&](int j) { add(i, j); });
-    }
-    if (world_.moving.size() > 1) scene_.sweep.pairs([&](int i) { return grown(box(i), 0.5 * reach); }, add);
-    std::sort(out.begin(), out.end());
+    const auto grown_by = [&](double by) {
+      return [this, by](int i) { return grown(scene_.ways[scene_.shapes->placed[i].object], by); };
+    };
+    near_pairs(world_, scene_, grown_by(reach), grown_by(0.5 * reach), true, buffers_.met);
   }
   /// List the near objects of each object.
   void link() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "collision/touch.hpp"
+#include "contact/near.hpp"
 #include "contact/solver.hpp"
 #include "phases.hpp"
 
@@ -42,7 +43,9 @@ class Holder {
     }
     const bool deep = are_deep();
     if (!deep && !(2.0 * far > kFast * (bodies_.lightest + bodies_.thinnest))) return false;
-    find_met();
+    const bool crowded = work_.contacts.pairs.size() > kMaxPairsHeld;
+    const auto box = [&](int i) { return box_of(i); };
+    near_pairs(world_, scene_, box, box, !crowded, work_.contacts.met);
     std::vector<double>& until = work_.contacts.until;
     until.assign(world_.objects, 1.0);
     const Resolution none{0, 0, 0.0, world_.step_time};
@@ -78,11 +81,9 @@ class Holder {
   const Stride& stride(int i) const {
     return world_.is_static[i] ? rest_ : work_.contacts.went[scene_.shapes->placed[i].object];
   }
-  /// How far a point of a body goes at most [m]. Walls round the world have no radius.
+  /// How far a point of a body goes at most [m].
   double way_of(int i, const Stride& stride) const {
-    const Shapes& shapes = *scene_.shapes;
-    const double outer = norm(shapes.centre[i]) + shapes.radius[i];
-    return norm(stride.by) + std::max(0.0, std::min(std::fabs(stride.turn) * outer, outer - bodies_.inner[i]));
+    return norm(stride.by) + way_of_turn(*scene_.shapes, bodies_, i, stride.turn);
   }
   Box box_of(int i) const {
     const Shapes& shapes = *scene_.shapes;
@@ -91,20 +92,6 @@ class Holder {
     Box box = box_around(way.from.position(), reach);
     box.include(box_around(way.from.position() + way.by, reach));
     return box;
-  }
-  void find_met() {
-    std::vector<std::pair<int, int>>& met = work_.contacts.met;
-    met.clear();
-    const auto add = [&](int i, int j) {
-      if (world_.unobstructed[i] || world_.unobstructed[j]) return;
-      if (world_.dynamics[i].pushable || world_.dynamics[j].pushable) met.emplace_back(std::min(i, j), std::max(i, j));
-    };
-    if (!world_.fixed_objects.empty()) {
-      for (const int i : world_.moving) scene_.fixed->grid.query(box_of(i), [&](int j) { add(i, j); });
-    }
-    const bool crowded = work_.contacts.pairs.size() > kMaxPairsHeld;
-    if (world_.moving.size() > 1 && !crowded) scene_.sweep.pairs([&](int i) { return box_of(i); }, add);
-    std::sort(met.begin(), met.end());
   }
   /// The core of a body that can be pushed, or all of another one.
   Moving moving(int i) const {
