@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
+from irsim.simulation.build import steps_until
 from irsim.simulation.events import first_collisions, first_events
 from irsim.simulation.outcome import robot_outcomes
 
@@ -56,6 +56,6 @@ def ended_before(env: Env) -> int | None:
         hits = first_collisions(env.simulation, env.events)
         ends.append(max((arrivals[name] if name in arrivals else hits[name]).step for name in outcomes))
     if limit is not None:
-        ends.append(math.ceil(limit / env.step_time - 1e-9))
+        ends.append(steps_until(limit, env.step_time))
     ended = min(ends, default=count)
     return ended if ended < count else None

@@ -7,10 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.bridges.scene import Agent, Circle, Grid, Lidar, Line, Part, Polygon, SceneDescription
+import irsim._core as core
+from irsim.bridges.scene import Agent, Grid, Lidar, SceneDescription
 from irsim.bridges.state import WorldState
 from irsim.common.arrays import Floats
+from irsim.common.outline import BodyPart, Cells, Polygon, outline
 from irsim.common.version import version
+from irsim.components.maps._site import OCCUPIED
 from irsim.objects.obstacle_map import grid_values
 from irsim.options.color_values import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
@@ -19,8 +22,6 @@ from irsim.simulation.trace import sensors
 
 __all__ = ["agent_rows", "describe_scene", "world_state"]
 
-_OCCUPIED = 50.0
-"""Occupancy above which a cell is solid, of 100."""
 _GREY = (0.5, 0.5, 0.5)
 
 
@@ -49,7 +50,7 @@ def describe_scene(simulation: Simulation) -> SceneDescription:
 def agent_rows(simulation: Simulation) -> NDArray[np.int64]:
     """(N,) rows of the first world that are agents: all objects but the map."""
     records = simulation.scenario.objects
-    return np.array([i for i, record in enumerate(records) if record.shape.name != "map"], dtype=np.int64)
+    return np.array([i for i, record in enumerate(records) if not record.is_map], dtype=np.int64)
 
 
 def world_state(simulation: Simulation, rows: NDArray[np.int64]) -> WorldState:
@@ -121,19 +122,9 @@ def _pose(values: Any) -> tuple[float, float, float]:
     return x, y, 0.0 if np.isnan(yaw) else yaw
 
 
-def _parts(state: Any, row: int) -> tuple[Part, ...]:
-    found: list[Part] = []
-    for part, kind in enumerate(state.parts(row)):
-        if kind == "circle":
-            x, y, radius = state.circle(row, part, False)
-            found.append(Circle((float(x), float(y)), float(radius)))
-            continue
-        corners: Floats = np.array(state.vertices(row, part, False), dtype=np.float64)[:, :2]
-        if kind == "polygon":
-            found.append(Polygon(_counterclockwise(corners)))
-        else:
-            found.append(Line(corners, closed=kind == "room"))
-    return tuple(found)
+def _parts(state: core.State, row: int) -> tuple[BodyPart, ...]:
+    found = [part for part in outline(state, row).parts if not isinstance(part, Cells)]
+    return tuple(Polygon(_counterclockwise(part.corners)) if isinstance(part, Polygon) else part for part in found)
 
 
 def _counterclockwise(corners: Floats) -> Floats:
@@ -171,7 +162,7 @@ def _grid(simulation: Simulation) -> Grid | None:
     if values is None or grid is None:
         return None
     cell = float(grid.cell[0]), float(grid.cell[1])
-    return Grid(values > _OCCUPIED, cell, (float(grid.origin[0]), float(grid.origin[1])))
+    return Grid(values > OCCUPIED, cell, (float(grid.origin[0]), float(grid.origin[1])))
 
 
 def _color(record: ObjectRecord) -> tuple[float, float, float]:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from irsim.bridges.scene import Agent, Circle, Polygon
+from irsim.bridges.scene import Agent
+from irsim.common.outline import Outline
 
 __all__ = ["Box", "box_of"]
 
@@ -33,13 +34,7 @@ class Box:
 
 def box_of(agent: Agent) -> Box:
     """The smallest such box around a footprint; around its circle if it has none."""
-    low, high = np.full(2, np.inf), np.full(2, -np.inf)
-    for part in agent.parts:
-        if isinstance(part, Circle):
-            points = np.array(part.center) + np.array([[-part.radius] * 2, [part.radius] * 2])
-        else:
-            points = part.corners if isinstance(part, Polygon) else part.points
-        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+    low, high = Outline(agent.parts).box()
     if not np.isfinite(low).all():
         low, high = np.full(2, -agent.radius), np.full(2, agent.radius)
     (ahead, left), (length, width) = (low + high) / 2, np.maximum(high - low, _THINNEST)

@@ -4,57 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
+from irsim.common.outline import BodyPart
 
-__all__ = ["SCENE_VERSION", "Agent", "Circle", "Grid", "Lidar", "Line", "Part", "Polygon", "SceneDescription"]
+__all__ = ["SCENE_VERSION", "Agent", "Grid", "Lidar", "SceneDescription"]
 
 SCENE_VERSION = 1
 """Version of the files of scenes and states."""
-
-
-@dataclass(frozen=True)
-class Circle:
-    """A disk of a footprint.
-
-    Attributes:
-        center: (2,) [m], body frame.
-        radius: [m].
-    """
-
-    center: tuple[float, float]
-    radius: float
-
-
-@dataclass(frozen=True)
-class Polygon:
-    """A simple polygon of a footprint, convex or not.
-
-    Attributes:
-        corners: (K, 2) counterclockwise, without a repeated first corner [m], body frame.
-    """
-
-    corners: Floats
-
-
-@dataclass(frozen=True)
-class Line:
-    """A polyline without thickness, such as a wall.
-
-    Attributes:
-        points: (K, 2) [m], body frame.
-        closed: Whether the last point is joined to the first one.
-    """
-
-    points: Floats
-    closed: bool = False
-
-
-Part: TypeAlias = Circle | Polygon | Line
 
 
 @dataclass(frozen=True)
@@ -119,7 +80,7 @@ class Agent:
     moves: bool
     pose: tuple[float, float, float]
     goals: tuple[tuple[float, float, float], ...]
-    parts: tuple[Part, ...]
+    parts: tuple[BodyPart, ...]
     radius: float
     low: tuple[float, ...]
     high: tuple[float, ...]

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from irsim.bridges.scene import Agent, Circle, Lidar, Line, Polygon, SceneDescription
+from irsim.bridges.scene import Agent, Lidar, SceneDescription
+from irsim.common.outline import Circle, Line, Polygon
 
 __all__ = ["MAX_CELLS", "check_scene", "check_states", "read_arrays"]
 

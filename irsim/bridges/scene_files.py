@@ -15,10 +15,11 @@ import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.scene import SCENE_VERSION, Agent, Circle, Grid, Lidar, Line, Part, Polygon, SceneDescription
+from irsim.bridges.scene import SCENE_VERSION, Agent, Grid, Lidar, SceneDescription
 from irsim.bridges.scene_checks import MAX_CELLS, check_scene, check_states, read_arrays
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.common.files import replacing
+from irsim.common.outline import BodyPart, Circle, Line, Polygon
 
 __all__ = [
     "feedback_as_json",
@@ -107,7 +108,7 @@ def _unusable(why: str) -> BridgeError:
     )
 
 
-def _part_as_json(part: Part) -> dict[str, Any]:
+def _part_as_json(part: BodyPart) -> dict[str, Any]:
     if isinstance(part, Circle):
         return {"circle": [*part.center, part.radius]}
     if isinstance(part, Polygon):
@@ -115,7 +116,7 @@ def _part_as_json(part: Part) -> dict[str, Any]:
     return {"line": part.points.tolist(), "closed": part.closed}
 
 
-def _part(data: Mapping[str, Any]) -> Part:
+def _part(data: Mapping[str, Any]) -> BodyPart:
     if "circle" in data:
         x, y, radius = _numbers(data["circle"], 3)
         return Circle((x, y), radius)

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from irsim.components.maps._site import OCCUPIED
 from irsim.env import queries
 from irsim.env.construct import ObjectBase, ObjectGroup
 from irsim.objects.lifecycle import alone
@@ -16,7 +17,6 @@ from irsim.objects.views import views
 from irsim.scenario.open import open_scenario, or_raise
 from irsim.scenario.read import read
 from irsim.simulation.active_env import last_used
-from irsim.simulation.occupancy import OCCUPIED
 from irsim.simulation.simulation import Simulation
 
 __all__ = ["EnvConfig", "ObjectFactory"]
@@ -184,11 +184,11 @@ class EnvConfig:
         """
         env = self._env
         env.reset(random=True)
-        maps = [view for view in env.obstacle_list if view.shape == "map"]
-        obstacles = [view for view in env.obstacle_list if view.shape != "map"]
+        maps = [view for view in env.obstacle_list if view.record.is_map]
+        obstacles = [view for view in env.obstacle_list if not view.record.is_map]
         members: dict[Any, list[ObjectView]] = {}
         for view in env.objects:
-            if view.shape != "map":
+            if not view.record.is_map:
                 members.setdefault(view.group, []).append(view)
         groups = [ObjectGroup(views, number) for number, views in members.items()]
         plot = None if env.headless else env._env_plot

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.components.maps._site import OCCUPIED
 from irsim.objects.base import column
 from irsim.objects.obstacle_map import grid_values
 from irsim.objects.setters import refuse
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["EnvParam", "PathParam", "WorldParam", "WorldView"]
 
-OCCUPIED_ABOVE = 50
-"""Cells with an occupancy [%] above this count as occupied."""
 _CONTROL_MODES = ("auto", "keyboard")
 _CONTACT_SETTINGS = ("gravity", "friction", "restitution", "drive_tau")
 _SCENARIO_SETTINGS = ("name", "width", "height", "offset", "plot_parse", "depth")
@@ -311,7 +310,7 @@ class WorldView(_Clock):
         if values is None:
             return None, None, None
         values = values[::mdownsample, ::mdownsample]
-        index = np.array(np.nonzero(values > OCCUPIED_ABOVE), dtype=np.int64)
+        index = np.array(np.nonzero(values > OCCUPIED), dtype=np.int64)
         cell = np.array([[self.width / values.shape[0]], [self.height / values.shape[1]]])
         return values, index, np.array(self.offset)[:2, None] + (index + 0.5) * cell
 
@@ -362,7 +361,7 @@ class WorldView(_Clock):
     def obstacle_index(self) -> NDArray[np.int64] | None:
         """Indices i, j of the occupied cells, (2, M); None without a map."""
         values = self.grid_map
-        return None if values is None else np.array(np.nonzero(values > OCCUPIED_ABOVE), dtype=np.int64)
+        return None if values is None else np.array(np.nonzero(values > OCCUPIED), dtype=np.int64)
 
     @property
     def obstacle_positions(self) -> NDArray[np.float64] | None:

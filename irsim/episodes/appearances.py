@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from irsim.common.text import listed, quoted, seconds
+from irsim.simulation.build import steps_until
 
 if TYPE_CHECKING:
     from irsim.env import Env
@@ -15,8 +15,6 @@ __all__ = ["absence", "appearances_message", "is_absent"]
 
 _MAX_NAMED = 3
 """Number of objects that a sentence names."""
-_ROUNDING = 1e-9
-"""Rounding error of a time, in steps."""
 
 
 def is_absent(env: Env, view: ObjectView) -> bool:
@@ -29,7 +27,7 @@ def absence(env: Env, view: ObjectView) -> str:
     if int(env.simulation.appeared[view.row]) < -1:
         return f"its recording ended at {seconds(view.record.vanish_time or 0.0)}"
     due = view.record.appear_time
-    if int(env.simulation.count[0]) < math.ceil(due / env.step_time - _ROUNDING):
+    if int(env.simulation.count[0]) < steps_until(due, env.step_time):
         return f"it appears at {seconds(due)}"
     return f"since {seconds(due)} there has been no room for it at its start"
 
@@ -43,7 +41,7 @@ def appearances_message(env: Env) -> str | None:
             continue  # a recording waits for no room
         if appeared < 0:
             missing.append(f"{quoted(view.name)} did not appear ({absence(env, view)})")
-        elif appeared > math.ceil(due / env.step_time - _ROUNDING):
+        elif appeared > steps_until(due, env.step_time):
             waited = seconds(appeared * env.step_time - due)
             late.append(f"{quoted(view.name)} appeared {waited} late, when there was room at its start")
     found = [listed(names, _MAX_NAMED) for names in (late, missing) if names]

@@ -27,6 +27,7 @@ from irsim.scenario.read import read
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document, load_path, load_text
+from irsim.simulation.build import steps_until
 
 if TYPE_CHECKING:
     from irsim.simulation.episode_recorder import EpisodeRecorder
@@ -231,7 +232,7 @@ def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: 
         return steps, "argument"
     limit = scenario.world.time_limit
     seconds = default_time_limit(scenario, env) if limit is None else limit
-    horizon = math.ceil(seconds / env.step_time - 1e-9)
+    horizon = steps_until(seconds, env.step_time)
     if most is not None and horizon > most:
         return most, "limits"
     return horizon, "default" if limit is None else "scenario"

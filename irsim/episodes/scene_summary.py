@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from irsim.common.text import quoted
-from irsim.components.maps._grid import MapCells, Walls
+from irsim.components.maps._grid import Walls
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["MAP_OR_WALLS", "called", "counts_of", "in_words"]
-
-MAP_OR_WALLS = (MapCells, Walls)
-"""Shapes of objects that ``world`` options create, not an entry under ``robot`` or ``obstacle``."""
+__all__ = ["called", "counts_of", "in_words"]
 
 
 def called(scenario: ResolvedScenario, name: str | None) -> str:
     """What a sentence calls an object: its name in quotes, or ``the map``, ``the walls round the world``."""
     record = next((item for item in scenario.objects if item.name == name), None)
-    if record is None or not isinstance(record.shape, MAP_OR_WALLS):
+    if record is None or not record.is_terrain:
         return quoted(name)
     return "the walls round the world" if isinstance(record.shape, Walls) else "the map"
 
@@ -27,7 +24,7 @@ def counts_of(scenario: ResolvedScenario) -> dict[str, int]:
     ``map_occupied``, the number of occupied cells; the last only if it is the same for every seed.
     """
     robots = len(scenario.robots())
-    scenery = [record for record in scenario.objects if isinstance(record.shape, MAP_OR_WALLS)]
+    scenery = [record for record in scenario.objects if record.is_terrain]
     counts = {
         "robots": robots,
         "obstacles": len(scenario.objects) - robots - len(scenery),

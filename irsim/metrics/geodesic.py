@@ -9,8 +9,8 @@ import numpy as np
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.common.outline import Circle, Polygon, outline
 from irsim.metrics.roles import STATIC, kinds_of
-from irsim.navigation.outlines import placed_parts
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
@@ -44,7 +44,7 @@ class Geodesics:
         first = world * simulation.objects
         records = simulation.scenario.objects
         standing = [first + int(i) for i in np.flatnonzero(kinds_of(records) == STATIC) if records[i].static]
-        parts = [part for row in standing for part in placed_parts(simulation.state, row, world_frame=True)]
+        parts = [part for row in standing for part in outline(simulation.state, row, world_frame=True).core()]
         self._bounds = simulation.scenario.world.bounds
         self._empty = not parts
         self._parts = parts
@@ -109,13 +109,12 @@ class Geodesics:
 
 def inscribed_radius(simulation: Simulation, row: int) -> float:
     """Radius [m] of the largest disc about the origin of a body inside one of its parts; 0 if the origin is outside."""
-    state, best = simulation.state, 0.0
-    for part, kind in enumerate(state.parts(row)):
-        if kind == "circle":
-            x, y, radius = state.circle(row, part, False)
-            best = max(best, radius - math.hypot(x, y))
-        elif kind == "polygon":
-            best = max(best, _depth_of_origin(np.asarray(state.vertices(row, part, False))))
+    best = 0.0
+    for part in outline(simulation.state, row).parts:
+        if isinstance(part, Circle):
+            best = max(best, part.radius - math.hypot(*part.center))
+        elif isinstance(part, Polygon):
+            best = max(best, _depth_of_origin(part.corners))
     return best
 
 

@@ -11,9 +11,10 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 import irsim._core as core
+from irsim.components.maps._site import OCCUPIED
 from irsim.navigation.outlines import body_parts, parts_of
 from irsim.objects.geometry import ObjectBody
-from irsim.simulation.occupancy import OCCUPIED, grid_occupied
+from irsim.simulation.occupancy import grid_occupied
 
 __all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarsen", "terrain_of", "world_map"]
 

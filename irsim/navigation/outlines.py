@@ -9,9 +9,10 @@ import numpy as np
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.common.outline import outline
 from irsim.objects.geometry import ObjectBody
 
-__all__ = ["body_parts", "parts_of", "placed_parts"]
+__all__ = ["body_parts", "parts_of"]
 
 
 def parts_of(thing: Any) -> list[Any]:
@@ -24,7 +25,7 @@ def parts_of(thing: Any) -> list[Any]:
         TypeError: The thing has no geometry.
     """
     if isinstance(thing, ObjectBody):
-        return placed_parts(thing._simulation.state, thing.row, world_frame=True)
+        return outline(thing._simulation.state, thing.row, world_frame=True).core()
     return list(_parts(_geometry(thing, "geometry")))
 
 
@@ -39,30 +40,8 @@ def body_parts(thing: Any) -> list[Any]:
         TypeError: The thing has no geometry.
     """
     if isinstance(thing, ObjectBody):
-        return placed_parts(thing._simulation.state, thing.row, world_frame=False)
+        return outline(thing._simulation.state, thing.row).core()
     return list(_parts(_geometry(thing, "original_geometry")))
-
-
-def placed_parts(state: core.State, row: int, *, world_frame: bool) -> list[Any]:
-    """Return the body of one row of the state as parts of the core.
-
-    Args:
-        state: State of the simulation.
-        row: Row of the object.
-        world_frame: Return the parts at the present pose; otherwise in the body frame.
-    """
-    parts: list[Any] = []
-    for part, kind in enumerate(state.parts(row)):
-        if kind == "circle":
-            x, y, radius = state.circle(row, part, world_frame)
-            parts.append(core.Circle(radius=radius, center=(x, y)))
-        elif kind == "cells":
-            cells = state.cells(row)
-            parts += [] if cells is None else [core.GridCells(grid=cells)]
-        else:
-            made: Any = {"polygon": core.Polygon, "room": core.Room}.get(kind, core.Linestring)
-            parts.append(made(vertices=state.vertices(row, part, world_frame).tolist()))
-    return parts
 
 
 def _geometry(thing: Any, attribute: str) -> Any:

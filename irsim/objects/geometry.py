@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from irsim.common.arrays import Floats
+from irsim.common.outline import Circle, Polygon, outline, points_of
 from irsim.functions.inequalities import polygon_inequality
 from irsim.objects.base import SimObject, column
 from irsim.objects.neighbors import AVOIDANCE_MARGIN, centres
@@ -32,15 +33,13 @@ def convex_inequality(simulation: Simulation, row: int, *, world_frame: bool) ->
         cone ``"Rpositive"``. A circle has ``G = [[1, 0], [0, 1], [0, 0]]``, ``h = [cx, cy, -r]`` and the cone
         ``"norm2"``. Other areas give None, None, None, False; lines and maps give four times None.
     """
-    state = simulation.state
-    kinds = state.parts(row)
-    if kinds == ["circle"]:
-        x, y, radius = state.circle(row, 0, world_frame)
-        return np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]), np.array([[x], [y], [-radius]]), "norm2", True
-    if kinds != ["polygon"]:
-        return None, None, None, None if len(kinds) == 1 else False
-    points = state.vertices(row, 0, world_frame)
-    found = polygon_inequality(points, MAX_STRAIGHT_CORNER)
+    match outline(simulation.state, row, world_frame=world_frame).parts:
+        case (Circle((x, y), radius),):
+            return np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]), np.array([[x], [y], [-radius]]), "norm2", True
+        case (Polygon(points),):
+            found = polygon_inequality(points, MAX_STRAIGHT_CORNER)
+        case parts:
+            return None, None, None, None if len(parts) == 1 else False
     return (None, None, None, False) if found is None else (*found, "Rpositive", True)
 
 
@@ -70,9 +69,7 @@ class ObjectBody(SimObject):
     @property
     def part_vertices(self) -> list[Floats] | None:
         """Outlines of the parts of a compound, (2, M) each, world frame; None for simple shapes."""
-        if self.shape != "compound":
-            return None
-        return [self._part(i, world_frame=True) for i in range(len(self._simulation.state.parts(self.row)))]
+        return self._outlines(world_frame=True) if self.shape == "compound" else None
 
     @property
     def length(self) -> float:
@@ -87,16 +84,12 @@ class ObjectBody(SimObject):
     @property
     def geometry(self) -> Any:
         """The body as a shapely geometry, world frame (circles as polygons of 64 vertices)."""
-        from irsim.objects.shapely_geometry import shapely_geometry
-
-        return shapely_geometry(self._simulation, self.row, world_frame=True)
+        return outline(self._simulation.state, self.row, world_frame=True).shapely()
 
     @property
     def original_geometry(self) -> Any:
         """The body as a shapely geometry, body frame."""
-        from irsim.objects.shapely_geometry import shapely_geometry
-
-        return shapely_geometry(self._simulation, self.row, world_frame=False)
+        return outline(self._simulation.state, self.row).shapely()
 
     @property
     def centroid(self) -> Floats:
@@ -119,9 +112,7 @@ class ObjectBody(SimObject):
     @property
     def original_part_vertices(self) -> list[Floats] | None:
         """Outlines of the parts of a compound, (2, M) each, body frame; None for simple shapes."""
-        if self.shape != "compound":
-            return None
-        return [self._part(i, world_frame=False) for i in range(len(self._simulation.state.parts(self.row)))]
+        return self._outlines(world_frame=False) if self.shape == "compound" else None
 
     @property
     def goal_vertices(self) -> Floats | None:
@@ -169,26 +160,22 @@ class ObjectBody(SimObject):
         centre: list[float] = centres(self._simulation, world)[index].tolist()
         return centre
 
-    def _part(self, part: int, *, world_frame: bool) -> Floats:
-        state = self._simulation.state
-        if state.parts(self.row)[part] == "circle":
-            x, y, radius = state.circle(self.row, part, world_frame)
-            turn = float(self._simulation.pose[self.row, 2]) if world_frame else 0.0
-            angles = turn - np.arange(_CIRCLE_POINTS) * (2 * math.pi / _CIRCLE_POINTS)
-            return np.vstack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
-        return state.vertices(self.row, part, world_frame).T.copy()
+    def _outlines(self, *, world_frame: bool) -> list[Floats]:
+        """(2, M) points of each part; those of a circle run clockwise from its heading."""
+        turn = float(self._simulation.pose[self.row, 2]) if world_frame else 0.0
+        angles = turn - np.arange(_CIRCLE_POINTS) * (2 * math.pi / _CIRCLE_POINTS)
+        found: list[Floats] = []
+        for part in outline(self._simulation.state, self.row, world_frame=world_frame).parts:
+            if isinstance(part, Circle):
+                (x, y), radius = part.center, part.radius
+                found.append(np.vstack([x + radius * np.cos(angles), y + radius * np.sin(angles)]))
+            else:
+                found.append(points_of(part).T.copy())
+        return found
 
     def _outline(self, *, world_frame: bool) -> Floats | None:
-        return None if self.shape in ("compound", "map") else self._part(0, world_frame=world_frame)
+        return None if self.shape in ("compound", "map") else self._outlines(world_frame=world_frame)[0]
 
     def _extent(self, axis: int) -> float:
-        state = self._simulation.state
-        low, high = math.inf, -math.inf
-        for part, kind in enumerate(state.parts(self.row)):
-            if kind == "circle":
-                *centre, radius = state.circle(self.row, part, False)
-                low, high = min(low, centre[axis] - radius), max(high, centre[axis] + radius)
-            else:
-                along = state.vertices(self.row, part, False)[:, axis]
-                low, high = min(low, float(along.min())), max(high, float(along.max()))
-        return high - low
+        low, high = outline(self._simulation.state, self.row).box()
+        return float(high[axis] - low[axis])

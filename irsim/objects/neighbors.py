@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.arrays import Floats
+from irsim.common.outline import Circle, outline
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
@@ -52,10 +53,9 @@ def discs(simulation: Simulation, world: int) -> Floats:
 
 
 def _centre(simulation: Simulation, row: int) -> tuple[float, float]:
-    state = simulation.state
-    if state.parts(row) == ["circle"]:
-        return state.circle(row, 0, False)[:2]
-    from irsim.objects.shapely_geometry import shapely_geometry
-
-    point = shapely_geometry(simulation, row, world_frame=False).centroid
+    body = outline(simulation.state, row)
+    match body.parts:
+        case (Circle(center),):
+            return center
+    point = body.shapely().centroid
     return point.x, point.y

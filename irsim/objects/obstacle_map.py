@@ -27,7 +27,7 @@ def grid_values(simulation: Simulation, world: int = 0) -> Floats | None:
     if scenario.grid.raster is not None:
         return scenario.grid.values()
     for index, record in enumerate(scenario.objects):
-        if record.shape.name == "map":
+        if record.is_map:
             cells = simulation.state.cells(world * simulation.objects + index)
             assert cells is not None
             return cells.occupied.astype(np.float64) * 100.0

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from irsim.common.arrays import Floats
+from irsim.common.outline import outline
 from irsim.objects.base import SimObject
 from irsim.objects.shapely_geometry import from_shapely, touching, touching_circle
 from irsim.simulation.active_env import last_used
@@ -74,11 +74,11 @@ class ObjectStatus(SimObject):
             objects = self.environment_objects
             near = [objects[i] for i in self._simulation.state.near_row(self.row)]
             return [other for other in near if not other.unobstructed]
-        low, high = _box(self)
+        low, high = outline(self._simulation.state, self.row, world_frame=True).box()
         found = []
         for other in self.external_objects:
             if not other.unobstructed:
-                other_low, other_high = _box(other)
+                other_low, other_high = outline(other._simulation.state, other.row, world_frame=True).box()
                 if (low <= other_high).all() and (other_low <= high).all():
                     found.append(other)
         return found
@@ -180,17 +180,3 @@ class ObjectStatus(SimObject):
         """Return ``state`` cut to ``dim`` numbers, or filled with zeros to ``dim`` numbers."""
         values = list(state)[:dim]
         return values + [0] * (dim - len(values))
-
-
-def _box(view: Any) -> tuple[Floats, Floats]:
-    """Return the lower and the upper corner of the bounding box of a body in the world frame, (2,) each [m]."""
-    state = view._simulation.state
-    low, high = np.full(2, math.inf), np.full(2, -math.inf)
-    for part, kind in enumerate(state.parts(view.row)):
-        if kind == "circle":
-            x, y, radius = state.circle(view.row, part, True)
-            low, high = np.minimum(low, [x - radius, y - radius]), np.maximum(high, [x + radius, y + radius])
-        else:
-            points = state.vertices(view.row, part, True)
-            low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
-    return low, high

@@ -21,5 +21,5 @@ def views(simulation: Simulation, world: int = 0) -> list[ObjectView]:
 
 def make_view(simulation: Simulation, index: int, world: int) -> ObjectView:
     """Make the object at an index of a world: an :class:`ObstacleMap` for the map, otherwise an :class:`ObjectView`."""
-    is_map = simulation.scenario.objects[index].shape.name == "map"
+    is_map = simulation.scenario.objects[index].is_map
     return (ObstacleMap if is_map else ObjectView)(simulation, index, world)

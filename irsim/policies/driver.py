@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.common.outline import outline
 from irsim.diagnostics.errors import CodedError, PolicyError
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.fit import check_declaration, check_fit, drive_of
 from irsim.policies.observe import Observer
 from irsim.policies.policy import Episode, Policy
+from irsim.simulation.build import CORE_CONTROLS
 from irsim.simulation.random_streams import generator
 
 if TYPE_CHECKING:
@@ -25,7 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PolicyDriver", "attach_policy", "decision_steps", "driver_of"]
 
-_CORE_CONTROLS = 3
 _NEVER = np.iinfo(np.int64).max
 MAX_DRIVES = 16
 """Number of different drives of the robots that a policy of controls drives in one world."""
@@ -194,10 +195,8 @@ class PolicyDriver:
 
     def _footprints(self, simulation: Simulation, world: int, group: _Group) -> tuple[Floats, ...]:
         """The footprints of the robots of a group in a world."""
-        from irsim.policies.footprint import footprint  # loads shapely
-
         rows = self._rows(simulation)[world, group.places].tolist()
-        return tuple(footprint(simulation.state, row) for row in rows)
+        return tuple(outline(simulation.state, row).hull() for row in rows)
 
     def _decide(self, simulation: Simulation, group: _Group, rows: NDArray[np.int64], due: NDArray[np.bool_]) -> None:
         world, place = np.nonzero(due[:, group.places])
@@ -228,11 +227,11 @@ class PolicyDriver:
                 simulation.impose(row, control)
 
     def _control(self, simulation: Simulation, rows: NDArray[np.int64]) -> None:
-        width = min(_CORE_CONTROLS, self._held.shape[2])
+        width = min(CORE_CONTROLS, self._held.shape[2])
         chosen = rows[self._active]
         simulation.command[chosen] = 0.0
         simulation.command[chosen, :width] = self._held[self._active][:, :width]
-        if simulation.drives is None or self._held.shape[2] <= _CORE_CONTROLS:
+        if simulation.drives is None or self._held.shape[2] <= CORE_CONTROLS:
             return
         for world, place in np.argwhere(self._active & self._python).tolist():
             row, robot = int(rows[world, place]), int(self._robots[place])

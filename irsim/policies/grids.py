@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.navigation.outlines import placed_parts
+from irsim.common.outline import outline
 from irsim.simulation.build import static_shapes_are_random
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class Grids:
         side = max(self._resolution, math.sqrt((x1 - x0) * (y1 - y0) / MAX_CELLS))
         nx, ny = (max(1, math.ceil(round(extent / side, 6))) for extent in (x1 - x0, y1 - y0))
         things: list[tuple[list[Any], tuple[float, float, float]]] = [
-            (placed_parts(simulation.state, world * simulation.objects + index, world_frame=True), (0.0, 0.0, 0.0))
+            (outline(simulation.state, world * simulation.objects + index, world_frame=True).core(), (0.0, 0.0, 0.0))
             for index in self._static.tolist()
         ]
         terrain = core.Terrain((x0 - side, y0 - side, x0 + (nx + 1) * side, y0 + (ny + 1) * side), things)

@@ -11,11 +11,11 @@ from contourpy import FillType, LineType, contour_generator
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.common.outline import outline
 from irsim.common.text import metres
 from irsim.graphics.scene.scene import Bounds, Label, Line, Mark, Region, Scene, Stroke
 from irsim.metrics.geodesic import inscribed_radius
 from irsim.metrics.roles import HUMAN, STATIC, kinds_of
-from irsim.navigation.outlines import placed_parts
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
@@ -77,7 +77,7 @@ class FreeSpace:
         first, records = world * simulation.objects, simulation.scenario.objects
         kinds = kinds_of(records)
         static = [i for i, kind in enumerate(kinds.tolist()) if kind in (STATIC, HUMAN) and records[i].static]
-        parts = [part for i in static for part in placed_parts(simulation.state, first + i, world_frame=True)]
+        parts = [part for i in static for part in outline(simulation.state, first + i, world_frame=True).core()]
         width, height = box[2] - box[0], box[3] - box[1]
         size = max(math.sqrt(width * height / MAX_CELLS), radius / _CELLS_PER_RADIUS)
         nx, ny = max(2, math.ceil(width / size)), max(2, math.ceil(height / size))

@@ -13,7 +13,6 @@ from pydantic_core import CoreSchema, core_schema
 
 from irsim.common.arguments import as_given
 from irsim.common.text import clean, listed
-from irsim.components.maps._grid import MapCells, Walls
 from irsim.diagnostics.diagnostic import nearest
 from irsim.options.base import Options
 from irsim.options.units import Meters, Number, Radians, Seconds
@@ -246,7 +245,7 @@ def _is_plain(name: str) -> bool:
 
 
 def _check_names(scenario: ResolvedScenario, perturbations: Sequence[Perturbation], called: str) -> None:
-    names = [record.name for record in scenario.objects if not _is_scenery(record)]
+    names = [record.name for record in scenario.objects if not record.is_terrain]
     tags = {tag for record in scenario.objects for tag in record.tags}
     known = [*names, *sorted(tags), *_ROLES]
     unknown = [word for item in perturbations for word in item.objects or () if word not in known]
@@ -261,11 +260,6 @@ def _check_names(scenario: ResolvedScenario, perturbations: Sequence[Perturbatio
         else f"give one of {listed([clean(word, 40) for word in known], 10)}",
         "perturb",
     )
-
-
-def _is_scenery(record: ObjectRecord) -> bool:
-    """Whether an object is the map or the walls round the world, which no perturbation moves."""
-    return isinstance(record.shape, (MapCells, Walls))
 
 
 def _with_spreads(record: ObjectRecord, perturbations: Sequence[Perturbation], placed: bool) -> ObjectRecord:
@@ -285,7 +279,7 @@ def _with_spreads(record: ObjectRecord, perturbations: Sequence[Perturbation], p
 
 
 def _is_chosen(record: ObjectRecord, item: Perturbation) -> bool:
-    if _is_scenery(record):
+    if record.is_terrain:
         return False
     words = item.objects
     if words is not None and (record.name in words or not set(record.tags).isdisjoint(words)):

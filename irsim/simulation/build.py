@@ -11,7 +11,6 @@ import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.behaviors.follow import Follow
 from irsim.components.kinematics._handler import handler_class
-from irsim.components.maps._grid import MapCells, Walls
 from irsim.options.registry import (
     BEHAVIORS,
     CUSTOM_GROUP_BEHAVIORS,
@@ -23,6 +22,7 @@ from irsim.options.registry import (
     Feature,
     Registry,
 )
+from irsim.scenario.resolve.body_size import parts_of
 from irsim.simulation.compound import compound_body
 from irsim.simulation.fog import build_fog
 from irsim.simulation.watching import build_targets, build_views, build_zones
@@ -40,6 +40,8 @@ __all__ = [
     "padded",
     "speed_controls",
     "static_shapes_are_random",
+    "steps_until",
+    "steps_within",
 ]
 
 AFTER_ARRIVAL = {None: 0, "freeze": 1, "yield": 2}
@@ -49,13 +51,23 @@ COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_ob
 """Name of a collision mode -> its number in the core."""
 PLACEMENT_ATTEMPTS = 1000
 """Number of positions that are tried for a randomly placed object before the placement fails."""
-_CORE_CONTROLS = 3
+CORE_CONTROLS = 3
 """Number of controls of an object that the core keeps."""
 _ROUNDING = 1e-9
-"""Share of a step by which a start time may exceed a multiple of the step time because it is rounded."""
+"""Share of a step by which a time may differ from a multiple of the step time because it is rounded."""
 _ROLES = {"robot": 0, "obstacle": 1}
 _TARGETS = {"all": 0, "robot": 1, "obstacle": 2}
 _ARRIVE = {"position": 0, "state": 1}
+
+
+def steps_until(time: float, step_time: float) -> int:
+    """Number of the first step that ends at a time [s] or after it."""
+    return math.ceil(time / step_time - _ROUNDING)
+
+
+def steps_within(time: float, step_time: float) -> int:
+    """Number of the last step that ends at a time [s] or before it."""
+    return math.floor(time / step_time + _ROUNDING)
 
 
 def padded(values: Sequence[float], fill: float = 0.0) -> list[float]:
@@ -134,7 +146,7 @@ def build_object(
         contact: Whether the core resolves contacts, which needs the centroid of compounds.
         zones: Names of the zones of the world.
     """
-    if isinstance(record.shape, (MapCells, Walls)):
+    if record.is_terrain:
         parts = record.shape.parts()
     else:
         shape = feature_of(SHAPES, record.shape)
@@ -194,9 +206,9 @@ def build_object(
         restitution=record.restitution,
         tau=record.drive_tau,
         driven=record.kinematics is not None,
-        start_step=math.ceil(max(record.start_time, record.appear_time) / step_time - _ROUNDING),
-        appear_step=math.ceil(record.appear_time / step_time - _ROUNDING),
-        vanish_step=0 if record.vanish_time is None else 1 + math.floor(record.vanish_time / step_time + _ROUNDING),
+        start_step=steps_until(max(record.start_time, record.appear_time), step_time),
+        appear_step=steps_until(record.appear_time, step_time),
+        vanish_step=0 if record.vanish_time is None else 1 + steps_within(record.vanish_time, step_time),
     )
 
 
@@ -281,7 +293,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
             core.Perturbation(
                 object=index,
                 **asdict(record.spreads),
-                speeds=[control for control in speed_controls(record) if control < _CORE_CONTROLS],
+                speeds=[control for control in speed_controls(record) if control < CORE_CONTROLS],
                 attempts=PLACEMENT_ATTEMPTS,
             )
             for index, record in enumerate(scenario.objects)
@@ -297,7 +309,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
     x0, y0, x1, y1 = scenario.world.bounds
     world.extent = x0, y0, x1, y1
     if scenario.variation is not None:
-        speeds = [[k for k in speed_controls(record) if k < _CORE_CONTROLS] for record in scenario.objects]
+        speeds = [[k for k in speed_controls(record) if k < CORE_CONTROLS] for record in scenario.objects]
         _let_vary(world, scenario.variation, row, speeds)
     return world
 
@@ -325,13 +337,9 @@ def static_shapes_are_random(scenario: ResolvedScenario) -> bool:
     """Return whether the shape of a static object is drawn for each scene."""
     if scenario.variation is not None:
         return True
-    return any(_is_drawn(record.shape) for record in scenario.objects if record.static)
+    return any(_is_drawn(record) for record in scenario.objects if record.static)
 
 
-def _is_drawn(shape: Any) -> bool:
-    if isinstance(shape, (MapCells, Walls)):
-        parts = shape.parts()
-    else:
-        function = feature_of(SHAPES, shape).function
-        parts = [] if function is None else function(shape)
+def _is_drawn(record: ObjectRecord) -> bool:
+    parts = parts_of(record.shape)
     return any(isinstance(part, (core.RandomCircle, core.RandomPolygon, core.PerlinCells)) for part in parts)

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.simulation.occupancy import OCCUPIED, grid_collision_geometry, grid_occupied
+from irsim.components.maps._site import OCCUPIED
+from irsim.simulation.occupancy import grid_collision_geometry, grid_occupied
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from irsim.common.arrays import Floats
+from irsim.simulation.build import steps_within
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["all_poses", "past_goals", "past_poses"]
-
-_ROUNDING = 1e-9
-"""Rounding error of a time, in steps."""
 
 
 def past_poses(simulation: Simulation, row: int) -> Floats | None:
@@ -57,7 +54,7 @@ def past_poses(simulation: Simulation, row: int) -> Floats | None:
 def _last_step(simulation: Simulation, row: int) -> int:
     """Return the last step in which an object that has left the world was in it."""
     until = simulation.scenario.objects[row].vanish_time or 0.0
-    return math.floor(until / simulation.scenario.world.step_time + _ROUNDING)
+    return steps_within(until, simulation.scenario.world.step_time)
 
 
 def past_goals(simulation: Simulation, row: int) -> Floats | None:

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["OCCUPIED", "grid_collision_geometry", "grid_occupied"]
+from irsim.components.maps._site import OCCUPIED
 
-OCCUPIED = 50
-"""Cells with a larger occupancy (0 to 100) are occupied."""
+__all__ = ["grid_collision_geometry", "grid_occupied"]
 
 
 def grid_occupied(

@@ -13,8 +13,8 @@ import numpy as np
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.common.outline import outline
 from irsim.episodes.planned_routes import planned_routes
-from irsim.navigation.outlines import placed_parts
 from irsim.results.scene import ScenePassage
 from irsim.scenario.model.zones import Zone
 from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of
@@ -81,7 +81,7 @@ def find_passages(scenario: ResolvedScenario, state: core.State, world: int, see
     first = world * len(scenario.objects)
     records = scenario.objects
     standing = [k for k, record in enumerate(records) if record.static and not record.unobstructed]
-    parts = [part for k in standing for part in placed_parts(state, first + k, world_frame=True)]
+    parts = [part for k in standing for part in outline(state, first + k, world_frame=True).core()]
     places = Places(
         seed,
         {record.id: state.pose[first + k].tolist() for k, record in enumerate(records)},

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 import irsim._core as core
-from irsim.episodes.scene_summary import MAP_OR_WALLS
 from irsim.results.scene import SceneRow, SceneTable
 from irsim.scenario.resolve.body_size import has_fixed_shape
 from irsim.scenario.resolve.randomness import random_parts
@@ -57,7 +56,7 @@ def scene_table(scenario: ResolvedScenario, seed: int | None = None, driven: str
     entries = [
         list(entry)
         for _, entry in itertools.groupby(
-            (k for k, record in enumerate(scenario.objects) if not isinstance(record.shape, MAP_OR_WALLS)),
+            (k for k, record in enumerate(scenario.objects) if not record.is_terrain),
             key=lambda k: scenario.objects[k].path,
         )
     ]

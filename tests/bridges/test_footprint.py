@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from irsim.bridges.footprint import Box, box_of
-from irsim.bridges.scene import Agent, Circle, Line, Polygon
+from irsim.bridges.scene import Agent
+from irsim.common.outline import Circle, Line, Polygon
 
 
 def _agent(*parts: Any) -> Agent:

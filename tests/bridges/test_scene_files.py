@@ -16,7 +16,7 @@ from irsim.api import read_scenario
 from irsim.bridges.base import BridgeError
 from irsim.bridges.describe import agent_rows, describe_scene, world_state
 from irsim.bridges.recorded import recorded_scene, recorded_states
-from irsim.bridges.scene import Circle, Line, Polygon, SceneDescription
+from irsim.bridges.scene import SceneDescription
 from irsim.bridges.scene_files import (
     feedback_as_json,
     feedback_of,
@@ -30,6 +30,7 @@ from irsim.bridges.scene_files import (
     state_of,
 )
 from irsim.bridges.state import Feedback
+from irsim.common.outline import Circle, Line, Polygon
 from irsim.runs import open_run
 
 SCENE = """

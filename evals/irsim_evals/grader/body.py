@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["Body", "Box", "body_of", "is_terrain"]
+__all__ = ["Body", "Box", "body_of"]
 
 _STRAIGHT = 1e-6
 """Largest deviation [m] of an outline from a rectangle that counts as none."""
@@ -147,11 +147,6 @@ class Body:
         if self.footprint.geom_type == "Polygon":
             return "polygon"
         return "line" if self.footprint.area == 0 else "compound"
-
-
-def is_terrain(view: ObjectView) -> bool:
-    """Whether an object is the map, or the walls round the world, which nobody counts as an obstacle."""
-    return view.shape in ("map", "walls")
 
 
 def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:

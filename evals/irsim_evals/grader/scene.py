@@ -11,10 +11,10 @@ import numpy as np
 import shapely
 
 import irsim._core as core
+from irsim.common.outline import outline
 from irsim.env import Env
-from irsim.objects.shapely_geometry import core_parts
 from irsim.validation.feasibility.scenes import FAR
-from irsim_evals.grader.body import Body, body_of, is_terrain
+from irsim_evals.grader.body import Body, body_of
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -83,7 +83,7 @@ class Scene:
     @cached_property
     def terrain_views(self) -> list[Any]:
         """The map and the walls round the world, unless others pass through them."""
-        return [view for view in self._views if is_terrain(view) and not view.record.unobstructed]
+        return [view for view in self._views if view.record.is_terrain and not view.record.unobstructed]
 
     @cached_property
     def _views(self) -> list[Any]:
@@ -95,7 +95,7 @@ class Scene:
         solid = {body.index for body in self.solids}
         simulation = self.env.simulation
         return [
-            (core_parts(simulation, view.row), simulation.pose[view.row].tolist())
+            (outline(simulation.state, view.row).core(), simulation.pose[view.row].tolist())
             for view in self._views
             if view.index in solid or view in self.terrain_views
         ]
@@ -156,4 +156,4 @@ def open_scene(scenario: ResolvedScenario, seed: int) -> Scene:
     """
     env = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
     views = sorted([*env.robot_list, *env.obstacle_list], key=lambda view: view.index)
-    return Scene(seed, env, [body_of(view, env.scenario) for view in views if not is_terrain(view)])
+    return Scene(seed, env, [body_of(view, env.scenario) for view in views if not view.record.is_terrain])

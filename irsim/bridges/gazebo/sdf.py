@@ -14,10 +14,11 @@ from xml.etree import ElementTree as ET
 from irsim.bridges.gazebo.meshes import prism
 from irsim.bridges.mujoco.rigs import LIDAR_HEIGHT, rig_of
 from irsim.bridges.mujoco.xml import colored, numbers
-from irsim.bridges.scene import Agent, Lidar, Line, SceneDescription
+from irsim.bridges.scene import Agent, Lidar, SceneDescription
 from irsim.bridges.solids.cells import merged_cells
 from irsim.bridges.solids.solids import Box, Disk, Solid, room_of, solids_of
 from irsim.common.arrays import Floats
+from irsim.common.outline import Line
 
 __all__ = ["SDF_VERSION", "SdfWorld"]
 

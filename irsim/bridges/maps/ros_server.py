@@ -13,6 +13,7 @@ from irsim.bridges.base import BridgeError
 from irsim.common.arrays import Floats
 from irsim.common.files import check_new, check_suffix, write_new
 from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of
+from irsim.components.maps._site import OCCUPIED
 from irsim.objects.obstacle_map import grid_values
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.random_streams import fresh_seed
@@ -92,7 +93,7 @@ def export_map(
     write_new(target, meta.as_yaml(), overwrite=overwrite)
     Image.fromarray(np.ascontiguousarray(pixels_of(values, meta))).save(picture)
     nx, ny = values.shape
-    occupied = int((values > 50).sum())
+    occupied = int((values > OCCUPIED).sum())
     return MapFiles([str(target), str(picture)], nx, ny, side, scenario.grid.origin, occupied)
 
 

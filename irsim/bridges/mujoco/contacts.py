@@ -11,9 +11,9 @@ import numpy as np
 
 from irsim.bridges.mujoco.mjcf import MAP_BODY, body_name
 from irsim.bridges.mujoco.physics import Physics
-from irsim.bridges.scene import Circle, Line, Part
 from irsim.bridges.solids.cells import merged_cells
 from irsim.common.arrays import Floats
+from irsim.common.outline import BodyPart, Circle, Line
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -143,7 +143,7 @@ class Contacts:
         return shapely.box(*self._scene.low, *self._scene.high).exterior
 
 
-def _footprint(parts: tuple[Part, ...]) -> BaseGeometry:
+def _footprint(parts: tuple[BodyPart, ...]) -> BaseGeometry:
     """The footprint as a shape of shapely, body frame."""
     import shapely
 

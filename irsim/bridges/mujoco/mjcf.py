@@ -15,12 +15,14 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.mujoco.rigs import DRIVES, LIDAR_HEIGHT, Rig, can_move, default_agents, rig_of
 from irsim.bridges.mujoco.robots import add_actuators, add_robot
 from irsim.bridges.mujoco.xml import colored, numbers
-from irsim.bridges.scene import Agent, Line, SceneDescription
+from irsim.bridges.scene import Agent, SceneDescription
 from irsim.bridges.solids.cells import merged_cells
 from irsim.bridges.solids.solids import Box, Disk, Outline, Solid, room_of, solids_of
 from irsim.common.arrays import Floats
+from irsim.common.outline import Line
 from irsim.components.bridges.mujoco import Mujoco
 from irsim.diagnostics.diagnostic import suggestion
+from irsim.simulation.build import steps_until
 
 __all__ = ["MAP_BODY", "PARKED", "body_name", "choose_agents", "is_mocap", "rigs_of", "write_mjcf"]
 
@@ -138,7 +140,7 @@ class _Writer:
     def _head(self) -> None:
         options = self.options
         ET.SubElement(self.root, "compiler", angle="radian", autolimits="true")
-        count = math.ceil(self.scene.step_time / options.timestep - 1e-9)
+        count = steps_until(self.scene.step_time, options.timestep)
         option = ET.SubElement(self.root, "option", integrator="implicitfast", cone="elliptic", impratio="10")
         option.set("timestep", numbers(self.scene.step_time / count))
         ET.SubElement(option, "flag", autoreset="disable")

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.ros.messages import Messages
-from irsim.bridges.scene import Circle, Part, Polygon, SceneDescription
+from irsim.bridges.scene import SceneDescription
 from irsim.common.arrays import Floats
+from irsim.common.outline import BodyPart, Circle, Polygon
 
 __all__ = ["CYLINDER", "LINE_STRIP", "TRIANGLES", "body_markers", "label_marker", "make_marker", "triangles"]
 
@@ -112,7 +113,7 @@ def line_marker(
     return marker
 
 
-def _part_marker(messages: Messages, number: int, part: Part, color: RGB, frame: str, pose: Any) -> Any:
+def _part_marker(messages: Messages, number: int, part: BodyPart, color: RGB, frame: str, pose: Any) -> Any:
     looks = (color, 1.0)
     if isinstance(part, Circle):
         return circle_marker(messages, number, part.center, part.radius, looks, frame, pose)

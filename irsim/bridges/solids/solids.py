@@ -8,9 +8,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from irsim.bridges.scene import Circle, Line, Part, Polygon, SceneDescription
+from irsim.bridges.scene import SceneDescription
 from irsim.bridges.solids.convex import convex_pieces, is_convex
 from irsim.common.arrays import Floats
+from irsim.common.outline import BodyPart, Circle, Line, Polygon
 
 __all__ = ["Box", "Disk", "Outline", "Solid", "part_points", "room_of", "solids_of"]
 
@@ -60,7 +61,7 @@ class Outline:
 Solid: TypeAlias = Box | Disk | Outline
 
 
-def solids_of(part: Part, thickness: float) -> list[Solid]:
+def solids_of(part: BodyPart, thickness: float) -> list[Solid]:
     """The solids that together are a part of a footprint.
 
     Args:
@@ -112,7 +113,7 @@ def _walls(line: Line, thickness: float) -> list[Solid]:
     return found
 
 
-def part_points(parts: tuple[Part, ...]) -> Floats:
+def part_points(parts: tuple[BodyPart, ...]) -> Floats:
     """(K, 2) points whose convex hull encloses the parts of a footprint [m], body frame."""
     found: list[Floats] = [np.zeros((0, 2))]
     for part in parts:

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import shapely
 
-from irsim.bridges.scene import Agent, Circle, Line, Polygon
+from irsim.bridges.scene import Agent
 from irsim.bridges.splats.splats import Singles, Splats
 from irsim.common.arrays import Floats
+from irsim.common.outline import Circle, Line, Polygon
 
 __all__ = ["Body", "body_of", "body_splats", "path_splats"]
 

@@ -17,11 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from irsim.bridges.scene import Agent, Circle, Line, SceneDescription
+from irsim.bridges.scene import Agent, SceneDescription
 from irsim.bridges.usd.looks import paint
 from irsim.bridges.usd.names import prim_names
 from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
 from irsim.common.arrays import Floats
+from irsim.common.outline import Circle, Line
 
 __all__ = ["Heights", "Mover", "author_scene", "new_stage"]
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.components.maps._picture import open_picture, upright
-from irsim.components.maps._site import MapProblem, MapSite, Raster, cells_along
+from irsim.components.maps._site import OCCUPIED, MapProblem, MapSite, Raster, cells_along
 
 __all__ = ["RosMeta", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
 
@@ -154,7 +154,7 @@ def pixels_of(values: Floats, meta: RosMeta) -> NDArray[np.uint8]:
     if meta.mode == "trinary":
         unknown = round(255 * (1 - (meta.occupied_thresh + meta.free_thresh) / 2))
         unknown = _UNKNOWN_PIXEL if meta.free_thresh < 1 - _UNKNOWN_PIXEL / 255 < meta.occupied_thresh else unknown
-        grey = np.where(rows < 0, unknown, np.where(rows > 50, 0, _FREE_PIXEL))
+        grey = np.where(rows < 0, unknown, np.where(rows > OCCUPIED, 0, _FREE_PIXEL))
     else:
         part = meta.free_thresh + np.clip(rows, 0, 100) / 99 * (meta.occupied_thresh - meta.free_thresh)
         part = np.where(rows <= 0, 0.0, np.where(rows > 99, 1.0, part))

@@ -16,8 +16,10 @@ if TYPE_CHECKING:
 
     from irsim.common.arrays import Floats
 
-__all__ = ["MapProblem", "MapSite", "Noise", "Raster", "cells_along"]
+__all__ = ["OCCUPIED", "MapProblem", "MapSite", "Noise", "Raster", "cells_along"]
 
+OCCUPIED = 50
+"""Map cells with a larger occupancy, of 100, are occupied."""
 _MAX_CELLS_ALONG = 1e15
 """Number of cells that a count is cut to, so that it stays an exact integer; no map is that large."""
 
@@ -77,7 +79,7 @@ class Raster:
         """(nx, ny) 1 where the occupancy is above 50."""
         import numpy as np
 
-        full = self.levels > 50 if self.table is None else (self.table > 50)[self.levels]
+        full = self.levels > OCCUPIED if self.table is None else (self.table > OCCUPIED)[self.levels]
         return np.ascontiguousarray(full, dtype=np.uint8)
 
 

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.common import outline as outlines
 from irsim.common.arrays import Floats
+from irsim.common.outline import outline
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Picture, Region, Sector
 
 if TYPE_CHECKING:
@@ -25,6 +27,12 @@ _HEAD_HALF_WIDTH = 0.3
 """Half the width of the head of an arrow, as a share of the width given."""
 _SHAFT_LENGTH = 0.6
 """Length of the shaft, as a share of the length of the arrow."""
+_KINDS = {
+    outlines.Circle: "circle",
+    outlines.Polygon: "polygon",
+    outlines.Line: "linestring",
+    outlines.Cells: "cells",
+}
 _ELLIPSE_POINTS = 64
 _SEGMENTS_PER_QUARTER = 32
 """Number of segments that stand for a quarter circle where shapes are united."""
@@ -65,28 +73,14 @@ class Body:
 
 def read_body(state: State, row: int) -> Body:
     """Read the shape of the object in one row of the simulation."""
-    geometries: list[Geometry] = []
-    kinds = state.parts(row)
-    for part, kind in enumerate(kinds):
-        if kind == "circle":
-            geometries.append(Circle(*state.circle(row, part, False)))
-        else:
-            vertices = np.array(state.vertices(row, part, False), dtype=np.float64)
-            if kind == "room":
-                vertices = np.concatenate([vertices, vertices[:1]])
-            geometries.append(Region([vertices]) if kind == "polygon" else Line(vertices))
-    corners = [bounds(geometry) for geometry in geometries]
-    low = min(c[0] for c in corners), min(c[1] for c in corners)
-    high = max(c[2] for c in corners), max(c[3] for c in corners)
-    single = len(geometries) == 1
-    geometry = geometries[0] if single else _union(geometries)
-    return Body(
-        {"room": "linestring"}.get(kinds[0], kinds[0]) if single else "compound",
-        geometry,
-        low,
-        high,
-        float(state.radius[row]),
-    )
+    found = outline(state, row)
+    geometries = [_geometry_of(part) for part in found.parts]
+    (left, bottom), (right, top) = (corner.tolist() for corner in found.box())
+    if len(geometries) > 1:
+        kind, geometry = "compound", _union(geometries)
+    else:
+        kind, geometry = _KINDS[type(found.parts[0])], geometries[0]
+    return Body(kind, geometry, (left, bottom), (right, top), float(state.radius[row]))
 
 
 def place(geometry: Geometry, pose: Pose) -> Geometry:
@@ -101,6 +95,16 @@ def place(geometry: Geometry, pose: Pose) -> Geometry:
     if isinstance(geometry, Line):
         return Line(geometry.points @ turn + (x, y))
     raise TypeError(f"a body must consist of circles, regions and lines, got a {type(geometry).__name__}")
+
+
+def _geometry_of(part: outlines.Part) -> Geometry:
+    if isinstance(part, outlines.Circle):
+        return Circle(*part.center, part.radius)
+    if isinstance(part, outlines.Polygon):
+        return Region([part.corners])
+    points = outlines.points_of(part)
+    closed = isinstance(part, outlines.Line) and part.closed
+    return Line(np.concatenate([points, points[:1]]) if closed else points)
 
 
 def arrow(length: float, width: float) -> Region:

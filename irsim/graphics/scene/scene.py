@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
+from irsim.components.maps._site import OCCUPIED
 from irsim.diagnostics.errors import ArgumentError
 from irsim.graphics.scene.palette import Color
 
@@ -78,8 +79,6 @@ class Sector:
 
 Geometry = Circle | Region | Line | Sector
 
-_OCCUPIED = 50
-"""Cells with a higher occupancy (0 to 100) count as occupied."""
 _REGION_VALUES = 4
 MAX_COORDINATE_M = 1e7
 """Largest absolute coordinate of a region [m]."""
@@ -292,7 +291,7 @@ def _plain(value: Any) -> Any:
 
 def _plain_grid(grid: GridImage) -> dict[str, Any]:
     """Encode occupied cells as run lengths: row by row from the lowest, alternately free and occupied, free first."""
-    full = (grid.levels.T > _OCCUPIED).ravel()
+    full = (grid.levels.T > OCCUPIED).ravel()
     ends = np.flatnonzero(np.diff(full.astype(np.int8), prepend=0))
     runs = np.diff(np.concatenate([[0], ends, [full.size]])).tolist()
     extent = [float(value) for value in grid.extent]

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from irsim.common.text import clean, listed
-from irsim.components.maps._grid import MapCells, Walls
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.learning.tasks.files import task_error
 from irsim.learning.tasks.randomize import QUANTITIES, Randomize, Value, merged
@@ -168,7 +167,7 @@ def _check(
     if quantity == "sensor_noise" and not any(_is_noisy(sensor) for r in records for sensor in r.sensors):
         what = f"no sensor of {clean(word)!r} is noisy"
         raise task_error(where, what, "give a sensor `noise: true` and a `std` in the scenario")
-    if quantity == "size" and any(isinstance(record.shape, (MapCells, Walls)) for record in records):
+    if quantity == "size" and any(record.is_terrain for record in records):
         raise task_error(where, "maps and walls around the world have no size", "name other objects")
 
 

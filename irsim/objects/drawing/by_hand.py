@@ -118,7 +118,7 @@ class ObjectDrawing(SimObject):
         axes = self._on(ax)
         if axes is None:
             return
-        if self.shape == "map":
+        if self.record.is_map:
             self.plot_object(axes)
             return
         style = self._builder().style(self, kwargs)
@@ -147,7 +147,7 @@ class ObjectDrawing(SimObject):
         axes = self._on(ax)
         if axes is None:
             return
-        if self.shape == "map":
+        if self.record.is_map:
             from irsim.graphics.figure.artists import add_grid
 
             self.object_img = add_grid(axes, self._builder().grid(self))

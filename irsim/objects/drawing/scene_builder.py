@@ -223,7 +223,7 @@ class SceneBuilder:
         overrides: Mapping[str, Any],
         tracks: list[Track],
     ) -> None:
-        if view.shape == "map":
+        if view.record.is_map:
             scene.grids.append(self._grid(view))
             return
         style, absent = self.style(view, overrides), self.simulation.appeared[view.row] < 0

@@ -15,7 +15,7 @@ from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.kinematics._handler import KinematicsHandler, construct, handler_class
 from irsim.diagnostics.errors import BehaviorError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS
-from irsim.simulation.build import COLLISION_MODES, group_behaviors
+from irsim.simulation.build import COLLISION_MODES, CORE_CONTROLS, group_behaviors
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PythonDrives", "attach_python_drives"]
 
-_CORE_CONTROLS = 3
 _CONTACT = COLLISION_MODES["contact"]
 _ROUNDING = 1e-9
 _DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
@@ -100,7 +99,7 @@ class PythonDrives:
                     self._handlers[key] = construct(
                         records[index].kinematics, self._simulation.scenario.world.integration
                     )
-                if records[index].vel_dim > _CORE_CONTROLS and (anew or key not in self._wide):
+                if records[index].vel_dim > CORE_CONTROLS and (anew or key not in self._wide):
                     self._wide[key] = Wide(records[index])
 
     def handler(self, row: int) -> KinematicsHandler | None:
@@ -186,7 +185,7 @@ class PythonDrives:
         wide = self.wide(row)
         if wide is not None:
             wide.control += felt
-        kept = felt[:_CORE_CONTROLS]
+        kept = felt[:CORE_CONTROLS]
         self._simulation.control[row, : kept.size] += kept
 
     def move_row(self, row: int) -> None:
@@ -200,7 +199,7 @@ class PythonDrives:
         wide = self.wide(row)
         if wide is not None:
             wide.limit(simulation.limits(row), dt, moves=not stands and bool(simulation.given[row]))
-            simulation.control[row] = wide.control[:_CORE_CONTROLS]
+            simulation.control[row] = wide.control[:CORE_CONTROLS]
         if stands:
             return
         control = simulation.control[row, : record.vel_dim] if wide is None else wide.control
@@ -208,7 +207,7 @@ class PythonDrives:
             drive = simulation.drive_of(row, record.vel_dim)
             gravity = simulation.scenario.world.gravity
             drive[:] = control[:] = respond(control, drive, handler.translation_rows, record, dt, gravity)
-            simulation.control[row, : min(_CORE_CONTROLS, control.size)] = control[:_CORE_CONTROLS]
+            simulation.control[row, : min(CORE_CONTROLS, control.size)] = control[:CORE_CONTROLS]
         velocity = control[:, None].copy()
         before = self.state(row, record)
         after = _checked(handler.step(before.copy(), velocity, dt), record)

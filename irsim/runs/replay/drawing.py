@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from irsim.common.text import clean
+from irsim.components.maps._site import OCCUPIED
 from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Region
 from irsim.objects.drawing.scene_builder import SceneBuilder
@@ -22,8 +23,6 @@ __all__ = ["page_grid", "page_objects", "page_zones"]
 
 _DECIMALS = 4
 """Decimals of coordinates."""
-_OCCUPIED_LEVEL = 50
-"""Level above which a map cell is drawn as occupied."""
 
 
 def page_objects(env: Env) -> tuple[list[dict[str, Any]], list[dict[str, Any]], list[dict[str, Any]]]:
@@ -48,7 +47,7 @@ def page_objects(env: Env) -> tuple[list[dict[str, Any]], list[dict[str, Any]], 
             "drive": getattr(record.kinematics, "name", None),
             "arrival": record.goal_threshold,
         }
-        if view.shape == "map":
+        if view.record.is_map:
             drawn.update(shape=-1, color="#000000", alpha=1.0, goal=False, arrow=False)
         else:
             style = builder.style(view, {})
@@ -75,9 +74,9 @@ def page_grid(env: Env) -> dict[str, Any] | None:
     """
     builder = SceneBuilder(env.simulation)
     for view in views(env.simulation):
-        if view.shape == "map":
+        if view.record.is_map:
             grid = builder.grid(view)
-            full = (grid.levels.T > _OCCUPIED_LEVEL).ravel()
+            full = (grid.levels.T > OCCUPIED).ravel()
             ends = np.flatnonzero(np.diff(full.astype(np.int8), prepend=0))
             runs = np.diff(np.concatenate([[0], ends, [full.size]]))
             return {"cells": list(grid.levels.shape), "extent": [float(v) for v in grid.extent], "runs": runs}

@@ -8,14 +8,12 @@ from typing import Any
 
 import irsim._core as core
 from irsim.common.text import metres
-from irsim.components.maps._grid import MapCells, Walls
 from irsim.diagnostics.diagnostic import Path
-from irsim.options.registry import SHAPES
 from irsim.options.vectors import is_vector
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, hint, warning
 from irsim.scenario.model.scenario import Entry
-from irsim.scenario.resolve.body_size import parts_of
+from irsim.scenario.resolve.body_size import has_fixed_shape, parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _MAX_REPORTED = 20
@@ -40,7 +38,11 @@ def check(context: Context) -> Iterator[Finding]:
     Objects placed at random are skipped, as are pairs whose other object is ``unobstructed``.
     """
     random = {index for placement in context.resolved.placements for index in placement.objects}
-    bodies = [_Body(record) for record in context.resolved.objects if record.id not in random and _is_fixed(record)]
+    bodies = [
+        _Body(record)
+        for record in context.resolved.objects
+        if record.id not in random and has_fixed_shape(record.shape)
+    ]
     reported = {path for path, entry, _ in context.entries() if _reports_stacking(entry)}
     found: dict[tuple[Any, ...], tuple[ObjectRecord, ObjectRecord, int]] = {}
     for a, b in _near_pairs(bodies, reported):
@@ -113,7 +115,7 @@ def _free_place(context: Context, mover: _Body, bodies: list[_Body]) -> tuple[fl
     """The nearest position where a body, with its heading, overlaps no object of fixed position."""
     x, y, heading = mover.record.state[:3]
     step = max(mover.reach / 4, 0.02)
-    if not math.isfinite(step) or mover.record.shape.name in ("map", "walls"):
+    if not math.isfinite(step) or mover.record.is_terrain:
         return None
     rings = [step * k * (1 + k / 8) for k in range(1, _RINGS + 1)]
     around = mover.reach + rings[-1]
@@ -144,14 +146,6 @@ def _reports_stacking(entry: Entry) -> bool:
     return entry.distribution is not None or entry.state is None or is_vector(entry.state)
 
 
-def _is_fixed(record: ObjectRecord) -> bool:
-    shape: Any = record.shape
-    if isinstance(shape, (MapCells, Walls)):
-        return shape.fixed
-    parts = shape.parts if shape.name == "compound" else [shape]
-    return not any(getattr(part, "random_shape", False) for part in parts)
-
-
 class _Body:
     """An object with its geometry, which is made when another object comes near."""
 
@@ -164,13 +158,7 @@ class _Body:
     def parts(self) -> list[Any]:
         """Geometry for the core, body frame."""
         if self._parts is None:
-            shape = self.record.shape
-            if isinstance(shape, (MapCells, Walls)):
-                return shape.parts()
-            feature = SHAPES.get(shape.name)
-            assert feature is not None
-            assert feature.function is not None
-            self._parts = feature.function(shape)
+            self._parts = parts_of(self.record.shape)
         return self._parts
 
 

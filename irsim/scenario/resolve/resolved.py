@@ -94,6 +94,16 @@ class ObjectRecord:
     spreads: Spreads | None = None  # None: it starts as written
 
     @property
+    def is_map(self) -> bool:
+        """Whether it is the map of the world."""
+        return bool(self.shape.name == "map")
+
+    @property
+    def is_terrain(self) -> bool:
+        """Whether a key of ``world`` made it: the map, or the walls round the world."""
+        return self.shape.name in ("map", "walls")
+
+    @property
     def active_behavior(self) -> Any:
         """The options of what moves the object: of the behavior of its group, else of its own; None without any."""
         return self.behavior if self.group_behavior is None else self.group_behavior

@@ -126,7 +126,7 @@ def _shape(record: ObjectRecord) -> Any:
 
 
 def _footprint(view: ObjectView) -> Any:
-    if view.shape in ("map", "walls"):
+    if view.record.is_terrain:
         return None
     if view.shape == "circle":
         x, y = view.geometry.centroid.coords[0]

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 import irsim._core as core
+from irsim.common.outline import outline
 from irsim.components.maps._grid import MapCells, MapGrid, Walls
 from irsim.components.maps._site import Raster
 from irsim.scenario.checks import Context
@@ -195,18 +196,5 @@ def _things(context: Context, world: core.World, state: core.State, w: int) -> l
             cells = state.cells(row)
             things += [([core.GridCells(grid=cells)], [0.0, 0.0, 0.0])] if cells is not None else []
         else:
-            things.append((_drawn_parts(state, row), [0.0, 0.0, 0.0]))
+            things.append((outline(state, row, world_frame=True).core(), [0.0, 0.0, 0.0]))
     return things
-
-
-def _drawn_parts(state: core.State, row: int) -> list[Any]:
-    """Parts of the body of the object in a row, world frame."""
-    parts: list[Any] = []
-    for part, kind in enumerate(state.parts(row)):
-        if kind == "circle":
-            x, y, radius = state.circle(row, part, True)
-            parts.append(core.Circle(radius=radius, center=[x, y]))
-        else:
-            make = core.Polygon if kind == "polygon" else core.Linestring
-            parts.append(make(vertices=state.vertices(row, part, True).tolist()))
-    return parts

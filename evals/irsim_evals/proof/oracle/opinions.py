@@ -93,7 +93,7 @@ class _Look:
         entries: list[Any] = []
         for entry in given if isinstance(given, list) else [given]:
             entries += [entry] * int(entry.get("number", 1))
-        real = [view for view in views if view.shape not in ("map", "walls")]
+        real = [view for view in views if not view.record.is_terrain]
         if len(real) != len(entries):
             raise _Unknown
         return [Thing(view, entry, section) for view, entry in zip(real, entries, strict=True)]

@@ -53,7 +53,7 @@ def occupancy_grid(messages: Messages, env: Env, world: str) -> Any | None:
     """The map as a ``nav_msgs/OccupancyGrid``; None without a map, or if its cells are not square."""
     builder = SceneBuilder(env.simulation)
     for view in views(env.simulation):
-        if view.shape != "map":
+        if not view.record.is_map:
             continue
         grid = builder.grid(view)
         columns, rows = grid.levels.shape

@@ -20,8 +20,9 @@ import numpy as np
 from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.recorded import recorded_scene, recorded_states
-from irsim.bridges.scene import Agent, Circle, Line, Part, SceneDescription
+from irsim.bridges.scene import Agent, SceneDescription
 from irsim.common.arrays import Floats
+from irsim.common.outline import BodyPart, Circle, Line
 
 __all__ = ["FORMAT"]
 
@@ -90,7 +91,7 @@ def _tracks(episode: Episode, moving: Sequence[Agent]) -> tuple[list[int], list[
     return steps, [table[:, number] for number in range(len(moving))]
 
 
-def _shape(part: Part) -> Any:
+def _shape(part: BodyPart) -> Any:
     """A shape of CommonRoad, and the place of its middle, body frame."""
     from commonroad.geometry.obstacle_shapes.circle_obstacle_shape import CircleObstacleShape
     from commonroad.geometry.obstacle_shapes.polygon_obstacle_shape import PolygonObstacleShape

@@ -1,0 +1,184 @@
+"""The outline of a body: its parts, the box and the hull around them, and the same for shapely and for the core."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from irsim.common.arrays import Floats
+
+if TYPE_CHECKING:
+    from irsim import _core as core
+
+__all__ = ["BodyPart", "Cells", "Circle", "Line", "Outline", "Part", "Polygon", "outline", "points_of"]
+
+_HULL_CORNERS = 16
+"""Number of corners of the polygon around a circle in a hull."""
+_QUARTER_SEGMENTS = 16
+"""Number of segments of a quarter circle in shapely's polygon of a circle, as in IR-SIM."""
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A disk.
+
+    Attributes:
+        center: (2,) [m].
+        radius: [m].
+    """
+
+    center: tuple[float, float]
+    radius: float
+
+
+@dataclass(frozen=True)
+class Polygon:
+    """A simple polygon, convex or not.
+
+    Attributes:
+        corners: (K, 2) without a repeated first corner [m].
+    """
+
+    corners: Floats
+
+
+@dataclass(frozen=True)
+class Line:
+    """A polyline without thickness, such as a wall.
+
+    Attributes:
+        points: (K, 2) [m].
+        closed: Whether the last point is joined to the first one.
+    """
+
+    points: Floats
+    closed: bool = False
+
+
+@dataclass(frozen=True)
+class Cells:
+    """The occupied cells of a map.
+
+    Attributes:
+        grid: Occupancy of the core.
+        points: (4, 2) corners of the box around the map [m].
+    """
+
+    grid: core.OccupancyGrid
+    points: Floats
+
+
+BodyPart: TypeAlias = Circle | Polygon | Line
+"""A part of a body that is no map."""
+Part: TypeAlias = BodyPart | Cells
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The area that a body occupies: the union of its parts, all in one frame.
+
+    Attributes:
+        parts: Its parts in the order of the shape.
+    """
+
+    parts: Sequence[Part]
+
+    def box(self) -> tuple[Floats, Floats]:
+        """Lower and upper corner of the bounding box, (2,) each [m]; infinite and reversed without parts."""
+        low, high = np.full(2, math.inf), np.full(2, -math.inf)
+        for part in self.parts:
+            if isinstance(part, Circle):
+                center, size = np.asarray(part.center), part.radius
+                low, high = np.minimum(low, center - size), np.maximum(high, center + size)
+            else:
+                points = points_of(part)
+                low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+        return low, high
+
+    def hull(self) -> Floats:
+        """(K, 2) corners of the convex hull, counterclockwise [m].
+
+        A regular polygon of 16 corners encloses each circle; maps are left out.
+        """
+        import shapely
+
+        points = [_around(part) if isinstance(part, Circle) else points_of(part)
+                  for part in self.parts if not isinstance(part, Cells)]  # fmt: skip
+        hull = shapely.convex_hull(shapely.MultiPoint(np.concatenate(points)))
+        is_area = hull.geom_type == "Polygon"
+        corners: Floats = shapely.get_coordinates(shapely.orient_polygons(hull) if is_area else hull)
+        return corners[:-1] if is_area else corners
+
+    def shapely(self) -> Any:
+        """The only part as a shapely geometry, or the union of several; circles are polygons of 64 corners."""
+        import shapely
+
+        made = [_shapely_of(part) for part in self.parts]
+        return made[0] if len(made) == 1 else shapely.union_all(made)
+
+    def core(self) -> list[core.Part]:
+        """The parts for queries of the core."""
+        return [_core_of(part) for part in self.parts]
+
+
+def outline(state: core.State, row: int, *, world_frame: bool = False) -> Outline:
+    """The outline of the object in a row of the core's state.
+
+    Args:
+        state: State of the simulation.
+        row: Row of the object.
+        world_frame: At its present pose in the world frame; otherwise in the body frame. Maps are always in the world
+            frame.
+    """
+    return Outline(tuple(_part(state, row, part, kind, world_frame) for part, kind in enumerate(state.parts(row))))
+
+
+def points_of(part: Polygon | Line | Cells) -> Floats:
+    """(K, 2) corners of a polygon or points of a line, or the corners of the box around a map [m]."""
+    return part.corners if isinstance(part, Polygon) else part.points
+
+
+def _part(state: core.State, row: int, part: int, kind: str, world_frame: bool) -> Part:
+    if kind == "circle":
+        x, y, radius = state.circle(row, part, world_frame)
+        return Circle((x, y), radius)
+    points = state.vertices(row, part, world_frame)
+    if kind == "polygon":
+        return Polygon(points)
+    grid = state.cells(row) if kind == "cells" else None
+    return Line(points, closed=kind == "room") if grid is None else Cells(grid, points)
+
+
+def _around(circle: Circle) -> Floats:
+    angle = (np.arange(_HULL_CORNERS) + 0.5) * (2 * np.pi / _HULL_CORNERS)
+    radius = circle.radius / np.cos(np.pi / _HULL_CORNERS)
+    x, y = circle.center
+    return np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
+
+
+def _shapely_of(part: Part) -> Any:
+    import shapely
+
+    if isinstance(part, Circle):
+        return shapely.Point(part.center).buffer(part.radius, quad_segs=_QUARTER_SEGMENTS)
+    if isinstance(part, Polygon):
+        return shapely.Polygon(part.corners)
+    if isinstance(part, Cells):
+        return shapely.MultiLineString([shapely.LinearRing(ring) for ring in part.grid.outline()])
+    return (shapely.LinearRing if part.closed else shapely.LineString)(part.points)
+
+
+def _core_of(part: Part) -> core.Part:
+    from irsim import _core as core
+
+    if isinstance(part, Circle):
+        return core.Circle(radius=part.radius, center=part.center)
+    if isinstance(part, Cells):
+        return core.GridCells(grid=part.grid)
+    if isinstance(part, Polygon):
+        return core.Polygon(vertices=part.corners.tolist())
+    return (core.Room if part.closed else core.Linestring)(vertices=part.points.tolist())
