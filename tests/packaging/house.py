@@ -1,0 +1,163 @@
+"""The numbers of the house: size, types that describe one thing, imports in functions, and the way of a recorded run.
+
+``python -m tests.packaging.house`` prints them; ``test_house.py`` holds those that say how often one idea is there.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ("irsim", "mcp_server", "evals")
+_POSE = {"at", "pose", "poses", "position", "record", "state", "view"}
+_SHAPE = {"corners", "footprint", "geometry", "outline", "parts", "radius", "shape", "vertices"}
+_PARTS_LOOP = r"enumerate\([\w.]*(?:state)?\.?(?:parts\(|kinds\))|kinds = [\w.]*state\.parts"
+_CHILD = r"subprocess\.Popen\(|anyio\.open_process\(|\.Process\(|get_context\("
+_PROBE = Path(__file__).with_name("house_probe.py")
+
+
+@cache
+def sources() -> dict[Path, str]:
+    """File, relative to the checkout -> its text, for all Python of the three packages."""
+    found = {}
+    for package in PACKAGES:
+        for path in sorted((ROOT / package).rglob("*.py")):
+            found[path.relative_to(ROOT)] = path.read_text(encoding="utf-8")
+    return found
+
+
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """File -> its syntax tree; a program that is a template of the evals has none."""
+    found = {}
+    for path, text in sources().items():
+        try:
+            found[path] = ast.parse(text)
+        except SyntaxError:
+            continue
+    return found
+
+
+def object_types() -> list[str]:
+    """Classes that describe an object: they have a pose, or the record that has it, and a shape among their fields."""
+    return [
+        f"{path}:{node.name}"
+        for path, tree in trees().items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef) and (names := _fields(node)) & _POSE and names & _SHAPE
+    ]
+
+
+def _fields(node: ast.ClassDef) -> set[str]:
+    """Names of annotated fields, of properties, and of what ``__init__`` assigns, without leading underscores."""
+    found = set()
+    for item in node.body:
+        if isinstance(item, ast.AnnAssign) and isinstance(item.target, ast.Name):
+            found.add(item.target.id)
+        elif isinstance(item, ast.FunctionDef):
+            if any(ast.unparse(word).endswith("property") for word in item.decorator_list):
+                found.add(item.name)
+            elif item.name == "__init__":
+                found |= {name.attr for name in ast.walk(item) if _is_own(name)}
+    return {name.strip("_") for name in found}
+
+
+def _is_own(node: ast.AST) -> bool:
+    return (
+        isinstance(node, ast.Attribute)
+        and isinstance(node.ctx, ast.Store)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == "self"
+    )
+
+
+def files_with(pattern: str) -> list[str]:
+    """Files whose text has a match of a pattern."""
+    return [str(path) for path, text in sources().items() if re.search(pattern, text)]
+
+
+def translators() -> list[str]:
+    """Files that turn errors of pydantic, which have a ``loc``, into findings."""
+    return files_with(r"\[.loc.\]")
+
+
+def function_imports(package: str = "irsim") -> int:
+    """Number of lines with an import inside a function."""
+    return sum(len(_import_lines(tree)) for path, tree in trees().items() if path.parts[0] == package)
+
+
+def _import_lines(tree: ast.Module) -> set[int]:
+    functions = (node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)))
+    inner = (item for node in functions for item in ast.walk(node))
+    return {item.lineno for item in inner if isinstance(item, (ast.Import, ast.ImportFrom))}
+
+
+def part_loops() -> list[str]:
+    """Files with a loop over the kinds of the parts of a body."""
+    return files_with(_PARTS_LOOP)
+
+
+def process_limits() -> list[str]:
+    """Files that limit what a process uses."""
+    return files_with(r"\.setrlimit\(")
+
+
+@cache
+def run_of_one() -> dict[str, int]:
+    """The second recorded run of one robot: calls, files, changes of room; and public names of a robot and an Env."""
+    environment = {**os.environ, "MPLBACKEND": "Agg"}
+    done = subprocess.run(
+        [sys.executable, str(_PROBE)], capture_output=True, text=True, check=True, cwd=ROOT.parent, env=environment
+    )
+    found: dict[str, int] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def docstring_lines() -> int:
+    """Lines of docstrings in the three packages."""
+    return sum(_doc(node) for tree in trees().values() for node in ast.walk(tree))
+
+
+def _doc(node: ast.AST) -> int:
+    if not isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+        return 0
+    return len((ast.get_docstring(node, clean=False) or "").splitlines())
+
+
+def rows() -> Iterator[tuple[str, object]]:
+    """All numbers, each with its name."""
+    tests = [path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("*.py")]
+    sizes = [len(text.splitlines()) for text in sources().values()]
+    yield "Python lines of irsim, mcp_server and evals", sum(sizes)
+    yield "  of them docstrings", docstring_lines()
+    yield "files", len(sizes)
+    yield "files of less than 100 lines", sum(size < 100 for size in sizes)
+    yield "lines of tests", sum(len(text.splitlines()) for text in tests)
+    yield "files of tests", len(tests)
+    counted: dict[str, Callable[[], list[str]]] = {
+        "types that describe an object": object_types,
+        "loops over the kinds of parts": part_loops,
+        "files that limit a process": process_limits,
+        "files that translate errors of models": translators,
+        "files that start a process": lambda: files_with(_CHILD),
+        "files that hash": lambda: files_with(r"hashlib\."),
+    }
+    for name, find in counted.items():
+        yield name, len(find())
+        yield from ((f"  {place}", "") for place in find())
+    for package in PACKAGES:
+        yield f"imports inside functions, {package}", function_imports(package)
+    yield from ((f"a recorded run: {name}", number) for name, number in run_of_one().items())
+
+
+if __name__ == "__main__":
+    for name, number in rows():
+        print(f"{name:90} {number}")

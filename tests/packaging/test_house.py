@@ -1,0 +1,31 @@
+"""One idea has one home: how often each kind of code may be there. Totals of lines and files are only printed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.packaging import house
+
+
+@pytest.mark.parametrize(
+    ("find", "most"),
+    [
+        (house.object_types, 13),
+        (house.part_loops, 1),
+        (house.process_limits, 3),
+        (house.translators, 10),
+    ],
+)
+def test_one_idea_has_one_home(find: Callable[[], list[str]], most: int) -> None:
+    assert len(find()) <= most, find()
+
+
+def test_imports_inside_functions_are_few() -> None:
+    assert house.function_imports() <= 567
+
+
+@pytest.mark.parametrize(("name", "most"), [("changes of room", 309), ("names of a robot", 182)])
+def test_a_recorded_run_goes_straight(name: str, most: int) -> None:
+    assert house.run_of_one()[name] <= most
