@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 import threading
 import time
 from collections import Counter, deque
@@ -17,6 +15,7 @@ from typing import Any
 from irsim.benchmarks.episode import Job, Task
 from irsim.benchmarks.together import run_together
 from irsim.benchmarks.worker import READY
+from irsim.common.child import ONE_THREAD, Child, python
 from irsim.diagnostics.errors import WorkerError
 
 __all__ = ["MAX_DEATHS", "WorkerError", "cores", "dead_workers", "run_tasks"]
@@ -285,34 +284,23 @@ class _Helper:
         with self._lock:
             if self._ended:
                 return False
-            _close(self._process)
+            self._process.end()
             self._process = _start()
         return self._is_ready()
 
     def _is_ready(self) -> bool:
         """Wait until the process can run tasks; False if it cannot be started."""
-        assert self._process.stdout is not None
-        try:
-            return bool(self._process.stdout.readline() == READY)
-        except (OSError, ValueError):
-            return False
+        return self._process.receive() == READY
 
     def _send(self, job: Job, seeds: list[int]) -> bool:
         """Send tasks to the process; False if it has died."""
-        assert self._process.stdin is not None
-        try:
-            self._process.stdin.write(json.dumps({"job": asdict(job), "seeds": seeds}).encode() + b"\n")
-            self._process.stdin.flush()
-        except OSError:
-            return False
-        return True
+        return self._process.send(json.dumps({"job": asdict(job), "seeds": seeds}).encode())
 
     def _receive(self) -> dict[str, Any] | None:
         """The next answer of the process; None if it has died."""
-        assert self._process.stdout is not None
         try:
-            return dict(json.loads(self._process.stdout.readline()))
-        except (OSError, ValueError):
+            return dict(json.loads(self._process.receive() or b""))
+        except ValueError:
             return None
 
     def end(self) -> None:
@@ -321,24 +309,8 @@ class _Helper:
             self._ended = True
             self._process.kill()  # ends the thread's wait for an answer
         self._thread.join()
-        _close(self._process)
+        self._process.end()
 
 
-def _start() -> subprocess.Popen[bytes]:
-    isolated = ["-I"] if sys.flags.isolated else []
-    start = f"import sys; sys.path[:] = {sys.path!r}; from irsim.benchmarks.worker import main; main()"
-    return subprocess.Popen(
-        [sys.executable, *isolated, "-X", "utf8", "-c", start],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
-    )
-
-
-def _close(process: subprocess.Popen[bytes]) -> None:
-    """End a process and close its pipes."""
-    process.kill()
-    for pipe in (process.stdin, process.stdout):
-        with suppress(OSError):
-            pipe.close()  # type: ignore[union-attr]
-    process.wait()
+def _start() -> Child:
+    return Child(python("irsim.benchmarks.worker"), start_new_session=False, env=os.environ | ONE_THREAD)

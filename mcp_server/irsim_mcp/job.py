@@ -9,11 +9,12 @@ from __future__ import annotations
 import json
 import os
 import sys
-import threading
 import time
 from collections.abc import Callable
-from contextlib import nullcontext, suppress
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
+
+from irsim.common.child import answers, end_with_input, limit, write_all
 
 if TYPE_CHECKING:
     from irsim.scenario.limits import Limits
@@ -30,16 +31,14 @@ _MAX_FILES = 256
 
 def main() -> None:
     """Do the job and exit."""
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what libraries print must not mix with the answer
+    pipe = answers()
     job = json.loads(sys.stdin.buffer.readline())
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-    _limit(job["resources"])
+    end_with_input()
+    limit(files=_MAX_FILES, **job["resources"])
     os.chdir(job["workspace"])  # paths of scenarios, and in them, are relative to it
 
     def answer(text: str) -> None:
-        answers.write(text.encode() + b"\n")
-        answers.flush()
+        write_all(pipe, text.encode() + b"\n")
 
     try:
         result = _TASKS[job["task"]](job, _Progress(answer))
@@ -47,32 +46,6 @@ def main() -> None:
     except Exception as error:
         answer(json.dumps({"error": _error_data(error)}))
     os._exit(0)  # at once: there is nothing to clean up
-
-
-def _end_with_parent() -> None:
-    """End this process when standard input is closed, that is, when the server has ended."""
-    sys.stdin.buffer.read()
-    os._exit(1)
-
-
-def _limit(resources: dict[str, int]) -> None:
-    """Limit the resources of this process, on systems that support it."""
-    if os.name != "posix":
-        return
-    import resource
-
-    bounds = {
-        resource.RLIMIT_AS: resources["memory"],
-        resource.RLIMIT_CPU: resources["cpu"],
-        resource.RLIMIT_FSIZE: resources["written"],
-        resource.RLIMIT_NOFILE: _MAX_FILES,
-        resource.RLIMIT_CORE: 0,
-    }
-    for kind, most in bounds.items():
-        soft, hard = resource.getrlimit(kind)
-        least = min((limit for limit in (soft, hard, most) if limit != resource.RLIM_INFINITY), default=most)
-        with suppress(ValueError, OSError):  # a system that has no limit of this kind
-            resource.setrlimit(kind, (least, hard))
 
 
 class _Progress:

@@ -9,9 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import queue
-import signal
-import subprocess
 import threading
 import time
 from collections.abc import Mapping
@@ -22,6 +19,7 @@ from typing import Any
 
 import anyio
 
+from irsim.common.child import Child
 from irsim.common.text import clean
 from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, replace_file
 from irsim.runs.pruning import DAY, prune, remove
@@ -269,55 +267,29 @@ class _Keeper(threading.Thread):
     def _answer(self) -> dict[str, Any] | None:
         """The answer of the process; None if the job was cancelled."""
         command, options = process_options()
-        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **options)
-        lines: queue.Queue[bytes] = queue.Queue()
-        threading.Thread(target=_read, args=(process, lines), daemon=True).start()
+        child = Child(command, **options)
         until = time.monotonic() + self._seconds
         try:
-            assert process.stdin is not None
-            with suppress(OSError):
-                process.stdin.write(json.dumps(self._work).encode() + b"\n")
-                process.stdin.flush()
+            child.send(json.dumps(self._work).encode())
             while time.monotonic() < until:
                 if plain_file(self._job, _CANCEL) is not None or not self._job.is_dir():
                     return None
-                with suppress(queue.Empty):
-                    line = lines.get(timeout=_PERIOD_S)
-                    if not line:
-                        return _problem("worker-failed", "the process that did the work ended without a result")
-                    if line.startswith(b'{"progress"'):
-                        self._about["done"], self._about["total"] = json.loads(line)["progress"]
-                        _note(self._job, self._about)
-                    elif line.startswith(HEAD.encode()):
-                        return {"text": line.decode().strip()[len(HEAD) : -1]}
-                    else:
-                        return dict(json.loads(line))
+                line = child.receive(_PERIOD_S)
+                if line is None:
+                    continue
+                if not line:
+                    return _problem("worker-failed", "the process that did the work ended without a result")
+                if line.startswith(b'{"progress"'):
+                    self._about["done"], self._about["total"] = json.loads(line)["progress"]
+                    _note(self._job, self._about)
+                elif line.startswith(HEAD.encode()):
+                    return {"text": line.decode().strip()[len(HEAD) : -1]}
+                else:
+                    return dict(json.loads(line))
             return _problem("out-of-time", f"{self._seconds:g} s of computing time were used up")
         finally:
-            _stop(process)
+            child.end()
 
 
 def _problem(code: str, what: str) -> dict[str, Any]:
     return {"error": {"code": code, "what": what, "fix": "ask for fewer seeds, scenarios or steps"}}
-
-
-def _read(process: subprocess.Popen[bytes], lines: queue.Queue[bytes]) -> None:
-    """Put the lines of the process into a queue, and an empty line at the end."""
-    assert process.stdout is not None
-    with suppress(ValueError, OSError):
-        for line in process.stdout:
-            lines.put(line)
-    lines.put(b"")
-
-
-def _stop(process: subprocess.Popen[bytes]) -> None:
-    """Kill the process and those that it has started."""
-    with suppress(ProcessLookupError, PermissionError):
-        if os.name == "posix":
-            os.killpg(process.pid, signal.SIGKILL)
-        else:
-            process.kill()
-    process.wait()
-    for pipe in (process.stdin, process.stdout):
-        with suppress(OSError, ValueError):
-            pipe.close()  # type: ignore[union-attr]

@@ -17,6 +17,7 @@ import anyio
 from anyio.abc import Process
 from anyio.streams.buffered import BufferedByteReceiveStream
 
+from irsim.common.child import ONE_THREAD, kill_group
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
@@ -54,9 +55,7 @@ _INHERITED = (
 """Environment variables that a worker inherits."""
 _SET = {
     "MPLBACKEND": "Agg",
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-    "MKL_NUM_THREADS": "1",
+    **ONE_THREAD,
     "PYDANTIC_DISABLE_PLUGINS": "__all__",  # it would search the metadata of every installed package for plug-ins
 }
 """Environment variables that are set for a worker."""
@@ -160,11 +159,7 @@ class Workers:
 
 async def _end(process: Process) -> None:
     if process.returncode is None:
-        with suppress(ProcessLookupError, PermissionError):
-            if os.name == "posix":
-                os.killpg(process.pid, signal.SIGKILL)
-            else:
-                process.kill()
+        kill_group(process.pid)
     await process.aclose()
 
 

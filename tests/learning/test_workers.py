@@ -278,7 +278,7 @@ def test_a_process_that_is_killed_is_an_error() -> None:
 
 def test_a_process_that_ends_itself_is_an_error() -> None:
     env, pids = divided_env(of_python("deadly"))
-    with pytest.raises(WorkerError, match="exit status 3"):
+    with pytest.raises(WorkerError, match="exit code 3"):
         env.step(np.zeros((3, 2)))
     wait_for_end(pids)
 

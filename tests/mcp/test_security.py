@@ -250,8 +250,8 @@ def test_limits_of_the_system_are_set() -> None:
 
     limits = ServerLimits()
     code = (
-        "import resource\nfrom irsim_mcp import job\n"
-        f"job._limit({{'memory': {limits.memory}, 'cpu': 7, 'written': {limits.written}}})\n"
+        "import resource\nfrom irsim.common.child import limit\n"
+        f"limit(memory={limits.memory}, cpu=7, written={limits.written}, files={job._MAX_FILES})\n"
         "kinds = ('AS', 'CPU', 'FSIZE', 'NOFILE', 'CORE')\n"
         "print(*[resource.getrlimit(getattr(resource, 'RLIMIT_' + kind))[0] for kind in kinds])"
     )

@@ -20,6 +20,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
+from irsim.common.child import how_ended, limit
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import Answer
 from irsim_evals.grader.artefact import ArtefactError, from_folder
@@ -237,18 +238,7 @@ def _limit(cpu_seconds: int | None) -> None:
 
     socket.socket = refuse  # type: ignore[assignment, misc]
     sys.stdin = open(os.devnull)  # noqa: SIM115
-    if os.name != "nt":
-        import resource
-
-        limits = {
-            resource.RLIMIT_AS: _MEMORY_BYTES,
-            resource.RLIMIT_FSIZE: _FILE_BYTES,
-            resource.RLIMIT_CORE: 0,
-            **({} if cpu_seconds is None else {resource.RLIMIT_CPU: cpu_seconds}),
-        }
-        for what, most in limits.items():
-            with suppress(ValueError, OSError):
-                resource.setrlimit(what, (most, most))
+    limit(memory=_MEMORY_BYTES, written=_FILE_BYTES, cpu=cpu_seconds)
 
 
 def _failed(instance: Instance, answer: Answer | None, observed: str) -> Verdict:
@@ -259,4 +249,4 @@ def _failed(instance: Instance, answer: Answer | None, observed: str) -> Verdict
 
 def _exit(process: Any) -> str:
     process.join(1.0)
-    return "no result" if process.exitcode in (0, None) else f"exit code {process.exitcode}"
+    return "no result" if process.exitcode in (0, None) else how_ended(process.exitcode)

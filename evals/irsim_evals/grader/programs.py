@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from irsim.common.child import kill_group
 from irsim_evals.grader.episode_log import Started, read_log
 from irsim_evals.grader.program_rules import problems_of
 
@@ -113,9 +112,5 @@ def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
 
 def _end(process: subprocess.Popen[bytes]) -> None:
     """End a process with all that it started."""
-    with suppress(ProcessLookupError, PermissionError):
-        if os.name == "nt":
-            process.kill()
-        else:
-            os.killpg(process.pid, signal.SIGKILL)
+    kill_group(process.pid)
     process.wait()

@@ -5,18 +5,17 @@ from __future__ import annotations
 import json
 import os
 import selectors
-import subprocess
 import sys
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from typing import IO
 
 from irsim.bridges.base import BridgeError, BridgeLostError
 from irsim.bridges.ros.guard import READY
 from irsim.bridges.ros.limiting import Velocity
 from irsim.bridges.ros.topics import Topic
+from irsim.common.child import Child
 from irsim.components.bridges._ros import RosOptions
 
 __all__ = ["Guard"]
@@ -41,16 +40,8 @@ class Guard:
     """
 
     def __init__(self, options: RosOptions, topics: Sequence[Topic]) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "irsim.bridges.ros.guard"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            start_new_session=True,  # so that Ctrl-C reaches irsim only
-        )
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._input: IO[bytes] = self._process.stdin
-        self._output: IO[bytes] = self._process.stdout
+        self._child = Child([sys.executable, "-m", "irsim.bridges.ros.guard"])  # Ctrl-C reaches irsim only
+        self._process, self._input, self._output = self._child.process, self._child.input, self._child.output
         try:
             first = {"options": options.model_dump(mode="json"), "topics": [asdict(topic) for topic in topics]}
             self._write(first)
@@ -88,18 +79,12 @@ class Guard:
 
     def stop(self) -> None:
         """Let the process send zero commands and end."""
-        with suppress(OSError):
-            self._input.close()
-        try:
-            self._process.wait(_STOP_S)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        self._output.close()
+        self._child.end(_STOP_S)
 
     def _write(self, content: object) -> None:
-        self._input.write(json.dumps(content).encode() + b"\n")
-        self._input.flush()
+        line = json.dumps(content).encode() + b"\n"
+        if self._input.write(line) != len(line):
+            raise OSError("the pipe is full")
 
     def _wait_until_ready(self) -> None:
         line, until = b"", time.monotonic() + _START_S

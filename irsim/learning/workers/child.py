@@ -6,15 +6,13 @@ import os
 import signal
 import sys
 import threading
-import time
 from typing import Any
 
+from irsim.common.child import answers, end_with_parent
 from irsim.learning.workers.messages import DONE, packed_error, read_message, write_message
 
 __all__ = ["main"]
 
-_LOOK_S = 1.0
-"""Time between looks whether the parent still lives [s]."""
 _GRACE_S = 1.0
 """Time for the interpreter to end by itself [s]."""
 
@@ -22,18 +20,17 @@ _GRACE_S = 1.0
 def main() -> None:
     """Carry out commands."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is a matter of the parent
-    answers = os.dup(1)
-    os.dup2(2, 1)  # what functions of the user print must not mix with the answers
-    threading.Thread(target=_watch_parent, args=(os.getppid(),), daemon=True).start()
+    pipe = answers()
+    end_with_parent()
     try:
-        _serve(answers)
+        _serve(pipe.fileno())
     except (EOFError, OSError):  # the parent has closed the pipes, or does not live any more
         end = threading.Timer(_GRACE_S, os._exit, (0,))
         end.daemon = True
         end.start()
 
 
-def _serve(answers: int) -> None:
+def _serve(pipe: int) -> None:
     from irsim.learning.workers.memory import SharedMemory  # while the parent makes its own worlds
     from irsim.learning.workers.part import Part, python_parts
     from irsim.learning.worlds import Worlds
@@ -46,25 +43,18 @@ def _serve(answers: int) -> None:
             raise RuntimeError("the program that made the environment has registered behaviors, sensors or drives")
     except BaseException as error:
         read_message(0)
-        write_message(answers, packed_error(error), b"\1")
+        write_message(pipe, packed_error(error), b"\1")
         return
     layout = read_message(0)
     memory = SharedMemory(setup["memory"])
     part = Part(worlds, setup["number"], setup["first"], layout, memory.arrays(layout))
     memory.close()
-    os.write(answers, DONE)
+    os.write(pipe, DONE)
     while True:
         command = read_message(0)
         try:
             part.do(command)
         except BaseException as error:  # of a function of the user, SystemExit too: it is raised in the parent
-            write_message(answers, packed_error(error), b"\1")
+            write_message(pipe, packed_error(error), b"\1")
         else:
-            os.write(answers, DONE)
-
-
-def _watch_parent(parent: int) -> None:
-    """End when the parent has died, even if another process holds the pipe open or a function does not return."""
-    while os.getppid() == parent:
-        time.sleep(_LOOK_S)
-    os._exit(0)
+            os.write(pipe, DONE)

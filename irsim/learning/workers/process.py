@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 import select
-import subprocess
-import sys
 from collections.abc import Sequence
-from contextlib import suppress
 from typing import Any
 
+from irsim.common.child import ONE_THREAD, Child, python
 from irsim.diagnostics.errors import WorkerError
 from irsim.learning.workers.messages import DONE, read_exactly, read_message, unpacked_error, write_message
 
@@ -32,23 +30,11 @@ class Worker:
     """
 
     def __init__(self, files: Sequence[int]) -> None:
-        isolated = ["-I"] if sys.flags.isolated else []
-        start = f"import sys; sys.path[:] = {sys.path!r}; from irsim.learning.workers.child import main; main()"
-        try:
-            self._process = subprocess.Popen(
-                [sys.executable, *isolated, "-X", "utf8", "-c", start],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                bufsize=0,
-                pass_fds=files,
-                start_new_session=True,  # Ctrl-C at a terminal reaches only the parent
-                env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
-            )
+        try:  # Ctrl-C at a terminal reaches only the parent
+            self._child = Child(python("irsim.learning.workers.child"), pass_fds=files, env=os.environ | ONE_THREAD)
         except OSError as error:
             raise WorkerError(f"a worker process cannot be started: {error}", "give fewer workers") from error
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._commands, self._answers = self._process.stdin.fileno(), self._process.stdout.fileno()
+        self._commands, self._answers = self._child.input.fileno(), self._child.output.fileno()
         self._waiting: Any = None
         if hasattr(select, "poll"):  # not on Windows
             self._waiting = select.poll()
@@ -57,7 +43,7 @@ class Worker:
     @property
     def pid(self) -> int:
         """Number of the process."""
-        return self._process.pid
+        return self._child.process.pid
 
     def send(self, message: Any) -> None:
         """Send a command.
@@ -78,7 +64,7 @@ class Worker:
         """
         try:
             while self._waiting is not None and not self._waiting.poll(_LOOK_MS):
-                if self._process.poll() is not None and not self._waiting.poll(0):
+                if self._child.process.poll() is not None and not self._waiting.poll(0):
                     raise EOFError  # it has died, and a process that it started holds the pipe open
             if read_exactly(self._answers, 1) == DONE:
                 return None
@@ -87,25 +73,16 @@ class Worker:
             raise self._lost() from None
 
     def _lost(self) -> WorkerError:
-        with suppress(subprocess.TimeoutExpired):
-            self._process.wait(_GRACE_S)
-        code = self._process.returncode
-        how = f"signal {-code}" if code is not None and code < 0 else f"exit status {code}"
-        what = f"a worker process of the environment has died ({how})"
+        what = f"a worker process of the environment has died ({self._child.how_ended()})"
         return WorkerError(what, "check the memory and your own modules, then make a new environment")
 
     def hang_up(self) -> None:
-        """Close the pipes, upon which the process ends by itself."""
-        for pipe in (self._process.stdin, self._process.stdout):
-            with suppress(OSError):
-                pipe.close()  # type: ignore[union-attr]
+        """Close its input, upon which the process ends by itself."""
+        self._child.hang_up()
 
     def end(self) -> None:
         """Wait a little for the process to end, and end it if it does not."""
-        with suppress(subprocess.TimeoutExpired):
-            self._process.wait(_GRACE_S)
-        self._process.kill()
-        self._process.wait()
+        self._child.end(_GRACE_S)
 
 
 def stop(workers: list[Worker], owner: int) -> None:

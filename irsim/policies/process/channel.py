@@ -6,12 +6,12 @@ import contextlib
 import io
 import os
 import queue
-import signal
 import socket
-import subprocess
 import threading
 from collections.abc import Callable, Sequence
-from typing import BinaryIO, Protocol, cast
+from typing import BinaryIO, cast
+
+from irsim.common.child import Child, Writer, write_all
 
 __all__ = ["Channel", "PeerError", "connect", "start"]
 
@@ -21,13 +21,6 @@ _GRACE_S = 1.0
 """Time that a process has to end by itself [s]."""
 _LOCAL = ("localhost", "127.0.0.1", "::1")
 """Hosts of this machine."""
-
-
-class Writer(Protocol):
-    """A stream without a buffer, which may take only the first bytes."""
-
-    def write(self, data: memoryview, /) -> int | None:
-        """Write some bytes and return their number."""
 
 
 class PeerError(Exception):
@@ -105,19 +98,11 @@ def start(command: Sequence[str], folder: str | None = None) -> Channel:
         PeerError: The program cannot be started.
     """
     try:
-        process = subprocess.Popen(
-            list(command),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            bufsize=0,
-            cwd=folder,
-            env={**os.environ, "PYTHONUNBUFFERED": "1"},
-            start_new_session=True,
-        )
+        child = Child(command, cwd=folder, env={**os.environ, "PYTHONUNBUFFERED": "1"})
     except (OSError, ValueError) as error:
         raise PeerError(f"cannot be started: {error}", "correct its command") from error
-    reader, writer = cast(io.FileIO, process.stdout), cast(io.FileIO, process.stdin)  # without a buffer they are these
-    return Channel(io.BufferedReader(reader), writer, lambda: _end(process), lambda: _ended(process))
+    reader = io.BufferedReader(cast(io.FileIO, child.output))  # without a buffer it is one
+    return Channel(reader, child.input, lambda: child.end(_GRACE_S), lambda: _ended(child))
 
 
 def connect(address: str, seconds: float) -> Channel:
@@ -176,7 +161,7 @@ def _talk(
     with reader:
         while (line := asked.get()) is not None:
             try:
-                _send(writer, line + b"\n")
+                write_all(writer, line + b"\n")
                 answer = reader.readline(MAX_LINE_BYTES + 1)
             except (OSError, ValueError) as error:  # closed at the other end, or by this one
                 answers.put(OSError(str(error)))
@@ -187,33 +172,9 @@ def _talk(
             answers.put(answer)
 
 
-def _send(writer: Writer, line: bytes) -> None:
-    rest = memoryview(line)
-    while rest:
-        rest = rest[writer.write(rest) or 0 :]
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Let a process end because its input is closed; end it, and what it has started, if it does not."""
-    assert process.stdin is not None
-    threading.Thread(target=_close_input, args=(process.stdin,), daemon=True).start()  # may wait for a full pipe
-    with contextlib.suppress(subprocess.TimeoutExpired):
-        process.wait(_GRACE_S)
-    with contextlib.suppress(OSError, AttributeError):
-        os.killpg(process.pid, signal.SIGKILL)
-    process.kill()
-    process.wait()
-
-
-def _ended(process: subprocess.Popen[bytes]) -> str:
+def _ended(child: Child) -> str:
     """How a process has ended whose output is closed, in words."""
-    try:
-        code = process.wait(_GRACE_S)
-    except subprocess.TimeoutExpired:
+    how, code = child.how_ended(), child.process.returncode
+    if code is None:
         return "has closed its output"
-    return f"has ended with exit code {code}" if code >= 0 else f"was ended by signal {-code}"
-
-
-def _close_input(stream: BinaryIO) -> None:
-    with contextlib.suppress(OSError, ValueError):
-        stream.close()
+    return f"has ended with {how}" if code >= 0 else f"was ended by {how}"

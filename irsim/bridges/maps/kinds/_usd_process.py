@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import os
 import sys
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from irsim.bridges.maps.kinds._usd_shapes import Collector, Refused
+from irsim.common.child import limit
 
 __all__ = ["main"]
 
@@ -23,11 +23,7 @@ _MAX_LAYERS = 5_000
 def main() -> None:
     """Read the request, answer it."""
     request = json.loads(sys.stdin.read())
-    with suppress(ImportError, ValueError, OSError):
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    limit(memory=_MEMORY)
     try:
         answer = _read(request)
     except Refused as refused:

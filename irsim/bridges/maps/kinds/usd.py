@@ -20,17 +20,13 @@ import numpy as np
 
 from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.source import Kind, Scene, unusable
+from irsim.common.child import ONE_THREAD
 
 __all__ = ["KIND"]
 
 _MAX_FILES = 10_000
 """Files in a ``.usdz``."""
-_ONE_THREAD = {
-    "PXR_WORK_THREAD_LIMIT": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-    "OMP_NUM_THREADS": "1",
-    "MALLOC_ARENA_MAX": "2",
-}
+_ONE_THREAD = ONE_THREAD | {"PXR_WORK_THREAD_LIMIT": "1", "MALLOC_ARENA_MAX": "2"}
 """Environment of the process: each thread reserves address space, of which the process may have a limited amount."""
 
 
