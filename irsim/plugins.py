@@ -12,7 +12,6 @@ where they are when the rest of irsim is rearranged.
 from __future__ import annotations
 
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.bridges._options import BridgeOptions
@@ -52,6 +51,7 @@ from irsim.options.units import (
 )
 from irsim.options.vectors import Point, Pose, vector
 from irsim.policies import Episode, Map, Needs, Neighbors, Observations, Policy, Scan, register_policy
+from irsim.simulation.scene import SceneDescription
 
 __all__ = [
     "BEHAVIORS",

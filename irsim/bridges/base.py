@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, TypeAlias
 
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import CodedError
+from irsim.simulation.scene import SceneDescription
 
 __all__ = ["Bridge", "BridgeError", "BridgeLostError", "Clock", "Mode"]
 

@@ -13,15 +13,15 @@ from typing_extensions import Self
 
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.controls import native_control
-from irsim.bridges.describe import agent_rows, describe_scene, world_state
-from irsim.bridges.scene import SceneDescription
-from irsim.bridges.state import Feedback, Motion
+from irsim.bridges.state import Feedback, Motion, world_state
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import CodedError
+from irsim.objects.describe import agent_rows, describe_scene
 from irsim.options.registry import BRIDGES
+from irsim.simulation.scene import SceneDescription
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation

@@ -6,13 +6,13 @@ import math
 from collections.abc import Sequence
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.scene import Agent
+from irsim.simulation.scene import SceneObject
 
 __all__ = ["native_control"]
 
 
 def native_control(
-    agent: Agent, command: Sequence[float], *, steering_rate: bool, steer: float, period: float
+    agent: SceneObject, command: Sequence[float], *, steering_rate: bool, steer: float, period: float
 ) -> list[float]:
     """The control that follows a command as well as the drive can.
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from irsim.bridges.scene import Agent
 from irsim.common.outline import Outline
+from irsim.simulation.scene import SceneObject
 
 __all__ = ["Box", "box_of"]
 
@@ -32,7 +32,7 @@ class Box:
     width: float
 
 
-def box_of(agent: Agent) -> Box:
+def box_of(agent: SceneObject) -> Box:
     """The smallest such box around a footprint; around its circle if it has none."""
     low, high = Outline(agent.parts).box()
     if not np.isfinite(low).all():

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from irsim.bridges.describe import agent_rows, describe_scene
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import WorldState
 from irsim.common.angles import wrap
+from irsim.objects.describe import agent_rows, describe_scene
 from irsim.runs.initial_scene import initial_scene
 from irsim.runs.reading import Run
 from irsim.scenario.limits import Limits
+from irsim.simulation.scene import SceneDescription
 
 __all__ = ["recorded_scene", "recorded_states"]
 

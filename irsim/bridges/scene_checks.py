@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from irsim.bridges.scene import Agent, Lidar, SceneDescription
 from irsim.common.outline import Circle, Line, Polygon
+from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 
 __all__ = ["MAX_CELLS", "check_scene", "check_states", "read_arrays"]
 
@@ -91,7 +91,7 @@ def _array(file: Any, size: int) -> Any:
     return np.frombuffer(file.read(), dtype=dtype).reshape(shape, order="F" if by_columns else "C").copy()
 
 
-def _check_agent(agent: Agent) -> None:
+def _check_agent(agent: SceneObject) -> None:
     who = f"agent {agent.index}"
     _need(isinstance(agent.name, str), f"the name of {who} is no text")
     _need(agent.role in ("robot", "obstacle"), f"the role of {who} is {agent.role!r}")

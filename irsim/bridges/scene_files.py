@@ -15,11 +15,11 @@ import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.scene import SCENE_VERSION, Agent, Grid, Lidar, SceneDescription
 from irsim.bridges.scene_checks import MAX_CELLS, check_scene, check_states, read_arrays
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.common.files import replacing
 from irsim.common.outline import BodyPart, Circle, Line, Polygon
+from irsim.simulation.scene import SCENE_VERSION, Grid, Lidar, SceneDescription, SceneObject
 
 __all__ = [
     "feedback_as_json",
@@ -125,7 +125,7 @@ def _part(data: Mapping[str, Any]) -> BodyPart:
     return Line(_points(data["line"]), bool(data["closed"]))
 
 
-def _agent(data: Mapping[str, Any]) -> Agent:
+def _agent(data: Mapping[str, Any]) -> SceneObject:
     fields = dict(data)
     fields["parts"] = tuple(_part(item) for item in data["parts"])
     fields["lidars"] = tuple(Lidar(**{**item, "mount": _numbers(item["mount"], 3)}) for item in data["lidars"])
@@ -135,7 +135,7 @@ def _agent(data: Mapping[str, Any]) -> Agent:
     for key in ("high", "acceleration"):
         fields[key] = tuple(math.inf if value is None else float(value) for value in data[key])
     fields["mass"] = math.inf if data["mass"] is None else float(data["mass"])
-    return Agent(**fields)
+    return SceneObject(**fields)
 
 
 def _grid(data: Mapping[str, Any]) -> Grid:

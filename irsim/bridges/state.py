@@ -9,13 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
+from irsim.simulation.simulation import Simulation
+from irsim.simulation.trace import sensors
 
-__all__ = ["Feedback", "Motion", "WorldState"]
+__all__ = ["Feedback", "Motion", "WorldState", "world_state"]
 
 
 @dataclass(frozen=True)
 class WorldState:
-    """All objects after a step, in the order of :attr:`irsim.bridges.scene.SceneDescription.agents`.
+    """All objects after a step, in the order of :attr:`irsim.simulation.scene.SceneDescription.agents`.
 
     Attributes:
         step: Number of executed steps.
@@ -83,3 +85,40 @@ class Feedback:
     starts: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     ranges: Mapping[str, NDArray[np.float32]] = field(default_factory=dict)
     end: str | None = None
+
+
+def world_state(simulation: Simulation, rows: NDArray[np.int64]) -> WorldState:
+    """The present state of the first world.
+
+    Args:
+        simulation: The simulation.
+        rows: (N,) what :func:`agent_rows` returns.
+    """
+    measured = np.where(simulation.valid.astype(bool), simulation.ranges, np.inf).astype(np.float32)
+    records = simulation.scenario.objects
+    paths = {records[row].name: _path(simulation, row) for row in rows.tolist() if records[row].role == "robot"}
+    return WorldState(
+        step=int(simulation.count[0]),
+        time=simulation.time,
+        pose=simulation.pose[rows].copy(),
+        twist=simulation.twist[rows].copy(),
+        control=simulation.control[rows].copy(),
+        goal=simulation.goal[rows].copy(),
+        arrived=simulation.arrived[rows].astype(bool),
+        collided=simulation.collided[rows].astype(bool),
+        stopped=simulation.stopped[rows].astype(bool),
+        ranges={key: measured[beams] for key, beams in sensors(simulation)},
+        paths={name: path for name, path in paths.items() if path is not None},
+    )
+
+
+def _path(simulation: Simulation, row: int) -> Floats | None:
+    """(K, 2) the planned path of a robot; of one whose behavior plans none, from where it is through its goals."""
+    state, behavior = simulation.state, simulation.scenario.objects[row].active_behavior
+    route = state.route(row)
+    if route is not None:
+        return route
+    if hasattr(behavior, "planner") or getattr(behavior, "name", None) == "replay":
+        return None
+    points = np.array([simulation.pose[row, :2].tolist(), *(goal[:2] for goal in state.goals(row))])
+    return points if len(points) > 1 and np.isfinite(points).all() else None

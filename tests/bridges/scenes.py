@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from irsim.bridges.scene import Agent, Grid, Lidar, SceneDescription
 from irsim.bridges.state import Motion, WorldState
 from irsim.common.outline import BodyPart, Circle, Line, Polygon
+from irsim.simulation.scene import Grid, Lidar, SceneDescription, SceneObject
 
 __all__ = ["gallery", "motion_of", "state_of"]
 
@@ -19,8 +19,8 @@ _FENCE = np.array([[-3.0, 0.0], [3.0, 0.0], [4.0, -1.0]])
 _CAR = np.array([[-0.8, -0.9], [3.8, -0.9], [3.8, 0.9], [-0.8, 0.9]])
 
 
-def agent(index: int, name: str, drive: str | None, parts: tuple[BodyPart, ...], **more: Any) -> Agent:
-    plain = Agent(
+def agent(index: int, name: str, drive: str | None, parts: tuple[BodyPart, ...], **more: Any) -> SceneObject:
+    plain = SceneObject(
         index=index, name=name, role="robot", drive=drive, moves=drive is not None, pose=(0.0, 0.0, 0.0), goals=(),
         parts=parts, radius=0.3, low=(-1.0, -1.0), high=(1.0, 1.0), acceleration=(math.inf, math.inf), wheelbase=None,
         mass=math.inf, color=(0.2, 0.5, 0.8),

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from irsim.bridges.footprint import Box, box_of
-from irsim.bridges.scene import Agent
 from irsim.common.outline import Circle, Line, Polygon
+from irsim.simulation.scene import SceneObject
 
 
-def _agent(*parts: Any) -> Agent:
-    return Agent(0, "a", "robot", None, True, (0, 0, 0), (), parts, 0.5, (), (), (), None, 1.0, (0, 0, 0))
+def _agent(*parts: Any) -> SceneObject:
+    return SceneObject(0, "a", "robot", None, True, (0, 0, 0), (), parts, 0.5, (), (), (), None, 1.0, (0, 0, 0))
 
 
 @pytest.mark.parametrize(

@@ -18,9 +18,9 @@ from typer.testing import CliRunner
 import irsim
 from irsim.bridges.gazebo.meshes import prism
 from irsim.bridges.gazebo.sdf import SdfWorld
-from irsim.bridges.scene import Grid
 from irsim.cli.app import app
 from irsim.runs import Run, RunError, open_run
+from irsim.simulation.scene import Grid
 from tests.bridges.scenes import gallery
 
 TRAFFIC = """\

@@ -10,8 +10,8 @@ import pytest
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.mujoco.mjcf import choose_agents, write_mjcf
-from irsim.bridges.scene import Grid
 from irsim.components.bridges.mujoco import Mujoco
+from irsim.simulation.scene import Grid
 from tests.bridges.scenes import gallery
 
 

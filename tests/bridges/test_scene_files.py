@@ -14,9 +14,7 @@ import pytest
 import irsim
 from irsim.api import read_scenario
 from irsim.bridges.base import BridgeError
-from irsim.bridges.describe import agent_rows, describe_scene, world_state
 from irsim.bridges.recorded import recorded_scene, recorded_states
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.scene_files import (
     feedback_as_json,
     feedback_of,
@@ -29,9 +27,11 @@ from irsim.bridges.scene_files import (
     state_as_json,
     state_of,
 )
-from irsim.bridges.state import Feedback
+from irsim.bridges.state import Feedback, world_state
 from irsim.common.outline import Circle, Line, Polygon
+from irsim.objects.describe import agent_rows, describe_scene
 from irsim.runs import open_run
+from irsim.simulation.scene import SceneDescription
 
 SCENE = """
 world: {width: 12, height: 8, offset: [-2, 1], boundary: walls, collision_mode: unobstructed,

@@ -10,11 +10,11 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.bridges.scene import Grid
 from irsim.bridges.solids.cells import merged_cells
 from irsim.bridges.solids.convex import convex_pieces, is_convex, triangles
 from irsim.bridges.solids.solids import Box, Disk, Outline, solids_of
 from irsim.common.outline import Circle, Line, Polygon
+from irsim.simulation.scene import Grid
 from tests.effort import examples
 
 U_SHAPE = np.array([[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]], dtype=float)

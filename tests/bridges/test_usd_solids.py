@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.bridges.scene import Grid
 from irsim.bridges.usd.names import prim_names
 from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
 from irsim.common.outline import Circle, Line, Polygon
+from irsim.simulation.scene import Grid
 from tests.effort import examples
 
 U_SHAPE = [[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]]

@@ -327,8 +327,8 @@ def test_the_doctor_lets_a_ball_fall() -> None:
 def test_every_template_is_a_model_that_mujoco_simulates() -> None:
     import mujoco
 
-    from irsim.bridges.describe import describe_scene
     from irsim.bridges.mujoco.mjcf import choose_agents, write_mjcf
+    from irsim.objects.describe import describe_scene
 
     loaded = 0
     for path in sorted(TEMPLATES.glob("*/scenario.yaml")):

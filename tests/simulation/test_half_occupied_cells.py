@@ -11,7 +11,7 @@ import shapely
 from PIL import Image
 
 import irsim
-from irsim.bridges.describe import describe_scene
+from irsim.objects.describe import describe_scene
 from irsim.runs.replay.drawing import page_grid
 
 LEVELS = [[0, 50, 51, 100]]

@@ -24,10 +24,10 @@ from irsim.bridges.carla.moving import (
 from irsim.bridges.carla.places import Places
 from irsim.bridges.carla.roles import Role, cast
 from irsim.bridges.carla.town import Town
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.common.arrays import Floats
 from irsim.components.bridges.carla import Carla
+from irsim.simulation.scene import SceneDescription
 
 __all__ = ["CarlaBridge", "make"]
 

@@ -15,9 +15,9 @@ from irsim.bridges.base import BridgeLostError
 from irsim.bridges.carla.actors import Spawner
 from irsim.bridges.carla.roles import Role
 from irsim.bridges.carla.scans import scan_of_points, usual_points
-from irsim.bridges.scene import Lidar
 from irsim.common.arrays import Floats
 from irsim.components.bridges.carla import CarlaLidar
+from irsim.simulation.scene import Lidar
 
 __all__ = ["AttachedLidar", "attach_lidars"]
 

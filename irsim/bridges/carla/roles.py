@@ -8,10 +8,10 @@ from typing import Literal
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.footprint import box_of
-from irsim.bridges.scene import Agent, Lidar, SceneDescription
 from irsim.common.text import clean
 from irsim.components.bridges.carla import Carla
 from irsim.diagnostics.diagnostic import suggestion
+from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 
 __all__ = ["Role", "cast"]
 
@@ -33,7 +33,7 @@ class Role:
         followed: Role name or id of the actor of others.
     """
 
-    agent: Agent
+    agent: SceneObject
     kind: Literal["walker", "vehicle", "followed"]
     external: bool = False
     ahead: float = 0.0
@@ -73,7 +73,7 @@ def cast(scene: SceneDescription, options: Carla) -> tuple[Role, ...]:
     return tuple(roles)
 
 
-def _vehicle(agent: Agent, options: Carla, lidars: tuple[Lidar, ...]) -> Role:
+def _vehicle(agent: SceneObject, options: Carla, lidars: tuple[Lidar, ...]) -> Role:
     external = options.command != "transform"
     wheelbase = options.wheelbase or agent.wheelbase or (USUAL_WHEELBASE if agent.drive == "acker" else None)
     if options.command == "ackermann":

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from irsim.bridges.scene import Lidar
 from irsim.common.angles import FULL_TURN, wrap
 from irsim.common.arrays import Floats
+from irsim.simulation.scene import Lidar
 
 __all__ = ["scan_of_points", "usual_points"]
 

@@ -14,11 +14,11 @@ from xml.etree import ElementTree as ET
 from irsim.bridges.gazebo.meshes import prism
 from irsim.bridges.mujoco.rigs import LIDAR_HEIGHT, rig_of
 from irsim.bridges.mujoco.xml import colored, numbers
-from irsim.bridges.scene import Agent, Lidar, SceneDescription
 from irsim.bridges.solids.cells import merged_cells
 from irsim.bridges.solids.solids import Box, Disk, Solid, room_of, solids_of
 from irsim.common.arrays import Floats
 from irsim.common.outline import Line
+from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 
 __all__ = ["SDF_VERSION", "SdfWorld"]
 
@@ -107,7 +107,7 @@ class SdfWorld:
             box = Box(((x0 + x1) / 2, (y0 + y1) / 2), ((x1 - x0) / 2, (y1 - y0) / 2))
             self._solid(link, box, 0.0, _HEIGHT, _MAP_COLOR)
 
-    def _robot(self, agent: Agent) -> None:
+    def _robot(self, agent: SceneObject) -> None:
         rig = rig_of(agent)
         name, link = self._model(agent.name, agent.pose, static=False)
         model = self.world[-1]
@@ -126,7 +126,7 @@ class SdfWorld:
                                name="gz::sim::systems::VelocityControl")  # fmt: skip
         _text(plugin, "topic", f"/model/{name}/cmd_vel")
 
-    def _actor(self, agent: Agent, path: Floats) -> None:
+    def _actor(self, agent: SceneObject, path: Floats) -> None:
         """An actor that follows its waypoints once."""
         actor = ET.SubElement(self.world, "actor", name=self._name(agent.name))
         _text(actor, "pose", numbers(path[0, 1], path[0, 2], 0, 0, 0, path[0, 3]))
@@ -141,7 +141,7 @@ class SdfWorld:
             _text(waypoint, "time", numbers(time))
             _text(waypoint, "pose", numbers(x, y, 0, 0, 0, yaw))
 
-    def _footprint(self, link: ET.Element, agent: Agent, bottom: float, top: float) -> None:
+    def _footprint(self, link: ET.Element, agent: SceneObject, bottom: float, top: float) -> None:
         for part in agent.parts:
             thickness = _ROOM_WALL if isinstance(part, Line) and part.closed else _WALL
             for solid in solids_of(part, thickness):

@@ -17,12 +17,12 @@ from irsim.bridges.mujoco.rays import LidarComparison, Rays
 from irsim.bridges.mujoco.report import MujocoReport, log_report, write_report
 from irsim.bridges.mujoco.rigs import PUSHED
 from irsim.bridges.mujoco.video import Film, prepare_display
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
 from irsim.components.bridges.mujoco import Mujoco
 from irsim.diagnostics.diagnostic import suggestion
+from irsim.simulation.scene import SceneDescription
 
 __all__ = ["MujocoBridge", "make"]
 

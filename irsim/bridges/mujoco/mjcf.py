@@ -15,7 +15,6 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.mujoco.rigs import DRIVES, LIDAR_HEIGHT, Rig, can_move, default_agents, rig_of
 from irsim.bridges.mujoco.robots import add_actuators, add_robot
 from irsim.bridges.mujoco.xml import colored, numbers
-from irsim.bridges.scene import Agent, SceneDescription
 from irsim.bridges.solids.cells import merged_cells
 from irsim.bridges.solids.solids import Box, Disk, Outline, Solid, room_of, solids_of
 from irsim.common.arrays import Floats
@@ -23,6 +22,7 @@ from irsim.common.outline import Line
 from irsim.components.bridges.mujoco import Mujoco
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.simulation.build import steps_until
+from irsim.simulation.scene import SceneDescription, SceneObject
 
 __all__ = ["MAP_BODY", "PARKED", "body_name", "choose_agents", "is_mocap", "rigs_of", "write_mjcf"]
 
@@ -69,12 +69,12 @@ def rigs_of(scene: SceneDescription, moved: frozenset[str], options: Mujoco) -> 
     return {agent.name: rig_of(agent, options.mass) for agent in scene.agents if agent.name in moved}
 
 
-def is_mocap(agent: Agent, moved: frozenset[str]) -> bool:
+def is_mocap(agent: SceneObject, moved: frozenset[str]) -> bool:
     """Whether irsim moves an object, so that MuJoCo has to be told its pose."""
     return bool(agent.parts) and agent.name not in moved and (agent.moves or math.isfinite(agent.mass))
 
 
-def body_name(agent: Agent) -> str:
+def body_name(agent: SceneObject) -> str:
     """Name of the body of an object, which is its own unless XML, MuJoCo or a part of another object has it."""
     name = agent.name
     return name if name != "world" and _plain(name) else f"irsim/object_{agent.index}"
@@ -190,7 +190,7 @@ class _Writer:
             for solid in solids_of(room, _ROOM_WALL):
                 self._solid(body, solid, 0.0, self.options.height, "thing", _MAP_COLOR)
 
-    def _part(self, body: ET.Element, agent: Agent, part: object, bottom: float, top: float, kind: str) -> None:
+    def _part(self, body: ET.Element, agent: SceneObject, part: object, bottom: float, top: float, kind: str) -> None:
         """Geoms of a part of a footprint."""
         thin = isinstance(part, Line) and not part.closed
         for solid in solids_of(part, _ROOM_WALL if isinstance(part, Line) and part.closed else _WALL):  # type: ignore[arg-type]

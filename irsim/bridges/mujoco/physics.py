@@ -13,11 +13,11 @@ from irsim.bridges.frames import quaternion_of, rotation_of
 from irsim.bridges.mujoco.driving import Driver
 from irsim.bridges.mujoco.mjcf import PARKED, body_name, is_mocap, rigs_of, write_mjcf
 from irsim.bridges.mujoco.rigs import PLANAR, TURNING
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import Motion
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
 from irsim.components.bridges.mujoco import Mujoco
+from irsim.simulation.scene import SceneDescription
 
 if TYPE_CHECKING:
     import mujoco

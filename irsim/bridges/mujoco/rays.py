@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from irsim.bridges.mujoco.mjcf import body_name
 from irsim.bridges.mujoco.physics import Physics
 from irsim.bridges.mujoco.rigs import LIDAR_HEIGHT
-from irsim.bridges.scene import Agent, Lidar
 from irsim.common.arrays import Floats
+from irsim.simulation.scene import Lidar, SceneObject
 
 __all__ = ["Rays"]
 
@@ -34,7 +34,7 @@ class Rays:
         self.physics = physics
         self._cast: Any = mujoco.mj_multiRay
         self._normals = "normal" in (inspect.getdoc(mujoco.mj_multiRay) or "")  # an argument since 3.4
-        self.lidars: list[tuple[Agent, Lidar, int]] = []
+        self.lidars: list[tuple[SceneObject, Lidar, int]] = []
         for agent in physics.scene.agents:
             body = physics.model.body(body_name(agent)).id if agent.parts else -1
             self.lidars += [(agent, lidar, body) for lidar in agent.lidars]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from irsim.bridges.scene import Agent, SceneDescription
 from irsim.bridges.solids.solids import part_points
+from irsim.simulation.scene import SceneDescription, SceneObject
 
 __all__ = ["DRIVES", "LIDAR_HEIGHT", "PLANAR", "PUSHED", "TURNING", "Rig", "can_move", "default_agents", "rig_of"]
 
@@ -64,21 +64,21 @@ def default_agents(scene: SceneDescription) -> frozenset[str]:
     return frozenset(agent.name for agent in scene.agents if can_move(agent) and _by_default(agent))
 
 
-def _by_default(agent: Agent) -> bool:
+def _by_default(agent: SceneObject) -> bool:
     return (agent.role == "robot" and agent.moves) or not _has_drive(agent)
 
 
-def can_move(agent: Agent) -> bool:
+def can_move(agent: SceneObject) -> bool:
     """Whether MuJoCo can move an object."""
     pushed = agent.solid and not agent.moves and math.isfinite(agent.mass)
     return bool(agent.parts) and (agent.drive in DRIVES if _has_drive(agent) else pushed)
 
 
-def _has_drive(agent: Agent) -> bool:
+def _has_drive(agent: SceneObject) -> bool:
     return agent.drive not in (None, "static")
 
 
-def rig_of(agent: Agent, mass: float | None = None) -> Rig:
+def rig_of(agent: SceneObject, mass: float | None = None) -> Rig:
     """The rig of a robot.
 
     Args:

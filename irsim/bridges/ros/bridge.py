@@ -21,10 +21,10 @@ from irsim.bridges.ros.real import RealRobots
 from irsim.bridges.ros.receiver import Receiver
 from irsim.bridges.ros.reports import Reports
 from irsim.bridges.ros.topics import Mode, Topic, scene_topics
-from irsim.bridges.scene import Agent, SceneDescription
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.components.bridges._ros import RosOptions
 from irsim.diagnostics.diagnostic import suggestion
+from irsim.simulation.scene import SceneDescription, SceneObject
 
 __all__ = ["RosBridge", "make"]
 
@@ -162,7 +162,7 @@ class RosBridge(Bridge):
                 backend.close()
             self._reports.finish()
 
-    def _topics(self, scene: SceneDescription, robots: Sequence[Agent]) -> tuple[Topic, ...]:
+    def _topics(self, scene: SceneDescription, robots: Sequence[SceneObject]) -> tuple[Topic, ...]:
         options = self.options
         qos = {
             key: Qos(one.reliability == "reliable", one.durability == "transient_local", one.depth)
@@ -233,7 +233,7 @@ class RosBridge(Bridge):
             time.sleep(_POLL_S)
 
 
-def _chosen(scene: SceneDescription, names: Sequence[str]) -> list[Agent]:
+def _chosen(scene: SceneDescription, names: Sequence[str]) -> list[SceneObject]:
     """The robots with these names, or all robots."""
     found = {robot.name: robot for robot in scene.robots}
     for name in names:

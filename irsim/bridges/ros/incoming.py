@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import Topic
-from irsim.bridges.scene import Lidar
+from irsim.simulation.scene import Lidar
 
 __all__ = ["MessageError", "Odometry", "Scan", "decode", "fitted_ranges", "read_goal", "read_odometry", "read_twist"]
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.ros.messages import Messages
-from irsim.bridges.scene import SceneDescription
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Circle, Polygon
+from irsim.simulation.scene import SceneDescription
 
 __all__ = ["CYLINDER", "LINE_STRIP", "TRIANGLES", "body_markers", "label_marker", "make_marker", "triangles"]
 

@@ -12,9 +12,9 @@ from irsim.bridges.ros.markers import body_markers
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.names import nanoseconds, ros_names
 from irsim.bridges.ros.topics import Mode, Topic, frame_of, laser_frame, pedestrian_names, pedestrians
-from irsim.bridges.scene import Lidar, SceneDescription
 from irsim.bridges.state import WorldState
 from irsim.common.arrays import Floats
+from irsim.simulation.scene import Lidar, SceneDescription
 
 __all__ = ["Outgoing", "body_velocity"]
 

@@ -10,10 +10,10 @@ from irsim.bridges.base import BridgeLostError
 from irsim.bridges.ros.incoming import Odometry
 from irsim.bridges.ros.limiting import ZERO, Velocity
 from irsim.bridges.ros.outgoing import body_velocity
-from irsim.bridges.scene import Agent
 from irsim.bridges.state import Motion
 from irsim.common.angles import wrap
 from irsim.components.bridges._ros import RosOptions
+from irsim.simulation.scene import SceneObject
 
 __all__ = ["Pose", "RealRobots", "composed", "inverted"]
 
@@ -36,7 +36,7 @@ def inverted(pose: Sequence[float]) -> Pose:
 
 @dataclass
 class _Robot:
-    agent: Agent
+    agent: SceneObject
     origin: Pose | None
     odometry: Odometry | None = None
     when: float = -math.inf
@@ -57,7 +57,7 @@ class RealRobots:
     step_time: float
     _robots: dict[str, _Robot] = field(default_factory=dict)
 
-    def add(self, agents: Iterable[Agent]) -> None:
+    def add(self, agents: Iterable[SceneObject]) -> None:
         """Add robots."""
         origin = (0.0, 0.0, 0.0) if self.options.odom_origin == "world" else None
         for agent in agents:

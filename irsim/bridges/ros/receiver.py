@@ -24,9 +24,9 @@ from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.real import Pose, RealRobots
 from irsim.bridges.ros.reports import Reports
 from irsim.bridges.ros.topics import Topic
-from irsim.bridges.scene import Agent
 from irsim.bridges.state import Feedback
 from irsim.components.bridges._ros import RosOptions
+from irsim.simulation.scene import SceneObject
 
 __all__ = ["Receiver"]
 
@@ -43,7 +43,7 @@ class Receiver:
     """
 
     def __init__(
-        self, options: RosOptions, messages: Messages, robots: Sequence[Agent], reports: Reports,
+        self, options: RosOptions, messages: Messages, robots: Sequence[SceneObject], reports: Reports,
         real: RealRobots | None,
     ) -> None:  # fmt: skip
         self._options, self._messages, self._reports, self._real = options, messages, reports, real

@@ -10,8 +10,8 @@ from typing import Literal, TypeAlias
 from irsim.bridges.base import BridgeError
 from irsim.bridges.ros.names import ros_names
 from irsim.bridges.ros.qos import LATCHED, SENSOR, STATE, TRANSFORMS, Qos
-from irsim.bridges.scene import Agent, SceneDescription
 from irsim.components.bridges._ros import TOPIC_NAME
+from irsim.simulation.scene import SceneDescription, SceneObject
 
 __all__ = ["TABLE", "Mode", "Row", "Topic", "frame_of", "laser_frame", "scene_topics"]
 
@@ -100,7 +100,7 @@ def laser_frame(name: str, number: int) -> str:
 
 def scene_topics(
     scene: SceneDescription,
-    robots: Sequence[Agent],
+    robots: Sequence[SceneObject],
     mode: Mode,
     *,
     names: Mapping[str, str | None],
@@ -146,7 +146,7 @@ def scene_topics(
     return tuple(found)
 
 
-def pedestrians(scene: SceneDescription) -> list[Agent]:
+def pedestrians(scene: SceneDescription) -> list[SceneObject]:
     """The obstacles that can move, in the order in which ``/pedestrians`` has them."""
     return [agent for agent in scene.agents if agent.role == "obstacle" and agent.moves]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from irsim.bridges.scene import Grid
 from irsim.common.arrays import Floats
+from irsim.simulation.scene import Grid
 
 __all__ = ["merged_cells"]
 

@@ -8,10 +8,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.solids.convex import convex_pieces, is_convex
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Circle, Line, Polygon
+from irsim.simulation.scene import SceneDescription
 
 __all__ = ["Box", "Disk", "Outline", "Solid", "part_points", "room_of", "solids_of"]
 

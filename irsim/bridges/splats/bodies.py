@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import shapely
 
-from irsim.bridges.scene import Agent
 from irsim.bridges.splats.splats import Singles, Splats
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Line, Polygon
+from irsim.simulation.scene import SceneObject
 
 __all__ = ["Body", "body_of", "body_splats", "path_splats"]
 
@@ -59,7 +59,7 @@ class Body:
         return found
 
 
-def body_of(agent: Agent) -> Body | None:
+def body_of(agent: SceneObject) -> Body | None:
     """What an object looks like; None if it is nothing that stands in the world.
 
     Args:

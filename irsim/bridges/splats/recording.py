@@ -10,11 +10,11 @@ import numpy as np
 from irsim.bridges.base import BridgeError
 from irsim.bridges.export.cameras import PoseOptions, Scene, scene_of
 from irsim.bridges.recorded import recorded_scene, recorded_states
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.splats.bodies import Body, body_of
 from irsim.common.arrays import Floats
 from irsim.runs.reading import Run, open_run
 from irsim.scenario.limits import Limits
+from irsim.simulation.scene import SceneDescription
 
 __all__ = ["Recording", "open_recording"]
 

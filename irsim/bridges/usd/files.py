@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.scene import SceneDescription
 from irsim.bridges.state import WorldState
 from irsim.bridges.usd.motion import animate
 from irsim.bridges.usd.stage import Heights, author_scene, new_stage
 from irsim.common.extras import require
 from irsim.common.files import check_new, check_suffix, replacing
+from irsim.simulation.scene import SceneDescription
 
 if TYPE_CHECKING:
     from irsim.scenario.limits import Limits
@@ -103,8 +103,9 @@ def export_scene(
         ScenarioError: The scenario has errors.
         TargetError: The file has another suffix, or exists.
     """
-    from irsim.bridges.describe import agent_rows, describe_scene, world_state
+    from irsim.bridges.state import world_state
     from irsim.env import Env
+    from irsim.objects.describe import agent_rows, describe_scene
     from irsim.scenario.open import open_scenario
 
     target = Path(out)

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.bridges.scene import Grid
 from irsim.bridges.solids.cells import merged_cells
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Line, Polygon
+from irsim.simulation.scene import Grid
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry

@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from irsim.bridges.scene import Agent, SceneDescription
 from irsim.bridges.usd.looks import paint
 from irsim.bridges.usd.names import prim_names
 from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Line
+from irsim.simulation.scene import SceneDescription, SceneObject
 
 __all__ = ["Heights", "Mover", "author_scene", "new_stage"]
 
@@ -123,7 +123,7 @@ def _ground(scene: SceneDescription) -> Solid:
     return plane(low, (scene.high[0] + _MARGIN, scene.high[1] + _MARGIN))
 
 
-def _author_agent(stage: Any, path: str, agent: Agent, height: float, *, rigid: bool) -> None:
+def _author_agent(stage: Any, path: str, agent: SceneObject, height: float, *, rigid: bool) -> None:
     """Write one object at its start: its place, and its body as a child."""
     from pxr import Gf, UsdGeom, UsdPhysics
 
@@ -151,7 +151,7 @@ def _author_agent(stage: Any, path: str, agent: Agent, height: float, *, rigid: 
         _mesh(stage, f"{body}/front", wedge, _ARROW_COLOR, solid=False)
 
 
-def _disc(stage: Any, path: str, circle: Circle, height: float, agent: Agent) -> None:
+def _disc(stage: Any, path: str, circle: Circle, height: float, agent: SceneObject) -> None:
     """Write a disc: a mesh that is seen, and a hidden cylinder that collides, which is rounder than the mesh."""
     from pxr import Gf, UsdGeom, UsdPhysics, Vt
 

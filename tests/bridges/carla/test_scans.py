@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from irsim.bridges.carla.scans import scan_of_points, usual_points
-from irsim.bridges.scene import Lidar
+from irsim.simulation.scene import Lidar
 
 
 def _lidar(beams: int = 91, opening: float = math.pi, **more: Any) -> Lidar:

@@ -25,8 +25,8 @@ from irsim.bridges.ros.qos import STATE
 from irsim.bridges.ros.receiver import Receiver
 from irsim.bridges.ros.reports import Reports
 from irsim.bridges.ros.topics import Topic
-from irsim.bridges.scene import Lidar
 from irsim.components.bridges.ros2 import Ros2
+from irsim.simulation.scene import Lidar
 from tests.bridges.ros.test_topics import SCENE
 
 COMMANDS = Topic("cmd_vel", "/robot_0/cmd_vel", "geometry_msgs/msg/Twist", False, STATE, "robot 0")

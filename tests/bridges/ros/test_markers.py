@@ -10,9 +10,9 @@ import pytest
 from PIL import Image
 
 import irsim
-from irsim.bridges.describe import describe_scene
 from irsim.bridges.export.formats import _ros_scene
 from irsim.bridges.ros import markers
+from irsim.objects.describe import describe_scene
 
 SCENE = """
 world: {width: 4, height: 2, obstacle_map: {name: ros, path: map.yaml}}

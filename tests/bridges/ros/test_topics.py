@@ -10,13 +10,13 @@ from irsim.bridges.ros.bridge import RosBridge
 from irsim.bridges.ros.names import ros_names
 from irsim.bridges.ros.qos import Qos
 from irsim.bridges.ros.topics import TABLE, scene_topics
-from irsim.bridges.scene import Agent, Lidar, SceneDescription
+from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 
 
-def agent(index: int, name: str, role: str = "robot", lidars: int = 0) -> Agent:
+def agent(index: int, name: str, role: str = "robot", lidars: int = 0) -> SceneObject:
     mounted = tuple(Lidar(f"{name}/{k}", k, (0.1, 0, 0), -1, 1, 5, 0, 3, 0.1) for k in range(lidars))
-    return Agent(index, name, role, "diff", True, (1.0, 2.0, 0.0), (), (), 0.2, (-1, -1), (1, 1), (9, 9), None, 1.0,
-                 (0, 0, 0), mounted)  # type: ignore[arg-type]  # fmt: skip
+    return SceneObject(index, name, role, "diff", True, (1.0, 2.0, 0.0), (), (), 0.2, (-1, -1), (1, 1), (9, 9), None,
+                       1.0, (0, 0, 0), mounted)  # type: ignore[arg-type]  # fmt: skip
 
 
 SCENE = SceneDescription(

@@ -7,11 +7,12 @@ from typing import Any
 
 import pytest
 
-from irsim.bridges.describe import agent_rows, describe_scene, world_state
 from irsim.bridges.ros.backends.idl import dds_type_name, struct_type
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.outgoing import Outgoing
 from irsim.bridges.ros.topics import TABLE, scene_topics
+from irsim.bridges.state import world_state
+from irsim.objects.describe import agent_rows, describe_scene
 from tests.interop.ros.conftest import SCENE
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("ros_others")]

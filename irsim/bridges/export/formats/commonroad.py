@@ -20,9 +20,9 @@ import numpy as np
 from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.recorded import recorded_scene, recorded_states
-from irsim.bridges.scene import Agent, SceneDescription
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Circle, Line
+from irsim.simulation.scene import SceneDescription, SceneObject
 
 __all__ = ["FORMAT"]
 
@@ -77,7 +77,7 @@ def _notes(scene: SceneDescription) -> list[str]:
     return [] if scene.grid is None else ["the map was left out: CommonRoad has no grids"]
 
 
-def _tracks(episode: Episode, moving: Sequence[Agent]) -> tuple[list[int], list[Floats]]:
+def _tracks(episode: Episode, moving: Sequence[SceneObject]) -> tuple[list[int], list[Floats]]:
     """Steps, and (T, 4) x, y [m], yaw [rad], speed [m/s] of each agent that moves."""
     steps: list[int] = []
     rows: list[Floats] = []
@@ -102,7 +102,7 @@ def _shape(part: BodyPart) -> Any:
     return PolygonObstacleShape(vertices=part.corners), np.zeros(2)
 
 
-def _parts(agent: Agent) -> Iterator[tuple[Any, Floats]]:
+def _parts(agent: SceneObject) -> Iterator[tuple[Any, Floats]]:
     """Shapes of an agent, lines as a rectangle for each leg."""
     from commonroad.geometry.obstacle_shapes.polygon_obstacle_shape import PolygonObstacleShape
 
@@ -119,7 +119,7 @@ def _parts(agent: Agent) -> Iterator[tuple[Any, Floats]]:
             yield PolygonObstacleShape(vertices=np.array([a - aside, b - aside, b + aside, a + aside])), np.zeros(2)
 
 
-def _static(agent: Agent, numbers: Iterator[int]) -> Iterator[Any]:
+def _static(agent: SceneObject, numbers: Iterator[int]) -> Iterator[Any]:
     from commonroad.scenario.obstacle import ObstacleType, StaticObstacle
 
     for shape, middle in _parts(agent):
@@ -128,7 +128,7 @@ def _static(agent: Agent, numbers: Iterator[int]) -> Iterator[Any]:
 
 
 def _dynamic(
-    agent: Agent, track: Floats, steps: Sequence[int], step_time: float, numbers: Iterator[int]
+    agent: SceneObject, track: Floats, steps: Sequence[int], step_time: float, numbers: Iterator[int]
 ) -> Iterator[Any]:
     """An obstacle for each part of an agent, and for each time that it is in the world without interruption."""
     from commonroad.prediction.prediction import TrajectoryPrediction
@@ -168,7 +168,7 @@ def _state(step: int, row: Floats, *, initial: bool) -> Any:
     )
 
 
-def _problem(agent: Agent, last_step: int, number: int) -> Any:
+def _problem(agent: SceneObject, last_step: int, number: int) -> Any:
     """From the start of a robot to a circle around its last goal, within the time of the run."""
     import shapely
     from commonroad.common.util import Interval

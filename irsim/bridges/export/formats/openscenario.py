@@ -24,12 +24,12 @@ from irsim.bridges.export.episode import Actor, Episode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.footprint import box_of
 from irsim.bridges.recorded import recorded_scene
-from irsim.bridges.scene import Agent
 from irsim.common.arrays import Floats
 from irsim.common.version import version
 from irsim.options.base import Options
 from irsim.options.units import Degrees, Meters
 from irsim.runs.files import RunError
+from irsim.simulation.scene import SceneObject
 
 __all__ = ["FORMAT"]
 
@@ -175,7 +175,7 @@ def _header(writer: _Writer, episode: Episode, roads: str) -> None:
             writer.leaf("LogicFile", filepath=roads)
 
 
-def _entity(writer: _Writer, actor: Actor, agent: Agent, options: OpenScenarioOptions) -> None:
+def _entity(writer: _Writer, actor: Actor, agent: SceneObject, options: OpenScenarioOptions) -> None:
     """An object with its box."""
     with writer.element("ScenarioObject", name=actor.name):
         if actor.drive == "acker":
@@ -203,7 +203,7 @@ def _entity(writer: _Writer, actor: Actor, agent: Agent, options: OpenScenarioOp
                 _properties(writer, actor)
 
 
-def _box(writer: _Writer, agent: Agent, height: float) -> None:
+def _box(writer: _Writer, agent: SceneObject, height: float) -> None:
     box = box_of(agent)
     with writer.element("BoundingBox"):
         writer.leaf("Center", x=box.ahead, y=box.left, z=height / 2)

@@ -17,8 +17,8 @@ from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.gazebo.sdf import SdfWorld
 from irsim.bridges.recorded import recorded_scene, recorded_states
-from irsim.bridges.scene import SceneDescription
 from irsim.common.arrays import Floats
+from irsim.simulation.scene import SceneDescription
 
 __all__ = ["FORMAT"]
 

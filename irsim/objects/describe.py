@@ -1,4 +1,4 @@
-"""A simulation as scene and states of bridges."""
+"""The scene of a simulation in plain data, for readers that know no simulation."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.bridges.scene import Agent, Grid, Lidar, SceneDescription
-from irsim.bridges.state import WorldState
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Cells, Polygon, outline
 from irsim.common.version import version
@@ -17,10 +15,10 @@ from irsim.components.maps._site import OCCUPIED
 from irsim.objects.obstacle_map import grid_values
 from irsim.options.color_values import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.simulation.scene import Grid, Lidar, SceneDescription, SceneObject
 from irsim.simulation.simulation import Simulation
-from irsim.simulation.trace import sensors
 
-__all__ = ["agent_rows", "describe_scene", "world_state"]
+__all__ = ["agent_rows", "describe_scene"]
 
 _GREY = (0.5, 0.5, 0.5)
 
@@ -53,49 +51,12 @@ def agent_rows(simulation: Simulation) -> NDArray[np.int64]:
     return np.array([i for i, record in enumerate(records) if not record.is_map], dtype=np.int64)
 
 
-def world_state(simulation: Simulation, rows: NDArray[np.int64]) -> WorldState:
-    """The present state of the first world.
-
-    Args:
-        simulation: The simulation.
-        rows: (N,) what :func:`agent_rows` returns.
-    """
-    measured = np.where(simulation.valid.astype(bool), simulation.ranges, np.inf).astype(np.float32)
-    records = simulation.scenario.objects
-    paths = {records[row].name: _path(simulation, row) for row in rows.tolist() if records[row].role == "robot"}
-    return WorldState(
-        step=int(simulation.count[0]),
-        time=simulation.time,
-        pose=simulation.pose[rows].copy(),
-        twist=simulation.twist[rows].copy(),
-        control=simulation.control[rows].copy(),
-        goal=simulation.goal[rows].copy(),
-        arrived=simulation.arrived[rows].astype(bool),
-        collided=simulation.collided[rows].astype(bool),
-        stopped=simulation.stopped[rows].astype(bool),
-        ranges={key: measured[beams] for key, beams in sensors(simulation)},
-        paths={name: path for name, path in paths.items() if path is not None},
-    )
-
-
-def _path(simulation: Simulation, row: int) -> Floats | None:
-    """(K, 2) the planned path of a robot; of one whose behavior plans none, from where it is through its goals."""
-    state, behavior = simulation.state, simulation.scenario.objects[row].active_behavior
-    route = state.route(row)
-    if route is not None:
-        return route
-    if hasattr(behavior, "planner") or getattr(behavior, "name", None) == "replay":
-        return None
-    points = np.array([simulation.pose[row, :2].tolist(), *(goal[:2] for goal in state.goals(row))])
-    return points if len(points) > 1 and np.isfinite(points).all() else None
-
-
-def _agent(simulation: Simulation, index: int, row: int) -> Agent:
+def _agent(simulation: Simulation, index: int, row: int) -> SceneObject:
     record, state = simulation.scenario.objects[row], simulation.state
     pose = np.asarray(state.initial_state(row), dtype=np.float64)[:3]
     low, high = simulation.limits(row)
     goals = tuple(_pose(goal) for goal in state.goals(row)) if record.role == "robot" or not record.static else ()
-    return Agent(
+    return SceneObject(
         index=index,
         name=record.name,
         role=record.role,

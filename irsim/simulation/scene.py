@@ -1,4 +1,4 @@
-"""The scene of a bridge: all that does not change during an episode, free of anything of irsim's engine."""
+"""What is in a world, in plain data: what does not change during an episode, free of anything of the engine."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart
 
-__all__ = ["SCENE_VERSION", "Agent", "Grid", "Lidar", "SceneDescription"]
+__all__ = ["SCENE_VERSION", "Grid", "Lidar", "SceneDescription", "SceneObject"]
 
 SCENE_VERSION = 1
 """Version of the files of scenes and states."""
@@ -51,7 +51,7 @@ class Lidar:
 
 
 @dataclass(frozen=True)
-class Agent:
+class SceneObject:
     """A robot or an obstacle.
 
     Attributes:
@@ -127,14 +127,14 @@ class SceneDescription:
     step_time: float
     low: tuple[float, float]
     high: tuple[float, float]
-    agents: tuple[Agent, ...]
+    agents: tuple[SceneObject, ...]
     grid: Grid | None = None
     walls: bool = False
     seed: int = 0
     about: Mapping[str, str] = field(default_factory=dict)
     version: int = SCENE_VERSION
 
-    def agent(self, name: str) -> Agent:
+    def agent(self, name: str) -> SceneObject:
         """The agent of that name.
 
         Raises:
@@ -151,6 +151,6 @@ class SceneDescription:
         return tuple(agent.name for agent in self.agents)
 
     @property
-    def robots(self) -> tuple[Agent, ...]:
+    def robots(self) -> tuple[SceneObject, ...]:
         """The agents that are robots."""
         return tuple(agent for agent in self.agents if agent.role == "robot")
