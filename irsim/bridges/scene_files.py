@@ -39,6 +39,8 @@ _MAX_SCENE_BYTES = 64 * 1024 * 1024
 """Largest file of a scene."""
 _MAX_NAMES = 100_000
 """Number of objects that one message may name."""
+_NOT_WRITTEN = ("row", "static", "threshold", "look")
+"""Fields of objects that files of version 1 do not have."""
 _BY_ROW = ("pose", "twist", "control", "goal", "arrived", "collided", "stopped")
 
 
@@ -46,9 +48,14 @@ _BY_ROW = ("pose", "twist", "control", "goal", "arrived", "collided", "stopped")
 def scene_as_json(scene: SceneDescription) -> dict[str, Any]:
     """A scene as JSON types; infinite numbers are ``null``, and cells of a map are runs of free and solid ones."""
     grid = scene.grid
-    found = asdict(replace(scene, grid=None))
+    found = asdict(replace(scene, grid=None, maps=()))
+    del found["maps"]
     for agent, original in zip(found["agents"], scene.agents, strict=True):
         agent["parts"] = [_part_as_json(part) for part in original.parts]
+        for key in _NOT_WRITTEN:
+            del agent[key]
+        for lidar in agent["lidars"]:
+            del lidar["between"]
     if grid is not None:
         found["grid"] = {"size": list(grid.occupied.shape), "cell": grid.cell, "origin": grid.origin,
                          "runs": _runs(grid.occupied)}  # fmt: skip

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
-from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import sensors
+
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
 
 __all__ = ["Feedback", "Motion", "WorldState", "world_state"]
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
+import irsim._core as core
 from irsim.common.arrays import Floats
-
-if TYPE_CHECKING:
-    from irsim import _core as core
 
 __all__ = ["BodyPart", "Cells", "Circle", "Line", "Outline", "Part", "Polygon", "outline", "points_of"]
 
@@ -173,8 +171,6 @@ def _shapely_of(part: Part) -> Any:
 
 
 def _core_of(part: Part) -> core.Part:
-    from irsim import _core as core
-
     if isinstance(part, Circle):
         return core.Circle(radius=part.radius, center=part.center)
     if isinstance(part, Cells):

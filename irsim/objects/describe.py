@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,14 @@ from irsim.common.outline import BodyPart, Cells, Polygon, outline
 from irsim.common.version import version
 from irsim.components.maps._site import OCCUPIED
 from irsim.objects.obstacle_map import grid_values
+from irsim.objects.views import views
 from irsim.options.color_values import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
-from irsim.simulation.scene import Grid, Lidar, SceneDescription, SceneObject
+from irsim.simulation.scene import Grid, Lidar, Look, SceneDescription, SceneObject
 from irsim.simulation.simulation import Simulation
+
+if TYPE_CHECKING:
+    from irsim.objects.drawing.scene_builder import SceneBuilder
 
 __all__ = ["agent_rows", "describe_scene"]
 
@@ -31,17 +35,22 @@ def describe_scene(simulation: Simulation) -> SceneDescription:
     """
     scenario = simulation.scenario
     bounds = scenario.world.bounds
-    agents = tuple(_agent(simulation, index, row) for index, row in enumerate(agent_rows(simulation).tolist()))
+    from irsim.objects.drawing.scene_builder import SceneBuilder  # many modules, which few readers need
+
+    builder, rows = SceneBuilder(simulation), agent_rows(simulation).tolist()
+    objects = {row: _object(simulation, builder, rows.index(row) if row in rows else -1, row)
+               for row in range(len(scenario.objects))}  # fmt: skip
     return SceneDescription(
         name=scenario.name,
         step_time=float(scenario.world.step_time),
         low=(float(bounds[0]), float(bounds[1])),
         high=(float(bounds[2]), float(bounds[3])),
-        agents=agents,
+        agents=tuple(objects[row] for row in rows),
         grid=_grid(simulation),
         walls=scenario.world.boundary == "walls",
         seed=int(simulation.state.seed[0]),
         about={"irsim": version(), "scenario": scenario.text or ""},
+        maps=tuple(one for row, one in objects.items() if row not in rows),
     )
 
 
@@ -51,7 +60,7 @@ def agent_rows(simulation: Simulation) -> NDArray[np.int64]:
     return np.array([i for i, record in enumerate(records) if not record.is_map], dtype=np.int64)
 
 
-def _agent(simulation: Simulation, index: int, row: int) -> SceneObject:
+def _object(simulation: Simulation, builder: SceneBuilder, index: int, row: int) -> SceneObject:
     record, state = simulation.scenario.objects[row], simulation.state
     pose = np.asarray(state.initial_state(row), dtype=np.float64)[:3]
     low, high = simulation.limits(row)
@@ -64,7 +73,7 @@ def _agent(simulation: Simulation, index: int, row: int) -> SceneObject:
         moves=not record.static and record.kinematics is not None,
         pose=_pose(pose),
         goals=goals,
-        parts=_parts(state, row),
+        parts=() if record.is_map else _parts(state, row),
         radius=float(simulation.radius[row]),
         low=tuple(map(float, low)),
         high=tuple(map(float, high)),
@@ -74,6 +83,23 @@ def _agent(simulation: Simulation, index: int, row: int) -> SceneObject:
         color=_color(record),
         lidars=_lidars(simulation, row),
         solid=not record.unobstructed,
+        row=row,
+        static=record.static,
+        threshold=record.goal_threshold,
+        look=_look(simulation, builder, row),
+    )
+
+
+def _look(simulation: Simulation, builder: SceneBuilder, row: int) -> Look:
+    view = views(simulation)[row]
+    if view.record.is_map:
+        return Look((0.0, 0.0, 0.0))
+    style = builder.style(view, {})
+    return Look(
+        rgb(style.obj_color),
+        float(style.obj_alpha),
+        goal=view.record.role == "robot" or bool(style.show_goal),
+        arrow=bool(style.show_arrow),
     )
 
 
@@ -113,6 +139,7 @@ def _lidars(simulation: Simulation, row: int) -> tuple[Lidar, ...]:
                 range_max=float(chosen.range_max),
                 period=float(chosen.scan_time),
                 noise=bool(chosen.noise),
+                between=chosen.angle_range / max(count - 1 if chosen.endpoint else count, 1) if count > 1 else 0.0,
             )
         )
     return tuple(found)
@@ -122,8 +149,8 @@ def _grid(simulation: Simulation) -> Grid | None:
     values, grid = grid_values(simulation), simulation.scenario.grid
     if values is None or grid is None:
         return None
-    cell = float(grid.cell[0]), float(grid.cell[1])
-    return Grid(values > OCCUPIED, cell, (float(grid.origin[0]), float(grid.origin[1])))
+    cell, origin = (float(grid.cell[0]), float(grid.cell[1])), (float(grid.origin[0]), float(grid.origin[1]))
+    return Grid(values > OCCUPIED, cell, origin, np.clip(values, 0, 100).astype(np.uint8))
 
 
 def _color(record: ObjectRecord) -> tuple[float, float, float]:

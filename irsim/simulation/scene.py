@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart
 
-__all__ = ["SCENE_VERSION", "Grid", "Lidar", "SceneDescription", "SceneObject"]
+__all__ = ["SCENE_VERSION", "Grid", "Lidar", "Look", "SceneDescription", "SceneObject"]
 
 SCENE_VERSION = 1
 """Version of the files of scenes and states."""
@@ -31,6 +31,7 @@ class Lidar:
         range_min, range_max: Shortest and longest range [m].
         period: Time between two scans [s].
         noise: Whether ranges are noisy.
+        between: Angle between neighboring beams [rad].
     """
 
     key: str
@@ -43,11 +44,29 @@ class Lidar:
     range_max: float
     period: float
     noise: bool = False
+    between: float = 0.0
 
     @property
     def angles(self) -> Floats:
         """(beams,) directions of the beams, frame of the sensor [rad]."""
         return np.linspace(self.angle_min, self.angle_max, self.beams)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How an object is drawn.
+
+    Attributes:
+        color: Red, green, blue, from 0 to 1.
+        alpha: Opacity, from 0 to 1.
+        goal: Whether its goal is drawn.
+        arrow: Whether an arrow shows where it points.
+    """
+
+    color: tuple[float, float, float]
+    alpha: float = 1.0
+    goal: bool = False
+    arrow: bool = False
 
 
 @dataclass(frozen=True)
@@ -70,7 +89,11 @@ class SceneObject:
         mass: [kg]; infinite for an object that nothing pushes.
         color: Red, green, blue, from 0 to 1.
         lidars: Its lidars.
-        solid: Whether it collides; false for zones that only are drawn, and with ``unobstructed``.
+        solid: Whether it collides; false for ``unobstructed`` objects.
+        row: Its row in a trace, which counts the map, too.
+        static: Whether it never moves.
+        threshold: Distance within which it has arrived at a goal [m].
+        look: How it is drawn; None for objects of other programs.
     """
 
     index: int
@@ -90,6 +113,10 @@ class SceneObject:
     color: tuple[float, float, float]
     lidars: tuple[Lidar, ...] = ()
     solid: bool = True
+    row: int = -1
+    static: bool = False
+    threshold: float = 0.0
+    look: Look | None = None
 
 
 @dataclass(frozen=True)
@@ -100,11 +127,19 @@ class Grid:
         occupied: (nx, ny) cells that are solid; the first index goes along x, the second one along y, upwards.
         cell: Sides of a cell along x and y [m].
         origin: Lower left corner [m], world frame.
+        levels: (nx, ny) occupancies from 0 to 100; None in scenes of other programs.
     """
 
     occupied: NDArray[np.bool_]
     cell: tuple[float, float]
     origin: tuple[float, float]
+    levels: NDArray[np.uint8] | None = None
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Left, right, bottom and top [m], world frame."""
+        (x, y), (nx, ny), (dx, dy) = self.origin, self.occupied.shape, self.cell
+        return x, x + nx * dx, y, y + ny * dy
 
 
 @dataclass(frozen=True)
@@ -121,6 +156,7 @@ class SceneDescription:
         seed: Seed of the episode.
         about: What else is worth keeping: text of the scenario, versions.
         version: Version of this description.
+        maps: The map as an object of traces; it has no parts.
     """
 
     name: str
@@ -133,6 +169,12 @@ class SceneDescription:
     seed: int = 0
     about: Mapping[str, str] = field(default_factory=dict)
     version: int = SCENE_VERSION
+    maps: tuple[SceneObject, ...] = ()
+
+    @property
+    def objects(self) -> tuple[SceneObject, ...]:
+        """All objects in the order of their rows in a trace, the map included."""
+        return tuple(sorted((*self.agents, *self.maps), key=lambda one: one.row))
 
     def agent(self, name: str) -> SceneObject:
         """The agent of that name.

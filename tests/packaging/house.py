@@ -86,7 +86,7 @@ def files_with(pattern: str) -> list[str]:
 
 def translators() -> list[str]:
     """Files that turn errors of pydantic, which have a ``loc``, into findings."""
-    return files_with(r"\[.loc.\]")
+    return files_with(r"\[[\"']loc[\"']\]")
 
 
 def function_imports(package: str = "irsim") -> int:

@@ -9,6 +9,7 @@ import pytest
 
 import irsim
 from irsim.api import read_scenario
+from irsim.objects.describe import describe_scene
 from irsim.runs.replay.drawing import page_grid, page_objects
 
 SCENE = """
@@ -28,7 +29,7 @@ def env() -> irsim.Env:
 
 
 def test_cells_of_the_map_are_told_row_by_row_from_below(env: irsim.Env) -> None:
-    grid = page_grid(env)
+    grid = page_grid(describe_scene(env.simulation))
     assert grid is not None
     assert (grid["cells"], grid["extent"]) == ([12, 6], [0, 6, 0, 3])
     changes = set(accumulate(grid["runs"]))
@@ -42,14 +43,14 @@ def test_cells_of_the_map_are_told_row_by_row_from_below(env: irsim.Env) -> None
 
 
 def test_beams_have_the_directions_of_the_scan(env: irsim.Env) -> None:
-    [lidar] = page_objects(env)[2]
+    [lidar] = page_objects(describe_scene(env.simulation))[2]
     assert lidar["pose"] == [0.1, 0, 0.3]
     angles = lidar["first"] + lidar["between"] * np.arange(lidar["beams"])
     assert angles == pytest.approx(np.asarray(env.simulation.state.beam_angles))
 
 
 def test_walls_round_the_world_are_a_closed_line(env: irsim.Env) -> None:
-    shapes, objects, _ = page_objects(env)
+    shapes, objects, _ = page_objects(describe_scene(env.simulation))
     [walls] = [item for item in objects if item["name"] == "boundary"]
     points = np.reshape(shapes[walls["shape"]]["line"], (-1, 2))
     assert len(points) == 5

@@ -19,11 +19,19 @@ FULL = [False, False, True, True]
 READERS: dict[str, Callable[[Any], Any]] = {
     "engine": lambda env: env.simulation.state.cells(1).occupied[:, 0].astype(bool).tolist(),
     "other programs": lambda env: describe_scene(env.simulation).grid.occupied[:, 0].tolist(),
-    "page of a run": lambda env: np.repeat(np.arange(9) % 2 == 1, _padded(page_grid(env)["runs"])).tolist(),
+    "page of a run": lambda env: np.repeat(
+        np.arange(9) % 2 == 1, _padded(page_grid(describe_scene(env.simulation))["runs"])
+    ).tolist(),
     "planners": lambda env: [env.get_map(0.0).is_collision(shapely.Point(x + 0.5, 0.5)) for x in range(4)],
     "scripts": lambda env: [env.get_map(0.0).grid_occupied(x + 0.5, 0.5) for x in range(4)],
     "positions of cells": lambda env: [x in env._world.obstacle_index[0] for x in range(4)],
 }
+
+
+def _page_runs(env: Any) -> Any:
+    grid = page_grid(describe_scene(env.simulation))
+    assert grid is not None
+    return grid["runs"]
 
 
 def _padded(runs: Any) -> list[int]:

@@ -38,8 +38,9 @@ def body_markers(messages: Messages, scene: SceneDescription, frames: Mapping[st
     markers: list[Any] = []
     for agent in scene.agents:
         place = (frames[agent.name], (0.0, 0.0, 0.0)) if agent.name in frames else (world, agent.pose)
+        looks = agent.color, 1.0
         for part in agent.parts:
-            markers.append(_part_marker(messages, len(markers), part, agent.color, *place))
+            markers.append(part_marker(messages, len(markers), part, looks, *place))
         if agent.role == "robot":
             markers.append(label_marker(messages, agent.index, agent.name, *place))
     return messages("visualization_msgs", "MarkerArray")(markers)
@@ -113,8 +114,10 @@ def line_marker(
     return marker
 
 
-def _part_marker(messages: Messages, number: int, part: BodyPart, color: RGB, frame: str, pose: Any) -> Any:
-    looks = (color, 1.0)
+def part_marker(
+    messages: Messages, number: int, part: BodyPart, looks: tuple[RGB, float], frame: str, pose: Any
+) -> Any:
+    """The marker of a part of a body."""
     if isinstance(part, Circle):
         return circle_marker(messages, number, part.center, part.radius, looks, frame, pose)
     if isinstance(part, Polygon):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.state import WorldState
+from irsim.bridges.state import WorldState, world_state
 from irsim.bridges.usd.motion import animate
 from irsim.bridges.usd.stage import Heights, author_scene, new_stage
 from irsim.common.extras import require
@@ -103,7 +103,6 @@ def export_scene(
         ScenarioError: The scenario has errors.
         TargetError: The file has another suffix, or exists.
     """
-    from irsim.bridges.state import world_state
     from irsim.env import Env
     from irsim.objects.describe import agent_rows, describe_scene
     from irsim.scenario.open import open_scenario

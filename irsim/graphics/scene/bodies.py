@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,19 @@ from irsim.graphics.scene.scene import Circle, Geometry, Line, Picture, Region, 
 if TYPE_CHECKING:
     from irsim._core import State
 
-__all__ = ["Body", "Pose", "arrow", "bounds", "box", "ellipse", "picture_outline", "place", "point_on", "read_body"]
+__all__ = [
+    "Body",
+    "Pose",
+    "arrow",
+    "bounds",
+    "box",
+    "ellipse",
+    "geometry_of",
+    "picture_outline",
+    "place",
+    "point_on",
+    "read_body",
+]
 
 Pose = tuple[float, float, float]
 """x, y [m] and heading [rad]."""
@@ -74,13 +87,15 @@ class Body:
 def read_body(state: State, row: int) -> Body:
     """Read the shape of the object in one row of the simulation."""
     found = outline(state, row)
-    geometries = [_geometry_of(part) for part in found.parts]
+    kind = _KINDS[type(found.parts[0])] if len(found.parts) == 1 else "compound"
     (left, bottom), (right, top) = (corner.tolist() for corner in found.box())
-    if len(geometries) > 1:
-        kind, geometry = "compound", _union(geometries)
-    else:
-        kind, geometry = _KINDS[type(found.parts[0])], geometries[0]
-    return Body(kind, geometry, (left, bottom), (right, top), float(state.radius[row]))
+    return Body(kind, geometry_of(found.parts), (left, bottom), (right, top), float(state.radius[row]))
+
+
+def geometry_of(parts: Sequence[outlines.Part]) -> Geometry:
+    """Return the parts of a body as one geometry: the only one, or the union of several."""
+    geometries = [_geometry_of(part) for part in parts]
+    return geometries[0] if len(geometries) == 1 else _union(geometries)
 
 
 def place(geometry: Geometry, pose: Pose) -> Geometry:

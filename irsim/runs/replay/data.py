@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.text import clean
+from irsim.objects.describe import describe_scene
 from irsim.runs.initial_scene import initial_scene
 from irsim.runs.reading import Run
 from irsim.runs.replay.columns import Columns, changes, folded, quantised
@@ -85,9 +86,10 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     """
     trace = run.trace()
     with initial_scene(run, limits) as env:
-        shapes, objects, lidars = page_objects(env)
-        grid = page_grid(env)
-        zones = page_zones(env)
+        scene = describe_scene(env.simulation)
+        shapes, objects, lidars = page_objects(scene)
+        grid = page_grid(scene)
+        zones = page_zones(env.scenario.world.zones)
         world, starts = env.simulation.scenario.world, env.simulation.start_step.copy()
         title = env.simulation.scenario.name
     columns = Columns()

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from irsim.common.text import clean
-from irsim.components.maps._site import OCCUPIED
+from irsim.graphics.scene.bodies import geometry_of
 from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Region
-from irsim.objects.drawing.scene_builder import SceneBuilder
-from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
-from irsim.objects.views import views
+from irsim.simulation.scene import Lidar, SceneDescription
 
 if TYPE_CHECKING:
-    from irsim.env import Env
+    from irsim.scenario.model.zones import Zone
 
 __all__ = ["page_grid", "page_objects", "page_zones"]
 
@@ -25,87 +24,77 @@ _DECIMALS = 4
 """Decimals of coordinates."""
 
 
-def page_objects(env: Env) -> tuple[list[dict[str, Any]], list[dict[str, Any]], list[dict[str, Any]]]:
-    """Shapes, objects and lidars of an environment at its start.
+def page_objects(scene: SceneDescription) -> tuple[list[dict[str, Any]], list[dict[str, Any]], list[dict[str, Any]]]:
+    """Shapes, objects and lidars of a scene.
 
     Returns:
         The distinct shapes, each in its own frame; the objects in the order of the trace, with the index of their
         ``shape``; the lidars, with the index of their ``object``, their ``pose`` in the frame of the object, and the
         ``key`` of their ranges in the trace.
     """
-    builder = SceneBuilder(env.simulation)
     shapes: dict[str, int] = {}
     objects, lidars = list[dict[str, Any]](), list[dict[str, Any]]()
-    for row, view in enumerate(views(env.simulation)):
-        record = view.record
-        drawn: dict[str, Any] = {
-            "name": clean(view.name),
-            "role": record.role,
-            "pose": [_rounded(value) for value in env.simulation.pose[row].tolist()],
-            "radius": _rounded(float(env.simulation.radius[row])),
-            "seen": not record.unobstructed,
-            "drive": getattr(record.kinematics, "name", None),
-            "arrival": record.goal_threshold,
-        }
-        if view.record.is_map:
-            drawn.update(shape=-1, color="#000000", alpha=1.0, goal=False, arrow=False)
-        else:
-            style = builder.style(view, {})
-            text = json.dumps(_plain(builder.body(view).geometry))
-            drawn.update(
-                shape=shapes.setdefault(text, len(shapes)),
-                color=_hex(style.obj_color),
-                alpha=round(float(style.obj_alpha), 3),
-                goal=record.role == "robot" or bool(style.show_goal),
-                arrow=bool(style.show_arrow),
-            )
-        objects.append(drawn)
-        native = [sensor for sensor in view.sensors if isinstance(sensor, Lidar2D | FMCWLidar2D)]
-        lidars += [_lidar(sensor, row, f"{view.name}/{number}") for number, sensor in enumerate(native)]
+    for one in scene.objects:
+        assert one.look is not None
+        text = json.dumps(_plain(geometry_of(one.parts))) if one.parts else ""
+        objects.append(
+            {
+                "name": clean(one.name),
+                "role": one.role,
+                "pose": [_rounded(value) for value in one.pose],
+                "radius": _rounded(one.radius),
+                "seen": one.solid,
+                "drive": one.drive,
+                "arrival": one.threshold,
+                "shape": shapes.setdefault(text, len(shapes)) if text else -1,
+                "color": _hex(one.look.color),
+                "alpha": round(one.look.alpha, 3),
+                "goal": one.look.goal,
+                "arrow": one.look.arrow,
+            }
+        )
+        lidars += [_lidar(lidar, one.row) for lidar in one.lidars]
     return [json.loads(text) for text in shapes], objects, lidars
 
 
-def page_grid(env: Env) -> dict[str, Any] | None:
+def page_grid(scene: SceneDescription) -> dict[str, Any] | None:
     """Cells of the map, None without a map.
 
     Returns:
         Number of cells along x and y, ``extent`` [m], and ``runs``: lengths of alternating runs of free and occupied
         cells.
     """
-    builder = SceneBuilder(env.simulation)
-    for view in views(env.simulation):
-        if view.record.is_map:
-            grid = builder.grid(view)
-            full = (grid.levels.T > OCCUPIED).ravel()
-            ends = np.flatnonzero(np.diff(full.astype(np.int8), prepend=0))
-            runs = np.diff(np.concatenate([[0], ends, [full.size]]))
-            return {"cells": list(grid.levels.shape), "extent": [float(v) for v in grid.extent], "runs": runs}
-    return None
+    if scene.grid is None:
+        return None
+    full = scene.grid.occupied.T.ravel()
+    ends = np.flatnonzero(np.diff(full.astype(np.int8), prepend=0))
+    runs = np.diff(np.concatenate([[0], ends, [full.size]]))
+    return {"cells": list(scene.grid.occupied.shape), "extent": [float(v) for v in scene.grid.extent], "runs": runs}
 
 
-def page_zones(env: Env) -> list[dict[str, Any]]:
+def page_zones(zones: Sequence[Zone]) -> list[dict[str, Any]]:
     """Zones with their ``name``, ``color``, outline, and the place ``at`` of their name."""
-    zones = list[dict[str, Any]]()
-    for zone in env.scenario.world.zones:
+    found = list[dict[str, Any]]()
+    for zone in zones:
         left, _, _, top = zone.bounds
         color = _hex(Palette().zone if zone.color is None else zone.color)
         shape = {"line" if zone.is_line else "rings": _flat(zone.points) if zone.is_line else [_flat(zone.points)]}
         if zone.circle is not None:
             shape = {"circle": [_rounded(value) for value in (*zone.circle.center, zone.circle.radius)]}
-        zones.append({"name": clean(zone.name), "color": color, "at": [_rounded(left), _rounded(top)], **shape})
-    return zones
+        found.append({"name": clean(zone.name), "color": color, "at": [_rounded(left), _rounded(top)], **shape})
+    return found
 
 
-def _lidar(sensor: Lidar2D, row: int, key: str) -> dict[str, Any]:
+def _lidar(lidar: Lidar, row: int) -> dict[str, Any]:
     return {
         "object": row,
-        "key": key,
-        "pose": [_rounded(float(value)) for value in sensor.offset[:, 0]],
-        "beams": sensor.number,
-        "first": sensor.angle_min,
-        "between": sensor.angle_inc,
-        "range_min": sensor.range_min,
-        "range_max": sensor.range_max,
+        "key": lidar.key,
+        "pose": [_rounded(value) for value in lidar.mount],
+        "beams": lidar.beams,
+        "first": lidar.angle_min,
+        "between": lidar.between,
+        "range_min": lidar.range_min,
+        "range_max": lidar.range_max,
     }
 
 

@@ -62,7 +62,7 @@ def test_each_body_is_a_marker_where_it_is(env: irsim.Env, kind: str) -> None:
     if kind == "live":
         made = markers.body_markers(Plain(), describe_scene(env.simulation), frames, "map")  # type: ignore[arg-type]
     else:
-        made = _ros_scene.body_markers(Plain(), env, frames, "map")  # type: ignore[arg-type]
+        made = _ros_scene.body_markers(Plain(), describe_scene(env.simulation), frames, "map")  # type: ignore[arg-type]
     bodies = [marker for marker in made.given[0] if marker.ns == "bodies"]
     rover, disk, line, area = bodies
     assert [marker.type for marker in bodies] == [3, 3, 4, 11]
@@ -78,6 +78,6 @@ def test_each_body_is_a_marker_where_it_is(env: irsim.Env, kind: str) -> None:
 
 
 def test_a_grid_keeps_the_levels_of_its_map(env: irsim.Env) -> None:
-    grid = _ros_scene.occupancy_grid(Plain(), env, "map")  # type: ignore[arg-type]
+    grid = _ros_scene.occupancy_grid(Plain(), describe_scene(env.simulation), "map")  # type: ignore[arg-type]
     assert (grid.side, grid.origin) == (1, (0, 0))
     assert grid.levels.tolist() == [[0, 0], [30, 0], [0, 100], [70, 0]], "(nx, ny), from below"

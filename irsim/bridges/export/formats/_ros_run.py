@@ -15,6 +15,7 @@ from irsim.bridges.export.episode import Block, Episode, Lidar
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.names import nanoseconds, ros_names
 from irsim.common.arrays import Floats
+from irsim.objects.describe import describe_scene
 from irsim.runs.initial_scene import initial_scene
 from irsim.simulation.events import BETWEEN_STEPS, Event
 from irsim.simulation.trace import Trace
@@ -117,13 +118,13 @@ def _add_scene(bag: Bag, messages: Messages, episode: Episode, layout: _Layout) 
 
     follows = {actor.name: frame for actor, frame in zip(episode.actors, layout.frames, strict=True)}
     with initial_scene(episode.run, episode.limits) as env:
-        markers = body_markers(messages, env, follows, _WORLD)
-        grid = occupancy_grid(messages, env, _WORLD)
-        has_map = env.simulation.scenario.grid is not None
+        scene = describe_scene(env.simulation)
+    markers = body_markers(messages, scene, follows, _WORLD)
+    grid = occupancy_grid(messages, scene, _WORLD)
     bag.add(bag.topic("/markers", "visualization_msgs/msg/MarkerArray", latched=True), 0, markers)
     if grid is not None:
         bag.add(bag.topic("/map", "nav_msgs/msg/OccupancyGrid", latched=True), 0, grid)
-    return grid is not None or not has_map
+    return grid is not None or scene.grid is None
 
 
 def _add_mounts(bag: Bag, messages: Messages, episode: Episode, layout: _Layout) -> None:
