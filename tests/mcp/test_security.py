@@ -267,13 +267,13 @@ def test_limits_of_the_system_are_set() -> None:
 @POSIX
 def test_a_lower_limit_of_the_system_stays() -> None:
     code = (
-        "import resource\nfrom irsim_mcp import job\n"
+        "import resource\nfrom irsim.common.child import limit\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 5000))\n"
-        "job._limit({'memory': 10**10, 'cpu': 7, 'written': 3000})\n"
+        "limit(memory=10**10, cpu=7, written=3000)\n"
         "print(*resource.getrlimit(resource.RLIMIT_FSIZE))"
     )
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert told.split() == ["1000", "5000"]
+    assert told.split() == ["1000", "1000"], "and the process cannot raise it again"
 
 
 def test_limits_are_those_documented() -> None:

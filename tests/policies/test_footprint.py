@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.policies.footprint import footprint
+from irsim.common.outline import outline
 from tests.policies.scenes import simulation
 
 DISK = {"name": "circle", "radius": 0.3, "center": [0.1, 0.2]}
@@ -15,7 +15,7 @@ BAR = {"name": "rectangle", "length": 2, "width": 0.2}
 
 
 def corners_of(shape: dict[str, Any]) -> Any:
-    return footprint(simulation({"shape": shape, "state": [4, 3, 1.0]}).state, 0)
+    return outline(simulation({"shape": shape, "state": [4, 3, 1.0]}).state, 0).hull()
 
 
 def test_no_part_of_a_disk_is_outside_of_its_16_corners() -> None:
