@@ -46,7 +46,9 @@ DIFFERENCES: dict[str, Difference] = {
         "polygons and maps are one disc for `rvo` and `sfm`, and invisible to `orca`; linestrings are endless cones "
         "for `rvo` at any distance, and `sfm` adds the push of all their segments, also of hidden ones",
         "static walls are walls however they are written: a rectangle, polygon, compound, linestring or block of map "
-        "cells of the same outline gives the same motion. Walls that stand free are passed on the nearer side by "
+        "cells of the same outline gives the same motion (under `follow`, too, unless it plans on the cells of a map: "
+        "in worlds of more than 2,500 m^2, or where its own grid of 0.1 m shows no way). Walls that stand free are "
+        "passed on the nearer side by "
         "`rvo`, `sfm`, `orca` and `avocado`, walls round the object block what reaches them; posts beside a free way "
         "hold nobody back under `sfm`. `unobstructed` "
         "linestrings count for `rvo` and `sfm` as in 2.12, other `unobstructed` walls for none. Moving polygons stay "

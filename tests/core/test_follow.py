@@ -120,6 +120,47 @@ obstacle: {shape: {name: rectangle, length: 0.74, width: 0.8}, state: [2.12, 4.1
     assert "there is no path to it" in str(result.reason)
 
 
+@pytest.mark.parametrize("local", ["dash", "orca", "avocado", "rvo", "sfm"])
+@pytest.mark.parametrize("drive", ["diff", "omni", "acker"])
+@pytest.mark.parametrize(("speed", "acce", "step_time"), [(1.5, 0.5, 0.05), (2.5, 0.3, 0.1)])
+def test_it_stops_in_time_where_braking_takes_long(
+    local: str, drive: str, speed: float, acce: float, step_time: float
+) -> None:
+    """A wall stands 0.5 m behind the goal, and the way leads round another one at the top speed."""
+    turn, limit = (speed, acce) if drive == "omni" else (0.8 if drive == "acker" else 2, 4)
+    wheelbase = ", wheelbase: 0.35" if drive == "acker" else ""
+    text = f"""
+world: {{width: 20, height: 10, boundary: walls, step_time: {step_time}, contacts: swept, time_limit: 60}}
+robot:
+  - kinematics: {{name: {drive}{wheelbase}}}
+    shape: {{name: circle, radius: 0.25}}
+    state: [2, 5, 0]
+    goal: [15, 5]
+    goal_threshold: 0.2
+    behavior: {{name: follow, local: {{name: {local}}}}}
+    vel_max: [{speed}, {turn}]
+    vel_min: [{-speed}, {-turn}]
+    acce: [{acce}, {limit}]
+obstacle:
+  - {{shape: {{name: rectangle, length: 1, width: 3}}, state: [10, 4.4, 0]}}
+  - {{shape: {{name: rectangle, length: 0.3, width: 2}}, state: [15.65, 5, 0]}}
+"""
+    result = irsim.run(text=text, seed=1)
+    assert result.outcome == "success", result.reason
+    assert not [event for event in result.events if "collision" in event.kind or "contact" in event.kind]
+
+
+def test_it_stands_at_its_goal_soon_after_it_has_arrived() -> None:
+    robot = "{goal: [9, 5], goal_threshold: 0.2, behavior: {name: follow}, acce: [0.5, 0.5]"
+    robot += ", kinematics: {name: omni}, vel_max: [1.5, 1.5], vel_min: [-1.5, -1.5], state: [2, 5, 0]}"
+    run = simulation(f"world: {{width: 20, height: 10, after_arrival: yield}}\nrobot: {robot}")
+    for _ in range(150):
+        run.step()
+    assert run.state.arrived[0]
+    np.testing.assert_allclose(run.pose[0, :2], [9, 5], atol=0.2)
+    assert np.abs(run.state.twist[0]).max() < 1e-6
+
+
 def test_replans_only_for_a_reason() -> None:
     sim = simulation(maze())
     sim.step()

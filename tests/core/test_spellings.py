@@ -124,6 +124,32 @@ def test_a_block_of_a_map_is_a_box(behavior: str, tmp_path: Path) -> None:
     assert_equal([boxed, mapped], 120)
 
 
+@pytest.mark.parametrize("local", ["dash", *BEHAVIORS])
+@pytest.mark.parametrize("start", [0.0, 0.4])
+def test_follow_goes_round_a_block_of_a_map_as_round_a_box(local: str, start: float, tmp_path: Path) -> None:
+    picture = np.full((400, 400), 255, dtype=np.uint8)  # cells of 5 cm: they are not those of the planner
+    picture[172:206, 180:220] = 0  # 2 m by 1.7 m at (10, 10.55); the first row is the top
+    Image.fromarray(picture).save(tmp_path / "block.png")
+    boxes = [scene("follow", "diff", shape, [10, 10.55, 0], start) for shape in spellings_of_a_box(2, 1.7)]
+    for data in boxes:
+        data["robot"]["behavior"]["local"] = local
+    mapped = {**boxes[0], "world": {**boxes[0]["world"], "obstacle_map": str(tmp_path / "block.png")}}
+    del mapped["obstacle"]
+    assert_equal([*boxes, mapped], 130)
+
+
+def test_follow_finds_the_way_that_only_the_cells_of_a_map_show(tmp_path: Path) -> None:
+    picture = np.full((600, 600), 255, dtype=np.uint8)  # cells of 3.3 cm
+    picture[:, 300:330] = 0
+    picture[300:313, 300:330] = 255  # a way of 43 cm through a wall of 1 m; the robot is 40 cm wide
+    Image.fromarray(picture).save(tmp_path / "slit.png")
+    data = scene("follow", "omni", {"name": "circle", "radius": 1}, [0, 0, 0])
+    del data["obstacle"]
+    data["world"]["obstacle_map"] = str(tmp_path / "slit.png")
+    result = irsim.run(text=yaml.safe_dump(data), seed=0)
+    assert result.outcome == "success", result.reason
+
+
 @pytest.mark.parametrize("behavior", BEHAVIORS)
 @pytest.mark.parametrize("drive", ["diff", "omni"])
 @pytest.mark.parametrize("start", [0.0, 0.13])

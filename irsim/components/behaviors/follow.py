@@ -17,9 +17,9 @@ from irsim.options.units import Meters, Seconds
 class Follow(BehaviorOptions):
     """Plan a path round everything static, out of dead ends and through mazes, and follow it.
 
-    The planner knows the whole map from the start, and keeps the path clear of everything static that is not
-    `unobstructed`. Commands that would hit something static are slowed down. Without a path the object stays, and a
-    `no_path` event reports it.
+    The planner knows the whole map, and keeps the path clear of everything static that is not `unobstructed`. Commands
+    after which the object could not stop (`acce`) before something static are slowed down, and it brakes for its last
+    goal. Without a path it stays, and a `no_path` event reports it.
 
     The local behavior avoids moving objects (`dash` avoids none; `orca` is the usual choice, also for cars). Towards
     static objects it keeps only the clearance that the path has, without its own margins, horizons and forces, which

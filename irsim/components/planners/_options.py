@@ -23,7 +23,7 @@ class GridPlanner(PlannerOptions):
     """Plans on the cells of a grid."""
 
     resolution: Annotated[Meters, Field(gt=0)] | None = None
-    """Cell size of the grid; null is that of the map, or 0.1 m without a map."""
+    """Cell size of the grid; null is the map's (`follow`: above 2,500 m^2), else 0.1 m."""
 
 
 class SamplingPlanner(PlannerOptions):

@@ -101,6 +101,8 @@ class Follower {
 
   /// The law of dash on a route: straight to the next corner, at a speed from which the object can turn there.
   void steer_to_corner(Vec3& u);
+  /// Slow down so that the object can stop at its last goal, at the end of its path.
+  void slow_down_to_goal(Vec3& u) const;
   /// Let a car back up first when its goal lies within its turning circle.
   void back_off_from_goal();
   /// Note how much of the way is left, and whether the object gets on.
@@ -125,6 +127,8 @@ class Follower {
   /// A car that stops because no command is free keeps its last steering if it would touch something static with the
   /// wanted one: a step ago the stop with that steering was free.
   void hold_steering(Vec3& u);
+  /// Stop.
+  void brake(Vec3& u);
   /// Set the gap to walls that the next command must keep: that of the route, or a little less than the present one.
   void measure_gap();
   /// Whether the body at a pose touches nothing static, keeps the gap to it, and stays on its `Workspace::sides`.

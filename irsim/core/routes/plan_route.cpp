@@ -17,6 +17,7 @@ constexpr double kRestingDistance = 0.1;      // an object that moves less than 
 constexpr double kStuckTime = 5.0;            // resting this long on a path that may be too narrow counts as stuck [s]
 constexpr double kParkingRadii = 6.0;         // a car plans to the heading of its goal from this many turning radii
 constexpr double kTimeBetweenParkings = 1.0;  // after a plan to the heading, before another one [s]
+constexpr double kMaxCommonArea = 2500.0;     // a larger world with a map is planned on the cells of the map [m^2]
 constexpr int kEntries = 40;                  // places along x and along y at which an object may come back to its way
 constexpr std::uint64_t kDrawsPerPlan = std::uint64_t{1} << 40;  // blocks of draws reserved for each plan
 
@@ -254,12 +255,17 @@ bool Follower::attempt(const Body& wide, const Body& tight, bool search) {
   if (!search) return false;
   const bool left = within_ && !within_->holds(start), outside = left || is_in_avoided();
   const Vec2 from = outside ? way_back(space, left) : start;
-  const std::optional<Lattice> own = lattice_of_map(world_, shapes_, box);
-  const int tries = draws_samples(options_.planner) ? kMaxTries : 1;
+  const bool samples = draws_samples(options_.planner);
+  // A map is planned on as other walls are, on the grid that has nothing to do with its cells, if that is not too
+  // large. Where nothing is found on it, the cells of the map may show a way.
+  const std::optional<Lattice> own = samples ? std::nullopt : lattice_of_map(world_, shapes_, box);
+  const bool vast = (box.x1 - box.x0) * (box.y1 - box.y0) > kMaxCommonArea;
+  const int tries = samples ? kMaxTries : own && !vast ? 2 : 1;
   for (int k = 0; k < tries && route_.path.empty(); ++k) {
+    const bool cells = own && (vast || k > 0);
     const Draws draws(state_.key(w_), Stream::planner, world_.number[object_]);
     const Problem problem{
-        space, from, goal, &close, own ? &*own : nullptr, false, draws, kDrawsPerPlan * route_.plans++, work_.search};
+        space, from, goal, &close, cells ? &*own : nullptr, false, draws, kDrawsPerPlan * route_.plans++, work_.search};
     route_.path = find_path(options_.planner, problem).path;
   }
   if (route_.path.empty()) return false;

@@ -50,18 +50,8 @@ void Follower::adjust_command() {
 
 void Follower::adjust(Vec3& u) {
   if (std::isnan(state_.goal[row_].x)) return;
-  if (route_.path.empty()) {
-    u = {};
-    return;
-  }
-  if (route_.retreats && route_.legs.empty()) {
-    u = {};
-    return;
-  }
-  if (parks() && route_.legs.empty() && state_.arrived[row_]) {
-    u = {};
-    return;
-  }
+  const bool waits = route_.retreats && route_.legs.empty();
+  if (route_.path.empty() || waits || (parks() && route_.legs.empty() && state_.arrived[row_])) return brake(u);
   mind_avoided(!is_in_avoided());
   measure_gap();
   if (!route_.legs.empty()) {
@@ -72,6 +62,7 @@ void Follower::adjust(Vec3& u) {
   if (route_.uncertain) report_if_stuck();
   if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) steer_to_corner(u);
   if (route_.keeps_heading) u[2] = 0.0;
+  slow_down_to_goal(u);
   back_off_from_goal();
   keep_clear(u);
   keep_apart(u);

@@ -8,9 +8,9 @@
 namespace irsim {
 namespace {
 
-constexpr int kBackingSteps = 8;      // steps that a manoeuvre of backing up lasts
-constexpr double kGapShare = 0.9;     // share of a gap to a wall that is too small already which a command must keep
-constexpr int kMaxBrakingSteps = 40;  // number of steps of braking that are simulated ahead
+constexpr int kBackingSteps = 8;        // steps that a manoeuvre of backing up lasts
+constexpr double kGapShare = 0.9;       // share of a gap to a wall that is too small already which a command must keep
+constexpr int kMaxBrakingSteps = 1000;  // number of steps of braking that are simulated ahead
 
 }  // namespace
 
@@ -47,6 +47,20 @@ void Follower::steer_to_corner(Vec3& u) {
       u[0] = std::min(u[0], std::max(most, 0.3 * top[0]));
     }
   });
+}
+
+void Follower::slow_down_to_goal(Vec3& u) const {
+  if (state_.goals[row_].left() > 1) return;
+  int travel = 1;
+  with(world_.drive[object_], [&](const auto& drive) { travel = rows(drive).travel; });
+  double speed = 0.0, acce = kInfinity;
+  for (int c = 0; c < travel; ++c) {
+    speed = std::hypot(speed, u[c]);
+    if (state_.acce[row_][c] > 0.0) acce = std::min(acce, state_.acce[row_][c]);
+  }
+  const double most = speed_to_stop_within(route_.way_ahead, acce, world_.step_time);
+  if (!(speed > most)) return;
+  for (int c = 0; c < travel; ++c) u[c] *= most / speed;
 }
 
 void Follower::back_off_from_goal() {
@@ -125,9 +139,20 @@ void Follower::keep_clear(Vec3& u) {
 }
 
 void Follower::hold_steering(Vec3& u) {
-  if (clear_after(u)) return;
   const Vec3 held{{0.0, route_.steering, 0.0}};
-  if (clear_after(held)) u = held;
+  const double wanted = gap_;
+  for (const double gap : {wanted, 0.0}) {  // the stop that was free a step ago may have kept a smaller gap
+    gap_ = gap;
+    const bool free = clear_after(u);
+    if (!free && clear_after(held)) u = held;
+    if (free || u[1] == held[1]) break;
+  }
+  gap_ = wanted;
+}
+
+void Follower::brake(Vec3& u) {
+  u = {};
+  if (std::holds_alternative<AckerOptions>(world_.drive[object_])) hold_steering(u);
 }
 
 void Follower::measure_gap() {

@@ -16,6 +16,8 @@ __all__ = ["Missed", "missed_way"]
 
 _DEFAULT_CELL_M = 0.1
 """Cell size [m] of grid planners without a resolution and without a map."""
+_MAX_COMMON_AREA = 2500.0
+"""Area [m^2] of a world with a map up to which `follow` tries cells of the default size before those of the map."""
 _FINER_CELLS_M = (0.05, 0.03, 0.02)
 """Cell sizes [m] that are tried if the planner finds no path."""
 _MAX_CELLS = 1_000_000
@@ -102,8 +104,13 @@ def missed_way(context: Context, scene: Scene, mover: Mover, index: int) -> Miss
 def _cell_size(context: Context, planner: Any) -> float | None:
     if not hasattr(planner, "resolution"):
         return None
-    grid = context.resolved.grid
-    return float(planner.resolution or (max(grid.cell) if grid is not None else _DEFAULT_CELL_M))
+    if planner.resolution:
+        return float(planner.resolution)
+    grid, world = context.resolved.grid, context.resolved.world
+    if grid is None:
+        return _DEFAULT_CELL_M
+    cell = float(max(grid.cell))
+    return cell if world.width * world.height > _MAX_COMMON_AREA else min(cell, _DEFAULT_CELL_M)
 
 
 def _try_alone(
