@@ -24,16 +24,15 @@ class Follow(BehaviorOptions):
     The local behavior avoids moving objects (`dash` avoids none; `orca` is the usual choice, also for cars). Towards
     static objects it keeps only the clearance that the path has, without its own margins, horizons and forces, which
     would close narrow passages. With `arrive_mode: state` a car plans poses to the heading of its goal, backing up
-    where that helps. Where there is no space to turn, `diff` and `acker` follow poses, with the turning circle of a
-    car, and wait for objects in the way.
+    where that helps. Where there is no space to turn, `diff` and `acker` follow poses, and wait for objects in the way.
 
-    A robot that has arrived or was stopped for good on the path is gone round: under `dash` at once, else when the
-    object makes no progress. Where there is no way round, a `no_path` event names it.
+    A robot that has arrived or was stopped for good on the path is gone round: under `dash` at once, else when there
+    is no progress. Where there is no way round, a `no_path` event names it.
 
     Unless the local behavior is `dash`, an object on a route stays on its own side of a line between it and each object
     near it. Others on routes do the same, so they never touch. If two hold each other up for a second, the one with the
-    shorter way left goes first. Cars that block each other plan a path round each other, or back up the way they came,
-    which needs a reverse gear (`vel_min`).
+    shorter way left goes first. Cars that block each other plan a path round each other, or back up the way they came
+    (`vel_min`).
     """
 
     avoids: ClassVar[bool] = True
