@@ -12,7 +12,7 @@ from tests.packaging import house
 @pytest.mark.parametrize(
     ("find", "most"),
     [
-        (house.object_types, 13),
+        (house.object_types, 12),
         (house.part_loops, 1),
         (house.process_limits, 3),
         (house.translators, 10),

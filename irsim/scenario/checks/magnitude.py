@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context
-from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.messages.findings import Finding, error
+from irsim.scenario.resolve.body_size import reach_of
 
 MAX_MAGNITUDE = 1e7
 """Largest length [m] and speed [m/s]."""

@@ -10,10 +10,11 @@ import irsim._core as core
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.vectors import is_vector
+from irsim.scenario.checks._bodies import SizedBody, SizedShape
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, hint, warning
 from irsim.scenario.model.scenario import Entry
-from irsim.scenario.resolve.body_size import has_fixed_shape, parts_of
+from irsim.scenario.resolve.body_size import has_fixed_shape
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _MAX_REPORTED = 20
@@ -38,8 +39,9 @@ def check(context: Context) -> Iterator[Finding]:
     Objects placed at random are skipped, as are pairs whose other object is ``unobstructed``.
     """
     random = {index for placement in context.resolved.placements for index in placement.objects}
+    shapes = dict[int, SizedShape]()
     bodies = [
-        _Body(record)
+        SizedBody(record, shapes.setdefault(id(record.shape), SizedShape(record.shape)))
         for record in context.resolved.objects
         if record.id not in random and has_fixed_shape(record.shape)
     ]
@@ -54,7 +56,7 @@ def check(context: Context) -> Iterator[Finding]:
         key = (mover.path, other.path)
         if (len(found) >= _MAX_REPORTED and key not in found) or (key in found and found[key][2] >= _MAX_COUNTED):
             continue
-        if core.intersects(a.parts, a.record.state[:3], b.parts, b.record.state[:3]):
+        if core.intersects(a.shape.parts, a.record.state[:3], b.shape.parts, b.record.state[:3]):
             first = found.setdefault(key, (mover, other, 0))
             found[key] = (*first[:2], first[2] + 1)
     by_id = {body.record.id: body for body in bodies}
@@ -84,16 +86,16 @@ def _count_of_others(count: int) -> str:
     return f"at least {count - 1}" if count >= _MAX_COUNTED else str(count - 1)
 
 
-def _depth_text(a: _Body, b: _Body) -> str:
+def _depth_text(a: SizedBody, b: SizedBody) -> str:
     """Depth of an overlap, in words: the shortest move, in one of a few directions, that separates the two."""
     x, y, heading = a.record.state[:3]
-    most = 2 * (a.reach + min(b.reach, 10 * a.reach))
+    most = 2 * (a.shape.reach + min(b.shape.reach, 10 * a.shape.reach))
     if not math.isfinite(most):
         return ""
 
     def meets(angle: float, far: float) -> bool:
         pose = (x + far * math.cos(angle), y + far * math.sin(angle), heading)
-        return core.intersects(a.parts, pose, b.parts, b.record.state[:3])
+        return core.intersects(a.shape.parts, pose, b.shape.parts, b.record.state[:3])
 
     least = most
     towards = math.atan2(y - b.record.state[1], x - b.record.state[0])
@@ -111,27 +113,27 @@ def _depth_text(a: _Body, b: _Body) -> str:
     return f", {metres(least)} deep" if least < most else ", all of it"
 
 
-def _free_place(context: Context, mover: _Body, bodies: list[_Body]) -> tuple[float, float] | None:
+def _free_place(context: Context, mover: SizedBody, bodies: list[SizedBody]) -> tuple[float, float] | None:
     """The nearest position where a body, with its heading, overlaps no object of fixed position."""
     x, y, heading = mover.record.state[:3]
-    step = max(mover.reach / 4, 0.02)
+    step = max(mover.shape.reach / 4, 0.02)
     if not math.isfinite(step) or mover.record.is_terrain:
         return None
     rings = [step * k * (1 + k / 8) for k in range(1, _RINGS + 1)]
-    around = mover.reach + rings[-1]
+    around = mover.shape.reach + rings[-1]
     near = [
-        (body.parts, body.record.state[:3])
+        (body.shape.parts, body.record.state[:3])
         for body in bodies
         if body is not mover
         and not body.record.unobstructed
-        and math.hypot(body.record.state[0] - x, body.record.state[1] - y) <= around + body.reach
+        and math.hypot(body.record.state[0] - x, body.record.state[1] - y) <= around + body.shape.reach
     ]
     terrain = core.Terrain(context.scenario.world.bounds, near)
     for ring in rings:
         for k in range(_DIRECTIONS):
             angle = 2 * math.pi * k / _DIRECTIONS
             place = (x + ring * math.cos(angle), y + ring * math.sin(angle))
-            if not terrain.collides(mover.parts, (*place, heading)):
+            if not terrain.collides(mover.shape.parts, (*place, heading)):
                 return place
     return None
 
@@ -146,63 +148,24 @@ def _reports_stacking(entry: Entry) -> bool:
     return entry.distribution is not None or entry.state is None or is_vector(entry.state)
 
 
-class _Body:
-    """An object with its geometry, which is made when another object comes near."""
-
-    def __init__(self, record: ObjectRecord) -> None:
-        self.record = record
-        self.reach = reach_of(record.shape)
-        self._parts: list[Any] | None = None
-
-    @property
-    def parts(self) -> list[Any]:
-        """Geometry for the core, body frame."""
-        if self._parts is None:
-            self._parts = parts_of(self.record.shape)
-        return self._parts
-
-
 def _matters(record: ObjectRecord) -> bool:
     """Whether overlaps of an object are a mistake; static obstacles may overlap to form one wall."""
     return not record.static or record.role == "robot"
 
 
-def reach_of(shape: Any) -> float:
-    """Upper bound of the distance of all points of a shape from its origin [m]."""
-    wheelbase = (getattr(shape, "wheelbase", None) or 0.0) / 2
-    if shape.name == "circle":
-        return wheelbase + math.hypot(*shape.center) + float(shape.radius)
-    if shape.name == "rectangle":
-        return wheelbase + math.hypot(shape.length, shape.width) / 2
-    if shape.name == "compound":
-        return max(reach_of(part) + math.hypot(part.pose[0], part.pose[1]) for part in shape.parts)
-    if shape.name in ("polygon", "linestring"):
-        return max((math.hypot(x, y) for x, y in shape.vertices or [(1.0, 1.0)]), default=0.0)
-    return max((_reach_of_part(part) for part in parts_of(shape)), default=math.inf)
-
-
-def _reach_of_part(part: Any) -> float:
-    """The reach of a part for the core, for shapes registered by user code [m]."""
-    if hasattr(part, "vertices"):
-        return max(math.hypot(x, y) for x, y in part.vertices)
-    if hasattr(part, "center") and hasattr(part, "radius"):
-        return math.hypot(*part.center) + float(part.radius)
-    return math.inf
-
-
-def _near_pairs(bodies: list[_Body], reported: set[Path]) -> Iterator[tuple[_Body, _Body]]:
+def _near_pairs(bodies: list[SizedBody], reported: set[Path]) -> Iterator[tuple[SizedBody, SizedBody]]:
     """Pairs with a robot or a moving object whose bounding circles meet, by a sweep along x.
 
     Args:
         bodies: Objects of fixed position.
         reported: Entries whose own objects are not paired with one another.
     """
-    ordered = sorted(bodies, key=lambda body: body.record.state[0] - body.reach)
-    active: list[tuple[float, float, float, bool, Path, _Body]] = []
+    ordered = sorted(bodies, key=lambda body: body.record.state[0] - body.shape.reach)
+    active: list[tuple[float, float, float, bool, Path, SizedBody]] = []
     looked_at = 0
     for body in ordered:
         x, y = body.record.state[:2]
-        reach, matters, path = body.reach, _matters(body.record), body.record.path
+        reach, matters, path = body.shape.reach, _matters(body.record), body.record.path
         active = [other for other in active if other[0] + other[2] >= x - reach]
         looked_at += len(active)
         if looked_at > _MAX_PAIRS:

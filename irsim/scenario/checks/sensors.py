@@ -10,10 +10,9 @@ from irsim.common.angles import FULL_TURN
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.options.angles import is_span
 from irsim.scenario.checks._context import Context
-from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.lookup import at
-from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, reach_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _MAX_FOG_CELLS = 16_000_000

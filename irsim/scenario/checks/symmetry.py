@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context, distinct
-from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.messages.findings import Finding, warning
-from irsim.scenario.resolve.body_size import top_speed
+from irsim.scenario.resolve.body_size import reach_of, top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _SIDESTEPPING = ("orca", "avocado", "rvo", "sfm")

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import irsim._core as core
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
+from irsim.scenario.checks._bodies import Point, SizedBody, SizedShape
 from irsim.scenario.checks._context import Context
-from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.messages.findings import Finding, warning
-from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, segment_gap, thickness, top_speed
+from irsim.scenario.resolve.body_size import (
+    has_fixed_shape,
+    segment_gap,
+)
 from irsim.scenario.resolve.resolved import ObjectRecord
 
-Point = tuple[float, float]
-Segment = tuple[Point, Point]
 _PASSABLE = ("unobstructed", "reactive")
 """Collision modes in which objects pass through each other anyway."""
 _CONTINUOUS = ("contact",)
@@ -36,9 +35,9 @@ def check(context: Context) -> Iterator[Finding]:
     world = context.scenario.world
     if world.collision_mode in (*_PASSABLE, *_CONTINUOUS) or world.contacts == "swept":
         return
-    dt, shapes = world.step_time, dict[int, _Shape]()
+    dt, shapes = world.step_time, dict[int, SizedShape]()
     bodies = [
-        _Body(record, shapes.setdefault(id(record.shape), _Shape(record.shape)), top_speed(record))
+        SizedBody(record, shapes.setdefault(id(record.shape), SizedShape(record.shape)))
         for record in context.resolved.objects
         if has_fixed_shape(record.shape)
     ]
@@ -77,7 +76,7 @@ def check(context: Context) -> Iterator[Finding]:
             yield _finding(context, one, *found)
 
 
-def _finding(context: Context, one: _Body, other: _Body, least: float, speed: float) -> Finding:
+def _finding(context: Context, one: SizedBody, other: SizedBody, least: float, speed: float) -> Finding:
     dt = context.scenario.world.step_time
     thing = _NAMES.get(other.record.shape.name, f"'{other.record.name}'")
     together = "" if other.speed == 0 else f", and {thing} {metres(other.speed * dt)} towards it"
@@ -93,48 +92,6 @@ def _finding(context: Context, one: _Body, other: _Body, least: float, speed: fl
     )
 
 
-class _Shape:
-    """Sizes of a shape, computed once for all objects that share it [m]."""
-
-    def __init__(self, shape: Any) -> None:
-        self._shape = shape
-        self.width = thickness(shape)  # least extent
-
-    @cached_property
-    def parts(self) -> list[Any]:
-        return parts_of(self._shape)
-
-    @cached_property
-    def disc(self) -> float:
-        return inner_disc(self.parts)[2]
-
-    @cached_property
-    def reach(self) -> float:
-        return reach_of(self._shape)
-
-
-@dataclass(frozen=True)
-class _Body:
-    record: ObjectRecord
-    shape: _Shape
-    speed: float
-
-    @cached_property
-    def legs(self) -> list[Segment]:
-        """Straight legs from the start to each goal in turn."""
-        goals = [] if self.record.kinematics is None else self.record.goals
-        points = [(p[0], p[1]) for p in (self.record.state, *goals)]
-        if self.record.loop and len(points) > 1:
-            points.append(points[1] if len(points) > 2 else points[0])
-        return list(itertools.pairwise(points)) or [(points[0], points[0])]
-
-    @cached_property
-    def box(self) -> tuple[float, float, float, float]:
-        """xmin, ymin, xmax, ymax of the legs."""
-        x, y = zip(*(point for leg in self.legs for point in leg), strict=True)
-        return min(x), min(y), max(x), max(y)
-
-
 @dataclass(frozen=True)
 class _Band:
     """Region that an object driven by ``dash`` can reach.
@@ -148,7 +105,7 @@ class _Band:
     parts: Sequence[Any]
 
 
-def _may_meet(one: _Body, other: _Body, band: _Band | None, dt: float) -> bool:
+def _may_meet(one: SizedBody, other: SizedBody, band: _Band | None, dt: float) -> bool:
     """Whether two objects can meet; always True if the path of either is not straight."""
     if other.speed > 0:
         if one.record.behavior is None or other.record.behavior is None:
@@ -163,7 +120,7 @@ def _may_meet(one: _Body, other: _Body, band: _Band | None, dt: float) -> bool:
     )
 
 
-def _are_near(one: _Body, other: _Body, gap: float) -> bool:
+def _are_near(one: SizedBody, other: SizedBody, gap: float) -> bool:
     """Whether two paths come within ``gap`` of each other; the path of a static object is one point."""
     others = other.legs if other.speed > 0 else [(other.legs[0][0], other.legs[0][0])]
     a, b = one.box, other.box if other.speed > 0 else (*others[0][0], *others[0][0])
@@ -172,7 +129,7 @@ def _are_near(one: _Body, other: _Body, gap: float) -> bool:
     return min(segment_gap(leg, other_leg) for leg in one.legs for other_leg in others) <= gap
 
 
-def _band(context: Context, body: _Body) -> _Band | None:
+def _band(context: Context, body: SizedBody) -> _Band | None:
     """The region that an object can reach; None if it may go anywhere."""
     world, record = context.scenario.world, body.record
     driven = record.group_behavior is not None or record.group in context.driven_groups

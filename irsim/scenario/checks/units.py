@@ -9,9 +9,8 @@ from typing import Any
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context, distinct
-from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.messages.findings import Finding, hint, warning
-from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, top_speed
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, reach_of, top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.scenario.yaml.formatting import flow
 

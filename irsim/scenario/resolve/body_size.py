@@ -14,7 +14,7 @@ from irsim.options.registry import SHAPES
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
 
-__all__ = ["has_fixed_shape", "inner_disc", "parts_of", "segment_gap", "thickness", "top_speed"]
+__all__ = ["has_fixed_shape", "inner_disc", "parts_of", "reach_of", "segment_gap", "thickness", "top_speed"]
 
 Point = tuple[float, float]
 _SEARCH_ROUNDS = 4
@@ -41,6 +41,29 @@ def parts_of(shape: Any) -> list[Any]:
     if feature is None or feature.function is None:
         return []
     return list(feature.function(shape))
+
+
+def reach_of(shape: Any) -> float:
+    """Upper bound of the distance of all points of a shape from its origin [m]."""
+    wheelbase = (getattr(shape, "wheelbase", None) or 0.0) / 2
+    if shape.name == "circle":
+        return wheelbase + math.hypot(*shape.center) + float(shape.radius)
+    if shape.name == "rectangle":
+        return wheelbase + math.hypot(shape.length, shape.width) / 2
+    if shape.name == "compound":
+        return max(reach_of(part) + math.hypot(part.pose[0], part.pose[1]) for part in shape.parts)
+    if shape.name in ("polygon", "linestring"):
+        return max((math.hypot(x, y) for x, y in shape.vertices or [(1.0, 1.0)]), default=0.0)
+    return max((_reach_of_part(part) for part in parts_of(shape)), default=math.inf)
+
+
+def _reach_of_part(part: Any) -> float:
+    """The reach of a part for the core, for shapes registered by user code [m]."""
+    if hasattr(part, "vertices"):
+        return max(math.hypot(x, y) for x, y in part.vertices)
+    if hasattr(part, "center") and hasattr(part, "radius"):
+        return math.hypot(*part.center) + float(part.radius)
+    return math.inf
 
 
 def inner_disc(parts: Sequence[Any]) -> tuple[float, float, float]:

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks import Context
-from irsim.scenario.checks.overlap import reach_of
-from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, top_speed
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, reach_of, top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 __all__ = ["Mover", "movers_of"]
@@ -25,7 +23,6 @@ class Mover:
 
     Attributes:
         record: The object.
-        parts: Parts of its body.
         radius: Radius of the largest disc inside its body [m]; where the disc does not fit, the body does not either.
         offset: Middle of that disc, body frame [m].
         around: Radius of the circle about that middle that contains the body [m].
@@ -35,7 +32,6 @@ class Mover:
     """
 
     record: ObjectRecord
-    parts: Sequence[Any]
     radius: float
     offset: tuple[float, float]
     around: float
@@ -72,7 +68,7 @@ class Mover:
 def movers_of(context: Context) -> list[Mover]:
     """Movers whose body has a filled part and is the same in every scene."""
     found: list[Mover] = []
-    known: dict[int, tuple[list[Any], tuple[float, float, float]]] = {}
+    known: dict[int, tuple[float, float, float]] = {}
     for record in context.entry_objects:
         if record.static or record.kinematics is None or not has_fixed_shape(record.shape):
             continue
@@ -82,14 +78,13 @@ def movers_of(context: Context) -> list[Mover]:
             continue  # a program drives it to a goal that the scenario does not name
         key = id(record.shape)
         if key not in known:
-            parts = parts_of(record.shape)
-            known[key] = parts, inner_disc(parts)
-        parts, (x, y, radius) = known[key]
+            known[key] = inner_disc(parts_of(record.shape))
+        x, y, radius = known[key]
         if radius <= 0 or len(found) >= _MAX_MOVERS:
             continue
         around = radius if record.shape.name == "circle" else reach_of(record.shape) + math.hypot(x, y)
         path = _goal_path(context, record)
-        found.append(Mover(record, parts, radius, (x, y), around, top_speed(record), path, context.has_goals(path)))
+        found.append(Mover(record, radius, (x, y), around, top_speed(record), path, context.has_goals(path)))
     return found
 
 

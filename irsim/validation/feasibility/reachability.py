@@ -10,6 +10,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.text import metres
 from irsim.scenario.checks import Context
+from irsim.scenario.resolve.body_size import parts_of
 from irsim.validation.feasibility.clearance_grid import (
     ClearanceGrid,
     Gap,
@@ -155,7 +156,7 @@ def check(
 
 def _starts_in_obstacle(scene: Scene, mover: Mover) -> bool:
     """Whether a mover starts in an obstacle, which other checks report."""
-    return scene.terrain.collides(mover.parts, scene.pose[mover.record.id])
+    return scene.terrain.collides(parts_of(mover.record.shape), scene.pose[mover.record.id])
 
 
 def _arrival_place(grid: ClearanceGrid, mover: Mover, goal: Point) -> Point | None:

@@ -13,7 +13,7 @@ from irsim.diagnostics.diagnostic import Path
 from irsim.episodes.episode import HORIZON_FACTOR, MIN_HORIZON
 from irsim.episodes.stuck import REACTIVE
 from irsim.scenario.checks import Context
-from irsim.scenario.checks.overlap import reach_of
+from irsim.scenario.resolve.body_size import reach_of
 from irsim.scenario.resolve.braking import follow_text
 from irsim.validation.feasibility.clearance_grid import ClearanceGrid
 from irsim.validation.feasibility.local_minima import Trap, trap_of
