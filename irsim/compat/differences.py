@@ -148,8 +148,8 @@ DIFFERENCES: dict[str, Difference] = {
         "mirror-image scenes, such as two that meet head-on or a circle swap, are resolved by the order in which "
         "objects move; `sfm` takes the side of a rounding error",
         "all objects decide on one snapshot (D1); of two that are each other's mirror images and whose ways meet, both "
-        "keep to their right under `rvo`, `sfm`, `orca` and `avocado`, in any order of the file. `sidestep: 0` is the "
-        "law without this rule",
+        "keep to their right under `rvo`, `sfm`, `orca` and `avocado`, in any order of the file, as does `orca` or "
+        "`avocado` with a circle that stands exactly ahead. `sidestep: 0` is the law without this rule",
         "the circle swap that works there works here",
     ),
     "D26": Difference(

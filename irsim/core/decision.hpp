@@ -21,6 +21,7 @@ struct Decision {
   Workspace& work;     // scratch memory
   Opinions* opinions;  // (R,) memory of `avocado`: only the row of an object that decides is read and written
   Detour* detours;     // (R,) memory of `footprint_orca`, likewise
+  std::int64_t* tied;  // (R,) memory of `rvo`, likewise
 
   int w() const { return first_row / world.objects; }
   int row(int k) const { return first_row + objects[k]; }

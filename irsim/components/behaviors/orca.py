@@ -40,7 +40,7 @@ class Orca(BehaviorOptions):
     safe_radius: Annotated[Meters, Field(ge=0)] = 0.1
     """Margin added to the radius of the object itself."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Largest speed; null is what the object can reach in every direction, which is also the upper limit."""
+    """Largest speed; null is what the object can reach in every direction, also the upper limit."""
     responsibility: Annotated[Fraction, Field(gt=0)] | None = None
     """Share of that change of velocity that it makes for a moving object; null is half for one that runs a kind of orca
     and sees it, and all for others. Most other programs always take 0.5."""
@@ -51,7 +51,7 @@ class Orca(BehaviorOptions):
     """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
     turns by this angle to the right, to the left if negative, and by up to 90 degrees the slower the object drives.
     10 passes a slower one straight ahead. null only breaks ties: two mirror images, such as two that meet head-on, both
-    pass on their right. 0 leaves ties: the two brake, and may stand for ever."""
+    pass on their right, as does one with a circle exactly ahead. 0 leaves ties: they brake, and may stand for ever."""
 
 
 BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

@@ -17,6 +17,8 @@ constexpr double kWallHorizon = 1.0;  // walls that would be reached sooner bloc
 constexpr double kSameSample = 1e-9;  // two squared distances of samples differ by more [m^2/s^2]
 constexpr double kMargin = 1e-6;      // of the tangents of walls, so that rounding does not hide a wall beside one [m]
 constexpr double kSlowest = 1e-3;     // slower velocities near walls are rounding errors [m/s]
+constexpr double kTieMemory = 1.0;    // a tie lasts that long, while the objects are almost mirrored [s]
+constexpr double kAlmostTied = 0.05;  // largest difference of their directions to the goals then
 constexpr double kMinRolling = 0.2;   // smallest share of the speed at which drives roll while they turn
 
 /// The apex of the cone of a disc. `sine` and `cosine` are those of half its angle.
@@ -69,17 +71,23 @@ bool look_around(const RvoOptions& options, const Decision& decision, const Ego&
   const bool gaps = keeps_gaps(decision, ego, options.keep_gap);
   const double body = ego.radius - kPadding, ahead = fastest * decision.world.step_time / kClosingShare;
   decision.work.nearby.clear();
+  std::int64_t& last = decision.tied[ego.row];
+  const std::int64_t now = decision.state.count[decision.w()];
+  const bool lately = last >= 0 && static_cast<double>(now - last) * decision.world.step_time <= kTieMemory;
+  const double direction = lately ? kAlmostTied : kTieDirection;
   for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& disc) {
     const bool stands = decision.world.is_static[disc.object];
     if (ego.route == nullptr || !stands) {
       add_disc(options, ego, disc, obstacles);
       if (gaps && may_close(disc.centre - ego.position, body + disc.radius, ahead)) add_nearby(decision, ego, disc);
-      if (!options.sidestep && !meets) meets = tied(decision, ego, disc, options.neighbor_threshold, kTieSpeed);
+      if (!options.sidestep && !meets)
+        meets = tied(decision, ego, disc, options.neighbor_threshold, kTieSpeed, direction);
     } else if (!decision.world.unobstructed[disc.object]) {
       const Vec2 centre = disc.centre - ego.position;
       walls.barriers.emplace_back(centre, centre, room + disc.radius);
     }
   });
+  if (meets) last = now;
   if (!walls.barriers.empty()) walls.fronts.emplace_back().last = static_cast<int>(walls.barriers.size());
   const double reach = std::min(options.neighbor_threshold, room + fastest * kWallHorizon);
   for_moving_lines(decision, ego, [&](Vec2 a, Vec2 b) { add_line(ego, a, b, obstacles); });

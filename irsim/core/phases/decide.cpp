@@ -18,8 +18,17 @@ bool is_idle(const World& world, const State& state, int first, int object) {
 void run_behavior(const World& world, State& state, int w, const BehaviorGroup& group, Workspace& work) {
   const int first = w * world.objects, count = static_cast<int>(work.objects.size());
   if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
-  const Decision decision{world,         state,         first, work.objects.data(),   count,
-                          group.members, group.grouped, work,  state.opinions.data(), state.detours.data()};
+  const Decision decision{world,
+                          state,
+                          first,
+                          work.objects.data(),
+                          count,
+                          group.members,
+                          group.grouped,
+                          work,
+                          state.opinions.data(),
+                          state.detours.data(),
+                          state.tied.data()};
   Intent* intents = work.intents.data();
   const bool brakes = brakes_in_time(world, group.objects.front());
   with(group.behavior, [&](const auto& options) { run(options, decision, intents); });

@@ -5,7 +5,6 @@
 namespace irsim {
 namespace {
 
-constexpr double kDirection = 1e-7;     // largest difference of mirrored directions to the goals
 constexpr double kAlmost = 1.0 + 1e-9;  // so that rounding does not decide
 constexpr double kArrived = 0.1;        // objects nearer to their goal than this have no direction [m]
 
@@ -27,13 +26,13 @@ std::optional<double> mirrored(const State& state, const MirrorPair& pair) {
   const double far = norm(way), its_far = norm(its_way);
   if (!(far > kArrived && its_far > kArrived)) return std::nullopt;
   const Vec2 ahead = way * (1.0 / far);
-  if (!mirrors(ahead, its_way * (1.0 / its_far), n, kDirection)) return std::nullopt;
+  if (!mirrors(ahead, its_way * (1.0 / its_far), n, pair.direction)) return std::nullopt;
   const double closing = 2.0 * dot(ahead, n);  // per metre that both move: mirrored ways meet midway
   const bool meet = closing * kTieHorizon * pair.speed > gap && gap - closing * std::min(far, its_far) < pair.lane;
   return meet ? std::optional<double>(cross(ahead, n)) : std::nullopt;
 }
 
-bool is_tied(const Decision& decision, const Ego& ego, const Disc& other, double tolerance) {
+bool is_tied(const Decision& decision, const Ego& ego, const Disc& other, double tolerance, double direction) {
   if (decision.world.is_static[other.object]) return false;
   const State& state = decision.state;
   const int row = decision.first_row + other.object;
@@ -43,7 +42,7 @@ bool is_tied(const Decision& decision, const Ego& ego, const Disc& other, double
   // As in `mirrored`, but with one root only: most pairs end here.
   const double soon = kAlmost * 2.0 * kTieHorizon * speed;
   if (!(soon * dot(to_goal, offset) >= squared(offset) * norm(to_goal))) return false;
-  return mirrored(state, {ego.row, row, ego.velocity, other.velocity, speed, lane, tolerance}).has_value();
+  return mirrored(state, {ego.row, row, ego.velocity, other.velocity, speed, lane, tolerance, direction}).has_value();
 }
 
 }  // namespace irsim

@@ -1,6 +1,8 @@
 // Ties: two objects whose motion is each other's mirror image about the line midway between them. Whatever one of them
 // does to pass, the other does as well, so that neither passes. Both then prefer their own right, which is decided by
 // their bodies alone: neither ids nor the order of the file matter, and where nothing is mirrored nothing changes.
+// `rvo` chooses among samples, so that two of its objects that have just broken their tie may be mirrored again but for
+// the spacing of its grid. For a while they count as mirrored if they almost are.
 #pragma once
 
 #include <optional>
@@ -11,8 +13,9 @@ namespace irsim {
 
 constexpr double kTieTurn = 10.0;   // turn of a wanted velocity that breaks a tie [degrees]
 constexpr double kTieSpeed = 0.11;  // velocities of a mirrored pair differ by less: two steps of the grid of rvo [m/s]
-constexpr double kTieHorizon = 10.0;  // ways that meet later do not matter yet [s]
-constexpr double kLaneMargin = 0.1;   // margin on either side of the lane of two objects [m]
+constexpr double kTieDirection = 1e-7;  // largest difference of mirrored directions to the goals
+constexpr double kTieHorizon = 10.0;    // ways that meet later do not matter yet [s]
+constexpr double kLaneMargin = 0.1;     // margin on either side of the lane of two objects [m]
 
 /// Two objects, the second one seen from the first, world frame.
 struct MirrorPair {
@@ -21,6 +24,7 @@ struct MirrorPair {
   double speed;                 // at which the first one wants to move [m/s]
   double lane;                  // distance of the origins below which the objects are in each other's way [m]
   double tolerance;             // for the velocities [m/s]
+  double direction;             // for the directions to the goals
 };
 
 /// Whether two velocities may be those of a mirrored pair: their sum has no part along the line through both. This is
@@ -73,13 +77,18 @@ struct TieWay {
 std::optional<double> mirrored(const State& state, const MirrorPair& pair);
 
 /// The rest of `tied`, for a pair that passes `may_mirror`.
-bool is_tied(const Decision& decision, const Ego& ego, const Disc& other, double tolerance);
+bool is_tied(const Decision& decision, const Ego& ego, const Disc& other, double tolerance, double direction);
 
-/// Whether the ego and another object, within `reach` [m], are a mirrored pair; `tolerance` is that for the velocities.
-inline bool tied(const Decision& decision, const Ego& ego, const Disc& other, double reach, double tolerance) {
+/// Whether the ego and another object, within `reach` [m], are a mirrored pair.
+///
+/// Args:
+///   tolerance: For the velocities [m/s].
+///   direction: For the directions to the goals.
+inline bool tied(const Decision& decision, const Ego& ego, const Disc& other, double reach, double tolerance,
+                 double direction = kTieDirection) {
   const Vec2 offset = decision.state.pose[decision.first_row + other.object].position() - ego.position;
   if (!may_mirror(offset, ego.velocity + other.velocity, reach, tolerance)) return false;
-  return is_tied(decision, ego, other, tolerance);
+  return is_tied(decision, ego, other, tolerance, direction);
 }
 
 /// A wanted velocity turned to the right by an angle [degrees].

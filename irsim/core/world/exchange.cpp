@@ -163,6 +163,9 @@ void continue_from(const World& world, State& state, const World& world_before, 
     if (origin.state == &before && !before.detours.empty() && !state.detours.empty()) {
       state.detours[i] = before.detours[origin.object];
     }
+    if (origin.state == &before && !before.tied.empty() && !state.tied.empty()) {
+      state.tied[i] = before.tied[origin.object];
+    }
     set_limits(world, state, i);
     if (state.keep_history) {
       state.history[i] = track_of(*origin.state, origin.object, state.extra_rows);

@@ -121,6 +121,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
   if (!world.routed.empty()) routes.resize(rows), target.resize(rows);
   if (runs<AvocadoOptions>(world)) opinions.resize(rows);
   if (runs<FootprintOrcaOptions>(world)) detours.resize(rows);
+  if (runs<RvoOptions>(world)) tied.assign(rows, -1);
   std::copy(seeds, seeds + worlds, seed.data);
   for (int w = 0; w < worlds; ++w) {
     for (const Scan& scan : world.scans) {
@@ -182,6 +183,7 @@ void restart_row(const World& world, State& state, int row) {
   if (!state.routes.empty()) state.routes[row] = {};
   if (!state.opinions.empty()) state.opinions[row] = {};
   if (!state.detours.empty()) state.detours[row] = {};
+  if (!state.tied.empty()) state.tied[row] = -1;
   if (state.keep_history) state.history[row].clear(), state.standings[row].clear();
   if (world.wander[i]) {
     draw_wander_goal(world, state, w, i);

@@ -89,6 +89,7 @@ struct State {
   std::vector<Goal> target;               // (R,), empty likewise: points that behaviors head for
   std::vector<Opinions> opinions;         // (R,), empty if no object runs `avocado`
   std::vector<Detour> detours;            // (R,), empty if no object runs `footprint_orca`
+  std::vector<std::int64_t> tied;         // (R,), empty if no object runs `rvo`: step of the last tie; -1 without one
   std::vector<std::uint32_t> goal_draws;  // (R,) wander goals drawn in this episode
   std::vector<Pose> before;               // (R,) poses at the beginning of the step
   std::vector<std::uint8_t> overshot;     // (R,) whether an overshoot of the present goal was reported
