@@ -43,7 +43,7 @@ class Orca(BehaviorOptions):
     """Largest speed; null is what the object can reach in every direction, also the upper limit."""
     responsibility: Annotated[Fraction, Field(gt=0)] | None = None
     """Share of that change of velocity that it makes for a moving object; null is half for one that runs a kind of orca
-    and sees it, and all for others. Most other programs always take 0.5."""
+    and sees it, all for others. Most other programs always take 0.5."""
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
     """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
     speed."""
@@ -51,7 +51,7 @@ class Orca(BehaviorOptions):
     """While something that moves is ahead on the way to the goal, want to pass it on one side: the wanted velocity
     turns by this angle to the right, to the left if negative, and by up to 90 degrees the slower the object drives.
     10 passes a slower one straight ahead. null only breaks ties: two mirror images, such as two that meet head-on, both
-    pass on their right, as does one with a circle exactly ahead. 0 leaves ties: they brake, and may stand for ever."""
+    pass on their right, as does one with a circle exactly ahead. 0 leaves ties: all brake, and may stand."""
 
 
 BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

@@ -7,6 +7,7 @@
 #include "orca/body_discs.hpp"
 #include "orca/crowd.hpp"
 #include "orca/obstacles.hpp"
+#include "orca/standing.hpp"
 #include "routes/right_of_way.hpp"
 #include "surroundings/passing.hpp"
 #include "surroundings/sidestep.hpp"
@@ -23,12 +24,10 @@ constexpr double kMaxCarAngle = 1.2;         // largest angle between the headin
 constexpr double kStuckShare = 0.1;          // a car below this share of its wanted speed backs up
 constexpr double kBackingShare = 0.3;        // share of its speed at which a car wants to back up
 constexpr double kMaxBackingSteering = 0.5;  // largest steering angle of a car that backs up [rad]
-constexpr double kMinCarShare = 0.2;    // smallest share of a wanted speed, because a car turns only while it rolls
-constexpr double kLeanSpeed = 1e-7;     // velocities of a mirrored pair differ by less [m/s]
-constexpr double kLeanShare = 0.2;      // what one of a mirrored pair takes over from the share of the other
-constexpr double kLeanTurn = 15.0;      // turn of the wanted velocity where a pair is on one line [degrees]
-constexpr double kArrived = 0.1;        // objects nearer to their goal than this want nothing else [m]
-constexpr double kParallelSine = 1e-9;  // a smaller sine of the angle between a heading and a line is a rounding error
+constexpr double kMinCarShare = 0.2;  // smallest share of a wanted speed, because a car turns only while it rolls
+constexpr double kLeanSpeed = 1e-7;   // velocities of a mirrored pair differ by less [m/s]
+constexpr double kLeanShare = 0.2;    // what one of a mirrored pair takes over from the share of the other
+constexpr double kLeanTurn = 15.0;    // turn of the wanted velocity where a pair is on one line [degrees]
 
 /// Largest speed [m/s] in every direction, or forward for drives that cannot move sideways.
 double top_speed(const OrcaSettings& options, const World& world, const State& state, int row, int object) {
@@ -121,12 +120,6 @@ bool back_off(const AckerOptions& car, const World& world, const State& state, i
       -clip(std::atan2(cross(heading, preferred), dot(heading, preferred)), -kMaxBackingSteering, kMaxBackingSteering);
   control = {{-back, car.mode == Steering::steer ? target : (target - psi) / world.step_time, 0.0}};
   return true;
-}
-
-/// Whether the behavior of `viewer` targets the role of an object of another group.
-bool targets_role(const World& world, int viewer, int other) {
-  const int wanted = world.target_roles[viewer];
-  return wanted == 0 || (wanted == 1) == (world.is_robot[other] != 0);
 }
 
 /// Add half-planes of walls and static circles, nearest edges first. Those that other planes cover are left out.
@@ -229,56 +222,6 @@ double lean(const World& world, const State& state, int w, const OrcaCrowd& all,
   if (std::fabs(*side) > kParallelSine) return *side < 0.0 ? kLeanShare : -kLeanShare;
   on_line = true;
   return 0.0;
-}
-
-/// Whether a mover stands and wants nothing else: it has arrived, has no behavior, or is stopped.
-bool stays(const World& world, const State& state, int row, int object, double speed2) {
-  if (speed2 > kLeanSpeed * kLeanSpeed || state.waits(row)) return false;
-  if (state.stopped[row] || !(norm(state.destination(row).position() - state.pose[row].position()) > kArrived))
-    return true;
-  return std::none_of(world.behaviors.begin(), world.behaviors.end(), [&](const BehaviorGroup& group) {
-    return std::find(group.objects.begin(), group.objects.end(), object) != group.objects.end();
-  });
-}
-
-/// Whether a circle that stands is exactly ahead, before the goal: its half-plane only slows the object down.
-///
-/// Args:
-///   ahead: Unit vector of the wanted velocity.
-///   far: Distance of the goal [m].
-bool stands_ahead(const OrcaSettings& options, const World& world, const State& state, int w, int self, Vec2 ahead,
-                  double speed, double far, const OrcaCrowd& all) {
-  const OrcaAgent& agent = all.movers[self];
-  const auto is_ahead = [&](Vec2 centre, double radius) {
-    const Vec2 offset = centre - agent.position;
-    const double along = dot(ahead, offset);
-    return along > 0.0 && std::fabs(cross(ahead, offset)) <= kParallelSine * along &&
-           along - radius - agent.radius < far;
-  };
-  const int object = world.moving[self], first = w * world.objects;
-  for (const int m : all.neighbors_before[self]) {
-    const OrcaAgent& other = all.movers[m];
-    if (is_ahead(other.position, other.radius) &&
-        stays(world, state, first + world.moving[m], world.moving[m], all.speed2[m]))
-      return true;
-  }
-  if (state.route_of(first + object) != nullptr) return false;  // a route already leads past static objects
-  const Obstacles& obstacles = state.scenes[w].fixed->obstacles;
-  const int edges = static_cast<int>(obstacles.edges.size());
-  bool found = false;
-  obstacles.near(box_around(agent.position, options.timeHorizonObst * speed + agent.radius), [&](int k) {
-    if (found || k < edges) return;
-    const StaticDisc& disc = obstacles.discs[k - edges];
-    found = targets_role(world, object, disc.object) && is_ahead(disc.centre, disc.radius);
-  });
-  return found;
-}
-
-/// Whether `velocity` is the wanted one, only slower.
-bool is_slower(Vec2 velocity, Vec2 wanted) {
-  const double most = squared(wanted), along = dot(velocity, wanted);
-  return along >= 0.0 && along < (1.0 - kParallelSine) * most &&
-         std::fabs(cross(wanted, velocity)) <= kParallelSine * most;
 }
 
 /// Add half-planes of the nearest movers. Returns whether the object and one of them meet head-on, on one line.
