@@ -121,7 +121,7 @@ class Child:
         except queue.Empty:
             return None
         if not line:
-            self._lines.put(b"")  # for whoever asks next
+            self._lines.put(b"")  # further calls get it, too
         return line
 
     def hang_up(self) -> None:

@@ -56,6 +56,11 @@ class Line:
     points: Floats
     closed: bool = False
 
+    @property
+    def path(self) -> Floats:
+        """(N, 2) points along the line [m]; a closed one ends where it begins."""
+        return np.concatenate([self.points, self.points[:1]]) if self.closed else self.points
+
 
 @dataclass(frozen=True)
 class Cells:
@@ -71,7 +76,7 @@ class Cells:
 
 
 BodyPart: TypeAlias = Circle | Polygon | Line
-"""A part of a body that is no map."""
+"""A part of a body other than a map."""
 Part: TypeAlias = BodyPart | Cells
 
 

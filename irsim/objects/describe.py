@@ -37,20 +37,20 @@ def describe_scene(simulation: Simulation) -> SceneDescription:
     bounds = scenario.world.bounds
     from irsim.objects.drawing.scene_builder import SceneBuilder  # many modules, which few readers need
 
-    builder, rows = SceneBuilder(simulation), agent_rows(simulation).tolist()
-    objects = {row: _object(simulation, builder, rows.index(row) if row in rows else -1, row)
-               for row in range(len(scenario.objects))}  # fmt: skip
+    builder = SceneBuilder(simulation)
+    place = {row: index for index, row in enumerate(agent_rows(simulation).tolist())}
+    objects = [_object(simulation, builder, place.get(row, -1), row) for row in range(len(scenario.objects))]
     return SceneDescription(
         name=scenario.name,
         step_time=float(scenario.world.step_time),
         low=(float(bounds[0]), float(bounds[1])),
         high=(float(bounds[2]), float(bounds[3])),
-        agents=tuple(objects[row] for row in rows),
+        agents=tuple(one for one in objects if one.index >= 0),
         grid=_grid(simulation),
         walls=scenario.world.boundary == "walls",
         seed=int(simulation.state.seed[0]),
         about={"irsim": version(), "scenario": scenario.text or ""},
-        maps=tuple(one for row, one in objects.items() if row not in rows),
+        maps=tuple(one for one in objects if one.index < 0),
     )
 
 

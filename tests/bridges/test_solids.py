@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from irsim.bridges.solids.cells import merged_cells
 from irsim.bridges.solids.convex import convex_pieces, is_convex, triangles
-from irsim.bridges.solids.solids import Box, Disk, Outline, solids_of
+from irsim.bridges.solids.solids import Box, solids_of
 from irsim.common.outline import Circle, Line, Polygon
 from irsim.simulation.scene import Grid
 from tests.effort import examples
@@ -56,8 +56,8 @@ def test_rectangles_become_boxes_whatever_their_heading() -> None:
     assert box.half == pytest.approx((math.sqrt(2), math.sqrt(0.5)))
     assert box.yaw == pytest.approx(math.pi / 4)
     [outline] = solids_of(Polygon(np.array([[0, 0], [2, 0], [2, 1], [0, 2]], dtype=float)), 0.1)
-    assert isinstance(outline, Outline)
-    assert solids_of(Circle((1.0, 2.0), 0.5), 0.1) == [Disk((1.0, 2.0), 0.5)]
+    assert isinstance(outline, Polygon)
+    assert solids_of(Circle((1.0, 2.0), 0.5), 0.1) == [Circle((1.0, 2.0), 0.5)]
 
 
 def test_polygons_without_area_or_that_cross_themselves_are_no_error() -> None:

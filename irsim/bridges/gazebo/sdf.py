@@ -15,9 +15,9 @@ from irsim.bridges.gazebo.meshes import prism
 from irsim.bridges.mujoco.rigs import LIDAR_HEIGHT, rig_of
 from irsim.bridges.mujoco.xml import colored, numbers
 from irsim.bridges.solids.cells import merged_cells
-from irsim.bridges.solids.solids import Box, Disk, Solid, room_of, solids_of
+from irsim.bridges.solids.solids import Box, Solid, room_of, solids_of
 from irsim.common.arrays import Floats
-from irsim.common.outline import Line
+from irsim.common.outline import Circle, Line
 from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 
 __all__ = ["SDF_VERSION", "SdfWorld"]
@@ -165,7 +165,7 @@ class SdfWorld:
             if isinstance(solid, Box):
                 _text(element, "pose", numbers(*solid.center, (bottom + top) / 2, 0, 0, solid.yaw))
                 _text(ET.SubElement(shape, "box"), "size", numbers(2 * solid.half[0], 2 * solid.half[1], top - bottom))
-            elif isinstance(solid, Disk):
+            elif isinstance(solid, Circle):
                 _text(element, "pose", numbers(*solid.center, (bottom + top) / 2, 0, 0, 0))
                 cylinder = ET.SubElement(shape, "cylinder")
                 _text(cylinder, "radius", numbers(solid.radius))

@@ -12,7 +12,6 @@ import numpy as np
 from irsim.bridges.mujoco.mjcf import MAP_BODY, body_name
 from irsim.bridges.mujoco.physics import Physics
 from irsim.bridges.solids.cells import merged_cells
-from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Circle, Line
 
 if TYPE_CHECKING:
@@ -152,8 +151,7 @@ def _footprint(parts: tuple[BodyPart, ...]) -> BaseGeometry:
         if isinstance(part, Circle):
             shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=32))
         elif isinstance(part, Line):
-            points: Floats = np.vstack([part.points, part.points[:1]]) if part.closed else part.points
-            shapes.append(shapely.LineString(points))
+            shapes.append(shapely.LineString(part.path))
         else:
             shapes.append(shapely.Polygon(part.corners))
     return shapely.union_all(shapes)

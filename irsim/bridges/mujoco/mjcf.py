@@ -16,9 +16,9 @@ from irsim.bridges.mujoco.rigs import DRIVES, LIDAR_HEIGHT, Rig, can_move, defau
 from irsim.bridges.mujoco.robots import add_actuators, add_robot
 from irsim.bridges.mujoco.xml import colored, numbers
 from irsim.bridges.solids.cells import merged_cells
-from irsim.bridges.solids.solids import Box, Disk, Outline, Solid, room_of, solids_of
+from irsim.bridges.solids.solids import Box, Solid, room_of, solids_of
 from irsim.common.arrays import Floats
-from irsim.common.outline import Line
+from irsim.common.outline import Circle, Line, Polygon
 from irsim.components.bridges.mujoco import Mujoco
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.simulation.build import steps_until
@@ -212,12 +212,12 @@ class _Writer:
         """A geom between two heights."""
         geom = ET.SubElement(body, "geom", {"class": kind, "rgba": colored(color)})
         middle, half = (bottom + top) / 2, (top - bottom) / 2
-        if isinstance(solid, Outline):
+        if isinstance(solid, Polygon):
             geom.set("type", "mesh")
             geom.set("mesh", self._mesh(solid.corners, bottom, top))
             return geom
         geom.set("pos", numbers(*solid.center, middle))
-        if isinstance(solid, Disk):
+        if isinstance(solid, Circle):
             geom.set("type", "cylinder")
             geom.set("size", numbers(solid.radius, half))
         else:

@@ -122,8 +122,7 @@ def part_marker(
         return circle_marker(messages, number, part.center, part.radius, looks, frame, pose)
     if isinstance(part, Polygon):
         return triangles_marker(messages, number, [part.corners], looks, frame, pose)
-    points = np.vstack([part.points, part.points[:1]]) if part.closed else part.points
-    return line_marker(messages, number, points, looks, frame, pose)
+    return line_marker(messages, number, part.path, looks, frame, pose)
 
 
 def triangles(rings: list[Floats]) -> Floats:

@@ -13,7 +13,7 @@ from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Circle, Line, Polygon
 from irsim.simulation.scene import SceneDescription
 
-__all__ = ["Box", "Disk", "Outline", "Solid", "part_points", "room_of", "solids_of"]
+__all__ = ["Box", "Solid", "part_points", "room_of", "solids_of"]
 
 _RIGHT_ANGLE = 1e-9
 """Cosine below which two sides of a rectangle are at right angles."""
@@ -34,31 +34,8 @@ class Box:
     yaw: float = 0.0
 
 
-@dataclass(frozen=True)
-class Disk:
-    """A disk.
-
-    Attributes:
-        center: x, y [m], body frame.
-        radius: [m].
-    """
-
-    center: tuple[float, float]
-    radius: float
-
-
-@dataclass(frozen=True)
-class Outline:
-    """A convex polygon.
-
-    Attributes:
-        corners: (K, 2) counterclockwise [m], body frame.
-    """
-
-    corners: Floats
-
-
-Solid: TypeAlias = Box | Disk | Outline
+Solid: TypeAlias = Box | Circle | Polygon
+"""A box, a disk or a convex polygon, body frame."""
 
 
 def solids_of(part: BodyPart, thickness: float) -> list[Solid]:
@@ -70,7 +47,7 @@ def solids_of(part: BodyPart, thickness: float) -> list[Solid]:
         thickness: Thickness of lines, which have none in irsim [m].
     """
     if isinstance(part, Circle):
-        return [Disk(part.center, part.radius)]
+        return [part]
     if isinstance(part, Line):
         return _walls(part, thickness)
     if not is_convex(part.corners):
@@ -88,14 +65,12 @@ def _box_or_outline(corners: Floats) -> Solid:
             x, y = corners.mean(axis=0)
             yaw = float(np.arctan2(sides[0, 1], sides[0, 0]))
             return Box((float(x), float(y)), (float(lengths[0]) / 2, float(lengths[1]) / 2), yaw)
-    return Outline(corners)
+    return Polygon(corners)
 
 
 def _walls(line: Line, thickness: float) -> list[Solid]:
     """One box for each segment of a line; those of a closed line, the walls of a room, stand outside of it."""
-    points = np.asarray(line.points, dtype=np.float64)
-    if line.closed:
-        points = np.vstack([points, points[:1]])
+    points = line.path
     inward = 0.0
     if line.closed:
         x, y = points[:-1].T

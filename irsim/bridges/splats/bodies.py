@@ -75,8 +75,7 @@ def body_of(agent: SceneObject) -> Body | None:
             case Polygon():
                 parts.append(shapely.Polygon(part.corners).buffer(0))
             case Line():
-                points = np.concatenate([part.points, part.points[:1]]) if part.closed else part.points
-                parts.append(shapely.LineString(points).buffer(_LINE_WIDTH_M / 2, cap_style="flat"))
+                parts.append(shapely.LineString(part.path).buffer(_LINE_WIDTH_M / 2, cap_style="flat"))
     shape = shapely.orient_polygons(shapely.union_all(parts))
     if shape.is_empty or shape.area <= 0:
         return None

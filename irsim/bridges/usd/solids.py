@@ -79,9 +79,7 @@ def line_solid(line: Line, height: float, thickness: float = WALL_THICKNESS) -> 
         height: [m].
         thickness: [m].
     """
-    points = np.asarray(line.points, dtype=np.float64)
-    if line.closed:
-        points = np.concatenate([points, points[:1]])
+    points = line.path
     legs = np.diff(points, axis=0)
     length = np.hypot(*legs.T)
     kept = length > 0

@@ -117,9 +117,7 @@ def _geometry_of(part: outlines.Part) -> Geometry:
         return Circle(*part.center, part.radius)
     if isinstance(part, outlines.Polygon):
         return Region([part.corners])
-    points = outlines.points_of(part)
-    closed = isinstance(part, outlines.Line) and part.closed
-    return Line(np.concatenate([points, points[:1]]) if closed else points)
+    return Line(part.path if isinstance(part, outlines.Line) else part.points)
 
 
 def arrow(length: float, width: float) -> Region:

@@ -94,7 +94,7 @@ def _meets_badly(record: ObjectRecord, count: int) -> bool:
 
 
 def _needs_other(record: ObjectRecord, count: int) -> bool:
-    """Whether so many pass only under another behavior."""
+    """Whether so many robots pass one another only under another behavior."""
     crowded = _options(record).name == "sfm" and count > 2 and 2 * reach_of(record.shape) * count >= _CROWDED
     return crowded or _is_car(record)
 

@@ -17,7 +17,7 @@ __all__ = ["Missed", "missed_way"]
 _DEFAULT_CELL_M = 0.1
 """Cell size [m] of grid planners without a resolution and without a map."""
 _MAX_COMMON_AREA = 2500.0
-"""Area [m^2] of a world with a map up to which `follow` tries cells of the default size before those of the map."""
+"""Largest world with a map [m^2] in which `follow` tries cells of the default size before those of the map."""
 _FINER_CELLS_M = (0.05, 0.03, 0.02)
 """Cell sizes [m] that are tried if the planner finds no path."""
 _MAX_CELLS = 1_000_000

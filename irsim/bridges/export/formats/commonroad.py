@@ -110,8 +110,7 @@ def _parts(agent: SceneObject) -> Iterator[tuple[Any, Floats]]:
         if not isinstance(part, Line):
             yield _shape(part)
             continue
-        points = np.concatenate([part.points, part.points[:1]]) if part.closed else part.points
-        for a, b in itertools.pairwise(points):
+        for a, b in itertools.pairwise(part.path):
             length = math.dist(a, b)
             if length == 0:
                 continue
