@@ -251,17 +251,25 @@ def no_way_message(simulation: Simulation, events: Sequence[Event], name: str) -
     if event is None or event.kind != "no_path":
         return None
     if event.partner is None:
-        return "there is no path to its goal"
+        return _no_path_message(simulation, name)
     row = next(i for i, record in enumerate(simulation.scenario.objects) if record.name == event.partner)
     other = quoted(event.partner)
     if simulation.arrived[row]:
-        return (
-            f"there is no way round {other}, which has arrived there "
-            f"(move the goal of {other} aside, or let arrived robots make room: after_arrival: yield)"
-        )
+        yields = simulation.scenario.world.after_arrival == "yield"
+        room = "" if yields else ", or let arrived robots make room: after_arrival: yield"
+        return f"there is no way round {other}, which has arrived there (move the goal of {other} aside{room})"
     hit = next((e for e in events if e.kind == "collision" and event.partner in (e.object, e.partner)), None)
     since = "" if hit is None else f" since a collision at {seconds(hit.time)}"
     return f"there is no way round {other}, which has been stopped{since}"
+
+
+def _no_path_message(simulation: Simulation, name: str) -> str:
+    row = next(i for i, record in enumerate(simulation.scenario.objects) if record.name == name)
+    record, goal = simulation.scenario.objects[row], simulation.state.goal[row]
+    if not (getattr(record.kinematics, "steered", False) and record.heading_counts(goal.tolist())):
+        return "there is no path to its goal"
+    reverse = record.vel_min[0] < 0
+    return "there is no path to its goal with that heading" + ("" if reverse else " without reverse (vel_min)")
 
 
 def reactive_behavior(record: ObjectRecord) -> str | None:

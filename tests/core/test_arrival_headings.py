@@ -169,6 +169,23 @@ def test_a_car_under_another_behavior_is_told_at_once(behavior: str) -> None:
     assert f"behavior: {{name: follow, local: {behavior}}}" in (found.fix or "")
 
 
+def test_a_car_without_reverse_says_that_no_path_leads_to_the_heading_of_its_goal() -> None:
+    text = """
+world: {width: 20, height: 10, boundary: walls, time_limit: 60}
+robot: {kinematics: {name: acker}, shape: {name: rectangle, length: 0.6, width: 0.4, wheelbase: 0.35}, state: [3, 5, 0],
+  goal: [15, 7.4, 1.57], arrive_mode: state, goal_threshold: 0.2, behavior: {name: follow}, vel_max: [1.2, 0.8],
+  vel_min: [0, -0.8], acce: [1, 4]}
+obstacle:
+  - {shape: {name: rectangle, length: 0.2, width: 2}, state: [14.2, 7.9, 0]}
+  - {shape: {name: rectangle, length: 0.2, width: 2}, state: [15.8, 7.9, 0]}
+"""
+    result = irsim.run(text=text, seed=1)
+    assert result.outcome == "timeout"
+    assert "there is no path to it with that heading without reverse (vel_min)" in result.reason
+    assert [event.kind for event in result.events if event.object == "robot_0"] == ["no_path"]
+    assert irsim.run(text=text.replace("[0, -0.8]", "[-1.2, -0.8]"), seed=1).outcome == "success"
+
+
 def test_whoever_turns_at_its_goal_lets_others_pass() -> None:
     """Two others pass the place where a robot turns; nobody touches it, and it arrives in the end."""
     text = (

@@ -45,6 +45,12 @@ def test_who_stands_in_the_only_door_is_named(local: str) -> None:
     assert named == ["robot_0"]
 
 
+def test_no_one_is_told_to_write_what_is_written() -> None:
+    result = irsim.run(text=scene(ARRIVES, "{name: follow, local: orca}", doors="one", after="yield"))
+    assert result.robots[1].outcome == "timeout"
+    assert "no way round 'robot_0', which has arrived there (move the goal of 'robot_0' aside)" in result.reason
+
+
 def test_a_dry_run_names_who_stands_in_the_way() -> None:
     report = irsim.validate(text=scene(ARRIVES, "{name: follow, local: orca}", doors="one"), simulate=True)
     assert report.dry_run is not None

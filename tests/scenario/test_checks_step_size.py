@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,18 @@ def test_a_turn_by_more_than_half_a_radian(drive: str, top: str, low: str) -> No
     assert "integration: exact" in (found.fix or "")
     assert "world.step_time: 0.1 or less" in (found.fix or "")
     assert not findings(0.2, drive, top=top, low=low, integration="exact")
+
+
+@pytest.mark.parametrize("speed", [0.3, 1.0, 2.0])
+@pytest.mark.parametrize("rate", [0.4, 1.0, 6.0])
+@pytest.mark.parametrize("dt", [0.1, 0.3, 1.0])
+def test_each_fix_cures(speed: float, rate: float, dt: float) -> None:
+    limits = {"top": f"[{speed}, {rate}]", "low": f"[{-speed}, {-rate}]"}
+    for found in findings(dt, **limits):
+        (step,) = re.findall(r"world.step_time: ([0-9.]+) or less", found.fix)
+        assert not findings(float(step), **limits)
+        if "integration: exact" in found.fix:
+            assert not findings(dt, integration="exact", **limits)
 
 
 @pytest.mark.parametrize("world", ["contacts: swept", "collision_mode: contact"])

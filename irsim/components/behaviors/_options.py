@@ -25,8 +25,6 @@ class BehaviorOptions(Options):
     """Whether bodies that it moves touch others now and then."""
     stops_in_time: ClassVar[bool] = False
     """Whether it stops before what stands with any `timeHorizonObst`."""
-    wall_horizon: ClassVar[float] = math.inf
-    """How far ahead it looks at walls if it has no `timeHorizonObst` [s]."""
 
     name: str
     """Name of the behavior."""

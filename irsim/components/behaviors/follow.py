@@ -32,7 +32,7 @@ class Follow(BehaviorOptions):
     Unless the local behavior is `dash`, an object on a route stays on its own side of a line between it and each object
     near it. Others on routes do the same, so they never touch. If two hold each other up for a second, the one with the
     shorter way left goes first. Cars that block each other plan a path round each other, or back up the way they came
-    (`vel_min`).
+    (`vel_min` below 0).
     """
 
     avoids: ClassVar[bool] = True

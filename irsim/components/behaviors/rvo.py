@@ -21,7 +21,6 @@ class Rvo(BehaviorOptions):
     """
 
     avoids: ClassVar[bool] = True
-    wall_horizon: ClassVar[float] = 1.0
 
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [{"name": "rvo", "vxmax": 1.5, "vymax": 1.5, "acce": 1.0, "factor": 1.0}]

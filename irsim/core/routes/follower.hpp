@@ -65,7 +65,8 @@ class Follower {
   void plan();
   /// Log, once for every goal, that there is no path to it.
   void report_no_path();
-  /// Report that there is no path if the object rests for long on a path that was planned for a smaller body.
+  /// Report that there is no path if the object rests for long on a path that was planned for a smaller body, or that
+  /// is not known to lead to the heading of its goal.
   void report_if_stuck();
   /// Plan poses for a drive that cannot move sideways and cannot turn everywhere.
   bool find_legs(double reach, int most = kMaxPoses);

@@ -59,7 +59,7 @@ void Follower::adjust(Vec3& u) {
     if (!route_.legs.empty()) return keep_apart(u);
     if (route_.path.empty()) return;  // the legs are blocked, and no other path was found
   }
-  if (route_.uncertain) report_if_stuck();
+  if (route_.uncertain || parks()) report_if_stuck();
   if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) steer_to_corner(u);
   if (route_.keeps_heading) u[2] = 0.0;
   slow_down_to_goal(u);

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -34,8 +33,6 @@ def _findings(context: Context) -> Iterator[Finding]:
         short = [key for key in short_horizons(inner, braking) if relevant[key]]
         if short:
             yield _finding(context, record, inner, braking, short, routed)
-        elif stands and getattr(inner, "wall_horizon", math.inf) < braking.time:
-            yield _fixed_horizon(context, record, inner, braking)
 
 
 def _finding(
@@ -58,16 +55,6 @@ def _finding(
         path,
         f"{_brakes(record, braking)}, but {options.name} looks {looks}",
         fix=", ".join(f"{name}: {horizon:g}" for name in short),
-    )
-
-
-def _fixed_horizon(context: Context, record: ObjectRecord, options: Any, braking: Braking) -> Finding:
-    ahead = options.wall_horizon
-    return hint(
-        "brakes-too-late",
-        context.entry_path(record, "behavior"),
-        f"{_brakes(record, braking)}, but {options.name} looks {seconds(ahead)} ahead at walls",
-        fix=f"orca with timeHorizonObst: {horizons_that_work(braking):g}, or at most {ahead * braking.acce:g} m/s",
     )
 
 

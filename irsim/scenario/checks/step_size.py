@@ -37,13 +37,18 @@ def _coarse_steps(context: Context) -> Iterator[Finding]:
             continue
         size, speed, rate = thickness(record.shape), _usual_speed(record), _top_yaw_rate(record)
         share, turn = speed * dt / size if 0 < size < math.inf else 0.0, rate * dt
-        coarse_turn = world.integration == "euler" and speed > 0 and MAX_TURN < turn <= _UNREAL
-        if not (MAX_MOVE_SHARE * (1 + 1e-9) < share <= _UNREAL or coarse_turn):
+        euler = world.integration == "euler" and speed > 0
+        coarse_turn = euler and MAX_TURN < turn <= _UNREAL
+        coarse_move = MAX_MOVE_SHARE * (1 + 1e-9) < share <= _UNREAL
+        if not (coarse_move or coarse_turn):
             continue
+        longest = _rounded_down(
+            min(MAX_MOVE_SHARE * dt / share if share > 0 else math.inf, MAX_TURN / rate if euler and rate > 0 else dt)
+        )
+        shorter = f"world.step_time: {longest:g} or less"
         written = context.is_given(record, "vel_max")
         where = context.entry_path(record, "vel_max") if written else record.path
         if coarse_turn:
-            longest = _rounded_down(MAX_TURN / rate)
             yield hint(
                 "coarse-steps",
                 where,
@@ -51,18 +56,17 @@ def _coarse_steps(context: Context) -> Iterator[Finding]:
                 f"than a quarter of its size, but Euler's law moves it straight within the step: on a circle its "
                 f"position is off by up to {metres(speed * dt)}",
                 given=record.vel_max,
-                fix=f"world.integration: exact, or world.step_time: {longest:g} or less",
-                edit=Edit("add", ("world", "integration"), "exact"),
+                fix=shorter if coarse_move else f"world.integration: exact, or {shorter}",
+                edit=None if coarse_move else Edit("add", ("world", "integration"), "exact"),
             )
         else:
-            longest = _rounded_down(MAX_MOVE_SHARE * size / speed)
             yield hint(
                 "coarse-steps",
                 where,
                 f"'{record.name}' moves by up to {metres(speed * dt)} in a step of {dt:g} s, more than half of its "
                 f"size ({metres(size)}): {_only(world)} only that often",
                 given=record.vel_max,
-                fix=f"world.step_time: {longest:g} or less; world.integration: exact helps where it turns",
+                fix=shorter,
             )
 
 
