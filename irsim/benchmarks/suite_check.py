@@ -10,10 +10,11 @@ from typing import Any
 import yaml
 
 from irsim.benchmarks.suite import Protocol, Suite, SuiteScenario
-from irsim.benchmarks.suite_problems import located, suite_error
+from irsim.benchmarks.suite_problems import suite_error
 from irsim.bundled.templates.fill import parse_path
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
+from irsim.scenario.messages.translate import located
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import Document, load_path, load_text
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from irsim.benchmarks.suite import Suite
-from irsim.benchmarks.suite_problems import SuiteError, located, problems_of, suite_error
+from irsim.benchmarks.suite_problems import SuiteError, problems_of, suite_error
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import is_slip_of, suggestion
 from irsim.scenario.yaml.document import Document, load_path, load_text
@@ -77,8 +77,7 @@ def read_suite(path: Path) -> Suite:
     try:
         suite = Suite.model_validate(document.data)
     except ValidationError as error:
-        problems = problems_of(error.errors(include_url=False), document.data)
-        raise suite_error(path, [*found, *(located(item, document) for item in problems)]) from None
+        raise suite_error(path, [*found, *problems_of(error, document)]) from None
     if found:
         raise suite_error(path, found)
     return suite

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +16,10 @@ from irsim.diagnostics.errors import CodedError
 from irsim.diagnostics.report import format_diagnostics
 from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
 from irsim.learning.tasks.task import Task
-from irsim.scenario.messages.translate import translate
+from irsim.scenario.messages.translate import located, translate
 from irsim.scenario.yaml.document import Document, load_data, load_path
 
-__all__ = ["TaskError", "TaskSource", "located", "open_task", "read_task", "task_error"]
+__all__ = ["TaskError", "TaskSource", "open_task", "read_task", "task_error"]
 
 TaskSource = str | os.PathLike[str] | Mapping[str, Any] | Task
 """A task, its data, the path of its file, or the name of a bundled task."""
@@ -92,14 +91,6 @@ def _validated(document: Document) -> Task:
     except ValidationError as failure:
         found = [item.diagnostic for item in translate(failure, document.data, document, _MOST, Task)]
         raise _error(document, [located(item, document) for item in found]) from None
-
-
-def located(item: Diagnostic, document: Document) -> Diagnostic:
-    """A problem with the line on which its key is."""
-    mark = document.mark((*document.prefix, *item.path), key=item.code in ("unknown-key", "missing-key"))
-    if mark is None or item.line is not None:
-        return replace(item, file=document.name)
-    return replace(item, line=mark.line, column=mark.column, length=mark.length, file=document.name)
 
 
 def _error(document: Document, found: Sequence[Diagnostic]) -> TaskError:

@@ -9,10 +9,11 @@ from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import ScenarioError
 from irsim.episodes.episode import as_finding
 from irsim.learning.draws import check_observed
-from irsim.learning.tasks.files import TaskError, located, open_task
+from irsim.learning.tasks.files import TaskError, open_task
 from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
 from irsim.results.validation import ValidationReport
+from irsim.scenario.messages.translate import located
 from irsim.scenario.yaml.document import load_path
 
 __all__ = ["is_task", "task_report"]

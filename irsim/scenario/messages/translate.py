@@ -7,14 +7,17 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from irsim.diagnostics.diagnostic import Path
+from irsim.diagnostics.diagnostic import Diagnostic, Path
 from irsim.options.vectors import UNION_TAGS
 from irsim.scenario.messages.findings import Finding
 from irsim.scenario.messages.pydantic_errors import Explainer
 from irsim.scenario.model.scenario import Scenario
 from irsim.scenario.yaml.document import Document
 
-__all__ = ["translate"]
+__all__ = ["located", "translate"]
+
+_OF_KEYS = ("unknown-key", "missing-key", "conflicting-keys", "duplicate-key")
+"""Codes of problems of a key rather than of its value."""
 
 
 def translate(
@@ -38,6 +41,14 @@ def translate(
         elif len(found) <= most:
             siblings.append(Explainer(path, item, data, document, root).finding())
     return [_with_count(siblings) for siblings in found.values() if siblings]
+
+
+def located(item: Diagnostic, document: Document) -> Diagnostic:
+    """A problem with its position in its file, if that has a text."""
+    mark = document.mark((*document.prefix, *item.path), key=item.code in _OF_KEYS)
+    if mark is None or item.line is not None:
+        return replace(item, file=item.file or document.name)
+    return replace(item, line=mark.line, column=mark.column, length=mark.length, file=document.name)
 
 
 def _path(location: tuple[Any, ...]) -> Path:
