@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from irsim.benchmarks.suite import Protocol, Suite, SuiteScenario
-from irsim.benchmarks.suite_problems import suite_error
+from irsim.benchmarks.suite_file import suite_error
 from irsim.bundled.templates.fill import parse_path
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest

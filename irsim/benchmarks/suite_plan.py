@@ -11,7 +11,7 @@ import yaml
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes, short_hash
 from irsim.benchmarks.policies import files_of
 from irsim.benchmarks.suite import Protocol, Suite
-from irsim.benchmarks.suite_files import SuiteError, load_suite
+from irsim.benchmarks.suite_file import SuiteError, load_suite
 from irsim.benchmarks.suite_scenarios import Expanded, expand
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.scenario.behavior_override import behavior_text

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from irsim.benchmarks.suite_files import load_suite
+from irsim.benchmarks.suite_file import SuiteError, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
-from irsim.benchmarks.suite_problems import SuiteError
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.episodes.episode import as_finding
 from irsim.results.validation import ValidationReport

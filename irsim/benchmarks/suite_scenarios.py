@@ -12,7 +12,7 @@ import yaml
 
 from irsim.benchmarks.suite import MAX_SCENARIOS, Protocol, Suite, SuiteScenario, label_of
 from irsim.benchmarks.suite_check import Expanded, check_scenarios
-from irsim.benchmarks.suite_problems import SuiteError, suite_error
+from irsim.benchmarks.suite_file import SuiteError, suite_error
 from irsim.bundled.templates.fill import fill, parse_path
 from irsim.bundled.templates.metadata import TemplateError
 from irsim.bundled.templates.store import load

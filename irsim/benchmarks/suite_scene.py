@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from irsim.benchmarks.plan import PlannedScenario
-from irsim.benchmarks.suite_files import SuiteError, is_suite, load_suite, suite_names
+from irsim.benchmarks.suite_file import SUITES, SuiteError, is_suite, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.diagnostics.diagnostic import nearest
 from irsim.scenario.behavior_override import behavior_text
@@ -49,7 +49,7 @@ def _split(name: str | Path) -> tuple[str, str] | None:
         return None
     for suite in (given, *given.parents):
         word = suite.as_posix()
-        if word in suite_names() or (suite.is_file() and is_suite(word)):
+        if word in SUITES.names() or (suite.is_file() and is_suite(word)):
             return word, given.relative_to(suite).as_posix()
     return None
 

@@ -45,7 +45,7 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     """
     from irsim.api.benchmark_report import Report, write_report
     from irsim.benchmarks.stored import default_folder, last_folder, resume_benchmark, run_plan
-    from irsim.benchmarks.suite_files import is_suite
+    from irsim.benchmarks.suite_file import is_suite
     from irsim.cli.findings import limits_for
     from irsim.cli.output import console, progress
 

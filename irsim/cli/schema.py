@@ -38,17 +38,17 @@ def schema(
     if scenario is not None:
         _connect(scenario)
         return
-    from irsim.benchmarks.suite_schema import suite_schema_text
+    from irsim.benchmarks.suite_file import SUITES
     from irsim.common import data_files as resources
     from irsim.common.files import write_atomically
-    from irsim.learning.tasks.schema import task_schema_text
+    from irsim.learning.tasks.files import TASKS
     from irsim.policies.networks.schema import policy_schema_text
     from irsim.scenario.model.json_schema import schema_text
 
     makers = {
         "scenario": schema_text,
-        "suite": suite_schema_text,
-        "task": task_schema_text,
+        "suite": SUITES.schema_text,
+        "task": TASKS.schema_text,
         "policy": policy_schema_text,
     }
     if str(out) == "-" or (out is None and not check and resources.checkout() is None):

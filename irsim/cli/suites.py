@@ -13,11 +13,11 @@ __all__ = ["suites"]
 
 def suites(json_output: Json = False) -> None:
     """List the bundled suites: benchmarks with fixed scenarios, seeds, horizon, protocol and policies."""
-    from irsim.benchmarks.suite_files import load_suite, suite_names
+    from irsim.benchmarks.suite_file import SUITES, load_suite
     from irsim.benchmarks.suite_plan import suite_plan
     from irsim.cli.output import console
 
-    found = {name: (load_suite(name)[0], suite_plan(name)) for name in suite_names()}
+    found = {name: (load_suite(name)[0], suite_plan(name)) for name in SUITES.names()}
     if json_output:
         listed = [
             {

@@ -104,12 +104,12 @@ def validate(
 
 def _kind(file: str) -> str:
     """What a file is: ``a suite``, ``a task`` or ``a scenario``."""
-    from irsim.benchmarks.suite_files import is_suite
-    from irsim.learning.tasks.report import is_task
+    from irsim.benchmarks.suite_file import is_suite
+    from irsim.learning.tasks.files import TASKS
 
     if file == "-":
         return "a scenario"
-    return "a suite" if is_suite(file) else "a task" if is_task(file) else "a scenario"
+    return "a suite" if is_suite(file) else "a task" if TASKS.is_file(file) else "a scenario"
 
 
 def _check_options(kinds: dict[str, str], **given: bool) -> None:
@@ -131,10 +131,10 @@ def _check_file(
 ) -> tuple[ValidationReport, str | None]:
     """Return the report on a scenario, a file or standard input, and its text; with ``fix``, on the repaired one."""
     from irsim import api
-    from irsim.benchmarks.suite_files import is_suite_text
+    from irsim.benchmarks.suite_file import SUITES
 
     path = None if file == "-" else file
-    if text is not None and is_suite_text(text):
+    if text is not None and SUITES.is_text(text):
         raise ArgumentError("- stands for a scenario, and this is a suite", "give the name of its file instead of -")
     fixes, fix_texts = [], {}
     if fix:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
+from irsim.learning.tasks.files import TASKS
 
 __all__ = ["environment_id", "register_environments"]
 
@@ -24,8 +24,8 @@ def register_environments() -> None:
 
     entries = {"entry_point": "irsim.learning.gym_env:Env", "vector_entry_point": "irsim.learning.vector_env:VectorEnv"}
     known = gymnasium.registry
-    for task in bundled_tasks():
+    for task in TASKS.names():
         if environment_id(task) not in known:
-            gymnasium.register(environment_id(task), kwargs={"task": str(bundled_task(task))}, **entries)
+            gymnasium.register(environment_id(task), kwargs={"task": str(TASKS.bundled(task))}, **entries)
     if (general := f"irsim/Task-v{_VERSION}") not in known:
         gymnasium.register(general, **entries)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from irsim.benchmarks.suite_files import suite_names
+from irsim.benchmarks.suite_file import SUITES
 from irsim.bundled import templates
 from irsim.bundled.templates import Template
 from irsim.common.event_kinds import BETWEEN_STEPS, EVENTS
@@ -51,7 +51,7 @@ def index_answer() -> Answer:
             "templates": [Key(name="templates", text=", ".join(templates.names()))],
             "more": [
                 Key(name="guides", text=", ".join(GUIDES)),
-                Key(name="suites", text=f"benchmarks with a fixed protocol: {', '.join(suite_names())}"),
+                Key(name="suites", text=f"benchmarks with a fixed protocol: {', '.join(SUITES.names())}"),
                 Key(name="metrics", text=f"the {len(METRIC_TOPICS)} numbers that measure how good an episode was"),
                 Key(name="codes", text=f"the {len(all_codes())} codes of errors and warnings"),
             ],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from irsim.benchmarks.suite_files import load_suite, suite_names
+from irsim.benchmarks.suite_file import SUITES, load_suite
 from irsim.lookup.answer import Answer, Key
 from irsim.lookup.suites import model_keys
 from irsim.policies.converters.features import CONVERTERS
@@ -23,7 +23,7 @@ def policy_answer(topic: str) -> Answer | None:
     known = {*trained_policies(), *POLICIES.names()}
     if name in known:
         return _policy(name, [])
-    for suite in (load_suite(each)[0] for each in suite_names()):
+    for suite in (load_suite(each)[0] for each in SUITES.names()):
         text = suite.known_policies.get(name)
         if isinstance(text, str) and text in known:
             return _policy(text, [f"The suite {suite.suite} calls it {name}."])

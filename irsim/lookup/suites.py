@@ -8,13 +8,13 @@ from typing import Any, Literal, get_args
 from pydantic import BaseModel
 
 from irsim.benchmarks.suite import Seeds, Suite, SuiteScenario
-from irsim.benchmarks.suite_files import load_suite, suite_names
+from irsim.benchmarks.suite_file import SUITES, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.lookup.answer import Answer, Key
 from irsim.scenario.behavior_override import behavior_text
 from irsim.scenario.perturbation import Perturbation
 
-__all__ = ["model_keys", "suite_answer", "suite_key_answer", "suite_names", "suites_answer"]
+__all__ = ["model_keys", "suite_answer", "suite_key_answer", "suites_answer"]
 
 _PARTS: dict[str, type[BaseModel]] = {"": Suite, "scenarios": SuiteScenario, "seeds": Seeds, "perturb": Perturbation}
 """Key of a suite file whose value has keys → these; the empty text stands for the file."""
@@ -22,7 +22,7 @@ _PARTS: dict[str, type[BaseModel]] = {"": Suite, "scenarios": SuiteScenario, "se
 
 def suites_answer() -> Answer:
     """List the bundled suites, and describe the keys of a suite file."""
-    listed = [Key(name=name, text=load_suite(name)[0].title) for name in suite_names()]
+    listed = [Key(name=name, text=load_suite(name)[0].title) for name in SUITES.names()]
     return Answer(
         topic="suites",
         kind="index",

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
-from irsim.learning.tasks.files import open_task
-from irsim.learning.tasks.schema import task_schema
+from irsim.learning.tasks.files import TASKS, open_task
 from irsim.lookup.answer import Answer, Key
 from irsim.lookup.schema_walk import Node, component_name, components, key, mappings, step, yaml_text
 
@@ -24,9 +22,9 @@ def task_answer(words: Sequence[str]) -> Answer | None:
     Args:
         words: The path below ``task``, such as ``reward progress``, or the name of a bundled task.
     """
-    if len(words) == 1 and words[0] in bundled_tasks():
+    if len(words) == 1 and words[0] in TASKS.names():
         return _bundled(words[0])
-    schema = task_schema()
+    schema = TASKS.schema()
     nodes: list[Node] = [schema]
     for word in words:
         nodes = step(schema, nodes, word)
@@ -42,7 +40,7 @@ def task_answer(words: Sequence[str]) -> Answer | None:
     about = None if not words or chosen else key(schema, words[-1], node)
     if not words:
         groups["bundled tasks"] = [
-            Key(name=f"task.{name}", text=open_task(bundled_task(name))[0].title) for name in bundled_tasks()
+            Key(name=f"task.{name}", text=open_task(TASKS.bundled(name))[0].title) for name in TASKS.names()
         ]
     return Answer(
         topic=".".join(path),
@@ -57,7 +55,7 @@ def task_answer(words: Sequence[str]) -> Answer | None:
 
 
 def _bundled(name: str) -> Answer:
-    file = bundled_task(name)
+    file = TASKS.bundled(name)
     task, _ = open_task(file)
     return Answer(
         topic=f"task.{name}",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from irsim.benchmarks.suite_file import SUITES
 from irsim.bundled import templates
 from irsim.common.event_kinds import EVENTS
 from irsim.compat import DIFFERENCES
@@ -39,7 +40,7 @@ from irsim.lookup.schema_walk import (
 )
 from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
 from irsim.lookup.small_examples import BETTER, small_example
-from irsim.lookup.suites import suite_answer, suite_key_answer, suite_names, suites_answer
+from irsim.lookup.suites import suite_answer, suite_key_answer, suites_answer
 from irsim.lookup.synonyms import named
 from irsim.lookup.tasks import task_answer
 from irsim.options.registry import REGISTRIES, Registry
@@ -96,7 +97,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return code_answer(topic.strip())
     if name in templates.names():
         return template_answer(templates.load(name))
-    if topic.strip() in suite_names():
+    if topic.strip() in SUITES.names():
         return suite_answer(topic.strip())
     if words[:1] == ["suites"] and (found_key := suite_key_answer(words[1:])) is not None:
         return found_key

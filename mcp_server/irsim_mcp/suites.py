@@ -43,7 +43,7 @@ def scenario_of_suite(given: str, argument: str) -> str:
     Raises:
         ArgumentError: The suite has no such scenario.
     """
-    from irsim.benchmarks.suite_files import SuiteError
+    from irsim.benchmarks.suite_file import SuiteError
     from irsim.benchmarks.suite_scene import suite_scene
 
     try:

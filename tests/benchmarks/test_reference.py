@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from irsim.benchmarks.stored import run_plan
-from irsim.benchmarks.suite_files import suite_names
+from irsim.benchmarks.suite_file import SUITES
 from irsim.results.suite import SuiteResult
 from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, changes, counted, lines_of
 
@@ -43,7 +43,7 @@ def test_many_episodes_are_the_kept_ones(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", TABLES)
 def test_the_table_counts_the_kept_episodes(name: str) -> None:
     page = (PAGES / f"{name}.md").read_text(encoding="utf-8")
-    assert TABLES[name].suite in suite_names()
+    assert TABLES[name].suite in SUITES.names()
     plan = TABLES[name].plan()
     assert f"suite hash {plan.suite_hash}, run hash {plan.hash}, " in page
     with (FOLDER / f"{name}.csv").open(encoding="utf-8") as file:

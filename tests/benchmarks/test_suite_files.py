@@ -9,11 +9,11 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
-from irsim.benchmarks.suite_files import read_suite
+from irsim.benchmarks.suite_file import SUITES, SuiteError
 from irsim.benchmarks.suite_plan import suite_plan
-from irsim.benchmarks.suite_problems import SuiteError
 from irsim.cli.app import app
 from irsim.lookup import lookup
+from irsim.scenario.yaml.document import load_path
 
 FIELD = """\
 suite: field
@@ -70,7 +70,7 @@ def test_a_mistake_in_a_scenario_file_is_named_with_that_file(scene: str, proble
 
 def test_the_file_without_a_mistake_is_valid(tmp_path: Path) -> None:
     (tmp_path / "field.yaml").write_text(FIELD, encoding="utf-8")
-    assert read_suite(tmp_path / "field.yaml").suite == "field"
+    assert SUITES.read(load_path(tmp_path / "field.yaml")).suite == "field"
     assert [one.name for one in suite_plan(str(tmp_path / "field.yaml")).scenarios] == ["field-2", "field-4"]
 
 

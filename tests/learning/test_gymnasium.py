@@ -15,8 +15,7 @@ import irsim.learning
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning import Env, VectorEnv
 from irsim.learning.registration import environment_id
-from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
-from irsim.learning.tasks.files import TaskError
+from irsim.learning.tasks.files import TASKS, TaskError
 from tests.learning.tasks import crowd, lidar_among_boxes, task
 
 CHOICES = {"choices": [[0, 0], [1, 0], [0.5, 1], [0.5, -1]]}
@@ -32,10 +31,10 @@ def test_the_checker_of_gymnasium_has_no_complaint(made: dict[str, Any]) -> None
     check_env(gymnasium.make("irsim/Task-v0", task=made).unwrapped)
 
 
-@pytest.mark.parametrize("name", bundled_tasks())
+@pytest.mark.parametrize("name", TASKS.names())
 def test_bundled_tasks_are_registered(name: str) -> None:
     assert irsim.learning.__doc__
-    made = gymnasium.make_vec(environment_id(name), num_envs=irsim.learning.Worlds(bundled_task(name)).learners)
+    made = gymnasium.make_vec(environment_id(name), num_envs=irsim.learning.Worlds(TASKS.bundled(name)).learners)
     seen, _ = made.reset(seed=0)
     assert made.observation_space.contains(seen)
 

@@ -10,8 +10,7 @@ import yaml
 
 from irsim.learning import Worlds
 from irsim.learning.features import REWARDS
-from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
-from irsim.learning.tasks.files import TaskError, open_task
+from irsim.learning.tasks.files import TASKS, TaskError, open_task
 from irsim.options.registry import Feature
 from irsim.testing import conformance
 from tests.learning.tasks import task
@@ -24,13 +23,13 @@ def test_reward_terms_are_documented(feature: Feature) -> None:
     conformance.check_defaults(feature)
 
 
-@pytest.mark.parametrize("name", bundled_tasks())
+@pytest.mark.parametrize("name", TASKS.names())
 def test_bundled_tasks_are_named_like_their_files_and_step(name: str) -> None:
-    made, _ = open_task(bundled_task(name))
+    made, _ = open_task(TASKS.bundled(name))
     assert made.task == name
     assert made.title
     assert made.about
-    worlds = Worlds(bundled_task(name), 2)
+    worlds = Worlds(TASKS.bundled(name), 2)
     assert worlds.observe().shape == (2 * worlds.learners, worlds.eyes.size)
 
 
@@ -85,14 +84,14 @@ def test_a_missing_file_and_an_unknown_template_are_said() -> None:
 
 
 def test_bundled_tasks_are_opened_by_their_name() -> None:
-    assert open_task("goal_lidar") == open_task(bundled_task("goal_lidar"))
+    assert open_task("goal_lidar") == open_task(TASKS.bundled("goal_lidar"))
 
 
 def test_a_file_of_the_current_folder_comes_before_a_bundled_task_of_its_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    name = bundled_tasks()[0]
-    own = yaml.safe_load(bundled_task(name).read_text(encoding="utf-8")) | {"version": 77}
+    name = TASKS.names()[0]
+    own = yaml.safe_load(TASKS.bundled(name).read_text(encoding="utf-8")) | {"version": 77}
     (tmp_path / name).write_text(yaml.safe_dump(own))
     assert open_task(name)[0].version != 77
     monkeypatch.chdir(tmp_path)
@@ -101,7 +100,7 @@ def test_a_file_of_the_current_folder_comes_before_a_bundled_task_of_its_name(
 
 def test_an_unknown_key_is_marked_itself(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
-    path.write_text(bundled_task(bundled_tasks()[0]).read_text(encoding="utf-8") + "\nnumbr: 5\n")
+    path.write_text(TASKS.bundled(TASKS.names()[0]).read_text(encoding="utf-8") + "\nnumbr: 5\n")
     with pytest.raises(TaskError) as refused:
         open_task(path)
     [found] = refused.value.diagnostics

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 import irsim
-from irsim.learning.tasks.bundled_tasks import bundled_tasks
-from irsim.learning.tasks.files import open_task
+from irsim.learning.tasks.files import TASKS, open_task
 from irsim.learning.tasks.scene import scenario_text
 from irsim.lookup.topics import lookup
 from irsim.policies.trained import trained_policies, trained_policy
@@ -28,14 +27,14 @@ LEAST = {
 }
 """Success that each must reach in 20 scenes that it was not trained on; in all it has reached more."""
 
-TASKS = {"sarl": "sarl_circle"}
+TRAINED_ON = {"sarl": "sarl_circle"}
 """Name of a policy -> task that it was trained on, where the names differ."""
 
 
 @pytest.mark.slow(15)
 @pytest.mark.parametrize("name", trained_policies())
 def test_it_reaches_its_success_in_scenes_of_its_task(name: str, tmp_path: Path) -> None:
-    task, folder = open_task(TASKS.get(name, name))
+    task, folder = open_task(TRAINED_ON.get(name, name))
     (tmp_path / "scene.yaml").write_text(scenario_text(task, folder))
     spreads = "; ".join(perturbation_text(one) for one in task.perturb) or None
     found = irsim.benchmark(tmp_path / "scene.yaml", policies=[name], seeds=20, perturb=spreads, workers=1)
@@ -59,7 +58,7 @@ def test_a_lookup_tells_what_a_policy_is_for(name: str) -> None:
     answer = lookup(f"policy {name}")
     facts = {key.name: key.text for key in answer.groups["facts"]}
     assert (answer.kind, answer.topic) == ("policy", name)
-    assert facts["trained on"].split()[0] in {*bundled_tasks()}
+    assert facts["trained on"].split()[0] in {*TASKS.names()}
     assert facts["license"] == "MIT"
     assert name in (answer.example or "")
     if name != "crowd":  # a template has that name

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from irsim.learning import VectorEnv
-from irsim.learning.tasks.bundled_tasks import bundled_tasks
+from irsim.learning.tasks.files import TASKS
 from irsim.learning.tasks.report import task_report
 from tests.skills.conftest import fences
 
@@ -54,4 +54,4 @@ def test_its_task_is_valid_and_steps(with_draws: bool, tmp_path: Path) -> None:
 
 def test_the_tasks_that_it_names_are_bundled() -> None:
     named = set(re.findall(r"`(goal_lidar|multi_robot|[a-z]+_[a-z]+)`", GUIDE)) & {"goal_lidar", "multi_robot"}
-    assert named == {"goal_lidar", "multi_robot"} <= set(bundled_tasks())
+    assert named == {"goal_lidar", "multi_robot"} <= set(TASKS.names())

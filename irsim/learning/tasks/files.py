@@ -7,24 +7,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
 from irsim.diagnostics.diagnostic import Path as Path_
 from irsim.diagnostics.errors import CodedError
 from irsim.diagnostics.report import format_diagnostics
-from irsim.learning.tasks.bundled_tasks import bundled_task, bundled_tasks
 from irsim.learning.tasks.task import Task
-from irsim.scenario.messages.translate import located, translate
+from irsim.scenario.file_kind import FileKind
 from irsim.scenario.yaml.document import Document, load_data, load_path
 
-__all__ = ["TaskError", "TaskSource", "open_task", "read_task", "task_error"]
+__all__ = ["TASKS", "TaskError", "TaskSource", "open_task", "task_error"]
 
 TaskSource = str | os.PathLike[str] | Mapping[str, Any] | Task
 """A task, its data, the path of its file, or the name of a bundled task."""
-_MOST = 10
-"""Largest number of problems that are listed."""
 
 
 class TaskError(CodedError, ValueError):
@@ -63,37 +58,21 @@ def open_task(source: TaskSource) -> tuple[Task, Path]:
     if isinstance(source, Task):
         return source, Path()
     if isinstance(source, Mapping):
-        return _validated(load_data(source, "task")), Path()
-    path = Path(source)
-    if not path.is_file() and str(source) in bundled_tasks():
-        path = bundled_task(str(source))
+        return TASKS.read(load_data(source, "task")), Path()
+    path, known = Path(source), TASKS.names()
+    if not path.is_file() and str(source) in known:
+        path = TASKS.bundled(str(source))
     if not path.is_file():
-        fix = suggestion(str(source), bundled_tasks(), f"give a task file, or one of {', '.join(bundled_tasks())}")
+        fix = suggestion(str(source), known, f"give a task file, or one of {', '.join(known)}")
         raise TaskError(f"there is no task file {clean(str(source), 200)!r}", fix)
-    return read_task(load_path(path)), path.parent
-
-
-def read_task(document: Document) -> Task:
-    """Read a document.
-
-    Raises:
-        TaskError: It is not a valid task; the message lists every problem with its place.
-    """
-    found = [item for item in document.problems if item.severity == "error"]
-    if found:
-        raise _error(document, found)
-    return _validated(document)
-
-
-def _validated(document: Document) -> Task:
-    try:
-        return Task.model_validate(document.data)
-    except ValidationError as failure:
-        found = [item.diagnostic for item in translate(failure, document.data, document, _MOST, Task)]
-        raise _error(document, [located(item, document) for item in found]) from None
+    return TASKS.read(load_path(path)), path.parent
 
 
 def _error(document: Document, found: Sequence[Diagnostic]) -> TaskError:
     name = clean(document.name or "the task", 200)
     text = format_diagnostics(found, document.text)
     return TaskError(f"{name} is not a valid task\n{text}", "`irsim describe task` lists the keys of a task", found)
+
+
+TASKS = FileKind(key="task", model=Task, folder=Path(__file__).with_name("bundled"), error=_error)
+"""Task files."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import ScenarioError
@@ -16,16 +15,7 @@ from irsim.results.validation import ValidationReport
 from irsim.scenario.messages.translate import located
 from irsim.scenario.yaml.document import load_path
 
-__all__ = ["is_task", "task_report"]
-
-
-def is_task(word: str) -> bool:
-    """Whether a word is the path of a YAML file with the key ``task``."""
-    path = Path(word)
-    if path.suffix not in (".yaml", ".yml") or not path.is_file():
-        return False
-    data = load_path(path).data
-    return isinstance(data, dict) and "task" in data
+__all__ = ["task_report"]
 
 
 def task_report(file: str) -> ValidationReport:

@@ -1,4 +1,4 @@
-"""Problems of suite files as diagnostics: what is wrong at which key and line, in plain words."""
+"""Suite files: the bundled ones and those of users, read and checked; problems are told with key and line."""
 
 from __future__ import annotations
 
@@ -6,21 +6,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from irsim.benchmarks.suite import Suite
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import Diagnostic, format_path
+from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
 from irsim.diagnostics.diagnostic import Path as Path_
 from irsim.diagnostics.errors import CodedError
-from irsim.scenario.messages.translate import located, translate
-from irsim.scenario.yaml.document import Document
+from irsim.scenario.file_kind import MOST_PROBLEMS, FileKind, explained
+from irsim.scenario.yaml.document import Document, load_path
 
-__all__ = ["SuiteError", "problems_of", "suite_error"]
+__all__ = ["SUITES", "SuiteError", "is_suite", "load_suite", "suite_error"]
 
-_MOST = 10
-"""Number of problems that the message of an error lists."""
 _FIX = "irsim describe suites lists the keys of a suite file and has an example"
 _VARY = "a mapping of each key to a list of values, or a list of mappings, each of which is one scenario"
 _POLICY = "the name of a behavior, or a mapping such as {name: orca, timeHorizon: 2}"
@@ -45,8 +43,8 @@ def suite_error(path: Path | str, found: Sequence[Diagnostic]) -> SuiteError:
         path: The suite file.
         found: At least one problem.
     """
-    texts = [_text(item, str(path), alone=len(found) == 1) for item in found[:_MOST]]
-    texts += [f"and {len(found) - _MOST} more"] if len(found) > _MOST else []
+    texts = [_text(item, str(path), alone=len(found) == 1) for item in found[:MOST_PROBLEMS]]
+    texts += [f"and {len(found) - MOST_PROBLEMS} more"] if len(found) > MOST_PROBLEMS else []
     fix = found[0].fix if len(found) == 1 else None
     return SuiteError(
         f"{clean(path, 200)} is not a valid suite: {'; '.join(texts)}",
@@ -55,22 +53,26 @@ def suite_error(path: Path | str, found: Sequence[Diagnostic]) -> SuiteError:
     )
 
 
-def problems_of(failure: ValidationError, document: Document) -> list[Diagnostic]:
-    """The problems of a validation, in the words of scenarios, one for each key.
+def load_suite(word: str) -> tuple[Suite, Path]:
+    """A suite, and the file that it was read from.
 
     Args:
-        failure: The exception of ``Suite.model_validate``.
-        document: The suite as written.
+        word: Name of a bundled suite, or path of a file.
+
+    Raises:
+        SuiteError: There is no such suite, or it is not valid.
     """
-    data, found = document.data, dict[Path_, Diagnostic]()
-    for item in failure.errors(include_url=False):
-        if (special := _special(tuple(item["loc"]), data)) is not None:
-            found.setdefault(special.path, special)
-    for explained in translate(failure, data, document, _MOST, Suite):
-        problem = explained.diagnostic
-        if _special(tuple(problem.path), data) is None:
-            found.setdefault(problem.path, problem)
-    return [located(problem, document) for problem in found.values()]
+    known = SUITES.names()
+    path = SUITES.bundled(word) if word in known else Path(word)
+    if not path.is_file():
+        fix = suggestion(word, known, f"choose one of {', '.join(known)}, or give a file")
+        raise SuiteError(f"there is no suite {clean(word)!r}", fix, "unknown-suite")
+    return SUITES.read(load_path(path)), path
+
+
+def is_suite(word: str) -> bool:
+    """Whether a word names a suite: a bundled one, perhaps misspelt, or a YAML file with the key ``suite``."""
+    return SUITES.is_named(word) or SUITES.is_file(word)
 
 
 def _text(item: Diagnostic, path: str, *, alone: bool) -> str:
@@ -91,6 +93,18 @@ def _text(item: Diagnostic, path: str, *, alone: bool) -> str:
 
 def _is_guess(fix: str) -> bool:
     return fix.startswith("did you mean")
+
+
+def _explain(failure: ValidationError, document: Document, model: type[BaseModel]) -> list[Diagnostic]:
+    """The problems of a validation, one for each key; those of keys with several forms say what the forms are."""
+    found: dict[Path_, Diagnostic] = {}
+    for item in failure.errors(include_url=False):
+        if (special := _special(tuple(item["loc"]), document.data)) is not None:
+            found.setdefault(special.path, special)
+    for problem in explained(failure, document, model):
+        if _special(tuple(problem.path), document.data) is None:
+            found.setdefault(problem.path, problem)
+    return list(found.values())
 
 
 def _special(path: Path_, data: Any) -> Diagnostic | None:
@@ -121,3 +135,13 @@ def _special(path: Path_, data: Any) -> Diagnostic | None:
 
 def _error(code: str, path: Path_, message: str) -> Diagnostic:
     return Diagnostic(code, "error", path, message)
+
+
+SUITES = FileKind(
+    key="suite",
+    model=Suite,
+    folder=Path(__file__).with_name("suites"),
+    error=lambda document, found: suite_error(document.name or "the suite", found),
+    explain=_explain,
+)
+"""Suite files."""
