@@ -6,16 +6,17 @@ import os
 from pathlib import Path
 from typing import Any
 
+from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import ScenarioError
-from irsim.episodes.episode import read_scenario
 from irsim.results.findings import Finding
+from irsim.scenario.open import read_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = ["policy_of_suite", "read_input"]
 
 
 def read_input(path: str | Path | None, text: str | None, **options: Any) -> tuple[ResolvedScenario, list[Finding]]:
-    """Read a scenario; see :func:`irsim.episodes.episode.read_scenario`.
+    """Read a scenario; see :func:`irsim.scenario.open.read_scenario`.
 
     Args:
         path: Path of the file, or ``SUITE/SCENARIO``, where the suite is bundled or a file.
@@ -31,15 +32,19 @@ def read_input(path: str | Path | None, text: str | None, **options: Any) -> tup
         from irsim.benchmarks.suite_scene import suite_scene
 
         if (scene := suite_scene(named)) is not None:
-            return read_scenario(scene.document(), **options)
+            return _with_findings(*read_scenario(scene.document(), **options))
     try:
-        return read_scenario(path, text=text, **options)
+        return _with_findings(*read_scenario(path, text=text, **options))
     except ScenarioError:
         if named is not None:
             from irsim.benchmarks.suite_scene import suite_scene
 
             suite_scene(named)  # a suite is refused with a sentence of its own
         raise
+
+
+def _with_findings(scenario: ResolvedScenario, told: list[Diagnostic]) -> tuple[ResolvedScenario, list[Finding]]:
+    return scenario, [Finding.of(item) for item in told]
 
 
 def policy_of_suite(path: str | Path | None, policy: Any) -> Any:

@@ -20,27 +20,20 @@ from irsim.common.files import check_suffix
 from irsim.diagnostics.errors import ArgumentError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.driven import findings_under_policy
-from irsim.episodes.episode import (
-    Progress,
-    advance,
-    as_finding,
-    default_time_limit,
-    horizon_of,
-    import_modules,
-    read_scenario,
-    seed_of,
-)
+from irsim.episodes.episode import Progress, advance, default_time_limit, horizon_of, seed_of
 from irsim.episodes.reproduce import region_options, reproduce_command
 from irsim.episodes.room import MAX_TRIES, crowded_message, first_with_room
 from irsim.episodes.run_report import run_result
 from irsim.episodes.unopened import unopened_findings
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
+from irsim.results.findings import Finding
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.checks.bridges import driven_without_goal
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.open import import_modules, read_scenario
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
 from irsim.simulation.random_streams import fresh_seed
 from irsim.validation.scene_table import scene_table
@@ -149,7 +142,7 @@ def run(
     )
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     others = read_bridges(bridges)
-    warnings = [*warnings, *(as_finding(found.diagnostic) for found in driven_without_goal(scenario, others))]
+    warnings = [*warnings, *(Finding.of(found.diagnostic) for found in driven_without_goal(scenario, others))]
     opened = allowed_bridges([*scenario.bridges, *others], limits)
     options = {
         "strict": strict,

@@ -37,7 +37,7 @@ from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
 from irsim.episodes.driven import findings_under_policy
-from irsim.episodes.episode import Progress, import_modules, read_document, source_of
+from irsim.episodes.episode import Progress
 from irsim.episodes.unopened import unopened_findings
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import PolicySource
@@ -46,6 +46,7 @@ from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.results.findings import Finding
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.open import import_modules, read_scenario, source_of
 from irsim.scenario.perturbation import (
     Perturbations,
     perturbation_text,
@@ -159,7 +160,8 @@ def benchmark(
     settled: dict[str, ResolvedScenario] = {}
     for name, source in zip(names, given, strict=True):
         document = _document(source, limits)
-        scenario, warnings[name] = read_document(document, strict=strict)
+        scenario, told = read_scenario(document, strict=strict, limits=document.limits)
+        warnings[name] = [Finding.of(item) for item in told]
         if AS_WRITTEN not in wanted:
             warnings[name] = findings_under_policy(warnings[name], scenario)
         warnings[name] += unopened_findings(scenario, "a benchmark")

@@ -13,7 +13,7 @@ from typing import Any, Literal
 from irsim.benchmarks.policies import open_again
 from irsim.diagnostics.errors import PlacementError, PolicyLostError
 from irsim.env import Env
-from irsim.episodes.episode import horizon_of, import_modules
+from irsim.episodes.episode import horizon_of
 from irsim.episodes.incidents import find_incidents
 from irsim.episodes.out_of_bounds import find_exits
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
@@ -26,6 +26,7 @@ from irsim.policies.policy import Policy
 from irsim.results.labels import CROWDED
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
+from irsim.scenario.open import import_modules
 from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text

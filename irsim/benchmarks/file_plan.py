@@ -9,7 +9,7 @@ from irsim.benchmarks.comparison import DEFAULT_SEEDS
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes
 from irsim.benchmarks.policies import files_of
 from irsim.benchmarks.seeds import seeds_from
-from irsim.episodes.episode import import_modules, source_of
+from irsim.scenario.open import import_modules, source_of
 from irsim.scenario.perturbation import perturbation_text, read_perturbations
 from irsim.scenario.yaml.document import Document, load_path
 

@@ -13,9 +13,9 @@ from irsim.benchmarks.episode import Until
 from irsim.benchmarks.policies import open_planned
 from irsim.benchmarks.suite import Protocol, Suite
 from irsim.common.version import version as this_version
-from irsim.episodes.episode import import_modules
 from irsim.policies.policy import Policy
 from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.scenario.open import import_modules
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import Document, load_text
 

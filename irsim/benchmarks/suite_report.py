@@ -7,7 +7,7 @@ from dataclasses import replace
 from irsim.benchmarks.suite_file import SuiteError, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.diagnostics.diagnostic import Diagnostic
-from irsim.episodes.episode import as_finding
+from irsim.results.findings import Finding
 from irsim.results.validation import ValidationReport
 
 __all__ = ["suite_report"]
@@ -24,7 +24,7 @@ def suite_report(word: str) -> ValidationReport:
         plan = suite_plan(word)
     except SuiteError as error:
         whole = Diagnostic("invalid-value", "error", (), error.message, fix=error.fix)
-        findings = [as_finding(_of_this_file(item, word)) for item in error.diagnostics or [whole]]
+        findings = [Finding.of(_of_this_file(item, word)) for item in error.diagnostics or [whole]]
         summary = f"{len(findings)} error{'s' * (len(findings) != 1)}, 0 warnings"
         return ValidationReport(
             file=word, valid=False, summary=summary, errors=len(findings), warnings=0, hints=0, findings=findings

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from irsim.diagnostics.diagnostic import Diagnostic
-from irsim.episodes.episode import as_finding
 from irsim.results.findings import Finding
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
@@ -30,4 +29,4 @@ def unopened_bridges(scenario: ResolvedScenario, what: str) -> list[Diagnostic]:
 
 def unopened_findings(scenario: ResolvedScenario, what: str) -> list[Finding]:
     """The same as results have it."""
-    return [as_finding(item) for item in unopened_bridges(scenario, what)]
+    return [Finding.of(item) for item in unopened_bridges(scenario, what)]

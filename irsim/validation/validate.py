@@ -6,13 +6,13 @@ from pathlib import Path
 
 from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import PlacementError
-from irsim.episodes.episode import as_finding, source_of
 from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.diff import ScenarioDiff
 from irsim.results.findings import Finding
 from irsim.results.validation import DryRun, Fix, ValidationReport
 from irsim.scenario.autofix import repair_text
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.open import source_of
 from irsim.scenario.read import Reading, read
 from irsim.scenario.yaml.document import Document, load_path
 from irsim.validation.feasibility.check import feasibility_findings
@@ -127,7 +127,7 @@ def diff(
 
 def report_of(reading: Reading, file: str) -> ValidationReport:
     """The report on a scenario that has been read."""
-    findings = [as_finding(d) for d in reading.diagnostics]
+    findings = [Finding.of(d) for d in reading.diagnostics]
     count = {s: sum(f.severity == s for f in findings) for s in ("error", "warning", "hint")}
     scenario, counts = reading.scenario, dict[str, int]()
     if scenario is not None:
@@ -166,7 +166,7 @@ def _dry_run_or_findings(
     try:
         return dry_run(reading.scenario, seed=seed, limits=limits)
     except PlacementError as error:
-        crowded = [as_finding(item) for item in error.diagnostics]
+        crowded = [Finding.of(item) for item in error.diagnostics]
         report.findings = [*crowded, *report.findings]
         report.errors += len(crowded)
         report.valid = False

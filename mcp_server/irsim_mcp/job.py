@@ -112,8 +112,9 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
     import base64
 
     from irsim.api.take_snapshot import snapshot_of
-    from irsim.episodes.episode import read_scenario
     from irsim.episodes.room import MAX_TRIES
+    from irsim.results.findings import Finding
+    from irsim.scenario.open import read_scenario
 
     arguments, limits = job["arguments"], _limits(job)
     path, text = arguments.pop("path", None), arguments.pop("text", None)
@@ -127,13 +128,18 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
             return f'{{"png": "", "scene": null{checked}}}'
         if arguments["seed"] is None and report.dry_run is not None:
             arguments["seed"] = report.dry_run.seed  # the picture and the check are of the same layout
-    scenario, warnings = read_scenario(path, text=text, strict=True, limits=limits)
+    scenario, told = read_scenario(path, text=text, strict=True, limits=limits)
     if arguments["draw"]:
         os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
         import irsim.rendering.snapshot  # noqa: F401
 
         os.chdir(job["workspace"])
-    arguments |= {"warnings": warnings, "strict": True, "limits": limits, "progress": progress}
+    arguments |= {
+        "warnings": [Finding.of(item) for item in told],
+        "strict": True,
+        "limits": limits,
+        "progress": progress,
+    }
     result = snapshot_of(scenario, path, tries=range(MAX_TRIES), **arguments)
     png = base64.b64encode(result.png).decode()
     if checked:

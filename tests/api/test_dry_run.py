@@ -9,8 +9,8 @@ import pytest
 import irsim
 from irsim.bundled.templates import scenario_file
 from irsim.common.text import seconds
-from irsim.episodes.episode import read_scenario
 from irsim.scenario.limits import Limits
+from irsim.scenario.open import read_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.validation.dry_run import dry_run
 

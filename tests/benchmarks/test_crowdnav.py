@@ -65,7 +65,7 @@ def test_its_scenes_are_those_of_crowdnav() -> None:
 def test_people_who_do_not_see_the_robot_walk_as_if_it_were_not_there() -> None:
     """Nobody makes room in the invisible scenes, whatever the robot does; in the visible ones people do."""
     from irsim.env import Env
-    from irsim.episodes.episode import read_scenario
+    from irsim.scenario.open import read_scenario
 
     def paths(name: str, behavior: str) -> list[list[float]]:
         (one,) = suite_plan(SUITE, scenarios=[name]).scenarios

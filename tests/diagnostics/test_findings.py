@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from irsim.diagnostics.diagnostic import Diagnostic, Edit, format_path, nearest
-from irsim.episodes.episode import as_finding
+from irsim.results.findings import Finding
 
 
 def finding(edit: Edit | None = None, given: object = None) -> Diagnostic:
@@ -26,15 +26,15 @@ def test_places_are_told_as_in_python() -> None:
 
 def test_only_edits_that_are_surely_meant_are_told() -> None:
     edit = Edit("rename", ("robot", 0, "shap"), "shape")
-    told = as_finding(finding(edit)).edit
+    told = Finding.of(finding(edit)).edit
     assert told is not None
     assert told.model_dump() == {"action": "rename", "path": "robot[0].shap", "value": "shape"}
-    assert as_finding(finding(Edit("remove", ("robot", 0, "shap"), safe=False))).edit is None
+    assert Finding.of(finding(Edit("remove", ("robot", 0, "shap"), safe=False))).edit is None
 
 
 def test_long_values_are_told_by_their_beginning() -> None:
-    assert as_finding(finding(given=[1, 2])).given == [1, 2]
-    told = as_finding(finding(given=list(range(1000)))).given
+    assert Finding.of(finding(given=[1, 2])).given == [1, 2]
+    told = Finding.of(finding(given=list(range(1000)))).given
     assert isinstance(told, str)
     assert len(told) <= 201
     assert told.startswith("[0, 1, 2")

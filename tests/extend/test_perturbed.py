@@ -10,8 +10,8 @@ import pytest
 import irsim
 from irsim.env import Env
 from irsim.env.batch import batch
-from irsim.episodes.episode import read_scenario
 from irsim.lib import KinematicsHandler, register_behavior, register_group_behavior, register_kinematics
+from irsim.scenario.open import read_scenario
 from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 

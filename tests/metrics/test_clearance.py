@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from irsim.env import Env
-from irsim.episodes.episode import read_scenario
 from irsim.metrics import clearance, closest
 from irsim.metrics.roles import HUMAN, IGNORED, ROBOT, STATIC, kinds_of
+from irsim.scenario.open import read_scenario
 from irsim.simulation.trace import record_rollout
 
 SCENARIO = """

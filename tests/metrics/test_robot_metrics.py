@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.episodes.episode import read_scenario
 from irsim.metrics import EPISODE_METRICS, METRICS, episode_metrics, robot_metrics
 from irsim.metrics.motion import curvatures, runs_of
+from irsim.scenario.open import read_scenario
 from irsim.simulation.events import Event
 from irsim.simulation.trace import Trace
 

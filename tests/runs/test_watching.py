@@ -13,12 +13,12 @@ from typer.testing import CliRunner
 import irsim
 from irsim.cli.app import app
 from irsim.env import Env
-from irsim.episodes.episode import read_scenario
 from irsim.episodes.incidents import find_incidents
 from irsim.runs import open_run
 from irsim.runs.artifacts import artifact
 from irsim.runs.inspection import inspect_run
 from irsim.runs.resimulation import resimulate
+from irsim.scenario.open import read_scenario
 from irsim.simulation.events import Event
 
 ROOM = """\

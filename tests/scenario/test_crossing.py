@@ -9,7 +9,7 @@ import pytest
 
 from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
-from irsim.episodes.episode import read_scenario
+from irsim.scenario.open import read_scenario
 from irsim.validation.validate import validate
 from tests.scenario.test_checks import findings, robot
 

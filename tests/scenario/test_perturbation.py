@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from irsim.episodes.episode import read_scenario
 from irsim.scenario.behavior_override import BenchmarkError
-from irsim.scenario.open import or_raise
+from irsim.scenario.open import or_raise, read_scenario
 from irsim.scenario.perturbation import (
     Perturbation,
     perturbation_text,

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import ScenarioError
-from irsim.episodes.episode import as_finding
 from irsim.learning.draws import check_observed
 from irsim.learning.tasks.files import TaskError, open_task
 from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
+from irsim.results.findings import Finding
 from irsim.results.validation import ValidationReport
 from irsim.scenario.messages.translate import located
 from irsim.scenario.yaml.document import load_path
@@ -53,7 +53,7 @@ def _of_scenario(item: Diagnostic) -> Diagnostic:
 
 def _report(file: str, found: list[Diagnostic], valid: str | None = None) -> ValidationReport:
     """The report of a file; ``valid`` begins its summary if the task can be used."""
-    findings = [as_finding(item) for item in found]
+    findings = [Finding.of(item) for item in found]
     warnings = sum(item.severity == "warning" for item in found)
     errors = len(found) - warnings
     counts = f"{warnings} warning{'s' * (warnings != 1)}"
