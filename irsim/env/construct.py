@@ -10,8 +10,7 @@ from irsim.env.parameters import WorldView
 from irsim.objects.lifecycle import alone, set_views
 from irsim.objects.view import ObjectView
 from irsim.scenario.model.scenario import Scenario, WorldModel
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.expand import resolve
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.single_object import read_object

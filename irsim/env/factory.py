@@ -14,8 +14,8 @@ from irsim.env.construct import ObjectBase, ObjectGroup
 from irsim.objects.lifecycle import alone
 from irsim.objects.view import ObjectView
 from irsim.objects.views import views
-from irsim.scenario.open import open_scenario, or_raise
-from irsim.scenario.read import read
+from irsim.scenario.open import open_scenario
+from irsim.scenario.read import or_raise, read
 from irsim.simulation.active_env import last_used
 from irsim.simulation.simulation import Simulation
 

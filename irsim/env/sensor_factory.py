@@ -9,8 +9,7 @@ import numpy as np
 from irsim.objects.lifecycle import alone
 from irsim.objects.views import views
 from irsim.options.registry import SENSORS
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.single_object import read_object
 
 __all__ = ["SensorFactory"]

@@ -14,8 +14,7 @@ from pydantic import BaseModel
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.options.registry import BEHAVIORS, KINEMATICS, SHAPES
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.simulation.build import build_world
 

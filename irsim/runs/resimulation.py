@@ -12,10 +12,9 @@ from irsim.episodes.episode import Progress, advance
 from irsim.runs.files import RunError, plain_file, unreadable
 from irsim.runs.reading import Run
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.open import or_raise
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.perturbation import perturbed, read_perturbations
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
 

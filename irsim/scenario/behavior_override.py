@@ -12,8 +12,7 @@ from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
 from irsim.diagnostics.errors import CodedError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document
 from irsim.scenario.yaml.rewrite import yaml_flow

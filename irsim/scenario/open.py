@@ -11,14 +11,15 @@ from typing import Any
 
 from irsim.common.arguments import as_given
 from irsim.diagnostics.diagnostic import Diagnostic
-from irsim.diagnostics.errors import ArgumentError, NotSimulatedError, ScenarioError
+from irsim.diagnostics.errors import ArgumentError
+from irsim.scenario.behavior_override import BenchmarkError, check_behavior_name, parse_behavior, read_with_behavior
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.locate import locate
-from irsim.scenario.read import Reading, read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["import_modules", "open_scenario", "or_raise", "read_scenario", "source_of"]
+__all__ = ["import_modules", "open_scenario", "read_scenario", "source_of"]
 
 
 def open_scenario(
@@ -40,15 +41,6 @@ def open_scenario(
             does not simulate yet.
     """
     return or_raise(read(locate(name), strict=strict, limits=limits or DEFAULT_LIMITS))
-
-
-def or_raise(reading: Reading) -> tuple[ResolvedScenario, list[Diagnostic]]:
-    """The scenario and the findings of a reading; raises if the scenario cannot be used."""
-    if reading.scenario is None:
-        errors = [item for item in reading.diagnostics if item.severity == "error"]
-        kind = NotSimulatedError if all(e.code == "not-yet-simulated" for e in errors) else ScenarioError
-        raise kind(reading.diagnostics, reading.document.text)
-    return reading.scenario, reading.diagnostics
 
 
 def read_scenario(
@@ -78,13 +70,6 @@ def read_scenario(
     """
     source = path if isinstance(path, Document) else source_of(path, text, limits)
     if behavior is not None:
-        from irsim.scenario.behavior_override import (
-            BenchmarkError,
-            check_behavior_name,
-            parse_behavior,
-            read_with_behavior,
-        )
-
         document = source if isinstance(source, Document) else load_path(source, limits or DEFAULT_LIMITS)
         try:
             check_behavior_name(behavior)

@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from irsim.diagnostics.diagnostic import Diagnostic, Edit, Path, by_severity
+from irsim.diagnostics.errors import NotSimulatedError, ScenarioError
 from irsim.scenario.checks import KEY_CODES, Context, run_checks
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.messages.findings import Finding, error, key_path
@@ -21,7 +22,7 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document, load_data, load_path, load_text
 from irsim.scenario.yaml.edits import apply_edits, removal_edit
 
-__all__ = ["Reading", "read"]
+__all__ = ["Reading", "or_raise", "read"]
 
 FeasibilityChecks = Callable[[Context], Iterable[Finding]]
 _STAND_INS = {"entry.kinematics.name": "diff", "entry.distribution.name": "random"}
@@ -310,3 +311,12 @@ def _diagnostics(
         last = Diagnostic("too-many-problems", severity, (), f"and {rest} more like these", file=document.name)
         ordered = [*ordered[:limit], last]
     return ordered
+
+
+def or_raise(reading: Reading) -> tuple[ResolvedScenario, list[Diagnostic]]:
+    """The scenario and the findings of a reading; raises if the scenario cannot be used."""
+    if reading.scenario is None:
+        errors = [item for item in reading.diagnostics if item.severity == "error"]
+        kind = NotSimulatedError if all(e.code == "not-yet-simulated" for e in errors) else ScenarioError
+        raise kind(reading.diagnostics, reading.document.text)
+    return reading.scenario, reading.diagnostics

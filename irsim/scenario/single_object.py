@@ -10,8 +10,7 @@ import numpy as np
 
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.scenario.model.scenario import WorldModel
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 __all__ = ["read_object"]

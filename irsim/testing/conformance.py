@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from irsim.options.base import field_docs
 from irsim.options.registry import KINEMATICS, Feature
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.simulation.simulation import Simulation
 
 __all__ = [

@@ -81,8 +81,7 @@ def _validate(job: dict[str, Any], progress: _Progress) -> str:
 def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
     """Validate the text of a file that is not written yet; files that it names are sought relative to its path."""
     from irsim.episodes.scene_summary import counts_of, in_words
-    from irsim.scenario.open import or_raise
-    from irsim.scenario.read import read
+    from irsim.scenario.read import or_raise, read
     from irsim.scenario.yaml.document import load_text
     from irsim.validation.feasibility.check import feasibility_findings
 

@@ -19,8 +19,7 @@ import numpy as np
 
 import irsim._core as core
 from irsim.benchmarks.suite_plan import suite_plan
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.simulation.events import read_events
 from irsim.simulation.simulation import Simulation
 

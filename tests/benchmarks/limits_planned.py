@@ -17,8 +17,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.simulation.events import BETWEEN_STEPS, read_events
 from irsim.simulation.simulation import Simulation
 

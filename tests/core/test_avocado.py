@@ -11,8 +11,7 @@ import pytest
 
 import irsim
 import irsim._core as core
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.simulation.simulation import Simulation
 from irsim.testing import scenario_with, simulate
 from irsim.testing.conformance import simulated_drives

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.simulation.simulation import Simulation
 
 WALLS = """

@@ -11,8 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.simulation.events import BETWEEN_STEPS, read_events
 from irsim.simulation.simulation import Simulation
 from irsim.testing import simulate

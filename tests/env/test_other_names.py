@@ -207,8 +207,7 @@ def test_what_a_subclass_overrides_is_called() -> None:
             called.append("end")
             super().end(ending_time, **kwargs)
 
-    from irsim.scenario.open import or_raise
-    from irsim.scenario.read import read
+    from irsim.scenario.read import or_raise, read
 
     env = Logged(or_raise(read({"robot": {"kinematics": {"name": "diff"}}}))[0], headless=True, log_level="ERROR")
     env.add_object(env.create_obstacle(shape={"name": "circle", "radius": 0.2}, state=[3, 3, 0]))

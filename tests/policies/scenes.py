@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.simulation import Simulation
 

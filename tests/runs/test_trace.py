@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from irsim.env import Env
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import Trace, join_traces, next_rows, present_row, record
 

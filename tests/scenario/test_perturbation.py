@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from irsim.scenario.behavior_override import BenchmarkError
-from irsim.scenario.open import or_raise, read_scenario
+from irsim.scenario.open import read_scenario
 from irsim.scenario.perturbation import (
     Perturbation,
     perturbation_text,
@@ -17,7 +17,7 @@ from irsim.scenario.perturbation import (
     perturbed_message,
     read_perturbations,
 )
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario, Spreads
 

@@ -106,8 +106,7 @@ def scenario(robots: int, behavior: str, drive: str, options: dict[str, Any]) ->
 
 def open_batch(data: dict[str, Any], robots: int, seeds: Sequence[int], threads: int | None) -> irsim.Batch:
     """One world per seed, each robot facing its goal."""
-    from irsim.scenario.open import or_raise
-    from irsim.scenario.read import read
+    from irsim.scenario.read import or_raise, read
 
     resolved, _ = or_raise(read(data, strict=True))
     batch = irsim.batch(resolved, len(seeds), seeds=seeds, threads=threads)

@@ -22,9 +22,8 @@ from irsim.learning.tasks.randomize import Value
 from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.variation import LevelDraws, drawn_values, level_draws, randomize_path
 from irsim.scenario.behavior_override import BenchmarkError
-from irsim.scenario.open import or_raise
 from irsim.scenario.perturbation import perturbed
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Variation, VariedLevel
 from irsim.scenario.yaml.document import Document, load_path, load_text
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from irsim.scenario.open import or_raise
-from irsim.scenario.read import read
+from irsim.scenario.read import or_raise, read
 from irsim.simulation.simulation import Simulation
 from tests.parity.decisions.orca_group_record import FILE, scenario
 
