@@ -1,41 +1,88 @@
-"""The application: its commands in the order of ``irsim --help``."""
+"""The application: its commands in the order of ``irsim --help``, each loaded when it is used."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from importlib import import_module
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
-from irsim.cli import (
-    benchmark,
-    convert,
-    demo,
-    describe,
-    diff,
-    diff_runs,
-    export,
-    export_policy,
-    inspect,
-    new,
-    policies,
-    render,
-    replay,
-    run,
-    schema,
-    suites,
-    templates,
-    train,
-    validate,
-)
-from irsim.cli.bridge import bridge_app
 from irsim.cli.guard import handle_errors
-from irsim.cli.map import map_app
-from irsim.cli.skills import skills_app
+from irsim.cli.sentences import SENTENCES
 
-__all__ = ["app"]
+__all__ = ["COMMANDS", "app", "loaded"]
+
+COMMANDS = {
+    "demo": "demo:demo",
+    "templates": "templates:templates",
+    "new": "new:new",
+    "validate": "validate:validate",
+    "diff": "diff:diff",
+    "run": "run:run",
+    "inspect": "inspect:inspect",
+    "diff-runs": "diff_runs:diff_runs",
+    "replay": "replay:replay",
+    "export": "export:export",
+    "benchmark": "benchmark:benchmark",
+    "suites": "suites:suites",
+    "policies": "policies:policies",
+    "train": "train:train",
+    "export-policy": "export_policy:export_policy",
+    "convert": "convert:convert",
+    "render": "render:render",
+    "describe": "describe:describe",
+    "schema": "schema:schema",
+    "map": "map:map_app",
+    "bridge": "bridge:bridge_app",
+    "skills": "skills:skills_app",
+}
+"""Name of a command or of a group of commands -> module and name of what does it."""
+
+
+def loaded(name: str) -> Any:
+    """Import a command: a function, or the application of a group."""
+    module, _, attribute = COMMANDS[name].partition(":")
+    return getattr(import_module(f"irsim.cli.{module}"), attribute)
+
+
+class Commands(TyperGroup):
+    """A group that imports a command when it is used; its help shows their first sentences without importing any."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._listing = False
+        for name in COMMANDS:
+            sentence = SENTENCES[name]
+            self.commands[name] = TyperCommand(name, callback=lambda: None, help=sentence, rich_markup_mode="rich")
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a command; in a list of commands only its name and sentence."""
+        if self._listing or cmd_name not in COMMANDS:
+            return super().get_command(ctx, cmd_name)
+        found = loaded(cmd_name)
+        if not isinstance(found, typer.Typer):
+            one = typer.Typer(add_completion=False, rich_markup_mode="rich")
+            one.command(cmd_name)(handle_errors(found))
+            found = one
+        command = typer.main.get_command(found)
+        command.name = cmd_name
+        return command
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help."""
+        self._listing = True
+        super().format_help(ctx, formatter)
+
+    def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
+        """Return completions of the name of a command."""
+        self._listing = True
+        return super().shell_complete(ctx, incomplete)
+
 
 app = typer.Typer(
     name="irsim",
+    cls=Commands,
     help="Simulate 2D robot navigation: scenarios are YAML files.",
     epilog="First steps: irsim demo, irsim new corridor-passing, irsim run corridor-passing.yaml",
     no_args_is_help=True,
@@ -60,30 +107,3 @@ def _options(
     ] = False,
 ) -> None:
     """Simulate 2D robot navigation: scenarios are YAML files."""
-
-
-for _command in (
-    demo.demo,
-    templates.templates,
-    new.new,
-    validate.validate,
-    diff.diff,
-    run.run,
-    inspect.inspect,
-    diff_runs.diff_runs,
-    replay.replay,
-    export.export,
-    benchmark.benchmark,
-    suites.suites,
-    policies.policies,
-    train.train,
-    export_policy.export_policy,
-    convert.convert,
-    render.render,
-    describe.describe,
-    schema.schema,
-):
-    app.command(_command.__name__.replace("_", "-"))(handle_errors(_command))
-app.add_typer(map_app)
-app.add_typer(bridge_app)
-app.add_typer(skills_app)

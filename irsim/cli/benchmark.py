@@ -10,8 +10,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.table import Table
+from rich.text import Text
 
+from irsim.benchmarks import BenchmarkError
+from irsim.benchmarks.summary import KEYS, is_summary
+from irsim.cli.benchmark_run import Wanted, run_benchmark
+from irsim.cli.findings import import_user_modules
 from irsim.cli.options import Imports, Json, MaxObjects, Perturb, Steps, Strict
+from irsim.cli.output import console, print_json
+from irsim.common.text import clean
+from irsim.results.labels import labels_of, seeds_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -138,11 +147,6 @@ def benchmark(
     --json and --csv contain all metrics. A suite and every benchmark with -o writes each episode into a folder as soon
     as it is done; after an interruption, --resume goes on there, and the results are those of an undisturbed run.
     """
-    from irsim.benchmarks import BenchmarkError
-    from irsim.cli.benchmark_run import Wanted, run_benchmark
-    from irsim.cli.findings import import_user_modules
-    from irsim.cli.output import console, print_json
-
     if json_output and csv_output:
         raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
     if policies is not None and behaviors is not None:
@@ -169,13 +173,6 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
         result: Result of :func:`irsim.benchmark`.
         out: Console to print to.
     """
-    from rich.table import Table
-    from rich.text import Text
-
-    from irsim.benchmarks.summary import is_summary
-    from irsim.common.text import clean
-    from irsim.results.labels import labels_of, seeds_of
-
     if not out.is_terminal:
         out.width = max(out.width, _FULL_WIDTH)
     width = out.width
@@ -261,8 +258,6 @@ def _policies(result: BenchmarkResult) -> dict[str, str]:
 
 def _difference_line(row: BenchmarkRow, behavior: str, reference: str) -> str:
     """Return one line with the paired differences between a behavior and the reference."""
-    from irsim.common.text import clean
-
     differences = []
     for key, name, unit in _DIFFERENCES:
         found = row.paired[key]
@@ -275,8 +270,6 @@ def _difference_line(row: BenchmarkRow, behavior: str, reference: str) -> str:
 
 def _watched_line(row: BenchmarkRow) -> str:
     """Return the means of what was watched: zones, and how long robots were seen; empty if nothing was."""
-    from irsim.common.text import clean
-
     parts = []
     for name, zone in row.zones.items():
         crossings = _mean(zone["zone_crossings"], 2, row.episodes)
@@ -320,7 +313,6 @@ def _labels(files: list[str]) -> dict[str, str]:
 
 
 def _print_csv(result: BenchmarkResult) -> None:
-    from irsim.benchmarks.summary import KEYS
 
     first = ("scenario", "behavior", "seed", "outcome", "steps", "sim_time", "time_limit", "unreachable")
     names, facts = _policies(result), {fact.name: fact for fact in getattr(result, "facts", ())}

@@ -7,7 +7,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from irsim.api.benchmark_report import Report, write_report
+from irsim.benchmarks import DEFAULT_SEEDS, benchmark
+from irsim.benchmarks.file_plan import file_plan
+from irsim.benchmarks.seeds import seeds_from
+from irsim.benchmarks.stored import default_folder, last_folder, resume_benchmark, run_plan
+from irsim.benchmarks.suite_file import is_suite
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.cli.findings import limits_for
+from irsim.cli.output import console, progress
 from irsim.diagnostics.errors import ArgumentError
+from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
 
 if TYPE_CHECKING:
     from irsim.benchmarks.plan import Plan
@@ -43,12 +53,6 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     Raises:
         ArgumentError: The arguments do not fit together.
     """
-    from irsim.api.benchmark_report import Report, write_report
-    from irsim.benchmarks.stored import default_folder, last_folder, resume_benchmark, run_plan
-    from irsim.benchmarks.suite_file import is_suite
-    from irsim.cli.findings import limits_for
-    from irsim.cli.output import console, progress
-
     suites = [word for word in wanted.files if is_suite(word)]
     if suites and len(wanted.files) > 1:
         raise ArgumentError(f"{suites[0]} is a suite, which is run alone", "give one suite, or scenario files")
@@ -88,9 +92,6 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
                 finish=finish,
             )
         else:
-            from irsim.benchmarks import DEFAULT_SEEDS, benchmark
-            from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
-
             policies = [AS_WRITTEN] if wanted.policies is None else split_behaviors(wanted.policies)
             return benchmark(
                 list(wanted.files), policies, wanted.seeds or DEFAULT_SEEDS, perturb=wanted.perturb or None,
@@ -111,9 +112,6 @@ def _suite(name: str, wanted: Wanted) -> Plan:
     Raises:
         ArgumentError: An argument belongs to scenario files.
     """
-    from irsim.benchmarks.suite_plan import suite_plan
-    from irsim.scenario.behavior_override import split_behaviors
-
     for option, value in (("--steps", wanted.steps), ("--import", wanted.imports)):
         if value:
             fix = "a suite states its horizon and its policies: change them in its file"
@@ -133,16 +131,12 @@ def _suite_seeds(text: str) -> int | list[int] | None:
     """The seeds of a suite: their number, the seeds, or None for those of the suite."""
     if not text or text.strip().isdecimal():
         return int(text) if text else None
-    from irsim.benchmarks.seeds import seeds_from
 
     return seeds_from(text)
 
 
 def _plan(wanted: Wanted) -> Plan:
     """The plan of scenario files."""
-    from irsim.benchmarks.file_plan import file_plan
-    from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
-
     return file_plan(
         wanted.files,
         [AS_WRITTEN] if wanted.policies is None else split_behaviors(wanted.policies),

@@ -7,13 +7,21 @@ from dataclasses import asdict
 from typing import Annotated
 
 import typer
+from rich.table import Table
+from rich.text import Text
 
+from irsim.bridges.doctor import examine
 from irsim.cli import bridge_splats
 from irsim.cli.bridge_bag import import_bag
 from irsim.cli.bridge_pedestrians import import_pedestrians
 from irsim.cli.bridge_scene import export_scene
 from irsim.cli.guard import FAILED, handle_errors
 from irsim.cli.options import Json
+from irsim.cli.output import console
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import ArgumentError
+from irsim.options.registry import BRIDGES
 
 __all__ = ["bridge_app"]
 
@@ -33,11 +41,6 @@ def doctor(
 
     The exit code is 1 if a library is broken; one that is missing is none that you need until you use its bridge.
     """
-    from irsim.bridges.doctor import examine
-    from irsim.diagnostics.diagnostic import suggestion
-    from irsim.diagnostics.errors import ArgumentError
-    from irsim.options.registry import BRIDGES
-
     for name in names or ():
         if name not in BRIDGES.names():
             known = BRIDGES.names()
@@ -46,12 +49,6 @@ def doctor(
     if json_output:
         typer.echo(json.dumps([asdict(one) for one in found], indent=2))
     else:
-        from rich.table import Table
-        from rich.text import Text
-
-        from irsim.cli.output import console
-        from irsim.common.text import clean
-
         table = Table(box=None, pad_edge=False, header_style="dim")
         for heading in ("bridge", "library", "version", "state", ""):
             table.add_column(heading)

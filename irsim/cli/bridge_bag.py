@@ -9,8 +9,13 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
+from irsim.bridges.ros.bags.importing import BagOptions
+from irsim.bridges.ros.bags.importing import import_bag as convert
 from irsim.cli.options import Json
+from irsim.cli.output import console
+from irsim.diagnostics.errors import ArgumentError
 
 __all__ = ["import_bag"]
 
@@ -37,12 +42,6 @@ def import_bag(
     json_output: Json = False,
 ) -> None:
     """Turn a bag into a scenario: its scans become the map, and the robot drives as its odometry says."""
-    from rich.text import Text
-
-    from irsim.bridges.ros.bags.importing import BagOptions
-    from irsim.bridges.ros.bags.importing import import_bag as convert
-    from irsim.cli.output import console
-
     options = BagOptions(
         odom, scan, _mount(mount), resolution, radius, step_time, start, math.inf if end is None else end
     )  # fmt: skip
@@ -58,7 +57,6 @@ def import_bag(
 
 
 def _mount(text: str | None) -> tuple[float, float, float] | None:
-    from irsim.diagnostics.errors import ArgumentError
 
     if text is None:
         return None

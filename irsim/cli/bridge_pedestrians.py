@@ -9,8 +9,16 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from rich.text import Text
 
+from irsim.bridges.pedestrians.importing import import_pedestrians as convert
+from irsim.bridges.pedestrians.rows import FORMATS
+from irsim.bridges.pedestrians.scenario import Layout
+from irsim.bridges.pedestrians.suite import Episodes
+from irsim.bridges.pedestrians.tracks import Window
 from irsim.cli.options import Json
+from irsim.cli.output import console
+from irsim.diagnostics.errors import ArgumentError
 
 __all__ = ["import_pedestrians"]
 
@@ -81,16 +89,6 @@ def import_pedestrians(
 
     Write into a checkout of your own only what the licence of the data allows; irsim ships none.
     """
-    from rich.text import Text
-
-    from irsim.bridges.pedestrians.importing import import_pedestrians as convert
-    from irsim.bridges.pedestrians.rows import FORMATS
-    from irsim.bridges.pedestrians.scenario import Layout
-    from irsim.bridges.pedestrians.suite import Episodes
-    from irsim.bridges.pedestrians.tracks import Window
-    from irsim.cli.output import console
-    from irsim.diagnostics.errors import ArgumentError
-
     if form is not None and form not in FORMATS:
         raise ArgumentError(f"{form!r} is not a format of pedestrians", f"choose {', '.join(FORMATS)}")
     box: Any = _numbers("--crop", crop, 4)
@@ -135,8 +133,6 @@ def import_pedestrians(
 
 def _numbers(option: str, text: str | None, count: int) -> tuple[float, ...] | None:
     """Numbers separated by commas."""
-    from irsim.diagnostics.errors import ArgumentError
-
     if text is None:
         return None
     try:

@@ -6,6 +6,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
+
+from irsim.bridges.usd.files import export_scene as write
+from irsim.cli.output import console
 
 __all__ = ["export_scene"]
 
@@ -17,11 +21,6 @@ def export_scene(
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file if it exists.")] = False,
 ) -> None:
     """Write the start of a scenario as a stage of OpenUSD. For a whole run, see `irsim export --to usd`."""
-    from rich.text import Text
-
-    from irsim.bridges.usd.files import export_scene as write
-    from irsim.cli.output import console
-
     written = write(scenario, out, seed=seed, overwrite=force)
     size = written.stat().st_size / 1e3
     console().print(Text.assemble("wrote ", (str(written), "bold"), f" ({size:.0f} kB)"), soft_wrap=True)

@@ -8,8 +8,15 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from rich.text import Text
 
+from irsim.bridges.export.cameras import PoseOptions
+from irsim.bridges.export.options import chosen_options
+from irsim.bridges.splats.page import write_page
+from irsim.bridges.splats.preview import PreviewOptions, write_preview
 from irsim.cli.options import Json
+from irsim.cli.output import console, progress
+from irsim.policies.converters.convert import parse_options
 
 __all__ = ["page", "preview"]
 
@@ -55,11 +62,6 @@ def preview(
     Options for --set: width, rows, fov, height, every, frame, sidecar, cut, fps. The scene is where the sidecar of the
     map says that was imported from it; frame=habitat_yup does without.
     """
-    from irsim.bridges.export.options import chosen_options
-    from irsim.bridges.splats.preview import PreviewOptions, write_preview
-    from irsim.cli.output import progress
-    from irsim.policies.converters.convert import parse_options
-
     given = {"view": view.value, **parse_options(options or [])}
     with progress("drawing") as report:
         chosen = chosen_options(PreviewOptions, given, "a preview")
@@ -84,20 +86,12 @@ def page(
     The page needs neither a network nor other files, and a browser with WebGL 2. Options for --set: height, every,
     frame, sidecar.
     """
-    from irsim.bridges.export.cameras import PoseOptions
-    from irsim.bridges.export.options import chosen_options
-    from irsim.bridges.splats.page import write_page
-    from irsim.policies.converters.convert import parse_options
-
     chosen = chosen_options(PoseOptions, parse_options(options or []), "a page")
     result = write_page(scene, run, out, options=chosen, max_splats=max_splats)
     _show(result.as_dict(), f" ({result.bytes / 1e6:.1f} MB: {result.splats:,} splats)", json_output)
 
 
 def _show(result: dict[str, Any], facts: str, json_output: bool) -> None:
-    from rich.text import Text
-
-    from irsim.cli.output import console
 
     if json_output:
         typer.echo(json.dumps(result, indent=2))

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from irsim.policies.converters.convert import convert_policy, parse_options
+
 __all__ = ["convert"]
 
 
@@ -34,8 +36,6 @@ def convert(
     The file may be a state dictionary or a whole module, in both formats of torch.save. Tensors are found by their
     names and shapes; the message names what is missing.
     """
-    from irsim.policies.converters.convert import convert_policy, parse_options
-
     network = convert_policy(kind, file, out, parse_options(options or []))
     parameters = sum(array.size for array in network.arrays.values())
     typer.echo(f"wrote {out} with {parameters:,} parameters; try it: irsim run SCENARIO --policy {out}")

@@ -6,8 +6,15 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
+from irsim import api
+from irsim.bundled import templates
 from irsim.cli.options import Json
+from irsim.cli.output import console, print_json, progress
+from irsim.cli.run import show_result
+from irsim.common.files import check_suffix
+from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 
 __all__ = ["demo"]
 
@@ -23,17 +30,7 @@ def demo(
     json_output: Json = False,
 ) -> None:
     """Simulate a bundled scenario and write an animation of it to the current directory."""
-    from rich.text import Text
-
-    from irsim.bundled import templates
-    from irsim.cli.output import console, print_json, progress
-    from irsim.cli.run import show_result
-
     with progress("simulating and drawing") as report:
-        from irsim import api
-        from irsim.common.files import check_suffix
-        from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
-
         check_suffix(out, MOVING_SUFFIXES)
         result = api.run(templates.scenario_file(_TEMPLATE), seed=seed, save=out, progress=report)
     if json_output:

@@ -5,8 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Table
+from rich.text import Text
 
 from irsim.cli.options import Json
+from irsim.cli.output import console, print_json
+from irsim.lookup import Answer, Answers, as_brief_text, lookup, lookup_several, topics_of
+from irsim.lookup.text import facts
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
@@ -29,9 +34,6 @@ def describe(
     json_output: Json = False,
 ) -> None:
     """Explain a key, a component, a template, a metric or an error code. Without a topic, list all topics."""
-    from irsim.cli.output import console, print_json
-    from irsim.lookup import lookup, lookup_several, topics_of
-
     asked = " ".join(topic or ())
     if len(topics := topics_of(asked)) > 1:
         _show_several(lookup_several(topics), json_output)
@@ -45,11 +47,6 @@ def describe(
 
 def _show_several(found: list[Answer | TopicError], json_output: bool) -> None:
     """Print the answers to several topics briefly, or all of them as a JSON list; errors go to standard error."""
-    from rich.text import Text
-
-    from irsim.cli.output import console, print_json
-    from irsim.lookup import Answer, Answers, as_brief_text
-
     known = [one for one in found if isinstance(one, Answer)]
     for one in found:
         if not isinstance(one, Answer):
@@ -63,9 +60,6 @@ def _show_several(found: list[Answer | TopicError], json_output: bool) -> None:
 
 
 def _show(answer: Answer, out: Console) -> None:
-    from rich.text import Text
-
-    from irsim.lookup.text import as_brief_text, facts
 
     def line(*parts: RenderableType) -> None:
         out.print(*parts)
@@ -93,10 +87,6 @@ def _show(answer: Answer, out: Console) -> None:
 
 
 def _table(keys: list[Key]) -> RenderableType:
-    from rich.table import Table
-    from rich.text import Text
-
-    from irsim.lookup.text import facts
 
     table = Table(box=None, pad_edge=False, show_header=False, padding=(0, 2, 0, 2))
     table.add_column(style="bold cyan", no_wrap=True)

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.text import Text
 
+from irsim import api
 from irsim.cli.guard import FAILED
 from irsim.cli.options import Json, Seed
+from irsim.cli.output import console, print_json
+from irsim.common.text import clean, names_if_different, rounded_pair, shorten_pair
+from irsim.diagnostics.diagnostic import Path, format_path
+from irsim.scenario.locate import locate
+from irsim.scenario.yaml.comments import places_of_comments
+from irsim.scenario.yaml.document import load_path
+from irsim.scenario.yaml.rewrite import yaml_flow
+from irsim.validation.diff.keys import place
 
 if TYPE_CHECKING:
     from irsim.results.diff import ScenarioDiff
@@ -39,10 +50,6 @@ def diff(
     Order of keys, layout and equivalent notations do not count. Entries are matched even if others are added or
     removed.
     """
-    from irsim import api
-    from irsim.cli.output import print_json
-    from irsim.validation.diff.keys import place
-
     found = api.diff(before, after, seed=seed)
     extra = [
         place(change.change, change.path)
@@ -60,13 +67,6 @@ def diff(
 
 def _comments_outside(found: ScenarioDiff, after: str, only: list[str]) -> list[str]:
     """Return the changed comments that belong to keys other than the allowed ones."""
-    from collections import defaultdict
-
-    from irsim.diagnostics.diagnostic import Path, format_path
-    from irsim.scenario.locate import locate
-    from irsim.scenario.yaml.comments import places_of_comments
-    from irsim.scenario.yaml.document import load_path
-
     places: dict[str, list[Path]] = defaultdict(list)
     for comment, about in places_of_comments(load_path(locate(after))):
         places[comment] += about
@@ -82,12 +82,6 @@ def _within(path: str, allowed: str) -> bool:
 
 
 def _show(found: ScenarioDiff, extra: list[str]) -> None:
-    from rich.text import Text
-
-    from irsim.cli.output import console
-    from irsim.common.text import clean, names_if_different, rounded_pair, shorten_pair
-    from irsim.scenario.yaml.rewrite import yaml_flow
-    from irsim.validation.diff.keys import place
 
     out = console()
 

@@ -5,9 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Table
 
 from irsim.cli.guard import FAILED
 from irsim.cli.options import Json
+from irsim.cli.output import console, print_json
+from irsim.common.text import clean
+from irsim.runs import comparison
 
 if TYPE_CHECKING:
     from irsim.results.records import RunsDiff
@@ -30,9 +34,6 @@ def diff_runs(
 
     Differences of scenario, seed, version and options are listed, too, but do not count.
     """
-    from irsim.cli.output import print_json
-    from irsim.runs import comparison
-
     found = comparison.diff_runs(before, after, tolerance=tolerance)
     if json_output:
         print_json(found)
@@ -43,10 +44,6 @@ def diff_runs(
 
 
 def _show(found: RunsDiff) -> None:
-    from rich.table import Table
-
-    from irsim.cli.output import console
-    from irsim.common.text import clean
 
     out = console()
     for change in found.setup:

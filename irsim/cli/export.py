@@ -6,8 +6,13 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
+from irsim.bridges.export.episode import CHOICES
+from irsim.bridges.export.export import export_run
 from irsim.cli.options import Json
+from irsim.cli.output import console, print_json, progress
+from irsim.policies.converters.convert import parse_options
 
 __all__ = ["export"]
 
@@ -71,13 +76,6 @@ def export(
 
     All but CSV and NumPy files need libraries, which extras install; without them the message says how.
     """
-    from rich.text import Text
-
-    from irsim.bridges.export.episode import CHOICES
-    from irsim.bridges.export.export import export_run
-    from irsim.cli.output import console, print_json, progress
-    from irsim.policies.converters.convert import parse_options
-
     chosen: str | list[str] | None = objects
     if objects is not None and objects not in CHOICES:
         chosen = [name.strip() for name in objects.split(",") if name.strip()]

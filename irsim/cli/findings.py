@@ -7,8 +7,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from irsim.api import import_modules
+from irsim.bundled.templates.fill import parse_path
 from irsim.cli.output import has_colors
+from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import CodedError
+from irsim.diagnostics.report import format_diagnostics
+from irsim.results.findings import Finding
+from irsim.results.validation import ValidationReport
+from irsim.scenario.limits import Limits
+from irsim.scenario.locate import locate
+from irsim.scenario.yaml.document import load_path
 
 if TYPE_CHECKING:
     from irsim.diagnostics.diagnostic import Diagnostic
@@ -33,7 +42,6 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None, *, st
     """
     if not diagnostics:
         return
-    from irsim.diagnostics.report import format_diagnostics
 
     stream = sys.stderr if stderr else sys.stdout
     print(format_diagnostics(diagnostics, text, color=has_colors(stream)), file=stream)
@@ -50,8 +58,6 @@ def print_findings(findings: Sequence[Finding], file: str, text: str | None = No
     """
     if not findings:
         return
-    from irsim.bundled.templates.fill import parse_path
-    from irsim.diagnostics.diagnostic import Diagnostic
 
     diagnostics = [
         Diagnostic(
@@ -79,7 +85,6 @@ def import_user_modules(names: Sequence[str] | None) -> None:
     """
     if not names:
         return
-    from irsim.api import import_modules
 
     for name in names:
         try:
@@ -92,16 +97,12 @@ def limits_for(max_objects: int | None) -> Limits | None:
     """Return the limits for reading a scenario with another number of objects; None stands for the default limits."""
     if max_objects is None:
         return None
-    from irsim.scenario.limits import Limits
 
     return Limits(objects=max_objects, robots=max_objects)
 
 
 def not_found(file: str, message: str) -> ValidationReport:
     """Return the report on a file that does not exist."""
-    from irsim.results.findings import Finding
-    from irsim.results.validation import ValidationReport
-
     finding = Finding(
         code="file-not-found", severity="error", path="(document)", line=None, column=None, message=message
     )
@@ -111,11 +112,9 @@ def not_found(file: str, message: str) -> ValidationReport:
 
 
 def _text_of(file: str) -> str | None:
-    from irsim.scenario.locate import locate
-    from irsim.scenario.yaml.document import load_path
 
     if not Path(file).is_file():
-        from irsim.benchmarks.suite_scene import suite_scene
+        from irsim.benchmarks.suite_scene import suite_scene  # which few commands need
 
         if (scene := suite_scene(file)) is not None:
             return scene.text

@@ -6,9 +6,16 @@ import sys
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.console import Console
+from rich.table import Table
 
 from irsim.cli.options import Json
+from irsim.cli.output import console, print_json
+from irsim.common.text import clean
+from irsim.results.labels import ending
+from irsim.runs import list_runs
 from irsim.runs.files import RunError
+from irsim.runs.inspection import VIEWS, inspect_run
 
 if TYPE_CHECKING:
     from irsim.results.run import RunTable
@@ -79,9 +86,6 @@ def inspect(
 
     Lengths are in m, times in s, angles in rad.
     """
-    from irsim.cli.output import console, print_json
-    from irsim.runs.inspection import VIEWS, inspect_run
-
     if run is None:
         _list_runs()
         return
@@ -110,13 +114,6 @@ def inspect(
 
 def _list_runs() -> None:
     """Print the recorded runs of this folder, the latest first."""
-    from rich.table import Table
-
-    from irsim.cli.output import console
-    from irsim.common.text import clean
-    from irsim.results.labels import ending
-    from irsim.runs import list_runs
-
     runs = list_runs()
     if not runs:
         typer.echo("no recorded runs here; `irsim run FILE --record` records one")
@@ -149,8 +146,6 @@ def _list_runs() -> None:
 def _print_csv(table: RunTable) -> None:
     import csv
 
-    from irsim.common.text import clean
-
     writer = csv.writer(sys.stdout, lineterminator="\n")
     writer.writerow(table.columns)
     for row in table.rows:
@@ -158,11 +153,6 @@ def _print_csv(table: RunTable) -> None:
 
 
 def _show(table: RunTable, out: object) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    from irsim.common.text import clean
-    from irsim.results.labels import ending
 
     assert isinstance(out, Console)
     ended = table.status if table.outcome is None else ending(table.outcome, table.lost)
@@ -196,7 +186,6 @@ def _show(table: RunTable, out: object) -> None:
 
 
 def _cell(value: object) -> str:
-    from irsim.common.text import clean
 
     if isinstance(value, bool):
         return "yes" if value else "no"

@@ -8,10 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.text import Text
 
+from irsim import api
+from irsim.bridges.maps.ros_server import export_map
 from irsim.cli.guard import handle_errors
 from irsim.cli.map_import import import_
 from irsim.cli.options import File, Imports, Json, Seed
+from irsim.cli.output import console
 
 if TYPE_CHECKING:
     from irsim.bridges.maps.ros_server import MapFiles
@@ -53,9 +57,6 @@ def export(
     json_output: Json = False,
 ) -> None:
     """Write the map of a scenario for the ROS map server: a YAML file and a picture."""
-    from irsim import api
-    from irsim.bridges.maps.ros_server import export_map
-
     api.import_modules(imports or ())
     resolved, _ = api.read_scenario(scenario, strict=False)
     files = export_map(resolved, out, mode=mode.value, image=image.value, seed=seed, overwrite=force)
@@ -63,9 +64,6 @@ def export(
 
 
 def _show(written: MapFiles, json_output: bool) -> None:
-    from rich.text import Text
-
-    from irsim.cli.output import console
 
     if json_output:
         typer.echo(json.dumps(written.as_dict(), indent=2))

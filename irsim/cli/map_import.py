@@ -8,8 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.text import Text
 
+from irsim.bridges.maps.importing import import_map
+from irsim.bridges.maps.importing import list_levels as only_list
 from irsim.cli.options import Json
+from irsim.cli.output import console, print_json
+from irsim.diagnostics.errors import ArgumentError
 
 if TYPE_CHECKING:
     from irsim.results.map_import import MapImportResult
@@ -130,11 +135,6 @@ def import_(
     json_output: Json = False,
 ) -> None:
     """Write a scenario with a map made from a mesh, a navigation mesh, a USD stage, roads, or a map of ROS."""
-    from irsim.bridges.maps.importing import import_map
-    from irsim.bridges.maps.importing import list_levels as only_list
-    from irsim.cli.output import print_json
-    from irsim.diagnostics.errors import ArgumentError
-
     options: dict[str, Any] = {
         "resolution": resolution,
         "headroom": headroom,
@@ -164,7 +164,6 @@ def import_(
 
 
 def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...]:
-    from irsim.diagnostics.errors import ArgumentError
 
     try:
         found = tuple(float(part) for part in text.split(","))
@@ -176,9 +175,6 @@ def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...
 
 
 def _show(result: MapImportResult, out: Path | None, robot: bool) -> None:
-    from rich.text import Text
-
-    from irsim.cli.output import console
 
     shown = console()
 

@@ -7,8 +7,15 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
+from irsim import api
+from irsim.bundled import templates
+from irsim.cli.findings import print_findings
 from irsim.cli.guard import INVALID
+from irsim.cli.output import console
+from irsim.common.files import write_new
+from irsim.scenario.yaml.modeline import with_modeline
 
 __all__ = ["new"]
 
@@ -29,15 +36,6 @@ def new(
 
     `irsim describe NAME` shows the parameters of a template.
     """
-    from rich.text import Text
-
-    from irsim import api
-    from irsim.bundled import templates
-    from irsim.cli.findings import print_findings
-    from irsim.cli.output import console
-    from irsim.common.files import write_new
-    from irsim.scenario.yaml.modeline import with_modeline
-
     template = templates.load(name)
     given = templates.parse_settings(settings or ())
     text = templates.fill(template, given)

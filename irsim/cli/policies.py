@@ -7,8 +7,14 @@ from dataclasses import asdict
 from typing import Annotated, Any
 
 import typer
+from rich.table import Table
+from rich.text import Text
 
+from irsim.cli.findings import import_user_modules
 from irsim.cli.options import Imports, Json
+from irsim.cli.output import console
+from irsim.common.text import clean
+from irsim.policies.description import describe_policy, list_policies
 
 __all__ = ["policies"]
 
@@ -21,19 +27,12 @@ def policies(
     json_output: Json = False,
 ) -> None:
     """List the policies that can drive robots, or describe one: what it observes, returns and controls."""
-    from irsim.cli.findings import import_user_modules
-    from irsim.cli.output import console
-    from irsim.common.text import clean
-    from irsim.policies.description import describe_policy, list_policies
-
     import_user_modules(imports)
     found = list_policies() if name is None else [describe_policy(name)]
     if json_output:
         data = [asdict(one) for one in found]
         typer.echo(json.dumps(data if name is None else data[0], indent=2, ensure_ascii=False))
         return
-    from rich.table import Table
-    from rich.text import Text
 
     out = console()
     table = Table(box=None, pad_edge=False, header_style="dim", show_header=name is None)

@@ -6,9 +6,17 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
+from irsim import api
 from irsim.api.overlays import OVERLAYS
+from irsim.cli.findings import import_user_modules, limits_for, print_findings
 from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Strict
+from irsim.cli.output import console, print_json, progress
+from irsim.common.files import check_suffix
+from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
+from irsim.results.view_message import view_message
+from irsim.validation.scene_text import scene_lines
 
 __all__ = ["render"]
 
@@ -63,19 +71,8 @@ def render(
 
     Also print a table of its objects: drives, footprints, places, and the ranges of what is random.
     """
-    from rich.text import Text
-
-    from irsim.cli.findings import import_user_modules, limits_for, print_findings
-    from irsim.cli.output import console, print_json, progress
-    from irsim.validation.scene_text import scene_lines
-
     import_user_modules(imports)
     with progress("drawing") as report:
-        from irsim import api
-        from irsim.common.files import check_suffix
-        from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
-        from irsim.results.view_message import view_message
-
         check_suffix(out, [*PICTURE_FORMATS, *MOVING_SUFFIXES])
         result = api.render(
             file,

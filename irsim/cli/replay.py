@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import webbrowser
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
 from irsim.cli.options import Json
+from irsim.cli.output import console, print_json, progress
 from irsim.runs.files import RunError
+from irsim.runs.replay.export import replay as write
 
 __all__ = ["replay"]
 
@@ -31,18 +35,11 @@ def replay(
 
     The page needs neither network nor other files. `irsim run FILE --record` records a run.
     """
-    from rich.text import Text
-
-    from irsim.cli.output import console, print_json, progress
-    from irsim.runs.replay.export import replay as write
-
     if file is not None and out is not None:
         raise RunError("bad-argument", f"two output files are given, '{file}' and '{out}'", "give one file")
     with progress("packing"):
         result = write(run, out or file)
     if show:
-        import webbrowser
-
         webbrowser.open(Path(result.file).resolve().as_uri())
     if json_output:
         print_json(result)

@@ -8,9 +8,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Table
+from rich.text import Text
 
+from irsim import api
+from irsim.cli.findings import import_user_modules, limits_for, print_findings
 from irsim.cli.guard import FAILED, ended_in_order
 from irsim.cli.options import File, Imports, Json, MaxObjects, Perturb, Seed, Steps, Strict
+from irsim.cli.output import console, print_error, print_json, progress
+from irsim.common.files import check_suffix
+from irsim.common.text import clean, seconds
+from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
+from irsim.results.labels import ending
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -88,18 +97,10 @@ def run(
     The exit code is 0 also after a collision or a time-out, unless --require-success is given. It is 1 if the policy or
     the program of a bridge was lost.
     """
-    from irsim.cli.findings import import_user_modules, limits_for, print_findings
-    from irsim.cli.output import console, print_error, print_json, progress
-    from irsim.common.text import seconds
-
     import_user_modules(imports)
     if show:
         _mention_missing_screen()
     with ended_in_order(), progress("simulating" if save_gif is None else "simulating and drawing") as report:
-        from irsim import api
-        from irsim.common.files import check_suffix
-        from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
-
         if save_gif is not None:
             check_suffix(save_gif, MOVING_SUFFIXES)
         result = api.run(
@@ -141,11 +142,6 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
         out: Console to print to.
         again: Command that reproduces the episode; default: the one in the result.
     """
-    from rich.text import Text
-
-    from irsim.common.text import clean, seconds
-    from irsim.results.labels import ending
-
     if result.robots:
         out.print(_table(result))
     if len(result.robots) > MAX_ROBOTS_SHOWN:
@@ -177,17 +173,14 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
 
 
 def _mention_missing_screen() -> None:
-    from irsim.graphics.figure.window import has_screen
+
+    from irsim.graphics.figure.window import has_screen  # loads Matplotlib
 
     if not has_screen():
         typer.echo("no window can be opened, because there is no screen; --save-gif writes an animation", err=True)
 
 
 def _table(result: RunResult) -> object:
-    from rich.table import Table
-    from rich.text import Text
-
-    from irsim.common.text import clean, seconds
 
     table = Table(box=None, pad_edge=False, header_style="dim")
     for heading in ("robot", "outcome"):

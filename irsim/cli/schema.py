@@ -7,7 +7,17 @@ from typing import Annotated, Literal
 
 import typer
 
+from irsim.benchmarks.suite_file import SUITES
 from irsim.cli.guard import FAILED
+from irsim.common import data_files as resources
+from irsim.common.files import write_atomically
+from irsim.diagnostics.errors import ScenarioError
+from irsim.learning.tasks.files import TASKS
+from irsim.policies.networks.schema import policy_schema_text
+from irsim.scenario.locate import locate
+from irsim.scenario.model.json_schema import schema_text
+from irsim.scenario.yaml.document import load_path
+from irsim.scenario.yaml.modeline import schema_reference, with_modeline
 
 __all__ = ["schema"]
 
@@ -38,12 +48,6 @@ def schema(
     if scenario is not None:
         _connect(scenario)
         return
-    from irsim.benchmarks.suite_file import SUITES
-    from irsim.common import data_files as resources
-    from irsim.common.files import write_atomically
-    from irsim.learning.tasks.files import TASKS
-    from irsim.policies.networks.schema import policy_schema_text
-    from irsim.scenario.model.json_schema import schema_text
 
     makers = {
         "scenario": schema_text,
@@ -72,12 +76,6 @@ def schema(
 
 def _connect(scenario: Path) -> None:
     """Add the line for editors at the top of a scenario file."""
-    from irsim.common.files import write_atomically
-    from irsim.diagnostics.errors import ScenarioError
-    from irsim.scenario.locate import locate
-    from irsim.scenario.yaml.document import load_path
-    from irsim.scenario.yaml.modeline import schema_reference, with_modeline
-
     document = load_path(locate(scenario))
     if document.text is None:
         raise ScenarioError(document.problems)

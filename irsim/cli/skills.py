@@ -7,9 +7,14 @@ from enum import Enum
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Table
+from rich.text import Text
 
+from irsim.bundled import skills
+from irsim.bundled.skills import find_skills
 from irsim.cli.guard import FAILED, handle_errors
 from irsim.cli.options import Json
+from irsim.cli.output import console
 from irsim.common.text import listed
 
 if TYPE_CHECKING:
@@ -35,8 +40,6 @@ class Target(str, Enum):
 
 def list_(json_output: Json = False) -> None:
     """List the skills for coding agents that are included in irsim."""
-    from irsim.bundled.skills import find_skills
-
     found = find_skills()
     if json_output:
         rows = [
@@ -50,9 +53,6 @@ def list_(json_output: Json = False) -> None:
         ]
         typer.echo(json.dumps(rows, indent=2, ensure_ascii=False))
         return
-    from rich.table import Table
-
-    from irsim.cli.output import console
 
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(style="bold cyan", no_wrap=True)
@@ -86,8 +86,6 @@ def install(
 
     Files that you have changed are kept, unless --force is given; the exit code is then 1.
     """
-    from irsim.bundled import skills
-
     chosen = skills.find_skills(skill or ())
     places = {skills.place_of(one.value, user=user): one.value for one in reversed(target)}
     done = [
@@ -114,9 +112,6 @@ def install(
 
 
 def _show(done: list[Installed], *, dry_run: bool) -> None:
-    from rich.text import Text
-
-    from irsim.cli.output import console
 
     out = console()
     if dry_run:

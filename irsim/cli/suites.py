@@ -5,18 +5,18 @@ from __future__ import annotations
 import json
 
 import typer
+from rich.table import Table
 
+from irsim.benchmarks.suite_file import SUITES, load_suite
+from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.options import Json
+from irsim.cli.output import console
 
 __all__ = ["suites"]
 
 
 def suites(json_output: Json = False) -> None:
     """List the bundled suites: benchmarks with fixed scenarios, seeds, horizon, protocol and policies."""
-    from irsim.benchmarks.suite_file import SUITES, load_suite
-    from irsim.benchmarks.suite_plan import suite_plan
-    from irsim.cli.output import console
-
     found = {name: (load_suite(name)[0], suite_plan(name)) for name in SUITES.names()}
     if json_output:
         listed = [
@@ -30,7 +30,6 @@ def suites(json_output: Json = False) -> None:
         ]  # fmt: skip
         typer.echo(json.dumps(listed, indent=2, ensure_ascii=False))
         return
-    from rich.table import Table
 
     out = console()
     table = Table(box=None, pad_edge=False, show_header=False)

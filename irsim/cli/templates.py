@@ -7,8 +7,13 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
+from rich.table import Table
 
+from irsim.api.take_snapshot import snapshot
+from irsim.bundled.templates import find, scenario_file
 from irsim.cli.options import Json
+from irsim.cli.output import console
+from irsim.graphics.encoding.contact_sheet import contact_sheet
 
 __all__ = ["templates"]
 
@@ -27,14 +32,8 @@ def templates(
     json_output: Json = False,
 ) -> None:
     """List the bundled scenarios to start from."""
-    from irsim.bundled.templates import find
-
     found = find(words or ())
     if sheet is not None:
-        from irsim.api.take_snapshot import snapshot
-        from irsim.bundled.templates import scenario_file
-        from irsim.graphics.encoding.contact_sheet import contact_sheet
-
         steps = [(template.name, scenario_file(template.name)) for template in found]
         pictures = ((name, snapshot(path, seed=1, steps=_SHEET_STEPS, overlays=_OVERLAYS).png) for name, path in steps)
         typer.echo(f"wrote {contact_sheet(pictures, sheet)}", err=json_output)
@@ -44,9 +43,6 @@ def templates(
         listed = [template.model_dump(mode="json", exclude={"text", "sets"}) for template in found]
         typer.echo(json.dumps(listed, indent=2, ensure_ascii=False))
         return
-    from rich.table import Table
-
-    from irsim.cli.output import console
 
     out = console()
     if not found:

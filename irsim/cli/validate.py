@@ -7,10 +7,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.text import Text
 
+from irsim import api
+from irsim.benchmarks.suite_file import SUITES, is_suite
+from irsim.benchmarks.suite_report import suite_report
+from irsim.cli.findings import import_user_modules, limits_for, not_found, print_findings
 from irsim.cli.guard import INVALID
 from irsim.cli.options import Imports, MaxObjects
+from irsim.cli.output import console, print_json, progress
+from irsim.common.files import write_atomically
+from irsim.common.text import clean, seconds
 from irsim.diagnostics.errors import ArgumentError, ScenarioNotFoundError
+from irsim.learning.tasks.files import TASKS
+from irsim.learning.tasks.report import task_report
+from irsim.scenario.locate import locate
+from irsim.validation.scene_table import scene_table
+from irsim.validation.scene_text import scene_lines
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -62,11 +75,6 @@ def validate(
     max_objects: MaxObjects = None,
 ) -> None:
     """Check scenario files, suites and tasks without running them; the exit code is 2 if any file is invalid."""
-    from irsim.benchmarks.suite_report import suite_report
-    from irsim.cli.findings import import_user_modules, limits_for, not_found
-    from irsim.cli.output import print_json, progress
-    from irsim.learning.tasks.report import task_report
-
     import_user_modules(imports)
     filtering = fix and "-" in files
     if table and json_output:
@@ -104,9 +112,6 @@ def validate(
 
 def _kind(file: str) -> str:
     """What a file is: ``a suite``, ``a task`` or ``a scenario``."""
-    from irsim.benchmarks.suite_file import is_suite
-    from irsim.learning.tasks.files import TASKS
-
     if file == "-":
         return "a scenario"
     return "a suite" if is_suite(file) else "a task" if TASKS.is_file(file) else "a scenario"
@@ -130,9 +135,6 @@ def _check_file(
     limits: Limits | None,
 ) -> tuple[ValidationReport, str | None]:
     """Return the report on a scenario, a file or standard input, and its text; with ``fix``, on the repaired one."""
-    from irsim import api
-    from irsim.benchmarks.suite_file import SUITES
-
     path = None if file == "-" else file
     if text is not None and SUITES.is_text(text):
         raise ArgumentError("- stands for a scenario, and this is a suite", "give the name of its file instead of -")
@@ -145,9 +147,6 @@ def _check_file(
         if fixes and path is None:
             text = mended
         elif fixes:
-            from irsim.common.files import write_atomically
-            from irsim.scenario.locate import locate
-
             write_atomically(Path(locate(file)), mended)
     report = api.validate(path, text=text, strict=strict, simulate=simulate, seed=seed, limits=limits)
     report.fixes = fixes
@@ -157,11 +156,6 @@ def _check_file(
 
 
 def _show(report: ValidationReport, file: str, text: str | None, *, stderr: bool) -> None:
-    from rich.text import Text
-
-    from irsim.cli.findings import print_findings
-    from irsim.cli.output import console
-    from irsim.common.text import clean
 
     out = console(stderr=stderr)
     for item in report.fixes:
@@ -177,12 +171,6 @@ def _show(report: ValidationReport, file: str, text: str | None, *, stderr: bool
 
 
 def _show_table(file: str, text: str | None, seed: int | None, limits: Limits | None, *, stderr: bool) -> None:
-    from rich.text import Text
-
-    from irsim import api
-    from irsim.cli.output import console
-    from irsim.validation.scene_table import scene_table
-    from irsim.validation.scene_text import scene_lines
 
     scenario, _ = api.read_scenario(None if file == "-" else file, text=text, strict=False, limits=limits)
     chosen = seed if seed is not None else scenario.world.seed or 0
@@ -197,10 +185,6 @@ def show_dry_run(found: DryRun, out: Console) -> None:
         found: Dry run of a report.
         out: Console to print to.
     """
-    from rich.text import Text
-
-    from irsim.common.text import clean, seconds
-
     seed = f" (seed {found.seed})" if found.random else ""
     lines = [
         f"'{e.object}' with '{e.partner}' at {seconds(e.time)}, ({e.x:.2f}, {e.y:.2f})" for e in found.collisions[1:]

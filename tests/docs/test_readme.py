@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim.cli.overview import commands_table
+from irsim.cli.overview import SENTENCES_FILE, commands_table, sentences_text
 from tests.warm import warm
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -91,3 +91,4 @@ def test_the_table_of_commands_is_the_programs_own() -> None:
     found = re.search(r"<!-- begin commands -->\n(.*?)<!-- end commands -->", README, re.DOTALL)
     assert found
     assert found[1] == commands_table(), "write it again: python -m irsim.cli.overview README.md"
+    assert SENTENCES_FILE.read_text(encoding="utf-8") == sentences_text(), "write it again, too"
