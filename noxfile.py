@@ -60,39 +60,9 @@ BLENDER = "bpy==4.5.*"
 """Blender as a module (947 MB), for the Python of bridges; in its own environment, as it needs another NumPy."""
 NPM_PEERS = ("@sparkjsdev/spark@2.2.0", "three@0.180.0")
 """A renderer of Gaussian splats that ours are compared with, in a browser."""
-BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
-"""Tests of the core that are about Python and NumPy rather than arithmetic."""
-ARITHMETIC = (
-    *(str(path) for path in sorted(Path("tests/core").glob("test_*.py")) if path.name not in BINDINGS),
-    "tests/parity",
-    "tests/navigation",
-    "tests/social",
-)
-"""Tests of the core's numbers, which depend on neither the version of Python nor those of the dependencies."""
-PAGES = ("tests/docs", "tests/evals")
-"""Tests of texts, and of programs in them that others start as well."""
-PROCESSES = (
-    "tests/benchmarks",
-    "tests/cli/test_process.py",
-    "tests/mcp/test_attacks.py",
-    "tests/mcp/test_jobs.py",
-    "tests/mcp/test_lifetime.py",
-    "tests/mcp/test_many.py",
-    "tests/mcp/test_runs.py",
-    "tests/render/test_headless.py",
-    "tests/render/test_live.py",
-    "tests/runs/test_store.py",
-)
-"""Tests of processes, signals and files, which are those of the system."""
-CONTENTS = (
-    "tests/api/test_diff_rewritten.py",
-    "tests/cli/test_everyday.py",
-    "tests/compat/test_scripts.py",
-    "tests/skills",
-    "tests/feasibility/test_passages.py",
-    "tests/templates",
-)
-"""Long tests of what files say and programs find out, by means that the other tests use, too."""
+
+QUICK = nox.project.load_toml("pyproject.toml")["tool"]["pytest"]["ini_options"]["addopts"][-1]
+"""The markers of other parts, none of which quick tests have."""
 
 nox.needs_version = ">=2025.2.9"
 nox.options.sessions = ["check"]
@@ -135,9 +105,9 @@ def install(session: nox.Session, *arguments: str) -> None:
     session.log(f"install: {time.perf_counter() - start:.1f} s")
 
 
-def run_quick_tests(session: nox.Session, left_out: Iterable[str] = ()) -> None:
-    """Quick tests, but for some files and folders."""
-    timed(session, "tests", "pytest", "-n", "auto", *(f"--ignore={path}" for path in left_out), *session.posargs)
+def run_quick_tests(session: nox.Session, *options: str) -> None:
+    """Quick tests: all that have no marker of a part of its own."""
+    timed(session, "tests", "pytest", "-n", "auto", *options, *session.posargs)
 
 
 def run_linters(session: nox.Session) -> None:
@@ -154,10 +124,7 @@ def run_linters(session: nox.Session) -> None:
 
 def run_slow_tests(session: nox.Session) -> None:
     """Tests marked slow, and properties with all of their examples."""
-    chosen = (
-        "(slow or hypothesis) and not browser and not evals and not records and not onnx and not cluster and not learn"
-        " and not interop"
-    )
+    chosen = QUICK.replace("not slow", "(slow or hypothesis)")
     options = ("-m", chosen, "-n", "2", "--dist", "loadgroup", "--durations", "15")
     timed(session, "slow tests", "pytest", *options, env={"IRSIM_TESTS": "thorough"})
 
@@ -250,7 +217,7 @@ def lowest(session: nox.Session) -> None:
     bounds = [re.match(r"([\w-]+)>=([\w.]+)", requirement) for requirement in required]
     constraints.write_text("".join(f"{bound[1]}=={bound[2]}\n" for bound in bounds if bound), encoding="utf-8")
     install(session, "-e", ".[test]", "-c", str(constraints))
-    run_quick_tests(session, left_out=[*ARITHMETIC, *PAGES, *PROCESSES, *CONTENTS])
+    run_quick_tests(session, "-m", f"{QUICK} and not one_python")
 
 
 @nox.session(reuse_venv=True)

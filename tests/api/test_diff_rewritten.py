@@ -20,6 +20,8 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_data
 from tests.effort import examples
 
+pytestmark = pytest.mark.one_python
+
 DRIVES = ("diff", "omni", "acker")
 SHAPES = ({"name": "circle", "radius": 0.2}, {"name": "rectangle", "length": 0.5, "width": 0.3})
 

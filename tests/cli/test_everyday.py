@@ -10,6 +10,8 @@ from irsim.lookup.guides import GUIDES
 from irsim.lookup.synonyms import EVERYDAY, named
 from irsim.scenario.model.json_schema import json_schema
 
+pytestmark = pytest.mark.one_python
+
 SCHEMA = json_schema()
 MEANT = {
     "lidar": "robot.sensors.lidar2d",

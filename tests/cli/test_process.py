@@ -14,6 +14,8 @@ import pytest
 
 from tests.cli.conftest import ROOM, Spawn
 
+pytestmark = pytest.mark.one_python
+
 LONG = ROOM.replace("dash}", "dash}\n    vel_max: [0, 0]\n    vel_min: [0, 0]")  # never gets there
 
 

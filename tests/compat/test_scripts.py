@@ -11,6 +11,8 @@ from tests.compat.differences import KNOWN
 from tests.compat.scripts import NAMES, play, recorded, same
 from tests.warm import LIBRARIES, warm
 
+pytestmark = pytest.mark.one_python
+
 
 def _name(fact: str) -> str:
     return fact.removeprefix(">> ").partition(" = ")[0]

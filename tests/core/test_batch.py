@@ -26,6 +26,8 @@ from tests.core.worlds import (
     scene,
 )
 
+pytestmark = pytest.mark.every_python
+
 WORLD_SIZED = ("count", "scene", "noise", "seed")
 
 

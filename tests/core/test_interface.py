@@ -15,6 +15,8 @@ import irsim._core as core
 from tests.core.worlds import DRIVES, circle, command, everything, fmcw, lidar, line, obstacle, polygon, robot, scene
 from tests.effort import examples
 
+pytestmark = pytest.mark.every_python
+
 OPTIONS = [
     core.DiffOptions,
     core.OmniOptions,

@@ -9,6 +9,8 @@ import irsim._core as core
 from tests.core.test_reset import crowd
 from tests.core.worlds import robot, scene
 
+pytestmark = pytest.mark.every_python
+
 
 def test_a_log_holds_what_a_rollout_returns() -> None:
     world, state = crowd([4])

@@ -17,6 +17,8 @@ from irsim.validation.feasibility.check import feasibility_findings
 from irsim.validation.feasibility.gaps import find_gaps
 from irsim.validation.feasibility.scenes import FAR, Scene
 
+pytestmark = pytest.mark.one_python
+
 ROBOT = {"kinematics": {"name": "diff"}, "behavior": {"name": "follow"}, "state": [5, 5, 0]}
 
 

@@ -16,7 +16,11 @@ from irsim_mcp import worker
 from irsim_mcp.limits import ServerLimits
 from tests.mcp.conftest import ROOM, connected, data_of, error_of, text_of
 
-pytestmark = [pytest.mark.anyio, pytest.mark.skipif(sys.platform == "win32", reason="limits and links of POSIX")]
+pytestmark = [
+    pytest.mark.one_python,
+    pytest.mark.anyio,
+    pytest.mark.skipif(sys.platform == "win32", reason="limits and links of POSIX"),
+]
 
 SECOND = 1.0
 """What a refusal may take; bounds are in processor time, since tests share a machine."""

@@ -19,7 +19,7 @@ from tests.mcp.conftest import CRASH, LONG, ROOM, as_process, connected, data_of
 from tests.mcp.test_benchmark import MANY, RANDOM
 from tests.warm import SERVERS
 
-pytestmark = pytest.mark.anyio
+pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 
 async def test_what_takes_longer_goes_on_as_a_job(workspace: Path) -> None:

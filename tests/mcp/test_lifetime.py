@@ -21,7 +21,7 @@ from tests.mcp.conftest import ERAS, LONG, ROOM, as_process, connected, data_of,
 from tests.warm import SERVERS
 
 HANDSHAKE = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "0"}}
-pytestmark = pytest.mark.usefixtures("ordinary_processes")
+pytestmark = [pytest.mark.one_python, pytest.mark.usefixtures("ordinary_processes")]
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
 

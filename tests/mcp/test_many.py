@@ -14,7 +14,7 @@ from irsim.runs import list_runs
 from tests.mcp.conftest import ROOM, as_process, data_of, error_of, text_of
 from tests.mcp.test_http import served
 
-pytestmark = pytest.mark.anyio
+pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 
 async def patiently(client: Client, name: str, arguments: dict[str, Any]) -> Any:

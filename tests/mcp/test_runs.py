@@ -17,7 +17,7 @@ from irsim.runs.inspection import inspect_run
 from irsim.runs.store import ARTIFACTS
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, as_process, connected, data_of, error_of, image_of, text_of
 
-pytestmark = pytest.mark.anyio
+pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 
 async def crashed(client: Client, **arguments: Any) -> str:

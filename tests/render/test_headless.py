@@ -15,6 +15,8 @@ from matplotlib.figure import Figure
 
 from irsim.graphics.figure import window
 
+pytestmark = pytest.mark.one_python
+
 SCENARIO = "robot: {kinematics: {name: diff}, behavior: {name: dash}, shape: {name: circle}}\n"
 SCREENLESS: list[dict[str, str]] = [{"DISPLAY": ":4711", "MPLBACKEND": "Agg"}]
 if sys.platform.startswith("linux"):

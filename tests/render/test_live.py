@@ -13,6 +13,8 @@ from PIL import Image
 
 import irsim
 
+pytestmark = pytest.mark.one_python
+
 ONE = """
 world: {height: 10, width: 10}
 robot: {kinematics: {name: diff}, state: [1, 1, 0.78], goal: [9, 9, 0], shape: {name: circle, radius: 0.5},

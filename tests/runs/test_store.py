@@ -23,6 +23,8 @@ from irsim.runs.files import claim, replace_file
 from irsim.runs.pruning import prune, tidy
 from irsim.runs.store import META, find_run, make_run_folder, mark_cancelled, runs_folder, status_of
 
+pytestmark = pytest.mark.one_python
+
 ENDLESS = """\
 world: {width: 100, height: 100, collision_mode: unobstructed}
 robot:

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import pytest
 import yaml
 
 from tests.warm import warm
@@ -41,3 +42,8 @@ def execute(words: list[str], folder: Path) -> str:
     done = subprocess.run(warm(command), cwd=folder, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, f"{words}: {done.stdout}{done.stderr}"
     return done.stdout
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Texts of skills and their programs are the same on every Python."""
+    item.add_marker("one_python")
