@@ -18,9 +18,8 @@ from irsim.episodes.incidents import find_incidents
 from irsim.episodes.out_of_bounds import find_exits
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
-from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
-from irsim.metrics.roles import travelling_humans
+from irsim.navigation.geodesic import Geodesics
 from irsim.policies.driver import PolicyDriver, driver_of
 from irsim.policies.policy import Policy
 from irsim.results.labels import CROWDED
@@ -32,6 +31,7 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
 from irsim.simulation.events import Event, first_collisions, first_events, partner_of, read_events
 from irsim.simulation.explored import explored_share
+from irsim.simulation.roles import travelling_humans
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import Trace, cut_trace, join_traces, next_rows, present_row, record
 

@@ -9,7 +9,7 @@ from irsim.benchmarks.episode import Episode, Job, Task, crowded, environment_of
 from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of
-from irsim.metrics.geodesic import Geodesics
+from irsim.navigation.geodesic import Geodesics
 from irsim.policies.driver import PolicyDriver, attach_policy, driver_of
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import read_events

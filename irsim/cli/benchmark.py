@@ -14,13 +14,14 @@ from rich.table import Table
 from rich.text import Text
 
 from irsim.benchmarks import BenchmarkError
+from irsim.benchmarks.report.names import labels_of
 from irsim.benchmarks.summary import KEYS, is_summary
 from irsim.cli.benchmark_run import Wanted, run_benchmark
 from irsim.cli.findings import import_user_modules
 from irsim.cli.options import Imports, Json, MaxObjects, Perturb, Steps, Strict
 from irsim.cli.output import console, print_json
 from irsim.common.text import clean
-from irsim.results.labels import labels_of, seeds_of
+from irsim.results.labels import seeds_of
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -26,10 +26,10 @@ from irsim.episodes.stuck import (
     no_way_message,
 )
 from irsim.episodes.watching import sights_message, zones_message
-from irsim.metrics.roles import HUMAN, kinds_of
 from irsim.results.run import HorizonSource, Left, RobotResult, ZoneResult
 from irsim.simulation.events import Event
 from irsim.simulation.explored import explored_share
+from irsim.simulation.roles import HUMAN, kinds_of
 
 if TYPE_CHECKING:
     from irsim.env import Env

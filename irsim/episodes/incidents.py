@@ -6,9 +6,9 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from irsim.common.text import metres, quoted, seconds
-from irsim.metrics.roles import HUMAN, kinds_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.simulation.events import Event
+from irsim.simulation.roles import HUMAN, kinds_of
 
 __all__ = ["Incidents", "contacts_message", "find_incidents", "jumps_message", "returns_message"]
 
@@ -17,7 +17,7 @@ class Incidents(NamedTuple):
     """What happened in an episode besides outcomes.
 
     Attributes:
-        human_contacts: Events of the contacts that began between two humans (:func:`irsim.metrics.roles.kinds_of`).
+        human_contacts: Events of the contacts that began between two humans (:func:`irsim.simulation.roles.kinds_of`).
         jumps: Name of each object that jumped over a goal and has not reached one since -> its last event
             ``overshoot``, in order of time.
         returns: Name of each object that jumped over its last goal, came back and arrived -> these two events.

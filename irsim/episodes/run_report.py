@@ -203,7 +203,7 @@ def _approaches(env: Env, arrivals: dict[str, Event]) -> dict[int, tuple[Approac
 
     Empty if objects came or went.
     """
-    from irsim.metrics.clearances import least
+    from irsim.navigation.clearances import least
 
     rows, steps = [view.row for view in env.robot_list], int(env.simulation.count[0])
     poses = all_poses(env.simulation) if rows else None

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from irsim.common.angles import wrap
 from irsim.common.text import quoted, seconds
-from irsim.metrics.clearances import approaches
+from irsim.navigation.clearances import approaches
 from irsim.scenario.resolve.braking import follow_text
 from irsim.simulation.events import Event, is_collision_of, passable_names
 

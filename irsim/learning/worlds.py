@@ -21,9 +21,9 @@ from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of
 from irsim.learning.terms import PythonTerms, weighted_terms
-from irsim.metrics.roles import kinds_of
 from irsim.policies.networks.output import Present, are_finite, decide
 from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.simulation.roles import kinds_of
 from irsim.simulation.simulation import Simulation
 
 __all__ = ["Autoreset", "Worlds"]

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from irsim.common.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from irsim.metrics.clearances import Approach, Clearance, approaches, clearance, closest, least
     from irsim.metrics.definitions import EPISODE_METRICS, METRICS, Metric
     from irsim.metrics.episode import EpisodeMetrics, episode_metrics, robot_metrics
     from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
+    from irsim.navigation.clearances import Approach, Clearance, approaches, clearance, closest, least
 
 __all__ = [
     "EPISODE_METRICS",
@@ -36,7 +36,7 @@ __getattr__, __dir__ = lazy_names(
     {
         **dict.fromkeys(("EPISODE_METRICS", "METRICS", "Metric"), "irsim.metrics.definitions"),
         **dict.fromkeys(
-            ("Approach", "Clearance", "approaches", "clearance", "closest", "least"), "irsim.metrics.clearances"
+            ("Approach", "Clearance", "approaches", "clearance", "closest", "least"), "irsim.navigation.clearances"
         ),
         **dict.fromkeys(("EpisodeMetrics", "episode_metrics", "robot_metrics"), "irsim.metrics.episode"),
         **dict.fromkeys(("bootstrap", "newcombe", "spread", "wilson"), "irsim.metrics.statistics"),

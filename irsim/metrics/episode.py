@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.metrics.clearances import Clearance, clearance
 from irsim.metrics.definitions import METRICS
-from irsim.metrics.geodesic import Geodesics, inscribed_radius
 from irsim.metrics.motion import motion_metrics
 from irsim.metrics.outcome import outcome_metrics
 from irsim.metrics.progress import progress_metrics
@@ -21,6 +19,8 @@ from irsim.metrics.reward import reward_metrics
 from irsim.metrics.social import social_metrics
 from irsim.metrics.trajectory import Track, tracks
 from irsim.metrics.watching import Rows, Watching, goal_visible_ratio, watching_metrics, zone_metrics
+from irsim.navigation.clearances import Clearance, clearance
+from irsim.navigation.geodesic import Geodesics, inscribed_radius
 from irsim.simulation.events import partner_of
 from irsim.simulation.simulation import Simulation
 

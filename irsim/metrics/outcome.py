@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from irsim.metrics.roles import HUMAN, ROBOT
 from irsim.metrics.trajectory import Track
+from irsim.simulation.roles import HUMAN, ROBOT
 
 __all__ = ["outcome_metrics"]
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.angles import wrap
-from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.trajectory import Track
+from irsim.navigation.geodesic import Geodesics
 
 __all__ = ["UNREACHABLE", "progress_metrics"]
 

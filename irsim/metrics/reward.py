@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from irsim.metrics.roles import HUMAN
 from irsim.metrics.trajectory import Track
+from irsim.simulation.roles import HUMAN
 
 __all__ = ["crowdnav_reward", "reward_metrics"]
 

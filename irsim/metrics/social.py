@@ -10,9 +10,9 @@ import numpy as np
 
 from irsim.common.arrays import Floats
 from irsim.components.behaviors.sfm import Sfm
-from irsim.metrics.roles import HUMAN, STATIC
 from irsim.metrics.trajectory import Track
 from irsim.simulation.events import partner_of
+from irsim.simulation.roles import HUMAN, STATIC
 
 if TYPE_CHECKING:
     from irsim.simulation.events import Event

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
-from irsim.metrics.roles import HUMAN, kinds_of, social_groups
+from irsim.simulation.roles import HUMAN, kinds_of, social_groups
 
 if TYPE_CHECKING:
-    from irsim.metrics.clearances import Clearance
+    from irsim.navigation.clearances import Clearance
     from irsim.simulation.events import Event
     from irsim.simulation.simulation import Simulation
     from irsim.simulation.trace import Trace
@@ -40,7 +40,7 @@ class Track:
         stopped: Whether a contact keeps it from moving at the last row.
         distance: (K, 3) distance [m] to the nearest robot, human, static object (see ``Clearance``).
         arrival: Step of the first arrival, None if it never arrived.
-        collisions: Contacts up to the arrival, each with the kind of the partner (see :mod:`irsim.metrics.roles`).
+        collisions: Contacts up to the arrival, each with the kind of the partner (see :mod:`irsim.simulation.roles`).
         between_steps: Number of contacts up to the arrival that began and ended within one step.
         control: (K - 1, C) controls executed in each step.
         limits: (C,) greatest magnitude of each control.
@@ -150,7 +150,7 @@ def tracks(
         radii: (N,) bounding radii of all objects [m].
         top_speeds: Top speeds of the robots [m/s].
     """
-    from irsim.metrics.clearances import static_distance
+    from irsim.navigation.clearances import static_distance
     from irsim.simulation.events import BETWEEN_STEPS, first_events, is_between_steps_of, is_collision_of, partner_of
 
     scenario = simulation.scenario

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
-from irsim.metrics.roles import STATIC, kinds_of
 from irsim.simulation.events import SIGHTS
+from irsim.simulation.roles import STATIC, kinds_of
 from irsim.simulation.watching import is_watching
 
 if TYPE_CHECKING:

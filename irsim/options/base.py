@@ -1,11 +1,8 @@
-"""The base of every model of the scenario language, and the documentation of its fields."""
+"""The base of every model of the scenario language."""
 
 from __future__ import annotations
 
-import ast
 import inspect
-import itertools
-import textwrap
 from collections.abc import Callable
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -16,10 +13,12 @@ from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, create_model
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError
 
+from irsim.common.field_docs import field_docs
+
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-__all__ = ["SCHEMA_PARTS", "Options", "SchemaParts", "field_docs", "open_options", "problem", "shared_schema"]
+__all__ = ["SCHEMA_PARTS", "Options", "SchemaParts", "open_options", "problem", "shared_schema"]
 
 
 @dataclass
@@ -105,38 +104,3 @@ def problem(code: str, message: str, **details: Any) -> PydanticCustomError:
 def open_options(model: type[BaseModel]) -> type[BaseModel]:
     """A copy of a model that accepts any other key, for user code that replaces a built-in feature."""
     return create_model(model.__name__, __base__=model, __module__=model.__module__, __cls_kwargs__={"extra": "allow"})
-
-
-@cache
-def field_docs(model: type[BaseModel]) -> dict[str, str]:
-    """The documentation of the fields of ``model``, own and inherited; undocumented fields are left out."""
-    docs: dict[str, str] = {}
-    for cls in reversed(model.__mro__):
-        if not (issubclass(cls, BaseModel) and inspect.get_annotations(cls)):
-            continue
-        for name, text in _own_docs(cls).items():
-            if name in model.model_fields:
-                docs[name] = text
-    for name, info in model.model_fields.items():
-        if info.description:
-            docs[name] = info.description
-    return docs
-
-
-def _own_docs(cls: type) -> dict[str, str]:
-    try:
-        tree = ast.parse(textwrap.dedent(inspect.getsource(cls)))
-    except (OSError, TypeError, SyntaxError):  # made at run time or shipped without source
-        return {}
-    body = getattr(tree.body[0], "body", [])
-    found: dict[str, str] = {}
-    for statement, following in itertools.pairwise(body):
-        if (
-            isinstance(statement, ast.AnnAssign)
-            and isinstance(statement.target, ast.Name)
-            and isinstance(following, ast.Expr)
-            and isinstance(following.value, ast.Constant)
-            and isinstance(following.value.value, str)
-        ):
-            found[statement.target.id] = inspect.cleandoc(following.value.value)
-    return found

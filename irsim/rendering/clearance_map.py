@@ -14,8 +14,8 @@ from irsim.common.arrays import Floats
 from irsim.common.outline import outline
 from irsim.common.text import metres
 from irsim.graphics.scene.scene import Bounds, Label, Line, Mark, Region, Scene, Stroke
-from irsim.metrics.geodesic import inscribed_radius
-from irsim.metrics.roles import HUMAN, STATIC, kinds_of
+from irsim.navigation.geodesic import inscribed_radius
+from irsim.simulation.roles import HUMAN, STATIC, kinds_of
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation

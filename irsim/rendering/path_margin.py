@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.metrics.clearances import standing_distance
+from irsim.navigation.clearances import standing_distance
 
 if TYPE_CHECKING:
     from irsim.objects.view import ObjectView

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from irsim.options.base import field_docs
+from irsim.common.field_docs import field_docs
 
 __all__ = ["Result"]
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.options.base import field_docs
+from irsim.common.field_docs import field_docs
 from irsim.options.registry import KINEMATICS, Feature
 from irsim.scenario.read import or_raise, read
 from irsim.simulation.simulation import Simulation

@@ -13,7 +13,7 @@ import pytest
 
 import irsim
 from irsim.api.read_input import read_input
-from irsim.metrics.clearances import clearance
+from irsim.navigation.clearances import clearance
 from irsim.simulation.simulation import Simulation
 
 DRIVES: dict[str, tuple[str, str, list[float], float]] = {

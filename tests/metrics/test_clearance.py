@@ -7,8 +7,8 @@ import pytest
 
 from irsim.env import Env
 from irsim.metrics import clearance, closest
-from irsim.metrics.roles import HUMAN, IGNORED, ROBOT, STATIC, kinds_of
 from irsim.scenario.open import read_scenario
+from irsim.simulation.roles import HUMAN, IGNORED, ROBOT, STATIC, kinds_of
 from irsim.simulation.trace import record_rollout
 
 SCENARIO = """

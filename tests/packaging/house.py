@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import json
 import os
 import re
@@ -14,6 +15,8 @@ import sys
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
+
+from tests.packaging.test_imports import listed_rooms
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("irsim", "mcp_server", "evals")
@@ -112,13 +115,20 @@ def process_limits() -> list[str]:
 
 @cache
 def run_of_one() -> dict[str, int]:
-    """The second recorded run of one robot: calls, files, changes of room; and public names of a robot and an Env."""
+    """The second recorded run of one robot: calls, files, changes of room and box; public names of a robot, an Env."""
     environment = {**os.environ, "MPLBACKEND": "Agg"}
     done = subprocess.run(
         [sys.executable, str(_PROBE)], capture_output=True, text=True, check=True, cwd=ROOT.parent, env=environment
     )
-    found: dict[str, int] = json.loads(done.stdout.splitlines()[-1])
-    return found
+    told = json.loads(done.stdout.splitlines()[-1])
+    rooms = [name for name in told.pop("rooms") if name in listed_rooms()]
+    boxes = [listed_rooms()[name] for name in rooms]
+    changes = {"changes of room": _changes(rooms), "changes of box": _changes(boxes)}
+    return {**told, **changes}
+
+
+def _changes(names: list[str]) -> int:
+    return sum(1 for _ in itertools.groupby(names))
 
 
 def docstring_lines() -> int:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from irsim.metrics.clearances import clearance
+from irsim.navigation.clearances import clearance
 from irsim.simulation.events import Event, partner_of
 from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
 from irsim_evals.grader.scene import Scene, open_scene
@@ -69,7 +69,7 @@ class Episode:
 
     @cached_property
     def distances(self) -> Any:
-        """Distances between footprints at every row; see :func:`irsim.metrics.clearances.clearance`."""
+        """Distances between footprints at every row; see :func:`irsim.navigation.clearances.clearance`."""
         return clearance(self.trace, self.scene.env.simulation)
 
     def speeds(self, index: int) -> Any:

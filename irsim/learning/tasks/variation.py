@@ -16,9 +16,9 @@ from irsim.learning.tasks.files import task_error
 from irsim.learning.tasks.randomize import QUANTITIES, Randomize, Value, merged
 from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.team import team_of
-from irsim.metrics.roles import HUMAN, kinds_of
 from irsim.scenario.resolve.resolved import DrawnQuantity, ObjectRecord, ResolvedScenario
 from irsim.simulation.random_streams import generator
+from irsim.simulation.roles import HUMAN, kinds_of
 
 __all__ = ["LevelDraws", "drawn_values", "level_draws", "randomize_path"]
 

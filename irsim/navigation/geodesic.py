@@ -10,7 +10,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Polygon, outline
-from irsim.metrics.roles import STATIC, kinds_of
+from irsim.simulation.roles import STATIC, kinds_of
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation

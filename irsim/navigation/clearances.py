@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.metrics.roles import HUMAN, IGNORED, KINDS, STATIC, kinds_of
+from irsim.simulation.roles import HUMAN, IGNORED, KINDS, STATIC, kinds_of
 from irsim.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Clearance:
 
     Attributes:
         distance: (T, R, 3) distance between footprints [m] to the nearest robot, human and static thing, in this order
-            (:data:`irsim.metrics.roles.KINDS`); negative where they overlap, NaN where there is none of the kind.
+            (:data:`irsim.simulation.roles.KINDS`); negative where they overlap, NaN where there is none of the kind.
         partner: (T, R, 3) which object that is, an index into ``names``; -1 where there is none.
         robots: (R,) indices of the robots.
         names: Names of the N objects.
