@@ -1307,9 +1307,13 @@ def best_velocity(
     """
 
 def nearest_points(
-    points: Sequence[tuple[float, float]], centre: tuple[float, float], reach: float, most: int
+    points: Sequence[tuple[float, float]],
+    centre: tuple[float, float],
+    ahead: tuple[float, float],
+    reach: float,
+    most: int,
 ) -> list[int]:
-    """Indices of up to `most` points less than `reach` [m] away, nearest first."""
+    """Indices of up to `most` points less than `reach` [m] away, nearest first, of equally near ones the right one."""
 
 def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
     """The Philox4x64-10 block of key (seed, scene << 32 | noise) and counter (draw, object, stream, 0)."""

@@ -137,12 +137,25 @@ def test_the_nearest_of_many() -> None:
     rng = np.random.default_rng(3)
     for count, shape in ((40, 1.0), (300, 1.0), (300, 0.0), (900, 0.02)):
         points = rng.uniform(-20, 20, (count, 2)) * (1.0, shape)
-        points[::17] = points[1]  # equally far ones: the lower index first
+        points[::17] = points[1]  # of one point the lower index comes first
         for centre in points[:20]:
             for reach, most in ((3.0, 5), (100.0, 12), (8.0, 1000)):
                 distance2 = ((points - centre) ** 2).sum(axis=1)
                 order = [int(i) for i in np.lexsort((np.arange(count), distance2)) if distance2[i] < reach**2]
-                assert core.nearest_points(points.tolist(), tuple(centre), reach, most) == order[:most]
+                assert core.nearest_points(points.tolist(), tuple(centre), (1, 0), reach, most) == order[:most]
+
+
+@pytest.mark.parametrize("count", [4, 80])
+def test_of_equally_near_points_those_on_the_right_come_first_wherever_they_are_listed(count: int) -> None:
+    cross = [(3.0, 0.0), (0.0, 3.0), (-3.0, 0.0), (0.0, -3.0)]
+    far = [(50.0 + k, 0.0) for k in range(count - 4)]
+    for order in itertools.permutations(cross):
+        for ahead, first in (((1, 0), (0, -3)), ((0, 2), (3, 0)), ((-1, 0), (0, 3))):
+            points = [*far, *order]
+            for most in (1, 4):
+                found = core.nearest_points(points, (0, 0), ahead, 40, most)
+                assert points[found[0]] == first
+                assert len(found) == most
 
 
 # the law

@@ -149,15 +149,38 @@ def test_a_looped_swap_goes_on_for_a_minute_without_a_contact(count: int, radius
     assert not [event for event in result.events if event.kind == "collision"]
 
 
-@pytest.mark.parametrize("law", OLD)
+ORDERS = {
+    "rvo": ("omni", 5, 1e-6),
+    "sfm": ("omni", 5, 1e-6),
+    "orca": ("diff", 6, 0.0),
+    "orca, maxNeighbors: 2": ("omni", 8, 0.0),
+    "orca, safe_radius: 0.05": ("acker", 4, 0.0),
+    "avocado, noise: 0": ("diff", 5, 0.0),
+    "footprint_orca": ("diff", 6, 0.0),
+}
+"""Drive and number of robots on a ring for each behavior, and by how much two orders of the file may differ [m]."""
+
+
+@pytest.mark.parametrize("law", ORDERS)
 def test_the_order_of_the_file_does_not_matter(law: str) -> None:
-    angles = [math.tau * k / 5 for k in range(5)]
+    drive, count, most = ORDERS[law]
+    angles = [math.tau * k / count for k in range(count)]
     starts = [(10 + 4 * math.cos(a), 10 + 4 * math.sin(a)) for a in angles]
     goals = [(20 - x, 20 - y) for x, y in starts]
-    order = [3, 0, 4, 2, 1]
-    here = motion(scene(law, "omni", starts, goals), 50)
-    there = motion(scene(law, "omni", [starts[k] for k in order], [goals[k] for k in order]), 50)
-    assert np.allclose(here[:, order], there, atol=1e-6)
+    here = motion(scene(law, drive, starts, goals), 150)
+    for order in (list(range(count))[::-1], [*range(1, count, 2), *range(0, count, 2)]):
+        there = motion(scene(law, drive, [starts[k] for k in order], [goals[k] for k in order]), 150)
+        np.testing.assert_allclose(here[:, order], there, rtol=0, atol=most)
+
+
+def test_the_order_of_obstacles_does_not_matter() -> None:
+    pillars = [{"shape": {"name": "circle", "radius": 0.5}, "state": [10, y]} for y in (9.0, 11.0)]
+    boxes = [{"shape": {"name": "rectangle", "length": 1, "width": 1}, "state": [7, y]} for y in (9.1, 10.9)]
+    paths = []
+    for obstacles in (boxes + pillars, (boxes + pillars)[::-1]):
+        document = yaml.safe_load(scene("orca, safe_radius: 0.05", "diff", [(2, 10)], [(18, 10.3)]))
+        paths.append(motion(yaml.safe_dump(document | {"obstacle": obstacles}), 200)[:, 0])
+    assert np.array_equal(*paths)
 
 
 @pytest.mark.parametrize("law", ["sfm", "orca"])

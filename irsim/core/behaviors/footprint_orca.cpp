@@ -147,8 +147,9 @@ void find_others(FootprintSelf& self, OrcaCrowd& all) {
   const auto seen = [&](int m) {
     return m != self.mover && (all.member_of[m] == group || sees_role(world, self.object, world.moving[m]));
   };
-  const Vec2 centre = all.movers[self.mover].position;
-  const int count = all.nearest.find(centre, self.options.neighborDist, most, likely, seen, all.neighbors.data());
+  const Vec2 centre = all.movers[self.mover].position, ahead = self.state().heading(self.row);
+  const int count =
+      all.nearest.find(centre, ahead, self.options.neighborDist, most, likely, seen, all.neighbors.data());
   for (int k = 0; k < count; ++k) others.push_back(all.neighbors[k].index);
   likely = others;
 }
@@ -200,7 +201,7 @@ void meet_reachable(FootprintSelf& self, OrcaCrowd& all) {
   const double reach = self.limits().range + all.movers[self.mover].radius + crowd.widest + kStrangerDistance;
   const int most = static_cast<int>(all.movers.size()) - 1;
   const bool cut = static_cast<int>(others.size()) == std::min(self.options.maxNeighbors, most);
-  const Vec2 centre = all.movers[self.mover].position;
+  const Vec2 centre = all.movers[self.mover].position, ahead = self.state().heading(self.row);
   const double known = cut && !others.empty() ? norm(all.movers[others.back()].position - centre)
                        : cut                  ? 0.0
                                               : self.options.neighborDist;
@@ -211,7 +212,7 @@ void meet_reachable(FootprintSelf& self, OrcaCrowd& all) {
     return m != self.mover && (all.member_of[m] == group || sees_role(world, self.object, world.moving[m])) &&
            std::find(others.begin(), others.end(), m) == others.end();
   };
-  const int count = all.nearest.find(centre, reach, most, {}, seen, all.neighbors.data());
+  const int count = all.nearest.find(centre, ahead, reach, most, {}, seen, all.neighbors.data());
   for (int k = 0; k < count; ++k) bound_by_mover(self, meet(self, all.neighbors[k].index), nullptr);
 }
 

@@ -35,13 +35,14 @@ std::tuple<double, double, bool> best_velocity(const std::vector<std::array<doub
 }
 
 std::vector<int> nearest_points(const std::vector<std::pair<double, double>>& points, std::pair<double, double> centre,
-                                double reach, int most) {
+                                std::pair<double, double> ahead, double reach, int most) {
   Nearest all;
   for (const auto& [x, y] : points) all.add({x, y});
   all.build();
   std::vector<Nearest::Found> found(static_cast<std::size_t>(std::max(most, 0)));
   const auto any = [](int) { return true; };
-  const int count = all.find({centre.first, centre.second}, reach, most, {}, any, found.data());
+  const int count =
+      all.find({centre.first, centre.second}, {ahead.first, ahead.second}, reach, most, {}, any, found.data());
   std::vector<int> out;
   for (int k = 0; k < count; ++k) out.push_back(found[k].index);
   return out;
@@ -53,7 +54,8 @@ void bind_tools(nb::module_& m) {
   m.def("intersects", &intersects, nb::arg("parts_a"), nb::arg("pose_a"), nb::arg("parts_b"), nb::arg("pose_b"));
   m.def("best_velocity", &best_velocity, nb::arg("planes"), nb::arg("hard"), nb::arg("max_speed"),
         nb::arg("preferred"));
-  m.def("nearest_points", &nearest_points, nb::arg("points"), nb::arg("centre"), nb::arg("reach"), nb::arg("most"));
+  m.def("nearest_points", &nearest_points, nb::arg("points"), nb::arg("centre"), nb::arg("ahead"), nb::arg("reach"),
+        nb::arg("most"));
   m.def(
       "random_bits",
       [](std::uint64_t seed, std::uint32_t scene, std::uint32_t noise, std::uint64_t stream, std::uint64_t object,

@@ -122,9 +122,10 @@ bool back_off(const AckerOptions& car, const World& world, const State& state, i
   return true;
 }
 
-/// Add half-planes of walls and static circles, nearest edges first. Those that other planes cover are left out.
+/// Add half-planes of walls and static circles, nearest edges first, of equally near ones those on the right of
+/// `ahead`. Those that other planes cover are left out.
 void avoid_obstacles(double horizon, const World& world, const Fixed& fixed, const OrcaAgent& agent, int object,
-                     double speed, OrcaCrowd& all) {
+                     double speed, Vec2 ahead, OrcaCrowd& all) {
   const Obstacles& obstacles = fixed.obstacles;
   if (obstacles.empty()) return;
   Sight sight(fixed.walls, agent.position);
@@ -152,14 +153,22 @@ void avoid_obstacles(double horizon, const World& world, const Fixed& fixed, con
     return std::any_of(planes.begin(), planes.end(),
                        [&](const HalfPlane& plane) { return covers(plane, agent, a, b, radius, horizon); });
   };
-  std::sort(all.edges.begin(), all.edges.end());
+  std::sort(all.edges.begin(), all.edges.end(), [&](const Nearest::Found& a, const Nearest::Found& b) {
+    if (a.distance2 != b.distance2) return a.distance2 < b.distance2;
+    if ((a.index < edges) != (b.index < edges)) return a.index < b.index;
+    const Edge &one = obstacles.edges[a.index % edges], &two = obstacles.edges[b.index % edges];
+    return is_right_of(one.left.point, two.left.point, ahead, a.index < b.index);
+  });
   for (const Nearest::Found& found : all.edges) {
     const Edge& edge = obstacles.edges[found.index % edges];
     HalfPlane plane;
     if (covered(edge.left.point, edge.right.point, agent.radius)) continue;
     if (avoid_edge(agent, edge, horizon, plane)) planes.push_back(plane);
   }
-  std::sort(all.neighbors.begin(), all.neighbors.end());
+  std::sort(all.neighbors.begin(), all.neighbors.end(), [&](const Nearest::Found& a, const Nearest::Found& b) {
+    if (a.distance2 != b.distance2) return a.distance2 < b.distance2;
+    return is_right_of(obstacles.discs[a.index].centre, obstacles.discs[b.index].centre, ahead, a.index < b.index);
+  });
   for (const Nearest::Found& found : all.neighbors) {
     const StaticDisc& disc = obstacles.discs[found.index];
     if (covered(disc.centre, disc.centre, agent.radius + disc.radius)) continue;
@@ -224,9 +233,10 @@ double lean(const World& world, const State& state, int w, const OrcaCrowd& all,
   return 0.0;
 }
 
-/// Add half-planes of the nearest movers. Returns whether the object and one of them meet head-on, on one line.
+/// Add half-planes of the nearest movers, from the right to the left of `ahead` if they are equally near. Returns
+/// whether the object and one of them meet head-on, on one line.
 bool avoid_movers(const OrcaSettings& options, const World& world, const State& state, int w, int self, double speed,
-                  const TieWay& way, Reciprocity* reciprocity, OrcaCrowd& all) {
+                  Vec2 ahead, const TieWay& way, Reciprocity* reciprocity, OrcaCrowd& all) {
   const int object = world.moving[self], group = all.member_of[self];
   const OrcaAgent& agent = all.movers[self];
   const int most = std::min(options.maxNeighbors, static_cast<int>(all.movers.size()) - 1);
@@ -236,7 +246,8 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
     return m != self && (all.member_of[m] == group || targets_role(world, object, world.moving[m]));
   };
   std::vector<int>& before = all.neighbors_before[self];
-  const int count = all.nearest.find(agent.position, options.neighborDist, most, before, seen, all.neighbors.data());
+  const int count =
+      all.nearest.find(agent.position, ahead, options.neighborDist, most, before, seen, all.neighbors.data());
   before.resize(count);
   const Nearest::Found *near = all.neighbors.data(), *const end = near + count;
   for (int* note = before.data(); near != end; ++near) *note++ = near->index;
@@ -290,6 +301,7 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
     all.planes.clear();
     const Vec2 way = state.destination(row).position() - state.pose[row].position();
     const double far = norm(way);
+    const Vec2 ahead = far > 0.0 ? way : state.heading(row);
     const Vec2 straight = preferred_velocity(options, world, state, row, i, speed, way, far);
     const Vec2 past = past_walls(decision, k, agent.position, agent.radius, kWallLook, straight, false);
     Vec2 preferred = sidestepped(decision, k, past, options.sidestep.value_or(0.0));
@@ -297,24 +309,24 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
     if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
     if (const Route* route = state.route_of(row)) {  // a route already avoids static objects
       const OrcaAgent inner{state.pose[row].position(), agent.velocity, route->wall_radius};
-      avoid_obstacles(std::min(options.timeHorizonObst, kRouteHorizon), world, fixed, inner, i, speed, all);
+      avoid_obstacles(std::min(options.timeHorizonObst, kRouteHorizon), world, fixed, inner, i, speed, ahead, all);
     } else {
-      avoid_obstacles(options.timeHorizonObst, world, fixed, agent, i, speed, all);
+      avoid_obstacles(options.timeHorizonObst, world, fixed, agent, i, speed, ahead, all);
     }
     const int hard = static_cast<int>(all.planes.size());
     if (reciprocity != nullptr) reciprocity->begin(k, self);
     // Ties are of origins, which are not always the centres.
     const double off = 2.0 * all.off_origin;
     const TieWay tie_way = breaks ? TieWay(agent.position, way, far, speed, off, options.neighborDist) : TieWay();
-    if (avoid_movers(options, world, state, decision.w(), self, speed, tie_way, reciprocity, all)) {
+    if (avoid_movers(options, world, state, decision.w(), self, speed, ahead, tie_way, reciprocity, all)) {
       preferred = keep_right(preferred, kLeanTurn);
     }
     Vec2 velocity;
     bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
                                 all.scratch, velocity);
     if (is_slower(velocity, preferred) && options.sidestep.value_or(1.0) != 0.0) {
-      const Vec2 ahead = preferred * (1.0 / norm(preferred));
-      if (stands_ahead(options, world, state, decision.w(), self, ahead, speed, far, all)) {
+      const Vec2 wanted = preferred * (1.0 / norm(preferred));
+      if (stands_ahead(options, world, state, decision.w(), self, wanted, speed, far, all)) {
         preferred = keep_right(preferred, std::copysign(kLeanTurn, options.sidestep.value_or(1.0)));
         free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
                                all.scratch, velocity);

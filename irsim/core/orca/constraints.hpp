@@ -34,8 +34,8 @@ struct Edge {
 /// of velocity and `other` makes the rest. Agents that overlap are to be apart after `dt` [s].
 ///
 /// Args:
-///   first: Whether this is the first of the two. It decides the direction for agents with equal positions and
-///   velocities.
+///   first: Whether this is the first of the two in the file. It decides the direction only for agents with equal
+///   positions and velocities, which nothing else tells apart.
 ///   plane: The result.
 void avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt, bool first,
                  HalfPlane& plane);

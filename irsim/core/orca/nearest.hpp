@@ -8,15 +8,19 @@
 
 namespace irsim {
 
+/// Whether a is farther to the right of a direction than b, or else farther ahead; `same` if they are one point.
+inline bool is_right_of(Vec2 a, Vec2 b, Vec2 ahead, bool same) {
+  const double side_a = cross(ahead, a), side_b = cross(ahead, b), way_a = dot(ahead, a), way_b = dot(ahead, b);
+  if (side_a != side_b) return side_a < side_b;
+  return way_a != way_b ? way_a > way_b : same;
+}
+
 /// Points of the plane, stored in a grid if there are many. Points that are not finite are never found.
 class Nearest {
  public:
   struct Found {
     double distance2;  // [m2]
     int index;
-    bool operator<(const Found& b) const {
-      return distance2 < b.distance2 || (distance2 == b.distance2 && index < b.index);
-    }
   };
 
   /// Remove all points. Then `add` points and `build`.
@@ -24,13 +28,16 @@ class Nearest {
   void add(Vec2 point) { points_.push_back(point); }
   void build();
 
-  /// Find up to `most` points less than `reach` [m] away from `centre` for which `seen(index)` holds, nearest first,
-  /// then by index. Returns their number; `found` must have space for `most`. `likely`: distinct indices of points that
-  /// may be among them, such as those found in the step before; they save time and do not change the result.
+  /// Find up to `most` points less than `reach` [m] away from `centre` for which `seen(index)` holds, nearest first.
+  /// Points that are equally far come from the right to the left of `ahead`, so that their indices do not matter unless
+  /// they are the same point. Returns their number; `found` must have space for `most`. `likely`: distinct indices of
+  /// points that may be among them, such as those found in the step before; they save time and do not change the
+  /// result.
   template <class Seen>
-  int find(Vec2 centre, double reach, int most, const std::vector<int>& likely, Seen&& seen, Found* found) const {
+  int find(Vec2 centre, Vec2 ahead, double reach, int most, const std::vector<int>& likely, Seen&& seen,
+           Found* found) const {
     if (most <= 0) return 0;
-    Best best{found, most, 0, reach * reach};
+    Best best{points_.data(), ahead, found, most, 0, reach * reach};
     if (start_.empty()) {
       if (points_.size() > kMaxLinearPoints) return 0;  // `build` made no grid, because none of them is finite
       const double farthest2 = farthest(centre, most, likely, seen), limit2 = std::min(best.limit2, farthest2);
@@ -78,19 +85,25 @@ class Nearest {
 
   /// The nearest points so far, sorted.
   struct Best {
+    const Vec2* points;
+    Vec2 ahead;
     Found* found;
     int most, count;
     double limit2;  // points farther away than this are not needed
 
+    bool first(const Found& a, const Found& b) const {
+      if (a.distance2 != b.distance2) return a.distance2 < b.distance2;
+      return is_right_of(points[a.index], points[b.index], ahead, a.index < b.index);
+    }
     void offer(Found next) {
       if (count == most) {
-        if (!(next < found[count - 1])) return;
+        if (!first(next, found[count - 1])) return;
       } else {
         if (!(next.distance2 < limit2)) return;
         ++count;
       }
       int k = count - 1;
-      for (; k > 0 && next < found[k - 1]; --k) found[k] = found[k - 1];
+      for (; k > 0 && first(next, found[k - 1]); --k) found[k] = found[k - 1];
       found[k] = next;
       if (count == most) limit2 = found[count - 1].distance2;
     }
