@@ -17,7 +17,7 @@
 - ``interop``: bridges, each against software that somebody else wrote: middleware, simulators, parsers, a browser.
 - ``onnx``: policies from ONNX models, with onnxruntime.
 - ``nightly``: what is too large for every change, and therefore no part of ``full``: Blender reads what we write;
-  each day another tenth of the bench of avoidance.
+  each day another tenth of the bench of avoidance; all tests that rotate, of which ``slow`` runs those of the day.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 All quick tests together run in ``check``, and on the newest Python in the README's own test command, with which
@@ -125,8 +125,9 @@ def run_linters(session: nox.Session) -> None:
 def run_slow_tests(session: nox.Session) -> None:
     """Tests marked slow, and properties with all of their examples."""
     chosen = QUICK.replace("not slow", "(slow or hypothesis)")
-    options = ("-m", chosen, "-n", "2", "--dist", "loadgroup", "--durations", "15")
-    timed(session, "slow tests", "pytest", *options, env={"IRSIM_TESTS": "thorough"})
+    options = ("-m", chosen, "-n", "2", "--dist", "loadgroup", "--durations", "25")
+    today = {"IRSIM_DAY": str(int(time.time() // 86400))}
+    timed(session, "slow tests", "pytest", *options, env={"IRSIM_TESTS": "thorough", **today})
 
 
 def run_browser_tests(session: nox.Session) -> None:
@@ -287,6 +288,8 @@ def nightly(session: nox.Session) -> None:
     timed(session, "tests with Blender", "pytest", *options, *session.posargs, env=peers)
     options = ("-m", "slow", "-n", "2", "tests/avoidance/test_reference.py")
     timed(session, "another tenth of avoidance", "pytest", *options, env={"IRSIM_NIGHTLY": "1"})
+    rotating = ("-m", "rotates", "-n", "2", "--dist", "loadgroup", "--durations", "15")
+    timed(session, "tests that rotate", "pytest", *rotating, env={"IRSIM_TESTS": "thorough"})
 
 
 def install_debian(session: nox.Session, packages: Iterable[str]) -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import functools
 import gc
+import os
 import signal
 import sys
+import zlib
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -24,14 +27,33 @@ settings.register_profile("irsim", deadline=None, suppress_health_check=[HealthC
 settings.load_profile("irsim")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest first, by the seconds that ``slow`` tells, so that no process is left with them at the end."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """The longest first, by the seconds that ``slow`` tells, so that no process is left with them at the end.
+
+    Where ``IRSIM_DAY`` numbers the day, as in the gate, tests that rotate and have another day are left out.
+    """
+    if day := os.environ.get("IRSIM_DAY"):
+        later = [item for item, turn in zip(items, _turns(items, int(day)), strict=True) if turn]
+        config.hook.pytest_deselected(items=later)
+        items[:] = [item for item in items if item not in later]
 
     def seconds(item: pytest.Item) -> int:
         mark = item.get_closest_marker("slow")
         return mark.args[0] if mark and mark.args else 0
 
     items.sort(key=seconds, reverse=True)
+
+
+def _turns(items: list[pytest.Item], day: int) -> Iterator[int]:
+    """Days until it is the turn of each test: those of one function have different days, as far as there are days."""
+    before: Counter[str] = Counter()
+    for item in items:
+        if mark := item.get_closest_marker("rotates"):
+            name = item.nodeid.partition("[")[0]
+            yield (zlib.crc32(name.encode()) + before[name] + day) % mark.args[0]
+            before[name] += 1
+        else:
+            yield 0
 
 
 def pytest_collection_finish() -> None:

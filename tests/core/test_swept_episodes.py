@@ -227,6 +227,7 @@ def test_some_episodes(tmp_path: Path) -> None:
     assert counts[1] > 500
 
 
+@pytest.mark.rotates(4)
 @pytest.mark.slow(35)
 @pytest.mark.parametrize("first", range(100, 200, 25))
 def test_a_hundred_episodes(first: int, tmp_path: Path) -> None:

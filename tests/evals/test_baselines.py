@@ -108,6 +108,7 @@ def test_some_cases_end_as_recorded(tmp_path):
     assert_as_recorded(tmp_path, *random.Random(16).sample(case_ids(), QUICK_CASES))
 
 
+@pytest.mark.rotates(5)
 @pytest.mark.slow(300)
 def test_all_cases_end_as_recorded(tmp_path):
     readme = (Path(__file__).resolve().parents[2] / "evals" / "README.md").read_text(encoding="utf-8")

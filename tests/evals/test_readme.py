@@ -16,6 +16,7 @@ BLOCKS = re.findall(r"(<!-- .*? -->\n)?```bash\n(.*?)```", (EVALS / "README.md")
 RUN = [block for mark, block in BLOCKS if not mark]
 
 
+@pytest.mark.rotates(3)
 @pytest.mark.slow
 def test_commands_run(tmp_path: Path) -> None:
     assert len(RUN) >= 3

@@ -18,6 +18,7 @@ from irsim.validation.feasibility.gaps import find_gaps
 from irsim.validation.feasibility.scenes import FAR, Scene
 
 pytestmark = pytest.mark.one_python
+LONG = (pytest.mark.slow, pytest.mark.rotates(4))
 
 ROBOT = {"kinematics": {"name": "diff"}, "behavior": {"name": "follow"}, "state": [5, 5, 0]}
 
@@ -57,7 +58,7 @@ def test_a_wall_across_a_world_is_found_however_large_it_is(size: float, radius:
     assert "obstacles separate them completely" in item.message
 
 
-@pytest.mark.parametrize("size", [50, *(pytest.param(size, marks=pytest.mark.slow) for size in (100, 200, 300, 1000))])
+@pytest.mark.parametrize("size", [50, *(pytest.param(size, marks=LONG) for size in (100, 200, 300, 1000))])
 @pytest.mark.parametrize(
     ("gap", "code"), [(0.5, "goal-unreachable"), (0.58, "goal-unreachable"), (0.66, "narrow-passage"), (0.8, None)]
 )

@@ -145,6 +145,7 @@ without_compiler = pytest.param(
     marks=[
         pytest.mark.skipif(os.name == "nt", reason="an empty PATH does not hide Visual Studio"),
         pytest.mark.slow(200),
+        pytest.mark.rotates(3),
         pytest.mark.xdist_group("without compiler"),
     ],
 )

@@ -134,6 +134,7 @@ def test_a_sensor_is_found_by_its_entry_point(tmp_path: Path) -> None:
     assert "success" in execute(["irsim", "run", "scenario.yaml", "--seed", "1"], folder)
 
 
+@pytest.mark.rotates(4)
 @pytest.mark.slow(80)
 def test_a_behavior_is_two_files_and_its_test(tmp_path: Path) -> None:
     """Needs what compiles the core: it is built as for the user, who has the dependencies already."""
