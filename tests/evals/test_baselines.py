@@ -15,17 +15,17 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from irsim_evals.baselines import BASELINES, answer
+from irsim_evals.baselines.arms import BASELINES, answer
 from irsim_evals.baselines.bm25 import scores
-from irsim_evals.baselines.reading.language import language_of, plain
-from irsim_evals.baselines.reading.quantities import quantities
+from irsim_evals.baselines.reading.language import language_of, plain, quantities
 from irsim_evals.baselines.reading.request import request_of
 from irsim_evals.baselines.retrieval import best_template, slots
 from irsim_evals.baselines.rules import answer as by_rules
 from irsim_evals.baselines.task import Task
 from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import Answer, case_ids, case_of
+from irsim_evals.cases.store import case_ids, case_of
 from irsim_evals.cli.app import app
+from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.results import Trial, trial_of
 

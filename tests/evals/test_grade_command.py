@@ -18,10 +18,9 @@ from typer.testing import CliRunner
 from irsim_evals.cases.instance import instance_of
 from irsim_evals.cases.store import case_of
 from irsim_evals.cli.app import app
-from irsim_evals.cli.export import write_case
-from irsim_evals.cli.watch import Changes
-from irsim_evals.grader.artefact import from_folder
-from irsim_evals.grader.cost import cost_of
+from irsim_evals.cli.cases import write_case
+from irsim_evals.cli.grade import Changes
+from irsim_evals.grader.artefact import cost_of, from_folder
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.results import read_results
 from tests.evals.test_grader import RIGHT

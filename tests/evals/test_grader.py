@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 from irsim_evals.cases.instance import instance_of, substitute
-from irsim_evals.cases.store import Answer, case_ids, case_of, golds_of, raw_case
-from irsim_evals.cli.schema import schema_text
+from irsim_evals.cases.store import case_ids, case_of, golds_of, raw_case
+from irsim_evals.cli.cases import schema_text
+from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.hues import discernible
 from irsim_evals.grader.limited import grade_answer, grade_folder, run_limited
-from irsim_evals.grader.matching import Match, matches
+from irsim_evals.grader.matching import Match, matches, quantity
 from irsim_evals.grader.outcome import Verdict
-from irsim_evals.grader.units import quantity
 
 RIGHT = """
 world: {width: 14, height: 9}

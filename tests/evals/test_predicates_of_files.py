@@ -8,9 +8,7 @@ from typing import Any
 import pytest
 
 from irsim_evals.grader.material import Material
-from irsim_evals.grader.predicates.command import Command
-from irsim_evals.grader.predicates.data import Data
-from irsim_evals.grader.predicates.edits import Edits
+from irsim_evals.grader.predicates.files import Command, Data, Edits
 
 RESULT = '{"rows": [{"n": 20, "name": "orca"}, {"n": 20, "name": "dash"}], "ok": true, "none": null}'
 
@@ -75,7 +73,7 @@ def test_commands_run_in_the_folder(run: str, prints: str | None, passes: bool, 
 
 
 def test_a_command_that_does_not_end_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("irsim_evals.grader.predicates.command._SECONDS", 0.5)
+    monkeypatch.setattr("irsim_evals.grader.predicates.files._SECONDS", 0.5)
     seen = Command(run='python -c "while True: pass"').observe(left({}, folder=tmp_path))
     assert (seen.passed, seen.observed) == (False, "it takes more than 0.5 s")
 

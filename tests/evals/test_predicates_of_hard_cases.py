@@ -11,17 +11,13 @@ from irsim.scenario.yaml.document import load_text
 from irsim_evals.grader.episode import Episode, run_episode
 from irsim_evals.grader.hues import hue_of
 from irsim_evals.grader.matching import Match, matches
-from irsim_evals.grader.material import Material
-from irsim_evals.grader.predicates.each import Each
-from irsim_evals.grader.predicates.ends_at import EndsAt
-from irsim_evals.grader.predicates.enters import Enters
-from irsim_evals.grader.predicates.one_way import OneWay
-from irsim_evals.grader.predicates.placed import Placed
-from irsim_evals.grader.predicates.reachable import Reachable
-from irsim_evals.grader.predicates.timetable import Timetable
-from irsim_evals.grader.speed_limits import with_speeds
-from irsim_evals.proof.mutant import plain
+from irsim_evals.grader.material import Material, with_speeds
+from irsim_evals.grader.predicates.bodies import Each, Placed
+from irsim_evals.grader.predicates.courses import Enters, OneWay, Timetable
+from irsim_evals.grader.predicates.motion import EndsAt
+from irsim_evals.grader.predicates.ways import Reachable
 from irsim_evals.proof.mutants import mutants_of
+from irsim_evals.proof.operators import plain
 
 DRIVE = "kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: dash}"
 EAST = f"{{{DRIVE}, state: [1, 5, 0], goal: [9, 5, 0]}}"

@@ -10,9 +10,9 @@ from irsim.scenario.read import read
 from irsim.scenario.yaml.document import load_text
 from irsim_evals.grader.episode import run_episode
 from irsim_evals.grader.material import Material
-from irsim_evals.grader.predicates.plan import Plan
-from irsim_evals.grader.predicates.states import States
-from irsim_evals.grader.predicates.visits import Visits
+from irsim_evals.grader.predicates.courses import Visits
+from irsim_evals.grader.predicates.reply import States
+from irsim_evals.grader.predicates.world import Plan
 from irsim_evals.grader.selection import Selector
 
 SKETCH = """

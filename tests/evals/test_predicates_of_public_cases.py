@@ -10,12 +10,12 @@ import pytest
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import load_text
 from irsim_evals.cases.model import Pin
-from irsim_evals.cases.store import Answer, case_of, golds_of
+from irsim_evals.cases.store import case_of, golds_of
+from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.material import Material
-from irsim_evals.grader.predicates.comparison import Comparison
-from irsim_evals.grader.predicates.every_scenario import EveryScenario
-from irsim_evals.grader.predicates.pocket import Pocket
+from irsim_evals.grader.predicates.passages import Pocket
+from irsim_evals.grader.predicates.scenarios import Comparison, EveryScenario
 from irsim_evals.grader.predicates.ways import Ways
 from irsim_evals.grader.properties import value_of
 from irsim_evals.proof.changes import changed_facts, touches

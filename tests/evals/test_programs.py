@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 
 from irsim_evals.cases.instance import Instance, instance_of
-from irsim_evals.cases.store import Answer
+from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.limited import grade_answer
 from irsim_evals.grader.outcome import Outcome, Verdict
-from irsim_evals.grader.program_rules import problems_of
-from irsim_evals.grader.programs import run_program
+from irsim_evals.grader.programs import problems_of, run_program
 
 SCENE = """
 world: {width: 14, height: 9}

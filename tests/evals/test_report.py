@@ -11,19 +11,18 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from irsim_evals.cases.store import Answer, case_of, golds_of
+from irsim_evals.cases.store import case_of, golds_of
 from irsim_evals.cli.app import app
-from irsim_evals.grader.artefact import find_scenario
+from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.outcome import NOT_REACHED, Cost, Mark, Outcome
-from irsim_evals.report.asked import Asked, asked_of
 from irsim_evals.report.content import content_of
 from irsim_evals.report.drawing import draw_answer
-from irsim_evals.report.drawn import Drawn, Job
 from irsim_evals.report.html_text import code, difference, lines_of, prose
+from irsim_evals.report.load import Asked, asked_of
 from irsim_evals.report.marked_picture import NumberedMark, marked_picture
 from irsim_evals.report.page import page
-from irsim_evals.report.pictures import draw_trials
+from irsim_evals.report.pictures import Drawn, Job, draw_trials
 from irsim_evals.report.summary import summarize
 from irsim_evals.results import Results, read_results, results_of, trial_of
 from tests.evals.trials import SCENARIO, file_of, trial

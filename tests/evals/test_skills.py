@@ -15,9 +15,9 @@ from typing import Any
 import pytest
 import yaml
 
-from irsim_evals.cases.store import Answer, all_case_ids, case_ids, case_of, folder, raw_case
-from irsim_evals.cli.export import write_case
-from irsim_evals.grader.artefact import from_folder
+from irsim_evals.cases.store import all_case_ids, case_ids, case_of, folder, raw_case
+from irsim_evals.cli.cases import write_case
+from irsim_evals.grader.artefact import Answer, from_folder
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.outcome import NOT_REACHED, Verdict
 from tests.evals.conftest import EVALS, ROOT, SKILLS

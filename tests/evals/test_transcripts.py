@@ -11,7 +11,8 @@ import pytest
 from mcp import Client
 from mcp.types import TextContent
 
-from irsim_evals.cases.store import Answer, all_case_ids, case_of
+from irsim_evals.cases.store import all_case_ids, case_of
+from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_mcp.server import build_server
 from tests.evals.conftest import EVALS

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from irsim.bundled.templates import Parameter, Template, TemplateError, fill, load_all
 from irsim_evals.baselines import bm25
-from irsim_evals.baselines.reading.language import plain
-from irsim_evals.baselines.reading.quantities import Kind, Quantity, quantities
+from irsim_evals.baselines.reading.language import Kind, Quantity, plain, quantities
 from irsim_evals.baselines.task import Task
-from irsim_evals.cases.store import Answer
+from irsim_evals.grader.artefact import Answer
 
 __all__ = ["answer", "best_template", "slots"]
 

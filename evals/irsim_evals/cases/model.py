@@ -5,6 +5,7 @@ A text of the form ``$(expression)`` stands for a value of the case's parameters
 
 from __future__ import annotations
 
+import json
 import keyword
 from inspect import cleandoc
 from typing import Annotated, Any, Literal
@@ -16,9 +17,12 @@ from irsim_evals.grader.matching import Quantity
 from irsim_evals.grader.predicates._base import Predicate, registered
 from irsim_evals.grader.selection import Selector
 
-__all__ = ["Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin", "Waiver"]
+__all__ = [
+    "Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin", "Waiver", "case_schema", "schema_text",
+]  # fmt: skip
 
 Disposition = Literal["build", "ask", "flag"]
+_NAMED = ("number", "integer", "boolean")
 
 
 class _Record(BaseModel):
@@ -196,3 +200,28 @@ class Case(_Record):
         if twice:
             raise ValueError(f"ids of assertions occur twice: {', '.join(sorted(twice))}")
         return self
+
+
+def case_schema() -> dict[str, Any]:
+    """The schema; a text such as ``$(radius)`` or ``90deg`` may stand for any number or flag."""
+    found = Case.model_json_schema(by_alias=True)
+    opened: dict[str, Any] = _opened(found)
+    opened["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    opened["title"] = "A case of irsim-evals"
+    return opened
+
+
+def schema_text() -> str:
+    """The schema as the text of a file."""
+    return json.dumps(case_schema(), indent=1, ensure_ascii=False, sort_keys=True) + "\n"
+
+
+def _opened(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_opened(item) for item in value]
+    if not isinstance(value, dict):
+        return value
+    made = {key: _opened(item) for key, item in value.items()}
+    if made.get("type") in _NAMED:
+        made["type"] = [made["type"], "string"]
+    return made

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -12,43 +10,9 @@ import yaml
 
 from irsim_evals.cases.drawing import draw
 from irsim_evals.cases.instance import Instance, instance_of, substitute
+from irsim_evals.grader.artefact import BINARY, Answer
 
-__all__ = [
-    "BINARY",
-    "Answer",
-    "all_case_ids",
-    "case_ids",
-    "case_of",
-    "folder",
-    "given_pictures",
-    "golds_of",
-    "raw_case",
-    "write_given",
-]
-
-BINARY = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".npy", ".npz")
-"""Endings of files that hold a picture or an array."""
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What somebody made of a case.
-
-    Attributes:
-        name: What it is called.
-        files: Path in the folder → text.
-        reply: Last message.
-        replies: Message after each turn.
-        blobs: Path in the folder → content of a picture or an array.
-        trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
-    """
-
-    name: str
-    files: Mapping[str, str] = field(default_factory=dict)
-    reply: str = ""
-    replies: tuple[str, ...] = ()
-    blobs: Mapping[str, bytes] = field(default_factory=dict)
-    trusted_folder: Path | None = None
+__all__ = ["all_case_ids", "case_ids", "case_of", "folder", "given_pictures", "golds_of", "raw_case", "write_given"]
 
 
 def folder(kind: str) -> Path:

@@ -5,7 +5,11 @@ from __future__ import annotations
 import typer
 
 from irsim.cli.guard import handle_errors
-from irsim_evals.cli import cases, compare, export, grade, prove, report, run, schema
+from irsim_evals.cli.cases import cases, export, schema
+from irsim_evals.cli.grade import grade
+from irsim_evals.cli.prove import prove
+from irsim_evals.cli.report import compare, report
+from irsim_evals.cli.run import run
 
 __all__ = ["app"]
 
@@ -17,8 +21,5 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (
-    *(cases.cases, export.export, grade.grade, run.run),
-    *(report.report, compare.compare, prove.prove, schema.schema),
-):
+for _command in (cases, export, grade, run, report, compare, prove, schema):
     app.command()(handle_errors(_command))

@@ -1,19 +1,46 @@
-"""``irsim-evals cases``: list the cases, or show the prompt of one."""
+"""``irsim-evals cases``, ``export`` and ``schema``: the cases as a list, as folders to work in, and as JSON Schema."""
 
 from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from irsim.cli.output import console
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_of
-from irsim_evals.cli.choose import chosen
+from irsim_evals.cases.model import schema_text
+from irsim_evals.cases.store import all_case_ids, case_ids, case_of, raw_case, write_given
 
-__all__ = ["cases"]
+__all__ = ["PROMPT_FILE", "cases", "chosen", "export", "schema", "write_case"]
+
+PROMPT_FILE = "prompt.md"
+"""File with the prompt of a case."""
+_PATH = Path("schema") / "eval-case.schema.json"
+
+
+def chosen(wanted: Sequence[str] | None) -> list[str]:
+    """Ids of the cases that were asked for, by id or by category; without a wish all that count.
+
+    Raises:
+        ArgumentError: No case has that id or category.
+    """
+    if not wanted:
+        return case_ids()
+    known = all_case_ids()
+    found: list[str] = []
+    for word in wanted:
+        of_category = [name for name in known if word in raw_case(name).get("category", ())]
+        if word not in known and not of_category:
+            hint = suggestion(word, known, None)
+            raise ArgumentError(f"no case or category is called {word!r}", hint or "list them with irsim-evals cases")
+        found += [word] if word in known else of_category
+    return list(dict.fromkeys(found))
 
 
 def cases(
@@ -47,3 +74,56 @@ def cases(
 
 def _columns(instance: Instance) -> tuple[str, str]:
     return instance.case.id, ", ".join(instance.case.category)
+
+
+def export(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to write to; it is made.")],
+    wanted: Annotated[
+        list[str] | None, typer.Argument(metavar="[CASE]...", help="Ids or categories; default: all.")
+    ] = None,
+    fresh: Annotated[
+        int | None, typer.Option(min=0, max=10**18 - 1, help="Seed of fresh instances: other numbers, names and words.")
+    ] = None,
+) -> None:
+    """Write a folder for each case: its prompt, and the files that it starts with.
+
+    The agent works in the folder and leaves its scenario there, and its last message in ``reply.md``. What the user
+    says later is in ``prompt-2.md`` and so on: open each after the reply to the one before, and save that reply as
+    ``reply-1.md``.
+    """
+    instances = [case_of(name, fresh) for name in chosen(wanted)]
+    taken = [i.case.id for i in instances if (folder / _name(i)).exists()]
+    if taken:
+        raise ArgumentError(f"{folder} holds {', '.join(taken[:3])} already", "choose another folder")
+    for instance in instances:
+        write_case(folder / _name(instance), instance)
+    sys.stdout.write(f"{len(instances)} {'case' if len(instances) == 1 else 'cases'} in {folder}\n")
+
+
+def _name(instance: Instance) -> str:
+    return instance.case.id + (f"@{instance.name}" if instance.name else "")
+
+
+def write_case(folder: Path, instance: Instance) -> None:
+    """Write what an agent gets: the prompt, later turns in files of their own, and the files of the case."""
+    folder.mkdir(parents=True)
+    (folder / PROMPT_FILE).write_text(instance.prompt.strip() + "\n", encoding="utf-8")
+    for number, turn in enumerate(instance.case.turns, 2):
+        (folder / f"prompt-{number}.md").write_text(turn.strip() + "\n", encoding="utf-8")
+    write_given(folder, instance)
+
+
+def schema(
+    check: Annotated[bool, typer.Option("--check", help="Exit with 1 if the file is out of date.")] = False,
+    out: Annotated[Path, typer.Option("--out", "-o", help="File to write.")] = _PATH,
+) -> None:
+    """Write the JSON Schema of case files, which editors use for completion."""
+    text = schema_text()
+    if not check:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        out.write_text(text, encoding="utf-8")
+        return
+    if not out.is_file() or out.read_text(encoding="utf-8") != text:
+        sys.stderr.write(f"{out} is out of date: run irsim-evals schema\n")
+        raise typer.Exit(1)
+    sys.stdout.write(f"{out} is up to date\n")

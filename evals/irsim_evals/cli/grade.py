@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 import threading
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -14,19 +15,20 @@ import typer
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import all_case_ids, case_of
-from irsim_evals.cli.export import PROMPT_FILE
+from irsim_evals.cli.cases import PROMPT_FILE
 from irsim_evals.cli.verdicts import show_verdicts
-from irsim_evals.cli.watch import Changes
 from irsim_evals.grader.artefact import ArtefactError, from_folder
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.grader.outcome import Verdict
 from irsim_evals.results import results_of, trial_of, write_results
 
-__all__ = ["grade"]
+__all__ = ["Changes", "fingerprint", "grade"]
 
 _EXPORTED = re.compile(r"([\w-]+?)(?:@(\d{1,18}))?")
 _PERIOD_S = 0.5
 """Time between two looks at the folders with ``--watch`` [s]."""
+Fingerprint = tuple[tuple[str, int, int], ...]
+"""Path, time of the last change [ns] and size [bytes] of each file."""
 
 
 class _Work(NamedTuple):
@@ -202,3 +204,45 @@ def _watch(
         return
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def fingerprint(folder: Path) -> Fingerprint:
+    """What tells two states of a folder apart. Hidden files are left out; files that vanish meanwhile are, too."""
+    found = []
+    for parent, folders, names in os.walk(folder):
+        folders[:] = [name for name in folders if not name.startswith(".") and name != "__pycache__"]
+        for name in names:
+            path = os.path.join(parent, name)
+            try:
+                state = os.lstat(path)
+            except OSError:
+                continue
+            if not name.startswith("."):
+                found.append((path, state.st_mtime_ns, state.st_size))
+    return tuple(sorted(found))
+
+
+class Changes:
+    """Finds folders whose files have changed and then stayed the same from one look to the next.
+
+    A file that is still being written is left alone until nothing has happened to it between two looks.
+
+    Args:
+        folders: Folders whose present state is known already.
+    """
+
+    def __init__(self, folders: Iterable[Path]) -> None:
+        self._known = {folder: fingerprint(folder) for folder in folders}
+        self._last = dict(self._known)
+
+    def look(self, folders: Iterable[Path]) -> list[Path]:
+        """The folders to grade again, new ones included."""
+        now = {folder: fingerprint(folder) for folder in folders}
+        ready = [
+            folder
+            for folder, state in now.items()
+            if state != self._known.get(folder) and state == self._last.get(folder)
+        ]
+        self._known.update((folder, now[folder]) for folder in ready)
+        self._last = now
+        return ready

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from irsim.cli.output import console, progress
-from irsim_evals.cli.choose import chosen
+from irsim_evals.cli.cases import chosen
 from irsim_evals.proof.prove import Disagreement, Proof, as_case_rows, as_rows
 from irsim_evals.proof.prove import prove as run_proof
 

@@ -1,17 +1,26 @@
-"""``irsim-evals report``: a page, a text and a JSON file about graded answers."""
+"""``irsim-evals report`` and ``compare``: a page about graded answers, and what changed between two sets of them."""
 
 from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from irsim.cli.output import console, progress
+from irsim.diagnostics.errors import ArgumentError
 
-__all__ = ["report"]
+if TYPE_CHECKING:
+    from irsim_evals.report.comparison import Comparison
+    from irsim_evals.results import Results, Trial
+
+__all__ = ["compare", "report"]
+
+_MAX_NAMES = 10
+"""Number of cases that are listed as missing or new."""
 
 
 def report(
@@ -56,3 +65,108 @@ def report(
         out.print(f"{arm.arm}: {share} % of {arm.cases} cases pass ({low} to {high})", soft_wrap=True)
     for name, text in texts.items():
         out.print(f"wrote {output / name} ({len(text.encode(errors='replace')) / 1e6:.2f} MB)", soft_wrap=True)
+
+
+def compare(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="A [B]", help="Two files of results or folders, or one with two arms.")
+    ],
+    arm: Annotated[
+        list[str] | None, typer.Option("--arm", help="Arm to compare; twice for two arms, that of A first.")
+    ] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Compare two sets of results, case by case.
+
+    A case passes if more than half of the attempts at it do. Two files with several arms are compared arm by arm. Exits
+    with 0 if no case that passed fails now, with 1 if one does, with 2 if there is nothing to compare.
+    """
+    from irsim_evals.report.benchmark import comparison_data
+    from irsim_evals.report.comparison import compare as compare_trials
+
+    found = [compare_trials(a, b, first, second) for first, a, second, b in _sides(files, arm or [])]
+    if not any(one.pairs for one in found):
+        raise ArgumentError(found[0].sentence, "compare results on the same cases")
+    if json_output:
+        sys.stdout.write(json.dumps([comparison_data(one) for one in found], ensure_ascii=False) + "\n")
+    else:
+        for one in found:
+            _show(one)
+    if any(one.broken for one in found):
+        raise typer.Exit(1)
+
+
+def _sides(files: Sequence[Path], arms: Sequence[str]) -> list[tuple[str, list[Trial], str, list[Trial]]]:
+    """What is compared with what: name and trials of the first and of the second side.
+
+    Raises:
+        ArgumentError: The files and arms do not say which two sides are meant.
+    """
+    from irsim_evals.report.load import load_results, merge
+
+    if len(files) not in (1, 2) or len(arms) > 2:
+        raise ArgumentError("two sides are compared", "give two files, or one file and --arm twice")
+    results = [load_results(path) for path in files]
+    if len(files) == 1:
+        names = list(arms) or _arms(results[0])
+        if len(names) != 2:
+            known = ", ".join(_arms(results[0]))
+            raise ArgumentError(f"{files[0]} has the arms {known}", "choose two with --arm X --arm Y")
+        a, b = (_of(results[0], name, files[0]) for name in names)
+        return [(names[0], a, names[1], b)]
+    merge(list(zip(files, results, strict=True)))
+    if arms:
+        first, second = arms[0], arms[-1]
+        a, b = _of(results[0], first, files[0]), _of(results[1], second, files[1])
+        return [(f"{first} of {files[0]}", a, f"{second} of {files[1]}", b)]
+    one, two = (_arms(result) for result in results)
+    if len(one) == len(two) == 1:
+        a, b = results[0].trials, results[1].trials
+        names = (
+            [one[0], two[0]]
+            if one != two
+            else [f"{name} of {path}" for name, path in zip(one + two, files, strict=True)]
+        )
+        return [(names[0], a, names[1], b)]
+    common = [name for name in one if name in two]
+    if not common:
+        raise ArgumentError(
+            f"{files[0]} has the arms {', '.join(one)}, and {files[1]} has {', '.join(two)}",
+            "choose one of each with --arm X --arm Y",
+        )
+    return [
+        (f"{n} of {files[0]}", _of(results[0], n, files[0]), f"{n} of {files[1]}", _of(results[1], n, files[1]))
+        for n in common
+    ]
+
+
+def _arms(results: Results) -> list[str]:
+    from irsim_evals.report.summary import arms_of
+
+    return arms_of(results.trials)
+
+
+def _of(results: Results, arm: str, path: Path) -> list[Trial]:
+    found = [trial for trial in results.trials if trial.arm == arm]
+    if not found:
+        raise ArgumentError(f"{path} has no arm called {arm!r}", f"it has {', '.join(_arms(results))}")
+    return found
+
+
+def _show(one: Comparison) -> None:
+    out = console()
+    for word, changes in (("BROKEN", one.broken), ("FIXED", one.fixed)):
+        for change in changes:
+            shares = f" ({change.before:.0%} → {change.after:.0%} of the attempts)" if _partial(change) else ""
+            out.print(f"{word:6} {change.name}: {change.title}{shares}", soft_wrap=True)
+            if change.reason:
+                out.print(f"       {change.reason}", soft_wrap=True)
+    for word, side, names in (("only in", one.first, one.missing), ("only in", one.second, one.new)):
+        if names:
+            rest = f" and {len(names) - _MAX_NAMES} more" if len(names) > _MAX_NAMES else ""
+            out.print(f"{word} {side}: {', '.join(names[:_MAX_NAMES])}{rest}", soft_wrap=True)
+    out.print(one.sentence, soft_wrap=True)
+
+
+def _partial(change: object) -> bool:
+    return any(getattr(change, name) not in (0.0, 1.0) for name in ("before", "after"))

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
+import stat
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated
 
-from irsim_evals.cases.store import BINARY, Answer
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-__all__ = ["ArtefactError", "find_scenario", "from_folder", "rivals", "scenarios_in"]
+from irsim_evals.grader.outcome import Cost
 
+__all__ = [
+    "BINARY", "CALLS_FILE", "Answer", "ArtefactError", "cost_of", "find_scenario", "from_folder", "rivals",
+    "scenarios_in",
+]  # fmt: skip
+
+BINARY = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".npy", ".npz")
+"""Endings of files that hold a picture or an array."""
 _MAX_FILE_BYTES = 2_000_000
 """Size of a text file that is read."""
 _MAX_FILES = 200
@@ -28,6 +40,31 @@ _FENCE = re.compile(r"(?:```|~~~)(?:ya?ml)?[^\n`]*\n(.*?)(?:```|~~~)", re.DOTALL
 _SECTIONS = re.compile(r"^[ \t]*[{\"']?(?:world|robot|obstacle)[\"']?[ \t]*:", re.MULTILINE)
 _WORLD = re.compile(r"^[ \t]*[{\"']?world[\"']?[ \t]*:", re.MULTILINE)
 _IGNORED = re.compile(r"prompt(?:-\d+)?\.md|log\.jsonl|calls\.jsonl")
+CALLS_FILE = "calls.jsonl"
+"""Name under which the file is found in the folder of a case."""
+_MAX_LOG_BYTES = 16_000_000
+"""Size of a file that is read."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What somebody made of a case.
+
+    Attributes:
+        name: What it is called.
+        files: Path in the folder → text.
+        reply: Last message.
+        replies: Message after each turn.
+        blobs: Path in the folder → content of a picture or an array.
+        trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
+    """
+
+    name: str
+    files: Mapping[str, str] = field(default_factory=dict)
+    reply: str = ""
+    replies: tuple[str, ...] = ()
+    blobs: Mapping[str, bytes] = field(default_factory=dict)
+    trusted_folder: Path | None = None
 
 
 class ArtefactError(ValueError):
@@ -142,3 +179,56 @@ def _blocks(reply: str) -> list[str]:
     """The blocks of a reply that look like scenarios; where some have a world, parts of scenarios do not count."""
     blocks = [str(block) for block in _FENCE.findall(reply) if _SECTIONS.search(block)]
     return [block for block in blocks if _WORLD.search(block)] or blocks
+
+
+class _Call(BaseModel):
+    """A line of the file, as far as it matters here."""
+
+    model_config = ConfigDict(extra="ignore", strict=True)
+
+    tool: str
+    error: bool
+    tokens: Annotated[int, Field(ge=0, le=10**9)]
+
+
+def cost_of(path: Path) -> Cost:
+    """Number of calls, of failed ones, and tokens; all unknown if there is no file that can be read.
+
+    Args:
+        path: The file. A link is not followed.
+    """
+    try:
+        data = _log_of(path)
+    except FileNotFoundError:
+        return Cost()
+    except (OSError, ValueError) as error:
+        return Cost(notes=[f"{path.name}: {getattr(error, 'strerror', None) or error}; its calls are not counted"])
+    lines = [line for line in data.split(b"\n") if line.strip()]
+    calls = [call for line in lines if (call := _call_of(line)) is not None]
+    left_out = len(lines) - len(calls)
+    notes = [f"{path.name}: lines that are no record of a call and are left out: {left_out} of {len(lines)}"]
+    return Cost(
+        calls=len(calls),
+        errors=sum(call.error for call in calls),
+        tokens=sum(call.tokens for call in calls),
+        notes=notes if left_out else [],
+    )
+
+
+def _log_of(path: Path) -> bytes:
+    """Content of an ordinary file of limited size; never waits, as a pipe would make it."""
+    file = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
+    with os.fdopen(file, "rb") as stream:
+        found = os.fstat(file)
+        if not stat.S_ISREG(found.st_mode):
+            raise ValueError("it is no ordinary file")
+        if found.st_size > _MAX_LOG_BYTES:
+            raise ValueError(f"it has {found.st_size:,} bytes, and at most {_MAX_LOG_BYTES:,} are read")
+        return stream.read(_MAX_LOG_BYTES)
+
+
+def _call_of(line: bytes) -> _Call | None:
+    try:
+        return _Call.model_validate(json.loads(line))
+    except (ValueError, RecursionError, ValidationError):
+        return None

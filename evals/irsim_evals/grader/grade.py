@@ -19,15 +19,13 @@ from irsim.scenario.limits import Limits
 from irsim.scenario.read import Reading, read
 from irsim.scenario.yaml.document import Document, load_text
 from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import Answer
-from irsim_evals.grader.artefact import find_scenario, rivals, scenarios_in
+from irsim_evals.grader.artefact import Answer, find_scenario, rivals, scenarios_in
 from irsim_evals.grader.episode import Episode, run_episode
-from irsim_evals.grader.material import Material
+from irsim_evals.grader.material import Material, with_speeds
 from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verdict
 from irsim_evals.grader.predicates._base import Observation
 from irsim_evals.grader.programs import problems_in
 from irsim_evals.grader.sanity import check_goals, check_moves, check_scene
-from irsim_evals.grader.speed_limits import with_speeds
 
 __all__ = ["LIMITS", "failed_verdict", "grade"]
 

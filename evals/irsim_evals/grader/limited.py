@@ -22,22 +22,12 @@ from typing import Any
 
 from irsim.common.child import how_ended, limit
 from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import Answer
-from irsim_evals.grader.artefact import ArtefactError, from_folder
-from irsim_evals.grader.cost import CALLS_FILE, cost_of
+from irsim_evals.grader.artefact import CALLS_FILE, Answer, ArtefactError, cost_of, from_folder
 from irsim_evals.grader.outcome import Verdict
 
 __all__ = [
-    "SECONDS",
-    "LimitError",
-    "Worker",
-    "grade_all",
-    "grade_answer",
-    "grade_folder",
-    "preload",
-    "run_all",
-    "run_limited",
-]
+    "SECONDS", "LimitError", "Worker", "grade_all", "grade_answer", "grade_folder", "preload", "run_all", "run_limited",
+]  # fmt: skip
 
 SECONDS = 60.0
 """Time [s] after which the grading of one answer is ended."""

@@ -1,21 +1,28 @@
-"""How an assertion says which values it accepts, and the tolerances that apply if it does not say more."""
+"""How an assertion says which values it accepts: quantities with units, and tolerances where it does not say more."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from irsim.common.angles import wrap
-from irsim_evals.grader.units import quantity
 
-__all__ = ["TOLERANCES", "Kind", "Match", "Quantity", "matches", "show"]
+__all__ = ["TOLERANCES", "UNITS", "Kind", "Match", "Quantity", "matches", "quantity", "show"]
 
+UNITS: dict[str, float] = {
+    "m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "ft": 0.3048, "in": 0.0254, "yd": 0.9144,
+    "rad": 1.0, "deg": math.pi / 180, "°": math.pi / 180, "turn": 2 * math.pi,
+    "s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0, "Hz": 1.0,
+    "kg": 1.0, "g": 0.001, "%": 0.01, "": 1.0,
+}  # fmt: skip
+"""Factor from a unit to metres, radians, seconds, kilograms or 1."""
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d/]*)(?:/([^\s\d/]+))?\s*")
 Kind = Literal["count", "length", "size", "angle", "heading", "axis", "speed", "rate", "time", "share", "name", "flag"]
 """What a value measures, which decides how closely it must agree."""
-
 TOLERANCES: dict[str, tuple[float, float]] = {
     "count": (0.0, 0.0),
     "length": (0.02, 0.05),
@@ -31,6 +38,27 @@ TOLERANCES: dict[str, tuple[float, float]] = {
 """Relative and absolute tolerance of each kind of number; the larger one applies."""
 _ROUGHLY = 0.2
 """Relative tolerance of `about`: what a prompt calls about, roughly or circa."""
+
+
+def quantity(value: float | int | str) -> float:
+    """A number in m, rad, s or kg (and quotients of them) from a number or a text with a unit.
+
+    Raises:
+        ValueError: The text is not a number with a known unit.
+    """
+    if isinstance(value, bool):
+        raise ValueError(f"{value!r} is not a quantity")
+    if isinstance(value, (int, float)):
+        return float(value)
+    found = _QUANTITY.fullmatch(value)
+    if found is None:
+        raise ValueError(f"{value!r} is not a number with a unit such as 5.4km/h")
+    number, unit, per = found.groups()
+    for name in filter(None, (unit, per)):
+        if name not in UNITS:
+            raise ValueError(f"{value!r}: the unit {name!r} is not known; known are {', '.join(filter(None, UNITS))}")
+    return float(number) * UNITS[unit] / (UNITS[per] if per else 1.0)
+
 
 Quantity = Annotated[float, BeforeValidator(quantity)]
 """A number in SI units, or a text with a unit."""

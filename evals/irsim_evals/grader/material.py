@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
     from irsim.scenario.yaml.document import Document
 
-__all__ = ["Material", "write_files"]
+__all__ = ["Material", "with_speeds", "write_files"]
 
 
 @dataclass
@@ -105,3 +105,26 @@ def write_files(folder: Path, texts: Mapping[str, str], blobs: Mapping[str, byte
             raise ValueError(f"{name} leads out of the folder")
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content)
+
+
+def with_speeds(
+    scenario: ResolvedScenario, material: Material, seed: int, factors: Mapping[str, float]
+) -> ResolvedScenario:
+    """A scenario with other speed limits.
+
+    Args:
+        scenario: The scenario, perhaps with another behavior than that of the answer.
+        material: The answer.
+        seed: Seed of the world in which the bodies are selected.
+        factors: Name of a selection → factor of every limit of its bodies.
+    """
+    for name, factor in factors.items():
+        chosen = {body.index for body in material.bodies(material.scene(seed), name)}
+        objects = [
+            replace(record, vel_min=[v * factor for v in record.vel_min], vel_max=[v * factor for v in record.vel_max])
+            if row in chosen
+            else record
+            for row, record in enumerate(scenario.objects)
+        ]
+        scenario = replace(scenario, objects=objects)
+    return scenario

@@ -14,9 +14,8 @@ from irsim.benchmarks import DEFAULT_SEEDS
 from irsim.benchmarks.seeds import seeds_from
 from irsim.diagnostics.errors import IrsimError
 from irsim.scenario.behavior_override import parse_behavior, split_behaviors
-from irsim_evals.grader.episode_log import Started
-from irsim_evals.grader.program_rules import problems_of
-from irsim_evals.grader.programs import rehearse_program
+from irsim_evals.grader.programs import problems_of, rehearse_program
+from irsim_evals.grader.run_program import Started
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -178,7 +177,7 @@ def _name(behavior: str) -> str:
 
 def _written(material: Material, file: str) -> tuple[str, ...]:
     """Names of the behaviors of the robots of a scenario."""
-    from irsim_evals.grader.predicates.every_scenario import opened
+    from irsim_evals.grader.predicates.scenarios import opened
 
     one = opened(material, file) if file in material.texts else ""
     if isinstance(one, str):

@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 from irsim.diagnostics.errors import ArgumentError, IrsimError
 from irsim_evals.cases.instance import Instance
-from irsim_evals.harness import MODEL_ARMS
+from irsim_evals.harness.arms import MODEL_ARMS
 from irsim_evals.harness.prices import Price, set_price
 from irsim_evals.harness.recording import (
     Attempt,
@@ -166,8 +166,7 @@ def _evaluate(
     base_url: str | None,
     progress: Callable[[int, int], None] | None,
 ) -> list[Trial]:
-    from irsim_evals.harness.attempts import attempt_of, trial_from, unfinished
-    from irsim_evals.harness.replay import drift_of, replayed_model
+    from irsim_evals.harness.attempts import attempt_of, drift_of, replayed_model, trial_from, unfinished
     from irsim_evals.harness.task import Session, build_task, by_name
 
     session = Session(arm, by_name(instances), len(instances) * epochs, progress)
@@ -248,6 +247,6 @@ def _versions() -> dict[str, str]:
 
 
 def _skills(arm: str) -> str:
-    from irsim_evals.harness.briefing import skills_hash
+    from irsim_evals.harness.arms import skills_hash
 
     return skills_hash() if arm.startswith("skill") else ""

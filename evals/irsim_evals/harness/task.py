@@ -1,9 +1,11 @@
-"""One inspect_ai Task for each arm: its samples, its agent and its scorer."""
+"""One inspect_ai Task for each arm: its samples, its agent with its tools, and its scorer."""
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import shutil
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -18,18 +20,17 @@ from inspect_ai.dataset import MemoryDataset, Sample
 from inspect_ai.model import ChatMessageSystem, ChatMessageUser, ContentImage, ContentText
 from inspect_ai.scorer import Score, accuracy, scorer
 from inspect_ai.solver import solver
-from inspect_ai.tool import mcp_connection
+from inspect_ai.tool import ToolDef, ToolError, mcp_connection, mcp_server_stdio, mcp_tools
 
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import given_pictures, write_given
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.grader.outcome import Verdict
-from irsim_evals.harness.briefing import briefing, skill_folders
-from irsim_evals.harness.folder import Folder
+from irsim_evals.harness.arms import briefing, skill_folders
+from irsim_evals.harness.folder import Folder, FolderError
 from irsim_evals.harness.recording import RecordingEnds, name_of
-from irsim_evals.harness.tools import file_tools, picture_url, server_tools
 
-__all__ = ["SCORER", "Session", "Work", "build_task", "by_name"]
+__all__ = ["SCORER", "Session", "Work", "build_task", "by_name", "file_tools", "picture_url", "server_tools"]
 
 SCORER = "verdict"
 """Name of the score in the logs."""
@@ -217,3 +218,62 @@ def _grade(instance: Instance, work: Work) -> Verdict:
 def by_name(instances: Sequence[Instance]) -> dict[str, Instance]:
     """Instances by their names."""
     return {name_of(instance.case.id, instance.name): instance for instance in instances}
+
+
+def file_tools(folder: Folder) -> list[Any]:
+    """Tools that write, read and list the files of a folder."""
+
+    async def write_file(path: str, content: str) -> str:
+        return _tried(lambda: folder.write(path, content))  # type: ignore[no-any-return]
+
+    async def read_file(path: str, start: int = 0) -> Any:
+        found = _tried(lambda: folder.read(path, start))
+        return found if isinstance(found, str) else [ContentImage(image=picture_url(*found))]
+
+    async def list_files(path: str = ".") -> str:
+        names: list[str] = _tried(lambda: folder.names(path))
+        return "\n".join(names) or "there are no files"
+
+    where = {"path": "Path in your folder, such as scenario.yaml."}
+    return [
+        ToolDef(
+            write_file, "write_file", "Write a text file in your folder; an existing file is replaced.",
+            where | {"content": "The whole text of the file."}, parallel=False,
+        ),
+        ToolDef(
+            read_file, "read_file", "Read a text file, or look at a picture.",
+            where | {"start": "Character at which to begin, for a file that was cut."},
+        ),
+        ToolDef(list_files, "list_files", "List the files below a folder.", {"path": "Folder; the default is yours."}),
+    ]  # fmt: skip
+
+
+def server_tools(arm: str, folder: Path) -> list[Any]:
+    """The MCP servers of an arm, each a process of its own.
+
+    They start in the folder above that of the agent and do not import from there, so that no file of the agent takes
+    the place of one of their modules. The process gets no environment but the usual paths, hence no key.
+    """
+    found = []
+    if "+mcp" in arm:
+        found.append(_server("irsim", folder, "irsim_mcp", "--workspace", str(folder)))
+    if "+distractors" in arm:
+        found.append(_server("office", folder, "irsim_evals.harness.distractors"))
+    return found
+
+
+def picture_url(kind: str, data: bytes) -> str:
+    """A picture as a ``data:`` URL."""
+    return f"data:{kind};base64,{base64.b64encode(data).decode('ascii')}"
+
+
+def _server(name: str, folder: Path, module: str, *arguments: str) -> Any:
+    command = ["-P", "-m", module, *arguments]
+    return mcp_tools(mcp_server_stdio(name=name, command=sys.executable, args=command, cwd=folder.parent))
+
+
+def _tried(work: Any) -> Any:
+    try:
+        return work()
+    except FolderError as error:
+        raise ToolError(str(error)) from None

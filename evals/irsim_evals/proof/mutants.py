@@ -1,16 +1,25 @@
-"""Typed mutants of a scenario: what a wrong answer looks like that somebody could really give."""
+"""Mutants of a right answer: what a wrong one looks like that somebody could really give."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
+from dataclasses import replace
 
-from irsim_evals.proof import mutants_of_entries, mutants_of_layouts, mutants_of_values
-from irsim_evals.proof.mutant import OPERATORS, Data, Mutant, plain
+import yaml
 
-__all__ = ["mutants_of"]
+from irsim_evals.cases.instance import Instance
+from irsim_evals.grader.artefact import Answer
+from irsim_evals.proof import mutants_of_entries, mutants_of_values
+from irsim_evals.proof.operators import OPERATORS, Data, Mutant, plain
 
-_MODULES = (mutants_of_entries, mutants_of_values, mutants_of_layouts)
+__all__ = ["mutants_of", "mutants_of_answer", "mutants_of_text"]
+
+_MODULES = (mutants_of_entries, mutants_of_values)
 """They register their operators when they are imported."""
+_NUMBER = re.compile(r"(?<![\w.#\"'-])(-?\d+(?:\.\d+)?)(?![\w.:\"'])")
+_BOAST = "Done. Everything was built exactly as you asked, and all assertions passed."
+_TAG = "!!python/object/apply:os.getcwd []"
 
 
 def mutants_of(data: Data) -> Iterator[Mutant]:
@@ -20,3 +29,55 @@ def mutants_of(data: Data) -> Iterator[Mutant]:
         for what, changed in make(plain(data)):
             if changed != data:
                 yield Mutant(name, what, changed)
+
+
+def mutants_of_text(text: str) -> Iterator[tuple[str, str, Data]]:
+    """What was changed, the new text and its data, for each number of a scenario: it is doubled, or 1 if it is 0."""
+    start = 0
+    for k, line in enumerate(text.splitlines(keepends=True)):
+        code = line.partition("#")[0]
+        for found in _NUMBER.finditer(code):
+            value = float(found[1])
+            new = "1" if value == 0 else f"{value * 2:g}"
+            changed = text[: start + found.start()] + new + text[start + found.end() :]
+            try:
+                data = yaml.safe_load(changed)
+            except yaml.YAMLError:
+                continue
+            if isinstance(data, dict):
+                yield f"line {k + 1}: {found[1]} becomes {new}", changed, data
+        start += len(line)
+
+
+def mutants_of_answer(instance: Instance, answer: Answer, main: str | None) -> Iterator[tuple[str, str, str, Answer]]:
+    """Operator, what was changed, fact that it touches (``reply``, ``comments``, ``layout``, ``files``), the mutant.
+
+    Args:
+        instance: The case.
+        answer: A right answer.
+        main: Name of the file with the scenario; None if there is none.
+    """
+    for what, reply in (("left out", ""), ("a boast", _BOAST), ("the prompt", instance.prompt)):
+        yield "reply_replaced", what, "reply", replace(answer, reply=reply, replies=(*answer.replies[:-1], reply))
+    earlier = answer.replies[:-1]
+    if earlier:
+        yield "reply_replaced", "earlier ones left out", "replies", replace(answer, replies=("", *answer.replies[1:]))
+    if main is None:
+        return
+    text = answer.files[main]
+
+    def with_text(new: str) -> Answer:
+        return replace(answer, files={**answer.files, main: new})
+
+    if main in instance.case.files:
+        plain = re.sub(r"\s*#.*", "", text)
+        if plain != text:
+            yield "comments_dropped", "all comments", "comments", with_text(plain.lstrip("\n"))
+        data = yaml.safe_load(text)
+        yield "reformatted", "written by a program", "layout", with_text(yaml.safe_dump(data, sort_keys=False))
+        yield "edit_left_out", "the file as it was given", "edit", with_text(instance.case.files[main])
+    if instance.case.python == "none":
+        files = {**answer.files, "make_scenario.py": "print('world: {}')\n"}
+        yield "program_left", "a program that nobody asked for", "files", replace(answer, files=files)
+    yield "tag_added", "a tag that runs code", "files", with_text(f"{text}\nplugins: {_TAG}\n")
+    yield "cut_short", "the first half of the file", "files", with_text(text[: len(text) // 2] + "\n  - {")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from irsim_evals.proof.mutant import Change, Data, each_entry, entries, operator, with_entry
+from irsim_evals.proof.operators import Change, Data, each_entry, entries, operator, with_entry
 
 _KINEMATICS = ("diff", "omni", "omni_angular", "acker")
 _BEHAVIORS = ("dash", "rvo", "orca", "sfm")

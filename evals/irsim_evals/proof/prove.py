@@ -12,10 +12,8 @@ from irsim_evals.cases.store import case_ids
 from irsim_evals.grader.grade import failed_verdict, grade
 from irsim_evals.grader.limited import SECONDS, LimitError, run_all
 from irsim_evals.grader.outcome import NOT_REACHED, Verdict
-from irsim_evals.proof.kinds import kind_of
 from irsim_evals.proof.oracle.opinions import opinions
-from irsim_evals.proof.trial import Kind, Trial
-from irsim_evals.proof.trials import trials_of
+from irsim_evals.proof.trials import Kind, Trial, kind_of, trials_of
 
 __all__ = ["Disagreement", "Proof", "as_case_rows", "as_rows", "prove", "tried"]
 

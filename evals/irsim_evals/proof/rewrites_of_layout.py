@@ -7,17 +7,17 @@ from collections.abc import Callable
 from typing import Any
 
 from irsim_evals.grader.scene import Scene
-from irsim_evals.proof.rewrite import Data, dump, entries, rewrite
+from irsim_evals.proof.operators import Data, dump, entries, rewrite
 
 
 @rewrite
 def one_entry_each(text: str, data: Data, scene: Scene) -> str | None:
     """Groups written out: one entry for each object, with its own pose and goal."""
-    if scene.env.scenario.placements or not any(entry.get("number", 1) > 1 for _, entry in entries(data)):
+    if scene.env.scenario.placements or not any(entry.get("number", 1) > 1 for *_, entry in entries(data)):
         return None
     bodies = iter(scene.bodies)
     made: Data = {key: value for key, value in data.items() if key not in ("robot", "obstacle")}
-    for section, entry in entries(data):
+    for section, _, entry in entries(data):
         for _ in range(entry.get("number", 1)):
             body = next(bodies)
             one = {key: value for key, value in entry.items() if key not in ("number", "distribution", "state", "goal")}
@@ -42,7 +42,7 @@ def one_entry_each(text: str, data: Data, scene: Scene) -> str | None:
 def _rectangles(data: Data, change: Callable[[Data, Data], None]) -> str | None:
     """Apply a change to each static obstacle with the shape of a rectangle and one pose."""
     changed = False
-    for section, entry in entries(data):
+    for section, _, entry in entries(data):
         shape, state = entry.get("shape"), entry.get("state")
         if section != "obstacle" or "kinematics" in entry or not isinstance(shape, dict) or entry.get("number", 1) != 1:
             continue
@@ -88,7 +88,7 @@ def rectangles_turned(text: str, data: Data, scene: Scene) -> str | None:
 def slightly_off(text: str, data: Data, scene: Scene) -> str | None:
     """Positions of robots a tenth of a millimetre off."""
     changed = False
-    for section, entry in entries(data):
+    for section, _, entry in entries(data):
         state = entry.get("state")
         if section == "robot" and isinstance(state, list) and state and isinstance(state[0], (int, float)):
             state[0], changed = state[0] + 1e-4, True
@@ -108,10 +108,10 @@ def obstacles_in_reverse(text: str, data: Data, scene: Scene) -> str | None:
 @rewrite
 def polygons_as_rectangles(text: str, data: Data, scene: Scene) -> str | None:
     """Polygons with four right angles as rectangles."""
-    if scene.env.scenario.placements or len(scene.bodies) != len(entries(data)):
+    if scene.env.scenario.placements or len(scene.bodies) != sum(1 for _ in entries(data)):
         return None
     changed = False
-    for body, (section, entry) in zip(scene.bodies, entries(data), strict=True):
+    for body, (section, _, entry) in zip(scene.bodies, entries(data), strict=True):
         shape = entry.get("shape")
         if section != "obstacle" or not isinstance(shape, dict) or shape.get("name") != "polygon":
             continue
@@ -127,7 +127,7 @@ def polygons_as_rectangles(text: str, data: Data, scene: Scene) -> str | None:
 def entries_as_groups(text: str, data: Data, scene: Scene) -> str | None:
     """Static obstacles that differ only in their pose as one group with a list of poses."""
     groups: dict[str, list[Data]] = {}
-    for section, entry in entries(data):
+    for section, _, entry in entries(data):
         state = entry.get("state")
         if section != "obstacle" or "kinematics" in entry or "name" in entry or entry.get("number", 1) != 1:
             continue
@@ -161,7 +161,7 @@ def _mirrored(data: Data, scene: Scene, axis: int) -> str | None:
     def poses(value: list[Any]) -> list[Any]:
         return [poses(item) for item in value] if isinstance(value[0], list) else pose(value)
 
-    for _, entry in entries(data):
+    for *_, entry in entries(data):
         shape = entry.get("shape")
         if "distribution" in entry or isinstance(shape, list) or "sensors" in entry or entry.get("state") is None:
             return None

@@ -2,29 +2,110 @@
 
 from __future__ import annotations
 
+import functools
 import re
+import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
+from typing import Literal
 
 import yaml
 
 from irsim.bundled.templates.store import load, names
+from irsim.diagnostics.errors import IrsimError
+from irsim.scenario.read import read
 from irsim.scenario.yaml.comments import places_of_comments
 from irsim.scenario.yaml.document import load_text
 from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import Answer, case_of, golds_of
-from irsim_evals.grader.artefact import find_scenario
-from irsim_evals.proof.kinds import scene_of
-from irsim_evals.proof.mutants import mutants_of
-from irsim_evals.proof.mutants_of_answers import mutants_of_answer
-from irsim_evals.proof.mutants_of_text import mutants_of_text
-from irsim_evals.proof.rewrite import Data, dump
+from irsim_evals.cases.store import case_of, golds_of
+from irsim_evals.grader.artefact import Answer, find_scenario
+from irsim_evals.grader.grade import LIMITS
+from irsim_evals.grader.material import write_files
+from irsim_evals.grader.scene import Scene, open_scene
+from irsim_evals.proof.changes import changed_facts, touches
+from irsim_evals.proof.mutants import mutants_of, mutants_of_answer, mutants_of_text
+from irsim_evals.proof.operators import Data, dump
 from irsim_evals.proof.rewrites import rewrites_of
-from irsim_evals.proof.trial import Trial
 
-__all__ = ["trials_of"]
+__all__ = ["Kind", "Trial", "kind_of", "scene_of", "trials_of"]
+
+Kind = Literal["gold", "rewrite", "mutant", "pinned mutant", "broken mutant", "free mutant", "null"]
+"""What a trial is. A ``mutant`` is a changed scenario whose world has not been compared with the original one yet."""
+_NEVER_RIGHT = ("on_top", "goal_outside")
+"""Operators whose mutants break what must hold in every scenario."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One answer, and what it was made from.
+
+    Attributes:
+        case, gold: Case and gold that it was made from.
+        kind: What it is.
+        operator: What made it.
+        what: What was changed.
+        instance, answer: What is graded.
+        file: Name of the scenario in the answer that was changed; empty if another part was.
+        original: Text of that scenario before.
+    """
+
+    case: str
+    gold: str
+    kind: Kind
+    operator: str
+    what: str
+    instance: Instance = field(repr=False)
+    answer: Answer = field(repr=False)
+    file: str = ""
+    original: str = field(default="", repr=False)
+
+    @property
+    def right(self) -> bool:
+        """Whether the grader must accept it."""
+        return self.kind in ("gold", "rewrite", "free mutant")
+
+
+def kind_of(trial: Trial) -> Kind | None:
+    """Whether a mutant must be rejected or accepted; None if the case does not say."""
+    case, seed = trial.instance.case, trial.instance.case.seeds[0]
+    before = scene_of(trial.original, tuple(trial.answer.blobs.items()), seed)
+    after = _build(trial.answer.files[trial.file], trial.answer.blobs, seed)
+    if after is None or before is None:
+        return "broken mutant"
+    changed = changed_facts(before, after)
+    if trial.operator in _NEVER_RIGHT and not (trial.operator == "on_top" and case.overlap):
+        return "pinned mutant"
+    if touches(case, (before, after), changed, case.pins):
+        return "pinned mutant"
+    if changed and changed == touches(case, (before, after), changed, case.free):
+        return "free mutant"
+    return None
+
+
+@functools.lru_cache(maxsize=4)
+def scene_of(text: str, blobs: tuple[tuple[str, bytes], ...], seed: int) -> Scene | None:
+    """The world of a gold, which is the original of many mutants in a row; None if it cannot be built."""
+    return _build(text, dict(blobs), seed)
+
+
+def _build(text: str, blobs: Mapping[str, bytes], seed: int) -> Scene | None:
+    """The world of a scenario; None if it cannot be built."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_files(Path(folder), {}, blobs)
+        document = load_text(text, path=f"{folder}/scenario.yaml", limits=replace(LIMITS, root=folder))
+        if document.fatal:
+            return None
+        reading = read(document, limits=document.limits)
+        bad = [item for item in reading.diagnostics if item.severity == "error" or item.code == "unknown-key"]
+        if reading.scenario is None or bad:
+            return None
+        try:
+            return open_scene(reading.scenario, seed)
+        except IrsimError:
+            return None
 
 
 def trials_of(

@@ -14,7 +14,6 @@ from typing import Any
 
 from irsim_evals.report.comparison import Comparison
 from irsim_evals.report.content import Content
-from irsim_evals.report.sections import proof_totals
 from irsim_evals.report.summary import ArmSummary, Table
 from irsim_evals.results import Trial
 from irsim_evals.statistics import Interval
@@ -53,7 +52,7 @@ def aggregates(content: Content) -> dict[str, Any]:
         "comparisons": [comparison_data(one) for one in content.comparisons],
         "proof": None
         if content.proof is None
-        else [{"what": name, "wrong": wrong, **_interval(share)} for name, wrong, share in proof_totals(content.proof)],
+        else [{"what": name, "wrong": wrong, **_interval(share)} for name, wrong, share in content.proof.totals()],
     }
 
 

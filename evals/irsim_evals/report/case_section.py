@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from irsim_evals.grader.outcome import NOT_REACHED, Outcome
-from irsim_evals.report.asked import Asked
 from irsim_evals.report.content import Content
-from irsim_evals.report.drawn import Drawn
-from irsim_evals.report.html_text import code, difference, escaped, lines_of, number, percent, prose, slug
+from irsim_evals.report.html_text import UNITS, code, difference, escaped, lines_of, number, percent, prose, slug
+from irsim_evals.report.load import Asked
 from irsim_evals.report.marked_picture import NumberedMark, marked_picture
-from irsim_evals.report.pictures import Gallery, main_file
-from irsim_evals.report.sections import UNITS
+from irsim_evals.report.pictures import Drawn, Gallery, main_file
 from irsim_evals.results import Trial
 
 __all__ = ["case_sections"]

@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from irsim_evals.report.asked import Asked, asked_of
 from irsim_evals.report.comparison import Comparison, compare
-from irsim_evals.report.load import Proof
+from irsim_evals.report.load import Asked, Proof, asked_of
 from irsim_evals.report.pictures import Gallery, draw_trials
 from irsim_evals.report.summary import ArmSummary, Table, arms_of, summarize, table_by
 from irsim_evals.results import Results

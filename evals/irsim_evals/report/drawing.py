@@ -19,7 +19,7 @@ from irsim_evals.grader.episode import run_episode
 from irsim_evals.grader.grade import LIMITS
 from irsim_evals.grader.material import write_files
 from irsim_evals.grader.scene import open_scene
-from irsim_evals.report.drawn import Drawn, Job
+from irsim_evals.report.pictures import Drawn, Job
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation

@@ -13,8 +13,14 @@ from irsim.scenario.limits import Limits
 from irsim.scenario.yaml.document import Document, load_text
 from irsim.scenario.yaml.nodes import Node
 
-__all__ = ["code", "difference", "escaped", "lines_of", "number", "percent", "prose", "slug"]
+__all__ = ["UNITS", "code", "difference", "escaped", "lines_of", "number", "percent", "prose", "slug"]
 
+UNITS = {
+    "tokens": "tokens", "calls": "calls", "errors": "failed calls", "seconds": "seconds",
+    "turns": "answers of the model", "input_tokens": "tokens read", "output_tokens": "tokens written",
+    "cache_tokens": "tokens cached", "dollars": "US dollars",
+}  # fmt: skip
+"""Names of costs as the report prints them; others keep their own."""
 _MAX_LINES = 400
 _MAX_CHARACTERS = 40_000
 """Length of a text that the page shows."""

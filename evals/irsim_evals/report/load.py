@@ -1,9 +1,10 @@
-"""Reading files of results and of a proof, and putting several into one."""
+"""Reading files of results and of a proof, putting several into one, and finding the cases that they are about."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,19 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
-from irsim_evals.results import Results, Trial, read_results
+from irsim_evals.cases.store import all_case_ids, case_of, given_pictures
+from irsim_evals.results import Results, Trial, cases_hash, read_results
+from irsim_evals.statistics import Interval, wilson
 
-__all__ = ["Proof", "ProofRow", "load_proof", "load_results", "merge"]
+__all__ = ["Asked", "Proof", "ProofRow", "asked_of", "load_proof", "load_results", "merge"]
 
+_RIGHT_KINDS = ("gold", "rewrite", "free mutant")
+"""Kinds of the proof that the grader must accept; it must reject all others."""
 _MAX_MESSAGE = 120
 """Characters of somebody else's message that an error repeats."""
+_ADVICE = "write one with irsim-evals grade DIR --output FILE or irsim-evals run"
+_EPISODE_S = 10.0
+"""Length of the episode that is drawn where a case has none [s]."""
 
 
 class ProofRow(BaseModel):
@@ -38,6 +46,15 @@ class Proof(BaseModel):
     left_out: dict[str, int] = {}
     seconds: float = 0.0
 
+    def totals(self) -> list[tuple[str, int, Interval]]:
+        """Wrong answers that were accepted and right ones that were rejected: name, number, share of all of them."""
+        found = []
+        for name, right in (("wrong answers accepted", False), ("right answers rejected", True)):
+            rows = [row for row in self.rows if (row.kind in _RIGHT_KINDS) == right]
+            wrong, total = sum(row.wrong for row in rows), sum(row.trials for row in rows)
+            found.append((f"{name}, of {total:,}", wrong, wilson(min(wrong, total), total)))
+        return found
+
 
 def load_results(path: Path) -> Results:
     """Read a file of results, or ``results.json`` of a folder.
@@ -56,9 +73,6 @@ def load_results(path: Path) -> Results:
     if not results.trials:
         raise ArgumentError(f"{path} holds no trials", _ADVICE)
     return results
-
-
-_ADVICE = "write one with irsim-evals grade DIR --output FILE or irsim-evals run"
 
 
 def load_proof(path: Path) -> Proof:
@@ -112,3 +126,57 @@ def _first(error: ValidationError) -> str:
     problem = error.errors()[0]
     where = ".".join(str(part) for part in problem["loc"])
     return clean(f"{where}: {problem['msg']}" if where else problem["msg"], _MAX_MESSAGE)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a case asks.
+
+    Attributes:
+        known: Whether the case is one of those that are installed, unchanged.
+        given: Files that the agent started with.
+        seed: Seed of the first world.
+        episode_seed: Seed of the first episode.
+        episode_seconds: Its length [s].
+        episode_behavior: Behavior that drives the robots in it instead of theirs.
+        pictures: Pictures that the agent started with: name → content of the file.
+    """
+
+    known: bool = False
+    given: Mapping[str, str] = field(default_factory=dict)
+    seed: int = 0
+    episode_seed: int = 0
+    episode_seconds: float = _EPISODE_S
+    episode_behavior: str | None = None
+    pictures: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def asked_of(results: Results) -> list[Asked]:
+    """What the case of each trial asks; nothing is known if the trials were made with other cases than the present."""
+    if results.cases != cases_hash():
+        return [Asked() for _ in results.trials]
+    found: dict[tuple[str, str], Asked] = {}
+    for trial in results.trials:
+        if trial.key not in found:
+            found[trial.key] = _asked(trial)
+    return [found[trial.key] for trial in results.trials]
+
+
+def _asked(trial: Trial) -> Asked:
+    if trial.verdict.case not in all_case_ids():
+        return Asked()
+    try:
+        instance = case_of(trial.verdict.case, int(trial.verdict.instance) if trial.verdict.instance else None)
+    except ValueError:  # an instance that is no number
+        return Asked()
+    case = instance.case
+    plan = case.episodes[0] if case.episodes else None
+    return Asked(
+        known=True,
+        given=case.files,
+        seed=case.seeds[0],
+        episode_seed=plan.seeds[0] if plan else case.seeds[0],
+        episode_seconds=float(plan.seconds) if plan else _EPISODE_S,
+        episode_behavior=plan.behavior if plan else None,
+        pictures=given_pictures(instance),
+    )

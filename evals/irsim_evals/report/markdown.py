@@ -7,8 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from irsim.common.text import clean
 from irsim_evals.report.content import Content
-from irsim_evals.report.html_text import number, percent
-from irsim_evals.report.sections import UNITS, proof_totals
+from irsim_evals.report.html_text import UNITS, number, percent
 from irsim_evals.report.summary import ArmSummary, Cell, Table
 from irsim_evals.results import Trial
 
@@ -37,7 +36,7 @@ def markdown(content: Content) -> str:
     if content.proof is not None:
         rows = [
             [name, str(wrong), f"{share.estimate:.2%}", f"{share.high:.2%}"]
-            for name, wrong, share in proof_totals(content.proof)
+            for name, wrong, share in content.proof.totals()
         ]
         parts += ["## Proof of the grader", _rows(["", "number", "share", "upper bound"], rows)]
     for arm in content.arms:

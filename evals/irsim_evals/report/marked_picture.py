@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.report.drawn import Drawn
 from irsim_evals.report.html_text import escaped
+from irsim_evals.report.pictures import Drawn
 
 __all__ = ["NumberedMark", "marked_picture"]
 

@@ -3,22 +3,62 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from irsim_evals.cases.store import Answer
-from irsim_evals.grader.artefact import find_scenario
+from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.limited import LimitError, preload, run_all
-from irsim_evals.report.asked import Asked
-from irsim_evals.report.drawn import Drawn, Job
+from irsim_evals.report.load import Asked
 from irsim_evals.results import Trial
 
-__all__ = ["Gallery", "draw_trials", "main_file"]
+__all__ = ["Drawn", "Gallery", "Job", "draw_trials", "main_file"]
 
 _SECONDS = 30.0
 """Time after which the drawing of one answer is ended [s]."""
 _MAX_BYTES = 5_000_000
 """Size of all pictures of a page; the failed trials come first."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is drawn: the world of a scenario at its start, and at the end of an episode.
+
+    Attributes:
+        name: Name of the scenario's file.
+        text: Its text.
+        start_seed: Seed of the world at its start.
+        end_seed: Seed of the episode.
+        seconds: When the episode ends [s].
+        behavior: Behavior that drives the robots instead of theirs.
+        pictures: Maps that lie beside the scenario: name → content of the file.
+    """
+
+    name: str
+    text: str
+    start_seed: int
+    end_seed: int
+    seconds: float
+    behavior: str | None = None
+    pictures: Mapping[str, bytes] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A picture without axes: the whole of it shows ``extent``.
+
+    Attributes:
+        png: Content of the file.
+        extent: x from, x to, y from, y to [m].
+        size: Width and height [px].
+        time: Time that it shows [s].
+        seed: Seed of the world.
+    """
+
+    png: bytes
+    extent: tuple[float, float, float, float]
+    size: tuple[int, int]
+    time: float
+    seed: int
 
 
 @dataclass

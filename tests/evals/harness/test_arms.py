@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from irsim_evals.cases.instance import Instance
-from irsim_evals.harness import MODEL_ARMS
+from irsim_evals.harness.arms import MODEL_ARMS
 from tests.evals.harness.conftest import KEY, MODEL
 from tests.evals.harness.messages_api import MessagesApi, Reply, messages_api, results_in, turn_of
 
@@ -160,10 +160,10 @@ def test_an_agent_cannot_leave_its_folder(empty_world: Instance, scenario: str, 
 def test_a_server_that_does_not_start_fails_the_attempt_with_a_reason(
     empty_world: Instance, service: MessagesApi, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from irsim_evals.harness import tools
+    from irsim_evals.harness import task
 
-    start = tools._server
-    monkeypatch.setattr(tools, "_server", lambda name, folder, *_: start(name, folder, "no_such_module"))
+    start = task._server
+    monkeypatch.setattr(task, "_server", lambda name, folder, *_: start(name, folder, "no_such_module"))
     (trial,) = run("skill+mcp", [empty_world], service, tmp_path)
     assert trial.ended.startswith("the attempt failed: ")
     assert (trial.verdict.strict, service.requests) == (False, [])

@@ -12,22 +12,22 @@ from mcp.types import TextContent
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.store import case_of, golds_of
 from irsim_evals.grader.outcome import Cost
-from irsim_evals.harness import MODEL_ARMS
-from irsim_evals.harness.briefing import briefing, skill_folders
+from irsim_evals.harness.arms import MODEL_ARMS, briefing, skill_folders
 from irsim_evals.harness.distractors import build_office
 from irsim_evals.harness.folder import Folder, FolderError
 from irsim_evals.harness.prices import known_price
 from irsim_evals.harness.recording import (
     Attempt,
     Header,
+    Names,
     Recording,
     grade_recording,
     read_recording,
+    scrubbed,
     task_hash,
     write_recording,
 )
 from irsim_evals.harness.run import run_arm
-from irsim_evals.harness.scrub import Names, scrubbed
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from typing import Any
 
 from irsim_evals.baselines.building import layouts, people
 from irsim_evals.baselines.building.bodies import Entry, half_extent, robot
-from irsim_evals.baselines.editing.text import entries
+from irsim_evals.baselines.edits import entries
 from irsim_evals.baselines.reading.request import Group, Request
 
 __all__ = ["build", "describe"]

@@ -6,18 +6,9 @@ import math
 import re
 
 __all__ = [
-    "BEHAVIORS",
-    "DIRECTIONS",
-    "DRIVES",
-    "LAYOUTS",
-    "NOT_FLAT",
-    "NOUNS",
-    "NO_BEHAVIOR",
-    "UNKNOWN_REFERENCE",
-    "angle_of",
-    "first",
-    "has",
-]
+    "BEHAVIORS", "DIRECTIONS", "DRIVES", "LAYOUTS", "NOT_FLAT", "NOUNS", "NO_BEHAVIOR", "UNKNOWN_REFERENCE", "angle_of",
+    "first", "has",
+]  # fmt: skip
 
 NOUNS: dict[str, str] = {
     "person": r"pedestrians?|people|persons?|humans?|walkers?|bystanders?|visitors?|shoppers?|passers-?by|strollers?"

@@ -7,11 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from irsim_evals.baselines.reading.facts import add_facts
-from irsim_evals.baselines.reading.language import Language, language_of, plain
+from irsim_evals.baselines.reading.language import NUMBER, Language, language_of, plain
 from irsim_evals.baselines.reading.lexicon import BEHAVIORS, DRIVES, LAYOUTS, NO_BEHAVIOR, first, has
-from irsim_evals.baselines.reading.mentions import Mention, mentions_of
-from irsim_evals.baselines.reading.places import Place, places_of
-from irsim_evals.baselines.reading.quantities import NUMBER
+from irsim_evals.baselines.reading.mentions import Mention, Place, mentions_of, places_of
 
 __all__ = ["Group", "Request", "request_of"]
 

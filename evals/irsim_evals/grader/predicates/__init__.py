@@ -1,1 +1,1 @@
-"""Predicates: what an assertion can say. Each is one file, named like the key under which cases use it."""
+"""Predicates: what an assertion can say, by subject; ``@register`` names the key under which cases use each."""

@@ -19,16 +19,9 @@ if TYPE_CHECKING:
     from irsim_evals.grader.scene import Scene
 
 __all__ = [
-    "AnswerPredicate",
-    "EpisodePredicate",
-    "Observation",
-    "Predicate",
-    "ScenePredicate",
-    "SeedsPredicate",
-    "register",
-    "registered",
-    "summary",
-]
+    "AnswerPredicate", "EpisodePredicate", "Observation", "Predicate", "ScenePredicate", "SeedsPredicate", "register",
+    "registered", "summary",
+]  # fmt: skip
 
 _MAX_NAMED = 4
 """Number of bodies that an observation names."""

@@ -1,16 +1,32 @@
-"""``files``: which files the agent leaves."""
+"""What the agent left: files, values in them, edits of what was given, programs and what commands print."""
 
 from __future__ import annotations
 
 import fnmatch
+import json
 import re
-from typing import TYPE_CHECKING
+import shlex
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any
 
-from irsim_evals.grader.matching import Match, matches
+import yaml
+from pydantic import Field
+
+from irsim_evals.grader.matching import Match, matches, show
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
+from irsim_evals.grader.programs import problems_in, run_program
 
 if TYPE_CHECKING:
+    from irsim.results.diff import ScenarioDiff
     from irsim_evals.grader.material import Material
+
+_MAX_SHOWN = 6
+"""Number of values that an observation shows."""
+_SECONDS = 60.0
+"""Time [s] after which a command is ended."""
+_MAX_QUOTED = 200
+"""Number of characters of an output that an observation quotes."""
 
 
 @register("files")
@@ -43,3 +59,218 @@ class Files(AnswerPredicate):
             f"{self.pattern}: {self.number.words()}",
             "; ".join([f"{len(names)}: {', '.join(names[:6])}", *wrong[:3]]),
         )
+
+
+@register("data")
+class Data(AnswerPredicate):
+    """Every value at some paths of a file of JSON is accepted. A path at which there is no value fails."""
+
+    file: str
+    """Path of the file in the folder."""
+    has: dict[str, Match]
+    """Path such as ``rows[*].success.n``, where ``*`` stands for every entry → accepted values; numbers are compared
+    exactly unless a tolerance is given."""
+
+    def observe(self, material: Material) -> Observation:
+        """Read the file."""
+        expected = f"{self.file}: " + ", ".join(f"{path} {match.words()}" for path, match in self.has.items())
+        text = material.texts.get(self.file)
+        if text is None:
+            return Observation(False, expected, "there is no such file")
+        try:
+            content = json.loads(text)
+        except (ValueError, RecursionError):
+            return Observation(False, expected, "it is no JSON")
+        seen, passed = [], True
+        for path, match in self.has.items():
+            found = values_at(content, path)
+            passed &= bool(found) and all(matches(match, value, "count") for value in found)
+            more = len(found) - _MAX_SHOWN
+            shown = ", ".join(map(show, found[:_MAX_SHOWN])) or "no value"
+            seen.append(f"{path}: {shown}" + (f" and {more} more" if more > 0 else ""))
+        return Observation(passed, expected, "; ".join(seen))
+
+
+def values_at(data: Any, path: str) -> list[Any]:
+    """The values at a path; none where a part of it does not exist."""
+    found = [data]
+    for name, index in re.findall(r"([^.\[\]]+)|\[(\d+|\*)\]", path):
+        if name:
+            found = [item[name] for item in found if isinstance(item, dict) and name in item]
+        elif index == "*":
+            found = [item for entries in found if isinstance(entries, list) for item in entries]
+        else:
+            found = [item for entries in found if isinstance(entries, list) for item in entries[int(index) :][:1]]
+    return found
+
+
+@register("edits")
+class Edits(AnswerPredicate):
+    """What differs between the file that was given and the file that was left: by key, and in the world it makes."""
+
+    stage = "edits"
+
+    base: str = "scenario.yaml"
+    """The file that was given."""
+    file: str | None = None
+    """The file that was left; default: the scenario of the answer."""
+    only: list[str] | None = None
+    """Paths that may change: ``robot[0].sensors[0].range_max``; what lies below one may change, too. ``*`` stands for
+    any index. A path with ``world:`` before it names a fact of the world instead of a key, as ``irsim diff`` does."""
+    must: dict[str, Match] = {}
+    """Path → accepted new values."""
+    lines: Match | None = None
+    """Accepted numbers of changed lines; removed and added lines count once each, a replaced line twice."""
+    keeps_comments: bool | None = None
+    """Whether every comment must still be there."""
+    same: bool | None = None
+    """Whether nothing at all may differ."""
+    not_left: list[str] = Field(default_factory=list)
+    """Regular expressions that no line of the new file may contain."""
+
+    def observe(self, material: Material) -> Observation:
+        """Compare the files."""
+        before, after = material.given.get(self.base), material.texts.get(self.file or material.main or "")
+        expected = self._words()
+        if before is None or after is None:
+            return Observation(False, expected, "there is nothing to compare")
+        diff = compared(before, after)
+        wrong: list[str] = []
+        where = None
+        if self.only is not None:
+            odd = [change.path for change in diff.keys if change.change != "moved" and not self._allowed(change.path)]
+            wrong += [f"{path} differs, too" for path in odd]
+            where = odd[0] if odd else None
+        if self.same is not None and diff.same != self.same:
+            wrong.append("they differ" if not diff.same else "nothing differs")
+        data = yaml.safe_load(after)
+        for path, match in self.must.items():
+            value = value_at(data, path)
+            if not matches(match, value, "size"):
+                wrong.append(f"{path} is {show(value)}")
+                where = where or path
+        if self.lines is not None:
+            changed = diff.lines_removed + diff.lines_added
+            if not matches(self.lines, changed, "count"):
+                wrong.append(f"{changed} lines were changed")
+        if self.keeps_comments and diff.comments_lost:
+            wrong.append(f"the comment {diff.comments_lost[0]!r} is gone")
+        for pattern in self.not_left:
+            if re.search(pattern, after):
+                wrong.append(f"it still holds {pattern!r}")
+        return Observation(not wrong, expected, "; ".join(wrong[:4]) if wrong else diff.summary, where)
+
+    def _words(self) -> str:
+        parts = []
+        if self.only is not None:
+            parts.append("only " + ", ".join(self.only) + " differs" if self.only else "nothing else differs")
+        parts += [f"{path} becomes {match.words()}" for path, match in self.must.items()]
+        if self.lines is not None:
+            parts.append(f"changed lines: {self.lines.words()}")
+        if self.keeps_comments:
+            parts.append("every comment is kept")
+        if self.same is not None:
+            parts.append("the file is as it was" if self.same else "the file has changed")
+        parts += [f"no {pattern!r} is left" for pattern in self.not_left]
+        return ", ".join(parts)
+
+    def _allowed(self, path: str) -> bool:
+        return any(_covers(allowed, path) for allowed in self.only or [])
+
+
+def compared(before: str, after: str) -> ScenarioDiff:
+    """How two scenario texts differ."""
+    from irsim.scenario.read import read
+    from irsim.scenario.yaml.document import load_text
+    from irsim.validation.diff.compare import compare
+
+    return compare(read(load_text(before), strict=False), read(load_text(after), strict=False), seed=0)
+
+
+def _covers(allowed: str, path: str) -> bool:
+    pattern = re.escape(allowed).replace(r"\*", r"\d+")
+    return re.fullmatch(rf"{pattern}(?:[.\[].*)?", path) is not None
+
+
+def value_at(data: Any, path: str) -> Any:
+    """The value at a path such as ``robot[0].sensors[1].number``; None if there is none. One entry may be written
+    with or without a list around it."""
+    for name, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
+        if name:
+            if isinstance(data, list) and len(data) == 1:
+                data = data[0]
+            data = data.get(name) if isinstance(data, dict) else None
+        elif isinstance(data, list):
+            data = data[int(index)] if int(index) < len(data) else None
+        elif int(index) != 0:
+            data = None
+    return data
+
+
+@register("program")
+class Program(AnswerPredicate):
+    """Programs that only run scenarios end without an error and print something."""
+
+    stage = "behavior"
+
+    pattern: str = "*.py"
+    """Names of the programs; those that were given are left out."""
+    number: Match = Match(ge=1)
+    """Accepted numbers of programs."""
+    prints: list[str] = []
+    """Regular expressions, ignoring case; the outputs of all programs together contain each."""
+
+    def observe(self, material: Material) -> Observation:
+        """Run them."""
+        names = [
+            name
+            for name in material.texts
+            if fnmatch.fnmatch(name, self.pattern) and material.given.get(name) != material.texts[name]
+        ]
+        expected = f"{self.pattern}: {self.number.words()}" + "".join(f", prints /{p}/" for p in self.prints)
+        if not matches(self.number, len(names), "count"):
+            return Observation(False, expected, f"{len(names)}: {', '.join(names[:6])}")
+        problems = problems_in({name: material.texts[name] for name in names}, {}, "runner")
+        if problems:
+            return Observation(False, expected, "; ".join(problems[:3]))
+        printed = ""
+        for name in names:
+            done = run_program(material.folder(), name)
+            printed += done.text
+            if not done.passed:
+                return Observation(False, expected, done.why, name)
+        missing = [p for p in self.prints if not re.search(p, printed, re.IGNORECASE)]
+        seen = f"no /{missing[0]}/ in: {printed[-200:]}" if missing else printed.strip()[-200:]
+        return Observation(not missing, expected, seen)
+
+
+@register("command")
+class Command(AnswerPredicate):
+    """A command succeeds in the folder. It may run programs of the answer, so it is run only where
+    ``irsim-evals grade --run-programs`` says so; elsewhere it has not been observed and does not hold."""
+
+    stage = "behavior"
+
+    run: str
+    """The command: ``python …``, or one of this project, such as ``irsim validate …``."""
+    prints: str | None = None
+    """Regular expression that its standard output contains."""
+
+    def observe(self, material: Material) -> Observation:
+        """Run it."""
+        expected = f"`{self.run}` succeeds" + (f" and prints /{self.prints}/" if self.prints is not None else "")
+        if material.trusted_folder is None:
+            return Observation(False, expected, "it was not run; grade with --run-programs if you trust the answer")
+        words = shlex.split(self.run)
+        command = [sys.executable, *words[1:]] if words[0] == "python" else [sys.executable, "-m", *words]
+        try:
+            done = subprocess.run(
+                command, cwd=material.trusted_folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                errors="replace", check=False, timeout=_SECONDS,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            return Observation(False, expected, f"it takes more than {_SECONDS:g} s")
+        said = (done.stdout if done.returncode == 0 else done.stderr).strip()
+        quoted = said if len(said) <= _MAX_QUOTED else f"… {said[-_MAX_QUOTED:]}"
+        passed = done.returncode == 0 and (self.prints is None or re.search(self.prints, done.stdout) is not None)
+        return Observation(passed, expected, f"exit code {done.returncode}: {quoted}")

@@ -1,17 +1,17 @@
-"""``ways``: how the straight ways of bodies, from start to goal, lie to each other."""
+"""The ways from starts to goals: how straight ones lie, what they pass, and whether there is a free one."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import shapely
 
 from irsim.common.angles import wrap
-from irsim_evals.grader.matching import Match, matches, show
+from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register
+from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register, summary
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import Body
@@ -62,3 +62,116 @@ def _direction(body: Body) -> float:
 
 def _line(body: Body) -> shapely.LineString:
     return shapely.LineString([body.pose[:2], (body.goal or [*body.pose])[:2]])
+
+
+@register("line_of_sight")
+class LineOfSight(ScenePredicate):
+    """Whether the straight line from each start to the goal is free. An empty selection fails."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    clear: bool
+    """Whether the line is free of everything solid, or not."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Draw the lines."""
+        bodies = [body for body in material.bodies(scene, self.of) if body.goal is not None]
+        expected = f"from each of {self.of} to its goal the view is {'clear' if self.clear else 'blocked'}"
+        if not bodies:
+            return Observation(False, expected, f"{self.of}: no body with a goal")
+        lines = {body.name: shapely.LineString([body.pose[:2], (body.goal or [])[:2]]) for body in bodies}
+        clear = [(body, not shapely.intersects(scene.solid, lines[body.name])) for body in bodies]
+        wrong = [(body, value) for body, value in clear if value != self.clear]
+        return Observation(
+            not wrong,
+            expected,
+            "clear for " + summary(wrong or clear),
+            f"{wrong[0][0].entry}.goal" if wrong else None,
+            marks=[Mark(points=[list(p) for p in lines[body.name].coords], text=body.name) for body, _ in wrong],
+        )
+
+
+@register("line_passes")
+class LinePasses(ScenePredicate):
+    """The straight line from start to goal of every body of a selection comes near the middle of another selection."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    by: str
+    """Name of the other selection: its middle is the mean of its positions."""
+    distance: Match
+    """Accepted distances of the line from that middle [m]."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Measure."""
+        bodies = [body for body in material.bodies(scene, self.of) if body.goal is not None]
+        places = [other.position for other in material.bodies(scene, self.by)]
+        expected = f"the way of {self.of} passes the middle of {self.by} at {self.distance.words()} m"
+        if not bodies or not places:
+            return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.by}: {len(places)}")
+        middle = shapely.Point(sum(x for x, _ in places) / len(places), sum(y for _, y in places) / len(places))
+        found = [
+            (body, float(shapely.LineString([body.pose[:2], (body.goal or [])[:2]]).distance(middle)))
+            for body in bodies
+        ]
+        wrong = [(body, value) for body, value in found if not matches(self.distance, value, "length")]
+        return Observation(not wrong, expected, summary(wrong or found), f"{wrong[0][0].entry}.goal" if wrong else None)
+
+
+@register("reachable")
+class Reachable(ScenePredicate):
+    """Every body of a selection can get from its start to each of its goals, on a grid of inflated obstacles."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    size: Literal["inner", "outer"] = "inner"
+    """Disc that stands for the body: the largest one inside of it, or the smallest one round it."""
+    possible: bool = True
+    """Whether there must be a path, or must not."""
+    to: tuple[Quantity, Quantity] | None = None
+    """A place instead of the goals [m]."""
+    plug: tuple[Quantity, Quantity, Quantity] | None = None
+    """x, y, radius of a disc that closes a gap first [m]."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Search for paths."""
+        bodies = [body for body in material.bodies(scene, self.of) if body.goals or self.to is not None]
+        closed = "" if self.plug is None else f" with the gap at ({self.plug[0]:g}, {self.plug[1]:g}) closed"
+        target = "its goal" if self.to is None else f"({self.to[0]:g}, {self.to[1]:g})"
+        expected = f"each of {self.of} {'can' if self.possible else 'cannot'} get to {target}{closed}"
+        if not bodies:
+            return Observation(False, expected, f"{self.of}: no body with a goal")
+        plugs = () if self.plug is None else (self.plug,)
+        found = [(body, self._gets_there(scene, body, plugs)) for body in bodies]
+        wrong = [(body, value) for body, value in found if value != self.possible]
+        return Observation(
+            not wrong,
+            expected,
+            "a path for " + summary(wrong or found),
+            f"{wrong[0][0].entry}.goal" if wrong else None,
+            marks=[Mark(points=[list(place)], text=body.name) for body, _ in wrong for place in self._targets(body)],
+        )
+
+    def _gets_there(self, scene: Scene, body: Body, plugs: tuple[tuple[float, float, float], ...]) -> bool:
+        radius = disc_radius(body, self.size)
+        places = [(body.pose[0], body.pose[1]), *self._targets(body)]
+        return all(scene.is_reachable(a, b, radius, plugs) for a, b in itertools.pairwise(places))
+
+    def _targets(self, body: Body) -> list[tuple[float, float]]:
+        return [(goal[0], goal[1]) for goal in body.goals] if self.to is None else [self.to]
+
+
+def disc_radius(body: Body, size: Literal["inner", "outer"] = "inner") -> float:
+    """Radius of the disc that stands for a body [m]."""
+    if body.radius is not None:
+        return body.radius
+    if size == "outer":
+        return float(shapely.minimum_bounding_radius(body.footprint))
+    circle = shapely.maximum_inscribed_circle(body.footprint)
+    return float(circle.length)

@@ -1,19 +1,21 @@
-"""``world``: size, origin, times and modes of the world."""
+"""What the world is: its properties, its map, everything solid in it, and how crowded it is."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import shapely
 from pydantic import model_validator
 
-from irsim_evals.grader.matching import Kind, Match, matches, show
+from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
+from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
     from irsim_evals.grader.scene import Scene
 
-KINDS: dict[str, Kind] = {
+WORLD_KINDS: dict[str, Kind] = {
     "width": "length",
     "height": "length",
     "left": "length",
@@ -31,6 +33,9 @@ KINDS: dict[str, Kind] = {
     "map": "name",
 }
 """Property of the world → what it measures."""
+_KEYS = {"left": "offset", "bottom": "offset", "map": "obstacle_map"}
+_MIN_AREA = 1e-4
+"""Differences of a smaller area come from rounding [m²]."""
 
 
 @register("world")
@@ -54,20 +59,17 @@ class World(ScenePredicate):
     @model_validator(mode="after")
     def _known(self) -> World:
         for name in self.has:
-            if name not in KINDS:
-                raise ValueError(f"no property of the world is called {name!r}; there are {', '.join(KINDS)}")
+            if name not in WORLD_KINDS:
+                raise ValueError(f"no property of the world is called {name!r}; there are {', '.join(WORLD_KINDS)}")
         return self
 
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Compare them."""
         values = {name: _value(scene, name) for name in self.has}
-        off = [name for name, match in self.has.items() if not matches(match, values[name], KINDS[name])]
+        off = [name for name, match in self.has.items() if not matches(match, values[name], WORLD_KINDS[name])]
         expected = ", ".join(f"{name} {match.words()}" for name, match in self.has.items())
         observed = ", ".join(f"{name} {show(value)}" for name, value in values.items())
         return Observation(not off, expected, observed, f"world.{_KEYS.get(off[0], off[0])}" if off else None)
-
-
-_KEYS = {"left": "offset", "bottom": "offset", "map": "obstacle_map"}
 
 
 def _value(scene: Scene, name: str) -> Any:
@@ -78,3 +80,145 @@ def _value(scene: Scene, name: str) -> Any:
         given = world.obstacle_map
         return None if given is None else str(getattr(given, "name", given))
     return getattr(world, name)
+
+
+@register("fill")
+class Fill(ScenePredicate):
+    """The map of the world: its kind, its cells, and the share of them that is occupied."""
+
+    kind: Match | None = None
+    """Accepted names of the map: ``perlin``, ``image``, ``ros``."""
+    cell: Match | None = None
+    """Accepted sizes of a cell [m]."""
+    share: Match | None = None
+    """Accepted shares of occupied cells."""
+    seed: Match | None = None
+    """Accepted seeds of the map."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Look at the cells."""
+        options, grid = scene.world.obstacle_map, scene.env.scenario.grid
+        seen = {
+            "kind": None if options is None else getattr(options, "name", "image"),
+            "cell": None if grid is None else max(grid.cell),
+            "share": None if grid is None else grid.occupied / (grid.size[0] * grid.size[1]),
+            "seed": getattr(options, "seed", None),
+        }
+        wanted = {"kind": self.kind, "cell": self.cell, "share": self.share, "seed": self.seed}
+        kinds = {"kind": "name", "cell": "size", "share": "share", "seed": "count"}
+        off = [k for k, match in wanted.items() if match is not None and not matches(match, seen[k], kinds[k])]  # type: ignore[arg-type]
+        expected = ", ".join(f"{key} {match.words()}" for key, match in wanted.items() if match is not None)
+        observed = ", ".join(f"{key} {show(seen[key])}" for key, match in wanted.items() if match is not None)
+        return Observation(not off, expected, observed, "world.obstacle_map" if off else None)
+
+
+@register("plan")
+class Plan(ScenePredicate):
+    """Everything solid in the world lies where a drawing has it, and nowhere else, up to a tolerance of the outlines.
+    It does not matter whether it is made of walls, of one body or of a map, or whether the world has walls round it."""
+
+    stage = "relations"
+
+    sketch: str = ""
+    """A drawing in characters; the first line is the top."""
+    solid: str = "#"
+    """Characters of the sketch that stand for solid cells."""
+    cell: tuple[Quantity, Quantity] = (1.0, 1.0)
+    """Width and height of a cell of the sketch [m]."""
+    origin: tuple[Quantity, Quantity] = (0.0, 0.0)
+    """Lower left corner of the sketch [m]."""
+    boxes: list[tuple[Quantity, Quantity, Quantity, Quantity]] = []
+    """Further solid rectangles: x0, y0, x1, y1 [m]."""
+    discs: list[tuple[Quantity, Quantity, Quantity]] = []
+    """Further solid discs: x, y, radius [m]."""
+    ignore: list[tuple[Quantity, Quantity, Quantity, Quantity]] = []
+    """Rectangles in which nothing is compared [m]."""
+    tol: Quantity = 0.1
+    """Greatest distance between an outline and that of the drawing [m]."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Compare the areas."""
+        wanted = self._wanted()
+        expected = f"solid as in the drawing ({show(float(wanted.area))} m²), outlines within {show(self.tol)} m"
+        apart = shapely.union_all([shapely.box(*corners) for corners in self.ignore])
+        missing = _parts(shapely.difference(wanted, shapely.buffer(scene.solid, self.tol)), apart)
+        rim = shapely.box(*scene.bounds).exterior.buffer(self.tol)  # the world may have walls round it
+        surplus = _parts(shapely.difference(scene.solid, shapely.union(shapely.buffer(wanted, self.tol), rim)), apart)
+        words = [_words("missing", missing), _words("too much", surplus)]
+        marks = [Mark(points=[_middle(part)], text="missing") for part in missing[:5]]
+        marks += [Mark(points=[_middle(part)], text="too much") for part in surplus[:5]]
+        return Observation(
+            bool(wanted.area) and not missing and not surplus,
+            expected,
+            "; ".join(filter(None, words)) or "as in the drawing",
+            marks=marks,
+        )
+
+    def _wanted(self) -> Any:
+        """Everything solid in the drawing."""
+        lines = self.sketch.strip("\n").splitlines()
+        (width, height), (left, bottom) = self.cell, self.origin
+        cells = [
+            shapely.box(left + k * width, bottom + row * height, left + (k + 1) * width, bottom + (row + 1) * height)
+            for row, line in enumerate(reversed(lines))
+            for k, letter in enumerate(line)
+            if letter in self.solid
+        ]
+        boxes = [shapely.box(*corners) for corners in self.boxes]
+        discs = [shapely.Point(x, y).buffer(radius, quad_segs=32) for x, y, radius in self.discs]
+        return shapely.union_all([*cells, *boxes, *discs])
+
+
+def _parts(geometry: Any, apart: Any) -> list[Any]:
+    """The parts of a geometry outside of another, the largest first; lines without a width count, too."""
+    left = shapely.difference(geometry, apart)
+    parts = [part for part in shapely.get_parts(left) if not part.is_empty]
+    large = [part for part in parts if part.area > _MIN_AREA or (part.area == 0 and part.length > _MIN_AREA)]
+    return sorted(large, key=lambda part: (-part.area, -part.length))
+
+
+def _middle(part: Any) -> list[float]:
+    point = part.representative_point()
+    return [float(point.x), float(point.y)]
+
+
+def _words(what: str, parts: list[Any]) -> str:
+    if not parts:
+        return ""
+    (x, y), area = _middle(parts[0]), sum(part.area for part in parts)
+    return f"{what}: {show(float(area))} m², for example at ({x:.2f}, {y:.2f})"
+
+
+@register("crowding")
+class Crowding(ScenePredicate):
+    """The bodies of a selection cover a share of the world, or there are so many for each 10 m²; one is enough."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    cover: Match | None = None
+    """Accepted shares of the area."""
+    per_10_m2: Match | None = None
+    """Accepted numbers for each 10 m²."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Add up the areas."""
+        x0, y0, x1, y1 = scene.bounds
+        area = (x1 - x0) * (y1 - y0)
+        bodies = material.bodies(scene, self.of)
+        cover = shapely.union_all([body.footprint for body in bodies]).area / area
+        density = 10 * len(bodies) / area
+        passed = (self.cover is not None and matches(self.cover, cover, "share")) or (
+            self.per_10_m2 is not None and matches(self.per_10_m2, density, "share")
+        )
+        words = [
+            f"{what} {match.words()}"
+            for what, match in (("share of the area", self.cover), ("number for each 10 m²", self.per_10_m2))
+            if match is not None
+        ]
+        return Observation(
+            bool(bodies) and passed,
+            f"{self.of}: " + " or ".join(words),
+            f"share {show(cover)}, {show(density)} for each 10 m²",
+        )

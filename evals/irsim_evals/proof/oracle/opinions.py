@@ -15,11 +15,9 @@ import yaml
 
 import irsim
 from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import Answer
-from irsim_evals.grader.artefact import find_scenario
+from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.matching import TOLERANCES, Match
-from irsim_evals.proof.oracle.paths import gets_there
-from irsim_evals.proof.oracle.shapes import Point, Thing, apart, blocked, to_point
+from irsim_evals.proof.oracle.shapes import Point, Thing, apart, blocked, gets_there, to_point
 
 __all__ = ["JUDGED", "opinions"]
 

@@ -1,0 +1,79 @@
+"""The baselines by name: their answers to cases, and these answers graded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from typing import Any
+
+from irsim_evals.baselines import repair, retrieval, rules
+from irsim_evals.baselines.task import Task, task_of
+from irsim_evals.cases.instance import Instance
+from irsim_evals.grader.artefact import Answer
+from irsim_evals.grader.limited import grade_all
+from irsim_evals.results import Trial, trial_of
+
+__all__ = ["BASELINES", "answer", "answers", "run_baseline"]
+
+
+def _null(task: Task) -> Answer:
+    """An empty world, whatever is asked: a case that it passes would ask for nothing."""
+    return Answer("null", {**(task.files or {}), "scenario.yaml": "world: {width: 10, height: 10}\n"}, "Done.")
+
+
+BASELINES: dict[str, Callable[[Iterable[Task]], Iterable[Answer]]] = {
+    "null": partial[Any](map, _null),
+    "retrieval": partial[Any](map, retrieval.answer),
+    "rules": partial[Any](map, rules.answer),
+    "repair": repair.answers,
+}
+"""Name → how it answers requests one after the other. Each is expected to pass more cases than the one before."""
+
+
+def answers(name: str, instances: Iterable[Instance]) -> Iterator[Answer]:
+    """The answers of a baseline to some cases, in their order.
+
+    Raises:
+        KeyError: No baseline has that name.
+    """
+    return iter(BASELINES[name](task_of(instance) for instance in instances))
+
+
+def answer(name: str, instance: Instance) -> Answer:
+    """The answer of a baseline to one case.
+
+    Raises:
+        KeyError: No baseline has that name.
+    """
+    return next(answers(name, [instance]))
+
+
+def run_baseline(
+    arm: str, instances: Sequence[Instance], progress: Callable[[int, int], None] | None = None
+) -> list[Trial]:
+    """Let a baseline answer some cases and grade the answers; one is graded while the next is made.
+
+    Args:
+        arm: Name of the baseline.
+        instances: The cases; further instances of the same case count as further attempts at it.
+        progress: Callback ``(done, total)``; an answer and its grading count as one step each.
+    """
+    made: list[Answer] = []
+    trials: list[Trial] = []
+    numbers: dict[str, int] = {}
+
+    def report() -> None:
+        if progress is not None:
+            progress(len(made) + len(trials), 2 * len(instances))
+
+    def pairs() -> Iterator[tuple[Instance, Answer]]:
+        for instance, answer in zip(instances, answers(arm, instances), strict=True):
+            made.append(answer)
+            report()
+            yield instance, answer
+
+    for instance, verdict in zip(instances, grade_all(pairs()), strict=True):
+        number = numbers[instance.case.id] = numbers.get(instance.case.id, 0) + 1
+        trials.append(trial_of(instance, verdict, arm, number=number, reply=made[len(trials)].reply))
+        report()
+    return trials

@@ -1,0 +1,230 @@
+"""What bodies are: how many, with which properties and sensors; and whether each row of a table has one."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from pydantic import field_validator, model_validator
+
+from irsim_evals.grader.hues import discernible
+from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
+from irsim_evals.grader.outcome import Mark
+from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register, summary
+from irsim_evals.grader.properties import PROPERTIES, value_of, yaml_path
+
+if TYPE_CHECKING:
+    from irsim_evals.grader.body import Body
+    from irsim_evals.grader.material import Material
+    from irsim_evals.grader.scene import Scene
+
+SENSOR_KINDS: dict[str, Kind] = {
+    "name": "name",
+    "number": "count",
+    "range_max": "length",
+    "range_min": "size",
+    "angle_range": "angle",
+    "direction": "heading",
+    "mounted": "length",
+    "noise": "flag",
+    "std": "size",
+    "angle_std": "angle",
+    "has_velocity": "flag",
+    "motion_compensate": "flag",
+    "velocity_noise_std": "size",
+    "spacing": "angle",
+}
+"""Parameter → what it measures."""
+
+
+@register("count")
+class Count(ScenePredicate):
+    """How many bodies a selection holds."""
+
+    of: str
+    """Name of the selection."""
+    number: Match
+    """Accepted numbers."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Count them."""
+        found = len(material.bodies(scene, self.of))
+        expected = f"{self.of}: {self.number.words()}"
+        return Observation(matches(self.number, found, "count"), expected, f"{self.of}: {found}")
+
+
+@register("each")
+class Each(ScenePredicate):
+    """Every body of a selection has some properties. An empty selection fails."""
+
+    of: str
+    """Name of the selection."""
+    has: dict[str, Match]
+    """Property → accepted values."""
+    share: Quantity = 1.0
+    """Share of the bodies that must have them."""
+
+    @model_validator(mode="after")
+    def _known(self) -> Each:
+        for name in self.has:
+            if name not in PROPERTIES:
+                raise ValueError(f"no property is called {name!r}; there are {', '.join(PROPERTIES)}")
+        return self
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Look at each of them."""
+        bodies = material.bodies(scene, self.of)
+        words = ", ".join(f"{name} {match.words()}" for name, match in self.has.items())
+        least = "each" if self.share == 1 else f"at least {self.share:.0%}"
+        expected = f"{self.of}: {least} has {words}"
+        if not bodies:
+            return Observation(False, expected, f"{self.of}: no body")
+        wrong: list[tuple[Any, Any]] = []
+        where, bad = None, 0
+        for body in bodies:
+            values = {name: value_of(scene, body, name) for name in self.has}
+            off = [name for name, match in self.has.items() if not matches(match, values[name], PROPERTIES[name].kind)]
+            bad += bool(off)
+            if off:
+                where = where or yaml_path(body, off[0])
+                wrong.append((body, values[off[0]] if len(self.has) == 1 else {k: values[k] for k in off}))
+        passed = bad <= (1 - self.share) * len(bodies) + 1e-9
+        observed = summary(wrong) if wrong else f"all {len(bodies)}"
+        return Observation(passed, expected, observed, None if passed else where)
+
+
+@register("distinct")
+class Distinct(ScenePredicate):
+    """How many different values a property has among the bodies of a selection; colors must look different."""
+
+    of: str
+    """Name of the selection."""
+    property: str
+    """Name of the property."""
+    number: Match
+    """Accepted numbers of different values."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Collect the values."""
+        bodies = material.bodies(scene, self.of)
+        found = [value_of(scene, body, self.property) for body in bodies]
+        values = set(map(show, discernible(found) if self.property == "color" else found))
+        passed = bool(bodies) and matches(self.number, len(values), "count")
+        shown = ", ".join(sorted(values)[:6])
+        return Observation(
+            passed,
+            f"{self.of}: {self.number.words()} different values of {self.property}",
+            f"{len(values)}: {shown}",
+            yaml_path(bodies[0], self.property) if bodies else None,
+        )
+
+
+@register("placed")
+class Placed(ScenePredicate):
+    """Each row of a table describes exactly one body of a selection, and each of its bodies has a row."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    rows: list[dict[str, Match]]
+    """For each row: property → accepted values."""
+
+    @field_validator("rows")
+    @classmethod
+    def _known(cls, rows: list[dict[str, Match]]) -> list[dict[str, Match]]:
+        for name in {name for row in rows for name in row}:
+            if name not in PROPERTIES:
+                raise ValueError(f"no property is called {name!r}; there are {', '.join(PROPERTIES)}")
+        return rows
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Find a body for each row."""
+        bodies = material.bodies(scene, self.of)
+        expected = f"{self.of}: one for each of {len(self.rows)} rows"
+        fits = [[k for k, body in enumerate(bodies) if self._fits(scene, body, row)] for row in self.rows]
+        row_of: dict[int, int] = {}
+        open_rows = [row for row in range(len(self.rows)) if not _assign(row, fits, row_of, set())]
+        odd = [body for k, body in enumerate(bodies) if k not in row_of]
+        if not open_rows and not odd:
+            return Observation(True, expected, f"all {len(bodies)}")
+        words = ["; ".join(f"{name} {match.words()}" for name, match in self.rows[row].items()) for row in open_rows]
+        observed = "".join(f"no body with {text}. " for text in words[:3])
+        if odd:
+            observed += "in no row: " + summary([(body, self._values(scene, body)) for body in odd])
+        return Observation(
+            False,
+            expected,
+            observed,
+            f"{odd[0].entry}.state" if odd else None,
+            marks=[Mark(points=[list(body.position)], text=body.name) for body in odd],
+        )
+
+    def _fits(self, scene: Scene, body: Body, row: dict[str, Match]) -> bool:
+        return all(matches(match, value_of(scene, body, key), PROPERTIES[key].kind) for key, match in row.items())
+
+    def _values(self, scene: Scene, body: Body) -> list[Any]:
+        return [value_of(scene, body, name) for name in (self.rows[0] if self.rows else ())]
+
+
+def _assign(row: int, fits: list[list[int]], row_of: dict[int, int], tried: set[int]) -> bool:
+    """Give a row one of the bodies that fit it, moving other rows to other bodies where that helps."""
+    for k in fits[row]:
+        if k in tried:
+            continue
+        tried.add(k)
+        if k not in row_of or _assign(row_of[k], fits, row_of, tried):
+            row_of[k] = row
+            return True
+    return False
+
+
+@register("sensor")
+class Sensor(ScenePredicate):
+    """Every body of a selection has sensors with some parameters. An empty selection fails."""
+
+    of: str
+    """Name of the selection."""
+    has: dict[str, Match] = {}
+    """Parameter of the sensor as the simulator holds it → accepted values. ``direction`` is where its middle beam
+    points relative to the body, ``mounted`` how far it sits from the origin of the body, ``spacing`` the angle between
+    two beams."""
+    number: Match = Match(eq=1)
+    """How many sensors of each body have them."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Look at the sensors of each body."""
+        bodies = material.bodies(scene, self.of)
+        words = ", ".join(f"{name} {match.words()}" for name, match in self.has.items()) or "sensors"
+        expected = f"{self.of}: {self.number.words()} with {words}"
+        if not bodies:
+            return Observation(False, expected, f"{self.of}: no body")
+        for body in bodies:
+            fit = [sensor for sensor in body.sensors if self._fits(sensor)]
+            if not matches(self.number, len(fit), "count"):
+                seen = "; ".join(
+                    ", ".join(f"{key} {show(parameter(sensor, key))}" for key in self.has) for sensor in body.sensors
+                )
+                return Observation(
+                    False, expected, f"{body.name}: {len(fit)}, sensors: {seen or 'none'}", f"{body.entry}.sensors"
+                )
+        return Observation(True, expected, f"all {len(bodies)}")
+
+    def _fits(self, sensor: dict[str, Any]) -> bool:
+        return all(
+            matches(match, parameter(sensor, key), SENSOR_KINDS.get(key, "name")) for key, match in self.has.items()
+        )
+
+
+def parameter(sensor: dict[str, Any], key: str) -> Any:
+    """A parameter of a sensor; None if it has no such parameter."""
+    offset = sensor.get("offset") or [0.0, 0.0, 0.0]
+    if key == "mounted":
+        return math.hypot(*offset[:2])
+    if key == "direction":
+        return float(offset[2]) if len(offset) > 2 else 0.0
+    if key == "spacing":
+        number, angle = sensor.get("number"), sensor.get("angle_range")
+        return None if not number or number < 2 or angle is None else angle / (number - 1)
+    value = sensor.get(key)
+    return math.nan if value is None and key in ("range_max",) else value

@@ -1,0 +1,248 @@
+"""Which places, regions and lines bodies come to in an episode, in which order and when."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from irsim_evals.grader.matching import Match, Quantity, matches, show
+from irsim_evals.grader.outcome import Mark
+from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, register, summary
+
+if TYPE_CHECKING:
+    from irsim_evals.grader.episode import Episode
+    from irsim_evals.grader.material import Material
+
+
+@register("visits")
+class Visits(EpisodePredicate):
+    """Every body of a selection comes to some places in the order given. An empty selection fails."""
+
+    of: str
+    """Name of the selection."""
+    places: list[tuple[Quantity, Quantity]]
+    """Places in the order in which they are visited [m]."""
+    tol: Quantity = 0.3
+    """Greatest distance from a place that counts as being there [m]."""
+    laps: int = 1
+    """How often the whole list is visited, each time from its first place on."""
+    stray: Quantity | None = None
+    """Greatest distance of the path from the straight lines between the places, the way back to the first one
+    included [m]; default: any."""
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Follow the paths."""
+        bodies = material.bodies(episode.scene, self.of)
+        shown = ", ".join(f"({show(x)}, {show(y)})" for x, y in self.places)
+        expected = f"{self.of} visit {shown}" + (f", {self.laps} times" if self.laps > 1 else "")
+        if self.stray is not None:
+            expected += f", at most {show(self.stray)} m off the lines between them"
+        if not bodies or not self.places:
+            return Observation(False, expected, f"{self.of}: no body")
+        found = [(body, self._problem(episode.positions(body.index))) for body in bodies]
+        wrong = [(body, text) for body, text in found if text]
+        return Observation(
+            not wrong,
+            expected,
+            summary(wrong) or "so it is",
+            f"{wrong[0][0].entry}.waypoints" if wrong else None,
+            marks=[Mark(points=[list(place)], text="visit") for place in self.places] if wrong else [],
+        )
+
+    def _problem(self, way: np.ndarray) -> str:
+        """What is wrong with a path; empty if nothing is."""
+        row = 0
+        for number in range(self.laps * len(self.places)):
+            place = np.array(self.places[number % len(self.places)])
+            there = np.flatnonzero(np.hypot(*(way[row:] - place).T) <= self.tol)
+            if not there.size:
+                x, y = place.tolist()
+                return f"does not come to ({x:g}, {y:g})" + (f" after {number} visits" if number else "")
+            row += int(there[0])
+        if self.stray is not None:
+            lines = shapely.LineString([*self.places, self.places[0]])
+            off = float(shapely.distance(lines, shapely.points(way)).max())
+            if off > self.stray:
+                return f"gets {show(off)} m off the lines"
+        return ""
+
+
+@register("enters")
+class Enters(EpisodePredicate):
+    """Every body of a selection comes into each region in this order. An empty selection fails."""
+
+    of: str
+    """Name of the selection."""
+    regions: list[tuple[Quantity, Quantity, Quantity, Quantity]]
+    """x0, y0, x1, y1 of each region [m]."""
+    avoids: list[tuple[Quantity, Quantity, Quantity, Quantity]] = []
+    """Regions that its position never comes into [m]."""
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Follow every body."""
+        bodies = material.bodies(episode.scene, self.of)
+        expected = f"{self.of} comes into " + ", ".join(show(list(region)) for region in self.regions)
+        expected += "".join(f", never into {show(list(region))}" for region in self.avoids)
+        if not bodies:
+            return Observation(False, expected, f"{self.of}: no body")
+        wrong = [(body, why) for body in bodies if (why := self._why_not(episode.positions(body.index)))]
+        return Observation(
+            not wrong,
+            expected,
+            summary(wrong) if wrong else f"all {len(bodies)}",
+            f"{wrong[0][0].entry}.goal" if wrong else None,
+            marks=[Mark(points=episode.positions(body.index)[::20].tolist(), text=body.name) for body, _ in wrong],
+        )
+
+    def _why_not(self, way: np.ndarray) -> str:
+        row = 0
+        for region in self.regions:
+            rows = np.flatnonzero(_within(way[row:], region))
+            if not rows.size:
+                return f"does not come to {show(list(region))}" + (" after the others" if row else "")
+            row += int(rows[0])
+        return next((f"comes into {show(list(r))}" for r in self.avoids if _within(way, r).any()), "")
+
+
+def _within(way: np.ndarray, region: tuple[float, float, float, float]) -> np.ndarray:
+    x0, y0, x1, y1 = region
+    found: np.ndarray = (way[:, 0] >= x0) & (way[:, 0] <= x1) & (way[:, 1] >= y0) & (way[:, 1] <= y1)
+    return found
+
+
+@register("one_way")
+class OneWay(EpisodePredicate):
+    """How many bodies of a selection pass through a region in one direction; none may go against it."""
+
+    of: str
+    """Name of the selection."""
+    region: tuple[Quantity, Quantity, Quantity, Quantity]
+    """x0, y0, x1, y1 of the region [m]."""
+    direction: Quantity
+    """The direction [rad]."""
+    number: Match
+    """Accepted numbers of bodies that pass. A body has passed if it came as far as `most` of the region's extent in
+    the direction."""
+    most: Quantity = 0.9
+    """Share of the extent that counts as having passed."""
+    back: Quantity = 0.1
+    """Greatest distance that a body may come back within the region [m]."""
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Follow every body through the region."""
+        bodies = material.bodies(episode.scene, self.of)
+        degrees = math.degrees(self.direction)
+        expected = f"{self.of} that pass through {show(list(self.region))} toward {show(degrees)}°: "
+        expected += f"{self.number.words()}, none the other way"
+        if not bodies:
+            return Observation(False, expected, f"{self.of}: no body")
+        x0, y0, x1, y1 = self.region
+        unit = np.array([math.cos(self.direction), math.sin(self.direction)])
+        extent = abs(unit[0]) * (x1 - x0) + abs(unit[1]) * (y1 - y0)
+        passed, against = [], []
+        for body in bodies:
+            way = episode.positions(body.index)
+            inside = (way[:, 0] >= x0) & (way[:, 0] <= x1) & (way[:, 1] >= y0) & (way[:, 1] <= y1)
+            far = (way @ unit)[inside]
+            if not far.size:
+                continue
+            if float((np.maximum.accumulate(far) - far).max()) > self.back:
+                against.append((body, "goes the other way"))
+            elif float(far.max() - far.min()) >= self.most * extent:
+                passed.append((body, "passes"))
+        return Observation(
+            not against and matches(self.number, len(passed), "count"),
+            expected,
+            f"{len(passed)}; " + summary([*against, *passed]),
+            f"{against[0][0].entry}.goal" if against else None,
+            marks=[Mark(points=[[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]], text="one way")],
+        )
+
+
+@register("timetable")
+class Timetable(EpisodePredicate):
+    """The bodies of a selection cross a line at given times, each of them once."""
+
+    of: str
+    """Name of the selection."""
+    start: tuple[Quantity, Quantity]
+    """One end of the line [m]."""
+    end: tuple[Quantity, Quantity]
+    """The other end [m]."""
+    times: list[Quantity]
+    """When the first, the second, … of them crosses it [s]."""
+    tol: Quantity = 0.5
+    """Greatest deviation from these times [s]."""
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Look for the crossings."""
+        bodies = material.bodies(episode.scene, self.of)
+        expected = f"{self.of} cross the line {show(list(self.start))} to {show(list(self.end))} after "
+        expected += ", ".join(f"{time:g} s" for time in self.times)
+        found = sorted(
+            ((time, body) for body in bodies for time in self._crossings(episode, body.index)),
+            key=lambda crossing: crossing[0],
+        )
+        passed = len(found) == len(self.times) == len({body.name for _, body in found})
+        passed = passed and all(abs(a - b) <= self.tol + 1e-9 for (a, _), b in zip(found, self.times, strict=True))
+        return Observation(
+            passed,
+            expected,
+            summary([(body, f"{time:.1f} s") for time, body in found]) or f"none of {len(bodies)}",
+            f"{bodies[0].entry}.state" if bodies else None,
+            marks=[Mark(points=[list(self.start), list(self.end)], text="line")],
+        )
+
+    def _crossings(self, episode: Episode, index: int) -> list[float]:
+        length = math.dist(self.start, self.end) or 1.0
+        unit = (np.array(self.end) - self.start) / length
+        offset = episode.positions(index) - np.array(self.start)
+        aside, along = unit[0] * offset[:, 1] - unit[1] * offset[:, 0], offset @ unit
+        rows = np.flatnonzero((aside[1:] > 0) != (aside[:-1] > 0))
+        return [float(episode.trace.time[row + 1]) for row in rows if 0 <= along[row] <= length]
+
+
+@register("crosses")
+class Crosses(EpisodePredicate):
+    """Bodies of a selection cross the line of another body's way from one side to the other."""
+
+    of: str
+    """Name of the selection."""
+    way_of: str
+    """Selection of one body, whose way leads from its start to its goal."""
+    number: Match
+    """Accepted numbers of bodies that cross."""
+    ahead: bool = True
+    """Only crossings ahead of the body count."""
+    direction: str | None = None
+    """``right_to_left`` or ``left_to_right``, seen by the body; only those count."""
+    spread: Quantity = 0.0
+    """Least time between the first and the last crossing [s]."""
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Look for changes of side."""
+        bodies, ways = material.bodies(episode.scene, self.of), material.bodies(episode.scene, self.way_of)
+        expected = f"{self.of} that cross ahead of {self.way_of}: {self.number.words()}"
+        if self.spread:
+            expected += f", over at least {self.spread:g} s"
+        if not bodies or len(ways) != 1 or ways[0].goal is None:
+            return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.way_of}: {len(ways)}")
+        start, goal = np.array(ways[0].pose[:2]), np.array(ways[0].goal[:2])
+        unit = (goal - start) / (math.dist(start, goal) or 1.0)
+        own = (episode.positions(ways[0].index) - start) @ unit
+        times = []
+        for body in bodies:
+            offset = episode.positions(body.index) - start
+            left, far = unit[0] * offset[:, 1] - unit[1] * offset[:, 0], offset @ unit
+            for row in np.flatnonzero((left[1:] > 0) != (left[:-1] > 0)).tolist():
+                way = "right_to_left" if left[row + 1] > 0 else "left_to_right"
+                if (not self.ahead or far[row] > own[row]) and self.direction in (None, way):
+                    times.append(float(episode.trace.time[row]))
+                    break
+        spread = max(times) - min(times) if times else 0.0
+        passed = matches(self.number, len(times), "count") and spread >= self.spread - 1e-9
+        seen = ", ".join(f"{time:.1f} s" for time in sorted(times))
+        return Observation(passed, expected, f"{len(times)}: {seen}", f"{bodies[0].entry}.state")

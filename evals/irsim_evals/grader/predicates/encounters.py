@@ -1,0 +1,159 @@
+"""What happens between bodies in an episode: collisions, distances, who comes nearer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+import shapely.affinity
+
+from irsim_evals.grader.matching import Match, Quantity, matches, show
+from irsim_evals.grader.outcome import Mark
+from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, register, summary
+
+if TYPE_CHECKING:
+    from irsim_evals.grader.body import Body
+    from irsim_evals.grader.episode import Episode
+    from irsim_evals.grader.material import Material
+
+
+@register("collisions")
+class Collisions(EpisodePredicate):
+    """How many bodies of a selection collide with something. An empty selection fails."""
+
+    of: str
+    """Name of the selection."""
+    number: Match = Match(eq=0)
+    """Accepted numbers of bodies that collide."""
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Count them."""
+        bodies = material.bodies(episode.scene, self.of)
+        expected = f"{self.of} that collide: {self.number.words()}"
+        if not bodies:
+            return Observation(False, expected, f"{self.of}: no body")
+        hits = [(body, episode.collisions(body.name)) for body in bodies]
+        bad = [(body, found[0]) for body, found in hits if found]
+        events = [event for event in episode.events if event.kind == "collision"]
+        return Observation(
+            matches(self.number, len(bad), "count"),
+            expected,
+            f"{len(bad)}; " + summary([(body, f"{partner} at {time:.1f} s") for body, (time, partner) in bad]),
+            f"{bad[0][0].entry}.behavior" if bad else None,
+            marks=[Mark(points=[[event.x, event.y]], text=f"{event.time:.1f} s") for event in events[:5]],
+        )
+
+
+@register("separation")
+class Separation(EpisodePredicate):
+    """The smallest distance between the bodies of two selections, edge to edge, at any time of the episode."""
+
+    of: str
+    """Name of the first selection."""
+    to: str
+    """Name of the second selection."""
+    distance: Match
+    """Accepted values of the smallest distance [m]."""
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Measure at every step."""
+        first, second = material.bodies(episode.scene, self.of), material.bodies(episode.scene, self.to)
+        expected = f"smallest distance of {self.of} to {self.to}: {self.distance.words()} m"
+        pairs = [(a, b) for a in first for b in second if a is not b]
+        if not pairs:
+            return Observation(False, expected, "no pair of bodies")
+        least, a, b = min(((closest(episode, a, b), a, b) for a, b in pairs), key=lambda found: found[0])
+        return Observation(
+            matches(self.distance, least, "length"), expected, f"{a.name} and {b.name}: {show(least)} m", a.entry
+        )
+
+
+def closest(episode: Episode, a: Body, b: Body) -> float:
+    """The smallest distance between the footprints of two bodies during an episode [m]."""
+    first, second = episode.trace.pose[:, a.index], episode.trace.pose[:, b.index]
+    centers = np.hypot(*(first[:, :2] - second[:, :2]).T)
+    if a.radius is not None and b.radius is not None:
+        return float(centers.min()) - a.radius - b.radius
+    reach = sum(float(shapely.hausdorff_distance(shapely.Point(c.pose[:2]), c.footprint)) for c in (a, b))
+    near = np.flatnonzero(centers <= centers.min() + reach)
+    return min(float(shapely.distance(_moved(a, first[row]), _moved(b, second[row]))) for row in near.tolist())
+
+
+def _moved(body: Body, pose: Any) -> Any:
+    if body.static:
+        return body.footprint
+    x, y, heading = body.pose
+    turned = shapely.affinity.rotate(body.footprint, float(pose[2]) - heading, origin=(x, y), use_radians=True)
+    return shapely.affinity.translate(turned, float(pose[0]) - x, float(pose[1]) - y)
+
+
+@register("range_trend")
+class RangeTrend(EpisodePredicate):
+    """How many bodies of a selection come nearer to a body, and how many go away from it."""
+
+    of: str
+    """Name of the selection."""
+    to: str
+    """Selection of the one body."""
+    within: Quantity
+    """Time over which the distance is compared [s]."""
+    nearer: Match
+    """Accepted numbers of bodies that come nearer."""
+    farther: Match
+    """Accepted numbers of bodies that go away."""
+    by: Quantity = 0.1
+    """Least change of the distance that counts [m]."""
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Compare the distances."""
+        bodies, one = material.bodies(episode.scene, self.of), material.bodies(episode.scene, self.to)
+        expected = f"{self.of} nearer to {self.to}: {self.nearer.words()}, farther: {self.farther.words()}"
+        if not bodies or len(one) != 1:
+            return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.to}: {len(one)}")
+        row = min(len(episode.trace) - 1, round(self.within / episode.trace.step_time))
+        middle = episode.positions(one[0].index)
+        changes = []
+        for body in bodies:
+            apart = np.hypot(*(episode.positions(body.index) - middle).T)
+            changes.append((body, float(apart[row] - apart[0])))
+        nearer, farther = (sum(sign * change >= self.by for _, change in changes) for sign in (-1, 1))
+        passed = matches(self.nearer, nearer, "count") and matches(self.farther, farther, "count")
+        text = summary([(body, f"{show(change)} m") for body, change in changes])
+        return Observation(passed, expected, f"nearer {nearer}, farther {farther} ({text})", f"{bodies[0].entry}.goal")
+
+
+@register("radial")
+class Radial(EpisodePredicate):
+    """How many beams measure a radial velocity below and above a threshold."""
+
+    of: str
+    """Selection of the one body with the sensor."""
+    at: Quantity
+    """Time of the scan [s]."""
+    faster_than: Quantity
+    """Threshold [m/s]."""
+    approaching: Match
+    """Accepted numbers of beams below minus the threshold."""
+    receding: Match
+    """Accepted numbers of beams above the threshold."""
+
+    def scan_times(self) -> tuple[float, ...]:
+        """The one scan."""
+        return (self.at,)
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Count the beams."""
+        bodies = material.bodies(episode.scene, self.of)
+        expected = f"beams nearer: {self.approaching.words()}, away: {self.receding.words()}"
+        if len(bodies) != 1 or not episode.scans:
+            return Observation(False, expected, f"{self.of}: {len(bodies)}")
+        time = min(episode.scans, key=lambda seen: abs(seen - self.at))
+        for scan in episode.scans[time].get(bodies[0].name, []):
+            if "radial_velocity" not in scan:
+                continue
+            values = np.asarray(scan["radial_velocity"], dtype=float)
+            near, away = int((values < -self.faster_than).sum()), int((values > self.faster_than).sum())
+            passed = matches(self.approaching, near, "count") and matches(self.receding, away, "count")
+            return Observation(passed, expected, f"nearer {near}, away {away}", f"{bodies[0].entry}.sensors")
+        return Observation(False, expected, "no sensor measures radial velocities", f"{bodies[0].entry}.sensors")

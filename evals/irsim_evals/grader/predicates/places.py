@@ -1,0 +1,326 @@
+"""Where bodies and their goals are, and where bodies look."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Literal
+
+import shapely
+from pydantic import model_validator
+
+from irsim.common.angles import wrap
+from irsim_evals.grader.matching import Match, Quantity, matches, show
+from irsim_evals.grader.outcome import Mark
+from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register, summary
+
+if TYPE_CHECKING:
+    from irsim_evals.grader.body import Body
+    from irsim_evals.grader.material import Material
+    from irsim_evals.grader.scene import Scene
+
+_DIRECTIONS = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": -math.pi / 2}
+
+
+@register("inside")
+class Inside(ScenePredicate):
+    """Every body of a selection lies in a region. An empty selection fails."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    what: Literal["position", "footprint", "goal"] = "position"
+    """What lies in the region: its position, its whole footprint, or each of its goals."""
+    region: tuple[Quantity, Quantity, Quantity, Quantity] | None = None
+    """x0, y0, x1, y1 [m]; default: the world."""
+    shares: tuple[Quantity, Quantity, Quantity, Quantity] | None = None
+    """The same as shares of the world's extent: ``[0, 0, 0.33, 0.33]`` is its lower left third."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Look at each of them."""
+        bodies = material.bodies(scene, self.of)
+        x0, y0, x1, y1 = self._box(scene)
+        expected = f"{self.what} of {self.of} within x {show(x0)} to {show(x1)}, y {show(y0)} to {show(y1)}"
+        wrong = [
+            (body, point) for body in bodies for point in self._points(body) if not _holds((x0, y0, x1, y1), point)
+        ]
+        missing = [body for body in bodies if not self._points(body)]
+        if not bodies or missing:
+            return Observation(False, expected, f"{missing[0].name}: no goal" if missing else f"{self.of}: no body")
+        key = "goal" if self.what == "goal" else "state"
+        return Observation(
+            not wrong,
+            expected,
+            summary(wrong) if wrong else f"all {len(bodies)}",
+            f"{wrong[0][0].entry}.{key}" if wrong else None,
+            marks=[Mark(points=[list(point)], text=body.name) for body, point in wrong],
+        )
+
+    def _box(self, scene: Scene) -> tuple[float, float, float, float]:
+        if self.region is not None:
+            return self.region
+        x0, y0, x1, y1 = scene.bounds
+        a, b, c, d = self.shares or (0.0, 0.0, 1.0, 1.0)
+        return x0 + a * (x1 - x0), y0 + b * (y1 - y0), x0 + c * (x1 - x0), y0 + d * (y1 - y0)
+
+    def _points(self, body: Body) -> list[tuple[float, float]]:
+        if self.what == "goal":
+            return [(goal[0], goal[1]) for goal in body.goals]
+        if self.what == "footprint":
+            return [(float(x), float(y)) for x, y in shapely.get_coordinates(body.footprint)]
+        return [body.position]
+
+
+def _holds(box: tuple[float, float, float, float], point: tuple[float, float]) -> bool:
+    return box[0] - 1e-6 <= point[0] <= box[2] + 1e-6 and box[1] - 1e-6 <= point[1] <= box[3] + 1e-6
+
+
+@register("near")
+class Near(ScenePredicate):
+    """Every body of a selection is at some distance from the nearest body of another, or from a place."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    to: str | None = None
+    """Name of the other selection."""
+    place: tuple[Quantity, Quantity] | None = None
+    """A place instead of a selection [m]."""
+    what: Literal["position", "footprint", "goal"] = "position"
+    """What of the first selection counts. Footprints are measured to footprints, edge to edge."""
+    distance: Match
+    """Accepted distances [m]."""
+    farthest: bool = False
+    """Measure to the farthest body of the other selection instead of the nearest."""
+
+    @model_validator(mode="after")
+    def _one(self) -> Near:
+        if (self.to is None) == (self.place is None):
+            raise ValueError("give either `to` or `place`")
+        return self
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Measure."""
+        bodies = material.bodies(scene, self.of)
+        others = [] if self.to is None else material.bodies(scene, self.to)
+        target = self.to if self.place is None else show(list(self.place))
+        expected = f"{self.what} of {self.of} to {target}: {self.distance.words()} m"
+        if not bodies or (self.place is None and not others):
+            return Observation(False, expected, "no body")
+        found = [(body, self._measure(body, others)) for body in bodies]
+        wrong = [(body, value) for body, value in found if not matches(self.distance, value, "length")]
+        return Observation(
+            not wrong,
+            expected,
+            summary(wrong or found),
+            f"{wrong[0][0].entry}.{'goal' if self.what == 'goal' else 'state'}" if wrong else None,
+            marks=[Mark(points=[list(body.position)], text=body.name) for body, _ in wrong],
+        )
+
+    def _measure(self, body: Body, others: list[Body]) -> float | None:
+        if self.what == "goal":
+            if body.goal is None:
+                return None
+            at = shapely.Point(body.goal[:2])
+            shapes = [other.footprint for other in others if other is not body]
+        elif self.what == "footprint":
+            at, shapes = body.footprint, [other.footprint for other in others if other is not body]
+        else:
+            at = shapely.Point(body.position)
+            shapes = [shapely.Point(other.position) for other in others if other is not body]
+        if self.place is not None:
+            shapes = [shapely.Point(self.place)]
+        if not shapes:
+            return math.inf
+        distances = [float(shapely.distance(at, shape)) for shape in shapes]
+        return max(distances) if self.farthest else min(distances)
+
+
+@register("spacing")
+class Spacing(ScenePredicate):
+    """The smallest distance between any two bodies of a selection, of which there must be two."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    what: Literal["position", "footprint", "goal"] = "position"
+    """What is measured: between positions, between the edges of footprints, or between last goals."""
+    distance: Match
+    """Accepted values of the smallest distance [m]."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Measure all pairs."""
+        bodies = [body for body in material.bodies(scene, self.of) if self.what != "goal" or body.goal]
+        expected = f"{self.what} of {self.of} apart: {self.distance.words()} m"
+        pairs = [(self._apart(a, b), a, b) for a, b in itertools.combinations(bodies, 2)]
+        if not pairs:
+            return Observation(False, expected, f"{len(bodies)} bodies")
+        least, a, b = min(pairs, key=lambda pair: pair[0])
+        passed = matches(self.distance, least, "length")
+        marks = [] if passed else [Mark(points=[list(a.position), list(b.position)], text=f"{least:.2f} m")]
+        return Observation(passed, expected, f"{a.name} and {b.name}: {show(least)} m", f"{b.entry}.state", marks=marks)
+
+    def _apart(self, a: Body, b: Body) -> float:
+        if self.what == "footprint":
+            return float(shapely.distance(a.footprint, b.footprint))
+        if self.what == "goal" and a.goal is not None and b.goal is not None:
+            return math.dist(a.goal[:2], b.goal[:2])
+        return math.dist(a.position, b.position)
+
+
+@register("beside")
+class Beside(ScenePredicate):
+    """Every body of a selection starts, or has its goal, on one side of another body's way."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    way_of: str
+    """Selection of one body, whose way leads from its start to its goal."""
+    what: Literal["start", "goal"] = "start"
+    """What lies there."""
+    side: Literal["left", "right", "ahead", "behind"]
+    """Seen from the start of the way toward its goal."""
+    by: Quantity = 0.0
+    """Least distance from the line [m]."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Measure the distances."""
+        bodies, ways = material.bodies(scene, self.of), material.bodies(scene, self.way_of)
+        expected = f"{self.what} of {self.of} {self.side} of the way of {self.way_of}"
+        if not bodies or len(ways) != 1 or ways[0].goal is None:
+            return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.way_of}: {len(ways)}")
+        (x, y, _), goal = ways[0].pose, ways[0].goal
+        length = math.dist((x, y), goal[:2]) or 1.0
+        dx, dy = (goal[0] - x) / length, (goal[1] - y) / length
+        found = []
+        for body in bodies:
+            point = body.position if self.what == "start" else body.goal
+            if point is None:
+                found.append((body, -math.inf))
+                continue
+            px, py = point[0] - x, point[1] - y
+            ahead, left = px * dx + py * dy, dx * py - dy * px
+            found.append((body, {"left": left, "right": -left, "ahead": ahead, "behind": -ahead}[self.side]))
+        wrong = [(body, value) for body, value in found if value < self.by - 1e-9 or value <= 0]
+        return Observation(
+            not wrong,
+            expected,
+            summary(wrong or found),
+            f"{wrong[0][0].entry}.{'state' if self.what == 'start' else 'goal'}" if wrong else None,
+        )
+
+
+@register("on_circle")
+class OnCircle(ScenePredicate):
+    """Every body of a selection stands on a circle."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    center: tuple[Quantity, Quantity] | None = None
+    """Middle of the circle [m]; default: the mean of the positions."""
+    center_near: tuple[Quantity, Quantity, Quantity] | None = None
+    """x, y and the greatest distance of the middle from there [m]."""
+    radius: Quantity
+    """Radius of the circle [m]."""
+    tol: Quantity = 0.05
+    """Greatest deviation from the radius [m]."""
+    even: Quantity | None = None
+    """Greatest deviation of the angles between neighbours from an even spacing [rad]."""
+    opposite: Quantity | None = None
+    """Greatest distance of each goal from the point opposite of the start [m]."""
+    facing: Quantity | None = None
+    """Greatest deviation of each heading from the direction to the middle [rad]."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Measure radii, angles and goals."""
+        bodies = material.bodies(scene, self.of)
+        expected = f"{self.of} on a circle of radius {show(self.radius)} m"
+        if len(bodies) < 2:
+            return Observation(False, expected, f"{len(bodies)} bodies")
+        places = [body.position for body in bodies]
+        cx, cy = self.center or (sum(x for x, _ in places) / len(places), sum(y for _, y in places) / len(places))
+        wrong: list[str] = []
+        marks: list[Mark] = []
+        if self.center_near is not None and math.dist((cx, cy), self.center_near[:2]) > self.center_near[2]:
+            wrong.append(f"its middle is ({cx:.2f}, {cy:.2f})")
+        for body, place in zip(bodies, places, strict=True):
+            radius = math.dist(place, (cx, cy))
+            if abs(radius - self.radius) > self.tol + 1e-9:
+                wrong.append(f"{body.name} is {radius:.2f} m from ({cx:.2f}, {cy:.2f})")
+                marks.append(Mark(points=[[cx, cy], list(place)], text=body.name))
+            if self.opposite is not None:
+                goal = body.goal
+                there = (2 * cx - place[0], 2 * cy - place[1])
+                if goal is None or math.dist(goal[:2], there) > self.opposite + 1e-9:
+                    wrong.append(f"the goal of {body.name} is {show(goal)}, opposite is {show(list(there))}")
+                    marks.append(Mark(points=[list(there)], text=f"opposite of {body.name}"))
+            if self.facing is not None:
+                off = math.atan2(cy - place[1], cx - place[0]) - body.pose[2]
+                off = abs(wrap(off))
+                if off > self.facing + 1e-9:
+                    wrong.append(f"{body.name} looks {math.degrees(off):.0f}° past the middle")
+        if self.even is not None:
+            angles = sorted(math.atan2(y - cy, x - cx) for x, y in places)
+            gaps = [b - a for a, b in zip(angles, [*angles[1:], angles[0] + 2 * math.pi], strict=True)]
+            worst = max(abs(gap - 2 * math.pi / len(gaps)) for gap in gaps)
+            if worst > self.even + 1e-9:
+                wrong.append(f"the angles between neighbours are off by up to {math.degrees(worst):.1f}°")
+        observed = "; ".join(wrong[:3]) if wrong else f"all {len(bodies)}"
+        return Observation(not wrong, expected, observed, f"{bodies[0].entry}.state" if wrong else None, marks=marks)
+
+
+@register("facing")
+class Facing(ScenePredicate):
+    """Every body of a selection looks somewhere. An empty selection fails."""
+
+    stage = "relations"
+
+    of: str
+    """Name of the selection."""
+    toward: str | tuple[Quantity, Quantity] | Literal["goal"]
+    """``goal``, ``north``, ``east``, ``south``, ``west``, a place [m], or the name of a selection: its middle."""
+    tol: Quantity = math.radians(20)
+    """Greatest deviation [rad]."""
+    away: bool = False
+    """It looks the other way."""
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Measure the angles."""
+        bodies = material.bodies(scene, self.of)
+        where = self.toward if isinstance(self.toward, str) else show(list(self.toward))
+        expected = f"{self.of} {'away from' if self.away else 'toward'} {where}"
+        if not bodies:
+            return Observation(False, expected, f"{self.of}: no body")
+        found = [(body, self._off(material, scene, body)) for body in bodies]
+        wrong = [(body, off) for body, off in found if off is None or off > self.tol + 1e-9]
+        degrees = [(body, None if off is None else f"{math.degrees(off):.0f}° off") for body, off in wrong or found]
+        return Observation(not wrong, expected, summary(degrees), f"{wrong[0][0].entry}.state" if wrong else None)
+
+    def _off(self, material: Material, scene: Scene, body: Body) -> float | None:
+        if self.toward == "goal":
+            target = None if body.goal is None else (body.goal[0], body.goal[1])
+        elif isinstance(self.toward, str) and self.toward in _DIRECTIONS:
+            return _apart(_DIRECTIONS[self.toward] + (math.pi if self.away else 0.0), body.pose[2])
+        elif isinstance(self.toward, str):
+            others = [other for other in material.bodies(scene, self.toward) if other is not body]
+            places = [other.position for other in others]
+            target = (
+                (sum(x for x, _ in places) / len(places), sum(y for _, y in places) / len(places)) if places else None
+            )
+        else:
+            target = self.toward
+        if target is None:
+            return None
+        wanted = math.atan2(target[1] - body.pose[1], target[0] - body.pose[0]) + (math.pi if self.away else 0.0)
+        return _apart(wanted, body.pose[2])
+
+
+def _apart(a: float, b: float) -> float:
+    return float(abs(wrap(a - b)))

@@ -1,0 +1,244 @@
+"""Answers with several scenarios: assertions about each of them, and comparisons of behaviors."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from pydantic import field_validator
+
+from irsim.diagnostics.errors import IrsimError
+from irsim.scenario.read import read
+from irsim.scenario.yaml.document import load_text
+from irsim_evals.grader.matching import Match, Quantity, matches
+from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, Predicate, register, registered
+from irsim_evals.grader.runs_of_answers import Runs, runs_of
+
+if TYPE_CHECKING:
+    from irsim_evals.grader.material import Material
+
+_SEED = 0
+"""Seed of the worlds that are looked at."""
+_ROUNDING = 1
+"""Steps by which a horizon that a program counts in seconds may be off."""
+_SEEDS = (0, 1)
+"""Seeds of the worlds that are compared."""
+
+
+@register("every_scenario")
+class EveryScenario(AnswerPredicate):
+    """Every scenario file that the agent left is valid and fulfils some assertions about its world."""
+
+    stage = "facts"
+
+    number: Match = Match(ge=1)
+    """Accepted numbers of scenario files."""
+    that: list[dict[str, Any]]
+    """Assertions about the world: each is the name of a predicate with its keys."""
+
+    @field_validator("that")
+    @classmethod
+    def _known(cls, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        for item in value:
+            _predicate(item)
+        return value
+
+    def observe(self, material: Material) -> Observation:
+        """Open each of them."""
+        names = scenario_names(material)
+        expected = f"scenarios: {self.number.words()}, each as wanted"
+        if not matches(self.number, len(names), "count"):
+            return Observation(False, expected, f"{len(names)}: {', '.join(names[:6])}")
+        for name in names:
+            one = opened(material, name)
+            if isinstance(one, str):
+                return Observation(False, expected, f"{name}: {one}", name)
+            for item in self.that:
+                predicate: Any = _predicate(item)
+                scene = predicate.subject == "scene"
+                found: Observation = predicate.observe(one, one.scene(_SEED)) if scene else predicate.observe(one)
+                if not found.passed:
+                    words = f"{name}: {found.expected}", f"{name}: {found.observed}"
+                    return Observation(False, *words, found.yaml_path, _SEED, found.marks)
+        return Observation(True, expected, f"{len(names)} scenarios")
+
+
+def scenario_names(material: Material) -> list[str]:
+    """Names of the scenario files that the agent left."""
+    from irsim_evals.grader.artefact import scenarios_in  # it imports the cases, which import the predicates
+
+    return sorted(name for name in scenarios_in(material.texts) if name not in material.given)
+
+
+def opened(material: Material, name: str) -> Material | str:
+    """Another scenario of the same answer; what is wrong with it, if it cannot be opened."""
+    from irsim_evals.grader.grade import LIMITS
+
+    document = load_text(material.texts[name], limits=LIMITS)
+    if document.fatal:
+        return "; ".join(item.message for item in document.problems[:2])
+    reading = read(document, limits=LIMITS)
+    bad = [item for item in reading.diagnostics if item.severity == "error" or item.code == "unknown-key"]
+    if reading.scenario is None or bad:
+        return "; ".join(item.message for item in bad[:2])
+    made = replace(material, main=name, scenario=reading.scenario, document=document, _scenes={})
+    try:
+        made.scene(_SEED)
+    except IrsimError as error:
+        return str(error).splitlines()[0]
+    return made
+
+
+def _predicate(item: dict[str, Any]) -> Predicate:
+    if len(item) != 1:
+        raise ValueError("give exactly one predicate in each item")
+    ((name, keys),) = item.items()
+    known = registered()
+    if name not in known or known[name].subject not in ("scene", "seeds"):
+        raise ValueError(f"no predicate about a world is called {name!r}")
+    return known[name].model_validate(keys)
+
+
+@register("comparison")
+class Comparison(AnswerPredicate):
+    """Behaviors are compared fairly: with the same scenarios but for the behavior, the same seeds, the same horizon."""
+
+    stage = "relations"
+
+    robots: list[int]
+    """Numbers of robots; there is at least one scenario for each."""
+    behaviors: list[str]
+    """Behaviors that are compared: each has a file of its own for each number of robots, or what runs the scenarios
+    sets it."""
+    episodes: int
+    """Number of episodes of each behavior and number of robots."""
+    steps: int
+    """Horizon in steps."""
+    metrics: dict[str, list[str]]
+    """Name → regular expressions, one of which occurs in what runs the scenarios or in what it prints."""
+    seconds: Quantity = 20.0
+    """How long the rehearsal of each program may take [s]."""
+
+    def observe(self, material: Material) -> Observation:
+        """Compare the files, and look at the episodes that are run."""
+        expected = (
+            f"{', '.join(self.behaviors)} with {', '.join(map(str, self.robots))} robots, {self.episodes} episodes of "
+            f"{self.steps} steps each, and {', '.join(self.metrics)}"
+        )
+        groups: dict[int, dict[str, Material]] = {}
+        problem = self._files(material, groups) or self._runs(material, groups)
+        return Observation(not problem, expected, problem or "so it is")
+
+    def _files(self, material: Material, groups: dict[int, dict[str, Material]]) -> str:
+        """What is wrong with the scenarios, which are sorted by their numbers of robots; empty if nothing is."""
+        for name in scenario_names(material):
+            one = opened(material, name)
+            if isinstance(one, str):
+                return f"{name}: {one}"
+            groups.setdefault(len(one.scene(0).robots), {})[name] = one
+        for number in self.robots:
+            files = groups.get(number, {})
+            if not files:
+                return f"no scenario with {number} robots, but with {', '.join(map(str, sorted(groups))) or 'none'}"
+            for a, b in itertools.pairwise(files):
+                odd = _differing(_facts(files[a], layout=True), _facts(files[b], layout=True))
+                if odd:
+                    return f"{a} and {b} differ in {odd}, too"
+        firsts = [next(iter(groups[number].items())) for number in self.robots]
+        for (a, one), (b, other) in itertools.pairwise(firsts):
+            odd = _differing(_facts(one), _facts(other))
+            if odd:
+                return f"{a} and {b} differ in {odd}, too"
+        return ""
+
+    def _runs(self, material: Material, groups: dict[int, dict[str, Material]]) -> str:
+        """What is wrong with the episodes that programs start, commands plan or, without either, the reply tells."""
+        found = runs_of(material, set(self.behaviors), self.seconds)
+        if isinstance(found, str):
+            return found
+        problem = self._started(found, groups) if found.started else self._told(found.words, groups)
+        if problem:
+            return problem
+        missing = next((name for name, ways in self.metrics.items() if not _occurs(ways, found.words)), "")
+        return f"nothing reports the rate of {missing}" if missing else ""
+
+    def _started(self, found: Runs, groups: dict[int, dict[str, Material]]) -> str:
+        """What is wrong with the episodes; empty if nothing is."""
+        numbers = {name: number for number, files in groups.items() for name in files}
+        seeds: dict[tuple[int, str], list[int]] = {}
+        for one in found.started:
+            if one.file not in numbers:
+                return f"{found.by} runs {one.file or 'a text'}, which is no scenario of the answer"
+            steps = one.steps if one.steps is not None else _limit(groups[numbers[one.file]][one.file])
+            if steps is None or abs(steps - self.steps) > _ROUNDING:
+                return f"{found.by} gives {one.file} {'no horizon' if steps is None else f'{steps} steps'}"
+            for behavior in one.behaviors:
+                seeds.setdefault((numbers[one.file], behavior), []).append(one.seed)
+        common = max(map(set, seeds.values()), key=len)
+        for number, behavior in itertools.product(self.robots, self.behaviors):
+            own = seeds.get((number, behavior), [])
+            if not own:
+                return f"nothing runs {behavior} with {number} robots"
+            if len(own) != self.episodes:
+                return f"{found.by} runs {behavior} with {number} robots in {len(own)} episodes"
+            if set(own) != common or len(common) < len(own):
+                return f"{found.by} gives {behavior} with {number} robots other seeds, or seeds twice"
+        return ""
+
+    def _told(self, words: str, groups: dict[int, dict[str, Material]]) -> str:
+        """What the words lack that tell of a comparison which nothing in the answer runs; empty if nothing."""
+        for number, behavior in itertools.product(self.robots, self.behaviors):
+            own = any({body.behavior for body in one.scene(0).robots} == {behavior} for one in groups[number].values())
+            if not own and not re.search(rf"\b{behavior}\b", words, re.IGNORECASE):
+                return f"nothing runs {behavior} with {number} robots"
+        limits = {_limit(one) for files in groups.values() for one in files.values()}
+        if limits != {self.steps} and not re.search(rf"(?<![\d.]){self.steps}\W{{0,3}}(?:time)?\W?steps?\b", words):
+            return f"no horizon of {self.steps} steps; by the scenarios {', '.join(map(str, limits))}"
+        many = rf"(?<![\d.]){self.episodes}\b\W{{0,3}}(?:\w+\W+){{0,2}}?(?:seed|episode|run|layout|trial)"
+        many += rf"|\b(?:seed|episode|run)s?\W{{1,4}}{self.episodes}\b"
+        return "" if re.search(many, words, re.IGNORECASE) else f"nothing says that there are {self.episodes} episodes"
+
+
+def _occurs(ways: list[str], words: str) -> bool:
+    return any(re.search(way, words, re.IGNORECASE) for way in ways)
+
+
+def _limit(one: Material) -> int | None:
+    world = one.scene(_SEEDS[0]).world
+    return None if world.time_limit is None else round(world.time_limit / world.step_time)
+
+
+def _facts(one: Material, *, layout: bool = False) -> dict[str, Any]:
+    """What must be equal in scenarios that are compared.
+
+    Args:
+        one: The scenario.
+        layout: Whether starts and goals count, and how many robots there are.
+    """
+    scene = one.scene(_SEEDS[0])
+    world = scene.world
+    robots = [
+        [body.kinematics, body.shape, body.extent, body.limits, body.threshold, body.arrive_mode, body.sensors]
+        for body in scene.robots
+    ]
+    found: dict[str, Any] = {
+        "the size of the world": scene.bounds,
+        "the time of a step": [world.step_time, world.sample_time],
+        "the time limit": world.time_limit,
+        "the modes of the world": [world.collision_mode, world.step_mode, world.control_mode, world.boundary],
+        "the map": str(world.obstacle_map),
+        "the obstacles": [] if scene.env.scenario.placements else [body.footprint.wkt for body in scene.solids],
+        "drive, shape, limits or sensors of a robot": sorted({repr(robot) for robot in robots}),
+    }
+    if layout:
+        found["starts and goals"] = [
+            [body.pose[:2], body.goals] for seed in _SEEDS for body in one.scene(seed).bodies if not body.static
+        ]
+    return found
+
+
+def _differing(a: dict[str, Any], b: dict[str, Any]) -> str:
+    """The first fact that differs; empty if there is none."""
+    return next((name for name in a if a[name] != b[name]), "")

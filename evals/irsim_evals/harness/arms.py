@@ -1,0 +1,71 @@
+"""What an agent of each arm is told before the prompt, and the skills that it may read."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from pathlib import Path
+
+from irsim.bundled.skills import find_skills
+
+__all__ = ["MODEL_ARMS", "SKILLS", "briefing", "skill_folders", "skills_hash"]
+
+MODEL_ARMS: tuple[str, ...] = ("no-skill", "skill", "skill+mcp", "skill+mcp+distractors")
+"""Arms in which a model answers: with files only, with the skills, with the MCP tools, with tools that do not help."""
+SKILLS = "skills"
+"""Where an agent finds the skills."""
+
+_TASK = """\
+You make and edit scenarios for irsim, a simulator of robots in a flat world. A scenario is one YAML file with the \
+keys world, robot and obstacle; the format is that of IR-SIM. Lengths are m, times s, angles rad, x points right, y up.
+
+You have a folder, and tools for the files in it. Save your scenario there as scenario.yaml, unless the user names a \
+file or asks for a change of one that is there: then save that one. Nobody sees your folder until you are done. You \
+are done when you answer without calling a tool: that answer is your message to the user, so say in it what you \
+assumed and what could not be done. You have no shell and cannot run programs."""
+_SKILLS = """\
+There are skills: instructions for kinds of work. Before you start, read with read_file the SKILL.md of each that fits \
+the request, and the files it refers to when you need them; their paths are relative to the folder of the skill."""
+
+
+def briefing(arm: str, folder: Path) -> str:
+    """The system message of an arm.
+
+    Args:
+        arm: One of the arms in which a model answers.
+        folder: Folder of the attempt, which the MCP server calls its workspace.
+    """
+    texts = [_TASK]
+    if arm.startswith("skill"):
+        skills = "\n".join(
+            f"- {skill.name} ({SKILLS}/{skill.name}/SKILL.md): {skill.description}" for skill in find_skills()
+        )
+        texts.append(f"{_SKILLS}\n\n{skills}")
+    if "+mcp" in arm:
+        texts.append(f"The MCP server irsim says:\n{_server_instructions(folder)}")
+    return "\n\n".join(texts)
+
+
+def skill_folders(arm: str) -> dict[str, Path]:
+    """Folders that an agent of an arm may read: path → place."""
+    if not arm.startswith("skill"):
+        return {}
+    return {f"{SKILLS}/{skill.name}": skill.folder for skill in find_skills()}
+
+
+@functools.cache
+def skills_hash() -> str:
+    """Digest of all files of all skills."""
+    digest = hashlib.sha256()
+    for skill in find_skills():
+        for name, content in sorted(skill.files().items()):
+            digest.update(f"{skill.name}/{name}\n{len(content)}\n".encode())
+            digest.update(content)
+    return digest.hexdigest()[:16]
+
+
+def _server_instructions(folder: Path) -> str:
+    """What the MCP server says about itself, which hosts put before their models."""
+    from irsim_mcp.server import build_server
+
+    return build_server(folder).instructions or ""

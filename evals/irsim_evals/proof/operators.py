@@ -1,0 +1,114 @@
+"""What mutants and rewrites are made of: their registers, and ways to go through a scenario, change it and write it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+from irsim_evals.grader.scene import Scene
+
+__all__ = [
+    "OPERATORS", "REWRITES", "Change", "Data", "Mutant", "dump", "each_entry", "entries", "operator", "plain",
+    "rewrite", "scale", "shift", "with_entry",
+]  # fmt: skip
+
+Data = dict[str, Any]
+Change = Iterator[tuple[str, Data]]
+Operator = Callable[[Data], Change]
+OPERATORS: dict[str, Operator] = {}
+Rewrite = Callable[[str, Data, Scene], str | None]
+REWRITES: dict[str, Rewrite] = {}
+_DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+"""The one in C is ten times as fast; some installations lack it."""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One changed scenario.
+
+    Attributes:
+        operator: Name of the operator that made it.
+        what: What was changed, for people.
+        data: The scenario.
+    """
+
+    operator: str
+    what: str
+    data: Data
+
+
+def operator(function: Operator) -> Operator:
+    """Register an operator under its name."""
+    OPERATORS[function.__name__] = function
+    return function
+
+
+def plain(value: Any) -> Any:
+    """A copy in which no two keys share a mapping, as they do where a file uses anchors, so that a change of one entry
+    changes no other."""
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    return [plain(item) for item in value] if isinstance(value, list) else value
+
+
+def entries(data: Data) -> Iterator[tuple[str, int, Data]]:
+    """Section, number and mapping of each entry."""
+    for section in ("robot", "obstacle"):
+        found = data.get(section)
+        items = found if isinstance(found, list) else [found] if isinstance(found, dict) else []
+        for number, entry in enumerate(items):
+            if isinstance(entry, dict):
+                yield section, number, entry
+
+
+def with_entry(data: Data, section: str, number: int, change: Callable[[Data], Any]) -> Data | None:
+    """A copy in which one entry was changed in place; None if the change does not apply."""
+    made = copy.deepcopy(data)
+    for other, k, entry in entries(made):
+        if (other, k) == (section, number):
+            return made if change(entry) is not False else None
+    return None
+
+
+def each_entry(data: Data, change: Callable[[Data], Any], what: str) -> Change:
+    for section, number, _ in entries(data):
+        made = with_entry(data, section, number, change)
+        if made is not None:
+            yield f"{section}[{number}]: {what}", made
+
+
+def scale(key: str, factor: float, *, inside: str | None = None) -> Callable[[Data], Any]:
+    def change(entry: Data) -> Any:
+        owner = entry.get(inside) if inside else entry
+        if not isinstance(owner, dict) or not isinstance(owner.get(key), (int, float)):
+            return False
+        owner[key] = owner[key] * factor
+        return True
+
+    return change
+
+
+def shift(key: str, component: int, by: float) -> Callable[[Data], Any]:
+    def change(entry: Data) -> Any:
+        value = entry.get(key)
+        if not isinstance(value, list) or len(value) <= component or not isinstance(value[component], (int, float)):
+            return False
+        value[component] = value[component] + by
+        return True
+
+    return change
+
+
+def rewrite(function: Rewrite) -> Rewrite:
+    """Register a rewrite under its name."""
+    REWRITES[function.__name__] = function
+    return function
+
+
+def dump(data: Data, **options: Any) -> str:
+    """A scenario as text."""
+    return str(yaml.dump(data, Dumper=_DUMPER, sort_keys=False, allow_unicode=True, **options))
