@@ -21,90 +21,22 @@ ROOT = Path(__file__).resolve().parents[2]
 DEEPEST = 7
 
 RAW = (
-    *("1e999", "-.inf", ".nan", "0x7fffffffffffffff", "0o17", "1:30", "1_000", "2024-01-01", "~", "yes", "On"),
-    *("!!python/object/apply:os.system [id]", "!!binary AAAA", "!!set {a, b}", "!!float x", "!local 3", "*nowhere"),
-    *(
-        "9" * 400,
-        "-" + "9" * 30,
-        "1e-320",
-        "1.7976931348623157e308",
-        "5e-324",
-        "- - - -",
-        "? a",
-        "&a [*a]",
-        "[[[[1]]]]",
-    ),
-    *("1e", "0.1.2", "+", "1e15", "-0.0", "1e6", "18446744073709551616", "-9223372036854775809", "2147483648", "'"),
-)
+    "1e999", "-.inf", ".nan", "0x7fffffffffffffff", "0o17", "1:30", "1_000", "2024-01-01", "~", "yes", "On",
+    "!!python/object/apply:os.system [id]", "!!binary AAAA", "!!set {a, b}", "!!float x", "!local 3", "*nowhere",
+    "9" * 400, "-" + "9" * 30, "1e-320", "1.7976931348623157e308", "5e-324", "- - - -", "? a", "&a [*a]", "[[[[1]]]]",
+    "1e", "0.1.2", "+", "1e15", "-0.0", "1e6", "18446744073709551616", "-9223372036854775809", "2147483648", "'",
+)  # fmt: skip
 """Written as they are, which may be no YAML."""
 HOSTILE = (
-    *(
-        "",
-        " ",
-        "\x1b[2J",
-        "\x00",
-        "\u202e",
-        "\ud7ff",
-        "\ufeff",
-        "\U0001f916",
-        "a" * 3000,
-        "../../../etc/passwd",
-        "/dev/zero",
-    ),
-    *(
-        "/proc/self/mem",
-        "CON",
-        "~root",
-        "__class__",
-        "{0.__class__}",
-        "%s%n",
-        "${HOME}",
-        "<b>",
-        "\n\n",
-        "\t",
-        "null",
-        "true",
-    ),
-    *("pi/2", "90deg", "5 m", "1,5", "0,5", "10cm", "2*pi", "nan", "inf", "-", "*", "&", "robot_0", "(text)", "[bold]"),
-    *(
-        "dash",
-        "orca",
-        "avocado",
-        "footprint_orca",
-        "rvo",
-        "sfm",
-        "follow",
-        "diff",
-        "acker",
-        "omni",
-        "lidar2d",
-        "circle",
-        "polygon",
-        "random",
-        "none",
-    ),
-)
+    "", " ", "\x1b[2J", "\x00", "\u202e", "\ud7ff", "\ufeff", "\U0001f916", "a" * 3000, "../../../etc/passwd",
+    "/dev/zero", "/proc/self/mem", "CON", "~root", "__class__", "{0.__class__}", "%s%n", "${HOME}", "<b>", "\n\n", "\t",
+    "null", "true", "pi/2", "90deg", "5 m", "1,5", "0,5", "10cm", "2*pi", "nan", "inf", "-", "*", "&", "robot_0",
+    "(text)", "[bold]", "dash", "orca", "avocado", "footprint_orca", "rvo", "sfm", "follow", "diff", "acker", "omni",
+    "lidar2d", "circle", "polygon", "random", "none",
+)  # fmt: skip
 NUMBERS = (
-    0,
-    -1,
-    1,
-    2,
-    7,
-    0.0,
-    -0.5,
-    1e-9,
-    1e-300,
-    1e3,
-    1e6,
-    1e9,
-    1e18,
-    1e300,
-    math.inf,
-    -math.inf,
-    math.nan,
-    2**31,
-    2**63,
-)
+    0, -1, 1, 2, 7, 0.0, -0.5, 1e-9, 1e-300, 1e3, 1e6, 1e9, 1e18, 1e300, math.inf, -math.inf, math.nan, 2**31, 2**63,
+)  # fmt: skip
 WIDE = (-1e4, 1e4)
 
 

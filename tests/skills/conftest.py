@@ -1,8 +1,9 @@
-"""The skill's folder and its Markdown."""
+"""The skills' folders, their Markdown, and the commands in it."""
 
 from __future__ import annotations
 
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -47,3 +48,14 @@ def execute(words: list[str], folder: Path) -> str:
 def pytest_itemcollected(item: pytest.Item) -> None:
     """Texts of skills and their programs are the same on every Python."""
     item.add_marker("one_python")
+
+
+def commands(folder: Path) -> list[list[str]]:
+    """The commands on the page of an example, in order."""
+    text = (folder / "elements.md").read_text(encoding="utf-8")
+    return [shlex.split(line) for block in fences(text, "bash") for line in block.splitlines()]
+
+
+def read(folder: Path, page: str) -> str:
+    """A page of an example on one line."""
+    return " ".join((folder / page).read_text(encoding="utf-8").split())

@@ -19,21 +19,13 @@ import irsim
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import wilson
-from tests.skills.conftest import ROOT, execute, fences, parts, spans
+from tests.skills.conftest import ROOT, commands, execute, fences, parts, read, spans
 from tests.skills.test_skill import SKELETON, tool_arguments
 
 SKILL = ROOT / "skills" / "irsim-benchmark"
+POSTS, DENSITY = (SKILL / "examples" / name for name in ("posts", "density"))
 VERDICT = SKILL / "scripts" / "verdict.py"
 _, BODY = parts(SKILL / "SKILL.md")
-
-
-def read(name: str, page: str) -> str:
-    return " ".join((SKILL / "examples" / name / page).read_text(encoding="utf-8").split())
-
-
-def commands(name: str) -> list[list[str]]:
-    text = (SKILL / "examples" / name / "elements.md").read_text(encoding="utf-8")
-    return [shlex.split(line) for block in fences(text, "bash") for line in block.splitlines()]
 
 
 def verdict(path: Path, *words: str) -> tuple[int, dict[str, Any]]:
@@ -73,10 +65,7 @@ def test_tools_and_their_arguments_are_those_of_the_server(tmp_path: Path) -> No
 
 
 def test_a_seed_begins_alike_with_more_people() -> None:
-    few, many = (
-        irsim.batch(SKILL / "examples" / "density" / f"crowd-{count}.yaml", 1, seeds=[3]).pose[0].copy()
-        for count in (10, 20)
-    )
+    few, many = (irsim.batch(DENSITY / f"crowd-{count}.yaml", 1, seeds=[3]).pose[0].copy() for count in (10, 20))
     assert len(many) == len(few) + 10
     assert (few == many[: len(few)]).all()
 
@@ -129,39 +118,38 @@ def test_the_example_of_what_to_say_is_the_one_of_the_examples() -> None:
 
 
 def test_two_behaviors_that_cannot_be_told_apart(tmp_path: Path) -> None:
-    [words] = commands("posts")
-    output = execute(words, SKILL / "examples" / "posts")
+    [words] = commands(POSTS)
+    output = execute(words, POSTS)
     result = json.loads(output)
     (tmp_path / "result.json").write_text(output, encoding="utf-8")
     code, told = verdict(tmp_path / "result.json", "--metric", "success", "--metric", "time_to_goal")
     assert code == 1
     success, time = told["differences"]
-    page, reply = read("posts", "elements.md"), read("posts", "reply.md")
+    page, reply = read(POSTS, "elements.md"), read(POSTS, "reply.md")
     numbers = f"{success['difference']:.2f} [{success['low']:.2f}, {success['high']:.2f}]"
     assert f"Success is **{success['verdict']}**: {numbers}, about {success['pairs_needed']} pairs" in page
     numbers = f"{time['difference']:+.2f} s [{time['low']:.2f}, {time['high']:.2f}]"
     assert f"Time is **{time['verdict']}** for RVO: {numbers}" in page
     assert f"ORCA {shares(result['rows'][0])}, RVO {shares(result['rows'][1])}" in reply
     assert f"(RVO {result['rows'][1]['collision']['count']} of 30)" in reply
-    failed = irsim.run(SKILL / "examples" / "posts" / "scenario.yaml", seed=0)
+    failed = irsim.run(POSTS / "scenario.yaml", seed=0)
     assert (failed.outcome, failed.sim_time) == ("timeout", pytest.approx(40.0))
 
 
 @pytest.mark.slow(8)
 def test_success_over_density(tmp_path: Path) -> None:
-    *filling, words = commands("density")
-    folder = SKILL / "examples" / "density"
+    *filling, words = commands(DENSITY)
     for command in filling:
         execute(command, tmp_path)
         name = command[-1]
         made = yaml.safe_load((tmp_path / name).read_text(encoding="utf-8"))
-        kept = yaml.safe_load((folder / name).read_text(encoding="utf-8"))
+        kept = yaml.safe_load((DENSITY / name).read_text(encoding="utf-8"))
         made["world"].pop("plot")
         kept["world"].pop("plot")
         assert made == kept
-    output = execute(words, folder)
+    output = execute(words, DENSITY)
     result = json.loads(output)
-    page, reply = read("density", "elements.md"), read("density", "reply.md")
+    page, reply = read(DENSITY, "elements.md"), read(DENSITY, "reply.md")
     for orca, sfm in zip(result["rows"][0:6:2], result["rows"][1:6:2], strict=True):
         people = re.search(r"\d+", orca["scenario"])
         assert people

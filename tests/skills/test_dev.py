@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import shlex
 import shutil
 import subprocess
 import sys
@@ -19,22 +18,13 @@ import irsim._core as core
 from irsim.diagnostics import codes
 from irsim.options.registry import REGISTRIES
 from tests.packaging.conftest import Environment
-from tests.skills.conftest import ROOT, execute, fences, parts, spans
+from tests.skills.conftest import ROOT, commands, execute, fences, parts, read, spans
 from tests.warm import warm
 
 SKILL = ROOT / "skills" / "irsim-dev"
 EXAMPLES = SKILL / "examples"
 _, BODY = parts(SKILL / "SKILL.md")
 Run = Callable[..., str]
-
-
-def read(name: str, page: str) -> str:
-    return " ".join((EXAMPLES / name / page).read_text(encoding="utf-8").split())
-
-
-def commands(name: str) -> list[list[str]]:
-    text = (EXAMPLES / name / "elements.md").read_text(encoding="utf-8")
-    return [shlex.split(line) for block in fences(text, "bash") for line in block.splitlines()]
 
 
 def copy_tree(folder: Path) -> None:
@@ -63,14 +53,8 @@ def checkout(tmp_path: Path) -> tuple[Path, Run]:
     def run(words: Sequence[str], code: int = 0) -> str:
         # Without site: the hook of an editable install would lead back to this tree.
         words = words[2:] if words[0] == "python" else words
-        done = subprocess.run(
-            [sys.executable, "-S", "-m", *words],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        command = [sys.executable, "-S", "-m", *words]
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
         assert done.returncode == code, f"{words}: {done.stdout[-3000:]}{done.stderr[-3000:]}"
         return done.stdout
 
@@ -82,12 +66,12 @@ def test_a_shape_is_one_file_and_its_test(checkout: tuple[Path, Run]) -> None:
     folder, run = checkout
     put_into(folder, "new-shape")
     registry = folder / "tests" / "conformance" / "test_registry.py"
-    line = re.search(r"`(\"stadium\": .*?,)`", read("new-shape", "elements.md"))
+    line = re.search(r"`(\"stadium\": .*?,)`", read(EXAMPLES / "new-shape", "elements.md"))
     assert line
     text = registry.read_text(encoding="utf-8")
     registry.write_text(text.replace("SHAPE_EXAMPLES = {\n", f"SHAPE_EXAMPLES = {{\n    {line[1]}\n"), encoding="utf-8")
     run(["irsim", "schema", "--check"], 1)
-    for words in commands("new-shape"):
+    for words in commands(EXAMPLES / "new-shape"):
         told = run([*words, "-q", "-n0", "-p", "no:cacheprovider"] if words[0] == "pytest" else words)
         if words[0] == "pytest":
             assert " passed" in told
@@ -97,13 +81,13 @@ def test_a_shape_is_one_file_and_its_test(checkout: tuple[Path, Run]) -> None:
     shutil.copy(EXAMPLES / "new-shape" / "scenario.yaml", folder)
     assert json.loads(run(["irsim", "validate", "scenario.yaml", "--json"]))["findings"] == []
     assert json.loads(run(["irsim", "run", "scenario.yaml", "--seed", "1", "--json"]))["outcome"] == "success"
-    assert "ends in **success**" in read("new-shape", "elements.md")
+    assert "ends in **success**" in read(EXAMPLES / "new-shape", "elements.md")
 
 
 @pytest.mark.slow(6)
 def test_a_sensor_works_by_the_name_of_its_module(tmp_path: Path) -> None:
     folder = Path(shutil.copytree(EXAMPLES / "new-sensor", tmp_path / "copy"))
-    for words in commands("new-sensor"):
+    for words in commands(EXAMPLES / "new-sensor"):
         told = execute(words, folder)
         if words[1] == "run":
             assert "arrived at 10 s" in told
@@ -114,7 +98,7 @@ env.step()
 print({name: round(distance, 2) for name, (distance, _) in env.robot.sensors[0].data.items()})
 """
     assert execute(["python", "-c", program], folder) == "{'obstacle_1': 2.7}\n"
-    assert "at **2.70** m" in read("new-sensor", "elements.md")
+    assert "at **2.70** m" in read(EXAMPLES / "new-sensor", "elements.md")
     text = (folder / "scenario.yaml").read_text(encoding="utf-8")
     (folder / "wrong.yaml").write_text(text.replace("reach: 4", "reech: 4"), encoding="utf-8")
     command = [sys.executable, "-m", "irsim", "validate", "wrong.yaml", "--import", "beacons"]
@@ -151,13 +135,13 @@ def test_a_behavior_is_two_files_and_its_test(tmp_path: Path) -> None:
         return environment.run("python", *words, cwd=copy)
 
     run("-m", "pip", "install", "-q", "-e", ".[test]")
-    for words in commands("new-behavior")[1:]:
+    for words in commands(EXAMPLES / "new-behavior")[1:]:
         run("-m", *(words[2:] if words[0] == "python" else words), *(["-q", "-n0"] if words[0] == "pytest" else []))
     shutil.copy(EXAMPLES / "new-behavior" / "scenario.yaml", copy)
     result = json.loads(run("-m", "irsim", "run", "scenario.yaml", "--seed", "1", "--json"))
     times = {robot["name"]: robot["time_to_goal"] for robot in result["robots"]}
     told = f"brisk after {times['brisk']:.1f} s, gentle after {times['gentle']:.1f} s"
-    assert told in read("new-behavior", "elements.md")
+    assert told in read(EXAMPLES / "new-behavior", "elements.md")
 
 
 def test_the_files_of_features_exist() -> None:
@@ -205,12 +189,8 @@ def touched(folder: Path) -> tuple[int, dict[str, list[str]]]:
 
 
 def test_the_script_names_the_steps_a_change_needs(tmp_path: Path) -> None:
-    for name in (
-        "irsim/core/step.cpp",
-        "irsim/components/behaviors/dash.py",
-        "tests/core/test_dash.py",
-        "CHANGELOG.md",
-    ):
+    kept = ("irsim/core/step.cpp", "tests/core/test_dash.py", "CHANGELOG.md")
+    for name in (*kept, "irsim/components/behaviors/dash.py"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("1\n", encoding="utf-8")
     git(tmp_path, "init", "-q")
@@ -223,7 +203,7 @@ def test_the_script_names_the_steps_a_change_needs(tmp_path: Path) -> None:
     assert told["missing"] == ["a test", "a line in CHANGELOG.md"]
     assert {"irsim schema", "python -m irsim.lookup.reference"} <= set(told["steps"])
     assert "pip install -e ." not in told["steps"]
-    for name in ("irsim/core/step.cpp", "tests/core/test_dash.py", "CHANGELOG.md"):
+    for name in kept:
         (tmp_path / name).write_text("2\n", encoding="utf-8")
     code, told = touched(tmp_path)
     assert (code, told["missing"], told["steps"][0]) == (0, [], "pip install -e .")

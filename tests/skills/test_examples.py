@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shlex
 from pathlib import Path
 
 import pytest
@@ -12,15 +11,11 @@ import yaml
 
 import irsim
 from irsim.bundled import templates
-from tests.skills.conftest import EXAMPLES, SKILL, execute, fences
+from tests.skills.conftest import EXAMPLES, ROOT, SKILL, commands, execute, read
 
 RESULT = re.compile(r"`irsim run scenario\.yaml --seed (\d+)` ends in \*\*(\w+)\*\* after ([\d.]+) s")
 ASSUMED = re.compile(r"^- `([^`]+)` = (.+?): ", re.MULTILINE)
 each = pytest.mark.parametrize("folder", EXAMPLES, ids=lambda path: path.name)
-
-
-def read(folder: Path, name: str) -> str:
-    return (folder / name).read_text(encoding="utf-8")
 
 
 def at(data: object, path: str) -> object:
@@ -43,51 +38,43 @@ def test_it_is_valid_without_warnings(folder: Path) -> None:
 
 @each
 def test_it_ends_as_stated_and_the_reply_says_the_same(folder: Path) -> None:
-    [(seed, outcome, seconds)] = RESULT.findall(" ".join(read(folder, "elements.md").split()))
+    [(seed, outcome, seconds)] = RESULT.findall(read(folder, "elements.md"))
     result = irsim.run(folder / "scenario.yaml", seed=int(seed))
     assert result.outcome == outcome
     assert result.sim_time == pytest.approx(float(seconds), abs=0.15)
-    assert f"run with seed {seed}: {outcome} after {seconds} s" in " ".join(read(folder, "reply.md").split())
+    assert f"run with seed {seed}: {outcome} after {seconds} s" in read(folder, "reply.md")
 
 
-@each
+@pytest.mark.parametrize(
+    "folder",
+    [*EXAMPLES, *(ROOT / "skills" / "irsim-runner" / "examples" / name for name in ("give-way", "scan-data"))],
+    ids=lambda path: path.name,
+)
 def test_the_assumptions_in_the_reply_are_those_of_the_file(folder: Path) -> None:
-    data = yaml.safe_load(read(folder, "scenario.yaml"))
-    assumed = ASSUMED.findall(read(folder, "reply.md"))
+    data = yaml.safe_load((folder / "scenario.yaml").read_text(encoding="utf-8"))
+    assumed = ASSUMED.findall((folder / "reply.md").read_text(encoding="utf-8"))
     assert assumed
     for path, value in assumed:
         assert at(data, path) == yaml.safe_load(value), path
 
 
-@each
-def test_the_picture_is_small(folder: Path) -> None:
-    png = (folder / "snapshot.png").read_bytes()
-    assert png.startswith(b"\x89PNG")
-    assert max(int.from_bytes(png[16:20], "big"), int.from_bytes(png[20:24], "big")) <= 480
-    assert len(png) < 20_000
-
-
 def test_the_template_is_filled_and_edited_as_told(tmp_path: Path) -> None:
     folder = SKILL / "examples" / "hallway"
-    text = read(folder, "elements.md")
-    [command] = fences(text, "bash")
-    words = shlex.split(command)
+    [words] = commands(folder)
     execute(words, tmp_path)
     filled = tmp_path / words[words.index("-o") + 1]
     output = execute(["irsim", "diff", str(filled), str(folder / "scenario.yaml"), "--json"], tmp_path)
-    [edited] = re.findall(r"nothing else: (.*?) and the comment", text, re.DOTALL)
+    [edited] = re.findall(r"nothing else: (.*?) and the comment", read(folder, "elements.md"))
     assert {item["path"] for item in json.loads(output)["keys"]} == set(re.findall(r"`([^`]+)`", edited))
     assert words[2] in templates.names()
 
 
 def test_the_edit_touches_only_what_was_asked() -> None:
     folder = SKILL / "examples" / "patrol-edit"
-    [command] = fences(read(folder, "elements.md"), "bash")
-    output = json.loads(execute([*shlex.split(command), "--json"], folder))
+    [words] = commands(folder)
+    output = json.loads(execute([*words, "--json"], folder))
     assert {item["path"] for item in output["keys"]} == {
-        "robot[0].vel_max",
-        "robot[0].vel_min",
-        "robot[0].waypoints",
+        f"robot[0].{key}" for key in ("vel_max", "vel_min", "waypoints")
     }
     assert {item["object"] for item in output["world"]} == {"guard"}
     assert output["comments_lost"] == []

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import irsim
-from irsim.lookup.reference import SKILLS, out_of_date
+from irsim.lookup.reference import SKILLS
 from tests.skills.conftest import ROOT, parts
 from tests.warm import warm
 
@@ -85,12 +85,10 @@ def test_links_lead_to_files_of_the_skill_and_every_page_can_be_reached(skill: P
 
 
 @each
-def test_references_lie_one_level_deep_and_are_up_to_date(skill: Path) -> None:
+def test_references_lie_one_level_deep_and_are_small(skill: Path) -> None:
     folder = skill / "references"
     assert all(path.is_file() for path in folder.iterdir())
     assert {path.name: len(path.read_bytes()) for path in folder.iterdir() if len(path.read_bytes()) > 20_000} == {}
-    if skill.name != "irsim-scenario":  # whose pages depend on what other tests register; it has a test of its own
-        assert out_of_date(folder, skill.name) == []
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)

@@ -78,8 +78,3 @@ def test_what_the_validator_refuses_is_listed_and_nothing_else() -> None:
     rows = re.findall(r"^\| `(\w+)`.*? \| `(.*?)` \| (.*) \|$", page("not-simulated"), re.MULTILINE)
     assert bool(rows) == bool(gaps)
     assert set(rows) <= {(gap.section, gap.example, gap.message) for gap in gaps}
-
-
-def test_pages_stay_small_enough_to_be_read() -> None:
-    sizes = {path.name: len(path.read_text(encoding="utf-8")) for path in REFERENCES.iterdir()}
-    assert {name: size for name, size in sizes.items() if size > 20_000} == {}

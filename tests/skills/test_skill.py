@@ -17,7 +17,7 @@ from mcp import Client
 import irsim
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim_mcp.server import build_server
-from tests.skills.conftest import PAGES, SKILL, execute, fences, parts, spans
+from tests.skills.conftest import SKILL, execute, fences, parts, spans
 
 _, BODY = parts()
 GUIDES = {path.stem: path.read_text(encoding="utf-8") for path in sorted((SKILL / "guides").glob("*.md"))}
@@ -30,20 +30,6 @@ SCOUT: dict[str, Any] = {
     "goal": [2, 2],
     "behavior": {"name": "dash"},
 }
-
-
-def test_links_lead_to_files_of_the_skill() -> None:
-    for page in PAGES:
-        for link in re.findall(r"\[[^]]+\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
-            target = (page.parent / link).resolve()
-            assert target.is_file(), f"{page.name}: {link}"
-            assert target.is_relative_to(SKILL)
-
-
-def test_every_page_can_be_reached_from_it() -> None:
-    linked = {(SKILL / link).resolve() for link in re.findall(r"\]\(([^)#]+)\)", BODY)}
-    linked |= {page for example in linked for page in example.parent.glob("*.md")}
-    assert set(PAGES) - linked == {SKILL / "SKILL.md"}
 
 
 def test_what_most_requests_need_is_short_and_guides_hold_the_rest() -> None:
