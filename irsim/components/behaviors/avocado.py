@@ -17,9 +17,8 @@ class Avocado(BehaviorOptions):
 
     It forms an opinion of every moving object near it, and makes more of the change of velocity for one that does not
     react, less for one that gives way. Use it where it is unknown who gives way. An opinion starts neutral, which is
-    the half that `orca` makes. Walls and dead ends, limits of speed and turning, `acce` and goals are as in `orca`, but
-    cars touch where many meet: take `orca` for them. Its weak noise breaks symmetry, and follows the seed and the place
-    of the object in the file.
+    the half that `orca` makes. Walls, dead ends, limits, `acce` and goals are as in `orca`, but cars touch where many
+    meet: take `orca` for them. Its weak noise breaks symmetry; seed and place in the file decide it.
     """
 
     in_group: ClassVar[bool] = True
