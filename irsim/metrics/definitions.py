@@ -1,4 +1,11 @@
-"""Definitions of all metrics: key, unit, meaning, and how the values of several robots combine."""
+"""Definitions of all metrics: key, unit, meaning, and how the values of several robots combine.
+
+The module of a family computes a value from the fields of ``Track`` (``trajectory.py``), which ends at the arrival, and
+returns it under its key; NaN where it is undefined. A metric of the whole episode goes to ``EPISODE_METRICS`` and to
+``_of_episode`` in ``episode.py``. A new metric is an extra. ``skills/irsim-benchmark/scripts/verdict.py`` runs without
+irsim, so it has the key, too: in ``MORE``, ``LESS`` or ``EITHER``, and in ``SHARES`` if the unit is ``0/1``. Results,
+tables, ``irsim describe KEY`` and the MCP tools need no change.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Tools that refuse unknown arguments and whose errors are one line each."""
+"""Tools that refuse unknown arguments and whose errors are one line each.
+
+Every host puts the list of tools before its model, so all of them together stay below 14,000 bytes: prefer an argument
+of an existing tool to a new tool.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,25 @@
-"""Checks of a valid scenario, one module per family: what will not work, or not as its author expects."""
+"""Checks of a valid scenario, one module per family: what will not work, or not as its author expects.
+
+Search for the key here first: it may be checked already. A check yields ``error``, ``warning`` or ``hint`` with the
+path of the value in the file::
+
+    path = context.entry_path(record, "vel_max")
+    yield warning(
+        "too-slow",
+        path,
+        f"'{record.name}' drives at most {record.vel_max[0]:g} m/s",
+        given=record.vel_max,
+        fix="vel_max: [1, 1]",
+        edit=Edit("replace", path, [1.0, 1.0]),
+    )
+
+``fix`` is the advice in words. ``edit`` is the same repair for ``irsim validate --fix``, which applies it to errors
+and warnings if the finding then disappears and no comment is lost; ``safe=False`` marks an edit that only the author
+can choose, and ``Edit("remove", path)`` deletes a key. The path of a nested value continues that of its entry's key.
+The code has a title, an explanation (``irsim/diagnostics/codes/``) and an example with its repair
+(``irsim/diagnostics/examples.py``). Tests have scenarios with and without the finding, and correct the headers of
+files in ``tests/bad``. A new family is a module with ``check(context)``, added to ``_FAMILIES``.
+"""
 
 from __future__ import annotations
 
