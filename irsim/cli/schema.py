@@ -13,7 +13,7 @@ from irsim.common import data_files as resources
 from irsim.common.files import write_atomically
 from irsim.diagnostics.errors import ScenarioError
 from irsim.learning.tasks.files import TASKS
-from irsim.policies.networks.schema import policy_schema_text
+from irsim.policies.networks.document import policy_schema_text
 from irsim.scenario.locate import locate
 from irsim.scenario.model.json_schema import schema_text
 from irsim.scenario.yaml.document import load_path

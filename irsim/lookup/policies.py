@@ -5,7 +5,7 @@ from __future__ import annotations
 from irsim.benchmarks.suite_file import SUITES, load_suite
 from irsim.lookup.answer import Answer, Key
 from irsim.lookup.suites import model_keys
-from irsim.policies.converters.features import CONVERTERS
+from irsim.policies.converters.weights import CONVERTERS
 from irsim.policies.description import PolicyInfo, describe_policy, list_policies
 from irsim.policies.registry import POLICIES
 from irsim.policies.trained import trained_policies

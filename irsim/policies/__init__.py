@@ -12,9 +12,8 @@ from irsim.common.lazy import lazy_names
 
 if TYPE_CHECKING:
     from irsim.policies.catalog import open_policy
-    from irsim.policies.function import FunctionPolicy
     from irsim.policies.observations import Map, Neighbors, Observations, Scan
-    from irsim.policies.policy import Episode, Needs, Policy
+    from irsim.policies.policy import Episode, FunctionPolicy, Needs, Policy
     from irsim.policies.registry import register_policy
 
 __all__ = [
@@ -34,7 +33,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "Episode": "irsim.policies.policy",
-        "FunctionPolicy": "irsim.policies.function",
+        "FunctionPolicy": "irsim.policies.policy",
         "Map": "irsim.policies.observations",
         "Needs": "irsim.policies.policy",
         "Neighbors": "irsim.policies.observations",

@@ -17,9 +17,8 @@ from irsim.diagnostics.diagnostic import nearest, suggestion
 from irsim.diagnostics.errors import CodedError, PolicyError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.policies.behavior import BehaviorPolicy
-from irsim.policies.function import FunctionPolicy
 from irsim.policies.observations import Observations
-from irsim.policies.policy import Policy
+from irsim.policies.policy import FunctionPolicy, Policy
 from irsim.policies.registry import POLICIES, RANDOM
 from irsim.policies.trained import COMMON_NAMES, trained_policies, trained_policy
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text, parse_behavior, split_behaviors

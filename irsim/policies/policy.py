@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from irsim.common.arguments import as_given, is_whole_number
 from irsim.common.arrays import Floats
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
     from irsim.policies.observations import Observations
 
-__all__ = ["Episode", "Needs", "Output", "Policy"]
+__all__ = ["Episode", "FunctionPolicy", "Needs", "Output", "Policy"]
 
 Output = Literal["control", "velocity"]
 """What a policy returns: controls of the drive, or velocities in the world frame, which every drive follows."""
@@ -148,3 +149,42 @@ class Policy(ABC):
             (B, 2) velocities in the world frame [m/s] for ``output = "velocity"``; else (B, C) controls in the command
             frame of the drive, with at least as many columns as it has controls. Limits are applied by the simulation.
         """
+
+
+_COPIED = ("output", "needs", "drives", "decision_dt", "stochastic")
+
+
+class FunctionPolicy(Policy):
+    """Calls a function of the observations; it remembers nothing.
+
+    Attributes of the function with the names of the arguments below count as these arguments.
+
+    Args:
+        function: ``f(observations)``, which returns what :meth:`irsim.policies.Policy.act` does.
+        name: Name in tables; default: that of the function.
+        output, needs, drives, decision_dt, stochastic: As for :class:`irsim.policies.Policy`.
+    """
+
+    def __init__(
+        self,
+        function: Callable[[Observations], Any],
+        *,
+        name: str | None = None,
+        output: Output | None = None,
+        needs: Needs | None = None,
+        drives: frozenset[str] | None = None,
+        decision_dt: float | None = None,
+        stochastic: bool | None = None,
+    ) -> None:
+        self.function = function
+        self.name = name or str(getattr(function, "name", None) or getattr(function, "__name__", "function"))
+        given = {"output": output, "needs": needs, "drives": drives, "decision_dt": decision_dt}
+        given["stochastic"] = stochastic
+        for key in _COPIED:
+            value = given[key] if given[key] is not None else getattr(function, key, None)
+            if value is not None:
+                setattr(self, key, value)
+
+    def act(self, observations: Observations) -> Any:
+        """Call the function."""
+        return self.function(observations)

@@ -10,7 +10,7 @@ import pytest
 import irsim
 from irsim.common.data_files import skills_directory
 from irsim.lookup import lookup
-from irsim.policies.converters.features import CONVERTERS
+from irsim.policies.converters.weights import CONVERTERS
 from irsim.policies.description import describe_policy
 from irsim.policies.trained import COMMON_NAMES, trained_policies
 

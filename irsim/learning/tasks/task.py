@@ -31,9 +31,8 @@ from irsim.options.base import Options, problem
 from irsim.options.selection import Select
 from irsim.options.units import Bool, Integer, Seconds
 from irsim.policies.networks.document import Meaning, OutputOptions
-from irsim.policies.networks.features import PARTS
 from irsim.policies.networks.layout import Layout
-from irsim.policies.networks.parts._options import PartOptions
+from irsim.policies.networks.parts._options import PARTS, PartOptions
 from irsim.scenario.perturbation import Perturbation
 
 __all__ = ["Action", "Ends", "Seeds", "Task"]

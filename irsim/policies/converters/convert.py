@@ -14,17 +14,16 @@ from pydantic import ValidationError
 from irsim.common.arguments import as_given
 from irsim.common.files import check_suffix
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.diagnostic import format_path, suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.registry import Feature
-from irsim.policies.converters._options import ConverterOptions
-from irsim.policies.converters.features import CONVERTERS
 from irsim.policies.converters.torch_files.reader import parse_torch
-from irsim.policies.converters.weights import Weights
-from irsim.policies.networks.archive import read_bytes
-from irsim.policies.networks.files import save_network
-from irsim.policies.networks.limits import LIMITS, Limits
+from irsim.policies.converters.weights import CONVERTERS, ConverterOptions, Weights
+from irsim.policies.networks.errors import LIMITS, Limits
+from irsim.policies.networks.files import read_bytes, save_network
 from irsim.policies.networks.network import Network, check_network
+from irsim.scenario.file_kind import explained
+from irsim.scenario.yaml.document import Document
 
 __all__ = ["convert_policy", "converted", "parse_options"]
 
@@ -93,13 +92,13 @@ def _options(feature: Feature, given: Mapping[str, Any]) -> ConverterOptions:
         if key not in known:
             fix = suggestion(key, known, f"choose from {', '.join(known)}")
             raise ArgumentError(f"{feature.name} has no option {clean(key)!r}", fix)
+    data = {"name": feature.name, **given}
     try:
-        chosen = feature.options.model_validate({"name": feature.name, **given})
+        chosen = feature.options.model_validate(data)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        what = f"{where}: {first['msg']}, got {as_given(first.get('input'))}"
-        raise ArgumentError(what, "give an allowed value") from None
+        first = explained(error, Document(data), feature.options)[0]
+        message = f"{format_path(first.path)}: {first.message}"
+        raise ArgumentError(message, first.fix or "give an allowed value") from None
     assert isinstance(chosen, ConverterOptions)
     return chosen
 

@@ -1,20 +1,38 @@
-"""Weights of a file, taken one by one by the converter that knows what they mean."""
+"""The kinds of weights that can be converted: their registry, their common options, and the arrays of a file."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field
 
 from irsim.common.text import clean
-from irsim.policies.networks.errors import PolicyFileError, Problem
+from irsim.options.base import Options
+from irsim.options.registry import Registry
+from irsim.policies.networks.errors import PolicyFileError, flaw
 from irsim.policies.networks.values import Array
 
-__all__ = ["Weights"]
+__all__ = ["CONVERTERS", "ConverterOptions", "Weights", "sides"]
 
+CONVERTERS = Registry("converter", "irsim.policies.converters.kinds", "irsim.policy_converters")
+"""Kinds of weights: each has a function of (weights, options) that returns a network."""
+Text = Annotated[str, Field(max_length=4000)]
 _LISTED = 24
 """Largest number of arrays that a message lists."""
+
+
+class ConverterOptions(Options):
+    """Keys that every converter takes."""
+
+    name: str
+    """Kind of weights."""
+    license: Text = ""
+    """Licence of the weights, for the card of the policy."""
+    source: Text = ""
+    """Where the weights come from, for the card of the policy."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +76,7 @@ class Weights:
     def error(self, where: str, message: str, given: str = "", allowed: str = "") -> PolicyFileError:
         """The error about these weights."""
         fix = "convert a file of the structure that irsim describe convert names, or another kind"
-        return PolicyFileError(self.source, [Problem(where, message, given, allowed)], fix)
+        return PolicyFileError(self.source, [flaw(where, message, given, allowed)], fix)
 
     def listed(self) -> str:
         """Names and shapes of the arrays, as text."""

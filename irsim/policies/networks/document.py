@@ -4,19 +4,28 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
 from irsim.options.units import Bool, Integer, Number, Seconds
-from irsim.policies.networks.features import LAYERS
 from irsim.policies.networks.frames import Frame
-from irsim.policies.networks.layers._options import LayerOptions
+from irsim.policies.networks.layers._options import LAYERS, LayerOptions
 from irsim.policies.networks.layout import Layout, layout_needs
 from irsim.policies.networks.lookahead import Lookahead
 from irsim.policies.networks.parts._options import Label
+from irsim.scenario.file_kind import schema_text
 
-__all__ = ["FORMAT", "VERSION", "Card", "Meaning", "OutputOptions", "PolicyDocument", "PolicyHead"]
+__all__ = [
+    "FORMAT",
+    "VERSION",
+    "Card",
+    "Meaning",
+    "OutputOptions",
+    "PolicyDocument",
+    "PolicyHead",
+    "policy_schema_text",
+]
 
 FORMAT = "irsim-policy"
 VERSION = 1
@@ -45,19 +54,19 @@ class Meaning(Options):
     @model_validator(mode="after")
     def _is_consistent(self) -> Meaning:
         if (self.low is None) != (self.high is None):
-            raise problem("policy-file", "'low' and 'high' are given together or not at all", fix="give both")
+            raise problem("invalid-value", "'low' and 'high' are given together or not at all", fix="give both")
         if self.low is not None and self.high is not None and len(self.low) != len(self.high):
-            raise problem("policy-file", "'low' and 'high' have different lengths", fix="one number for each output")
+            raise problem("invalid-value", "'low' and 'high' have different lengths", fix="one number for each output")
         if self.limits and (self.low is not None or self.returns == "velocity"):
             raise problem(
-                "policy-file", "'limits' are those of controls and replace low and high", fix="give one of them"
+                "invalid-value", "'limits' are those of controls and replace low and high", fix="give one of them"
             )
         if self.choices is not None and (self.low is not None or self.limits):
-            raise problem("policy-file", "'choices' are not scaled", fix="remove limits, low and high")
+            raise problem("invalid-value", "'choices' are not scaled", fix="remove limits, low and high")
         if self.choices is not None and len({len(row) for row in self.choices}) > 1:
-            raise problem("policy-file", "the choices have different lengths", fix="one number for each control")
+            raise problem("invalid-value", "the choices have different lengths", fix="one number for each control")
         if self.frame != "world" and self.returns == "control":
-            raise problem("policy-file", "'frame' is that of a velocity", fix="remove it, or set returns: velocity")
+            raise problem("invalid-value", "'frame' is that of a velocity", fix="remove it, or set returns: velocity")
         return self
 
 
@@ -76,7 +85,7 @@ class OutputOptions(Meaning):
     @model_validator(mode="after")
     def _squashes_no_choices(self) -> OutputOptions:
         if self.choices is not None and self.squash != "none":
-            raise problem("policy-file", "'choices' are not squashed", fix="remove squash")
+            raise problem("invalid-value", "'choices' are not squashed", fix="remove squash")
         return self
 
 
@@ -119,12 +128,14 @@ class PolicyHead(Options):
     def _has_drives(self) -> PolicyHead:
         if self.output.returns == "control" and self.drives is None:
             message = "'drives' is missing: controls are those of certain drives"
-            raise problem("policy-file", message, fix='add "drives": ["diff"], or return velocities')
+            raise problem("invalid-value", message, fix='add "drives": ["diff"], or return velocities')
         return self
 
 
 class PolicyDocument(PolicyHead):
     """A network of the layers of irsim, and all that is needed to let it drive robots."""
+
+    model_config = ConfigDict(title="Policy")
 
     format: Literal["irsim-policy"] = "irsim-policy"
     """Says that this is a policy of irsim."""
@@ -147,14 +158,19 @@ class PolicyDocument(PolicyHead):
             input=output.input, returns=output.returns
         ):
             message = "with 'lookahead' the output is a value, which has only 'input' and 'returns'"
-            raise problem("policy-file", message, fix="remove the other keys of output")
+            raise problem("invalid-value", message, fix="remove the other keys of output")
         wanted = "control" if unicycle else "velocity"
         if output.returns != wanted:
-            raise problem("policy-file", f"these moves are of the kind {wanted}", fix=f'set "returns": "{wanted}"')
+            raise problem("invalid-value", f"these moves are of the kind {wanted}", fix=f'set "returns": "{wanted}"')
         if unicycle and self.drives != ["diff"]:
-            raise problem("policy-file", "moves of a unicycle are those of diff", fix='set "drives": ["diff"]')
+            raise problem("invalid-value", "moves of a unicycle are those of diff", fix='set "drives": ["diff"]')
         needs = layout_needs(self.layout)
         if needs.scan or needs.map or needs.neighbor_extents or not needs.neighbors:
             message = "what is observed after a move is predicted, which takes neighbors and no scan, map or extents"
-            raise problem("policy-file", message, fix="observe self_state, own, goal and neighbors")
+            raise problem("invalid-value", message, fix="observe self_state, own, goal and neighbors")
         return self
+
+
+def policy_schema_text() -> str:
+    """The JSON Schema of the documents of networks, as the file has it."""
+    return schema_text(PolicyDocument.model_json_schema())

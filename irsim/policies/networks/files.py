@@ -1,25 +1,61 @@
-"""Files of networks in the format ``irsim-policy``."""
+"""Files of networks: the format ``irsim-policy`` is read and written, and networks of every format become policies."""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
+import stat
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from irsim.common.archives import ContentError, pack_arrays, unpack_arrays
 from irsim.common.files import check_suffix, replace_bytes
 from irsim.common.text import clean
-from irsim.policies.networks.archive import pack_arrays, unpack_arrays
 from irsim.policies.networks.document import FORMAT, PolicyDocument
-from irsim.policies.networks.errors import PolicyFileError, Problem
-from irsim.policies.networks.limits import LIMITS, Limits
+from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, content_flaw, flaw
 from irsim.policies.networks.network import FIX, Network, check_network, read_document
+from irsim.policies.networks.network_policy import LayerPolicy, LookaheadPolicy, NetworkPolicy
 
-__all__ = ["network_bytes", "parse_json", "read_network", "save_network"]
+__all__ = ["SUFFIXES", "network_bytes", "open_network", "parse_json", "read_bytes", "read_network", "save_network"]
 
+SUFFIXES = (".npz", ".onnx")
+"""Suffixes of files of networks."""
 _DOCUMENT = "policy"
 """Name of the array that holds the JSON document as UTF-8."""
+_KINDS = ("f4", "f8", "u1")
+_FIX = "write the file with irsim.policies.networks.save_network, or with numpy.savez and arrays of numbers"
+
+
+def open_network(path: str | Path, *, limits: Limits = LIMITS) -> NetworkPolicy:
+    """The policy in a file; its name is that of the file without the suffix. No code of the file is run.
+
+    Args:
+        path: A ``.npz`` file of the format ``irsim-policy``, or an ``.onnx`` file with its metadata.
+        limits: How large it may be.
+
+    Raises:
+        PolicyFileError: The file is not valid, or over the limits; the error names every place.
+        ExtraError: It is an ``.onnx`` file, and onnxruntime is not installed.
+    """
+    path = Path(path)
+    source = clean(str(path))
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        unknown = flaw("", "the suffix says what kind of network it is", path.suffix, " or ".join(SUFFIXES))
+        raise PolicyFileError(source, [unknown], "name a .npz or .onnx file")
+    content = read_bytes(path, limits.file_bytes)
+    facts = {"file": str(path), "bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+    if suffix == ".onnx":
+        from irsim.policies.networks.onnx.policy import open_onnx
+
+        return open_onnx(path, content, facts, limits)
+    network = read_network(content, source, limits)
+    plan = check_network(network, source, limits)
+    kind = LayerPolicy if network.document.lookahead is None else LookaheadPolicy
+    return kind(path.stem, network, plan, {"format": "irsim-policy 1", **facts})
 
 
 def network_bytes(network: Network, source: str = "network") -> bytes:
@@ -66,16 +102,57 @@ def read_network(content: bytes, source: str, limits: Limits = LIMITS) -> Networ
     Raises:
         PolicyFileError: It is not valid or over the limits; the error names every place.
     """
-    arrays = unpack_arrays(content, source, limits)
+    try:
+        arrays = unpack_arrays(content, _KINDS, most_bytes=limits.unpacked_bytes, most_arrays=limits.arrays)
+    except ContentError as error:
+        raise PolicyFileError(source, [content_flaw(error)], _FIX) from None
     written = arrays.pop(_DOCUMENT, None)
     if written is None or written.dtype != np.uint8 or written.ndim != 1:
-        missing = Problem(_DOCUMENT, f"the JSON document of format {FORMAT} is missing, which is an array of bytes")
+        missing = flaw(_DOCUMENT, f"the JSON document of format {FORMAT} is missing, which is an array of bytes")
         fix = "make a network of plain weights with irsim.policies.networks.mlp and write it with save_network"
         raise PolicyFileError(source, [missing], fix)
     document = read_document(PolicyDocument, parse_json(written.tobytes(), source, limits), source)
     network = Network(document, arrays)
     check_network(network, source, limits)
     return network
+
+
+def read_bytes(path: Path, most: int, kind: str = "a .npz or .onnx file") -> bytes:
+    """The content of a regular file.
+
+    Args:
+        path: The file.
+        most: Largest size in bytes.
+        kind: What the file should be, for messages.
+
+    Raises:
+        PolicyFileError: There is no such file, it cannot be read, or it is too large.
+    """
+    try:
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        try:
+            status = os.fstat(descriptor)
+            regular = stat.S_ISREG(status.st_mode)
+            content = _read(descriptor, most + 1) if regular and status.st_size <= most else b""
+        finally:
+            os.close(descriptor)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "it cannot be opened"
+        raise PolicyFileError(clean(str(path)), [flaw("", reason)], f"name {kind}") from None
+    if not regular:
+        raise PolicyFileError(clean(str(path)), [flaw("", "it is not a file")], f"name {kind}")
+    size = max(status.st_size, len(content))
+    if size > most:
+        large = flaw("", "the file is too large", f"{size} bytes", f"up to {most}")
+        raise PolicyFileError(clean(str(path)), [large], "use a smaller network, or raise Limits.file_bytes")
+    return content
+
+
+def _read(descriptor: int, most: int) -> bytes:
+    content = bytearray()
+    while len(content) < most and (more := os.read(descriptor, min(most - len(content), 1 << 20))):
+        content += more
+    return bytes(content)
 
 
 def parse_json(text: bytes, source: str, limits: Limits) -> Any:
@@ -85,12 +162,12 @@ def parse_json(text: bytes, source: str, limits: Limits) -> Any:
         PolicyFileError: It is not valid, or too long.
     """
     if len(text) > limits.document_bytes:
-        long = Problem("", "the document is too long", f"{len(text)} bytes", f"up to {limits.document_bytes}")
+        long = flaw("", "the document is too long", f"{len(text)} bytes", f"up to {limits.document_bytes}")
         raise PolicyFileError(source, [long], FIX)
     try:
         return json.loads(text.decode(), object_pairs_hook=_without_twice, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:
-        broken = Problem("", f"the document is not valid JSON ({clean(str(error), 100)})")
+        broken = flaw("", f"the document is not valid JSON ({clean(str(error), 100)})")
         raise PolicyFileError(source, [broken], FIX) from None
 
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from irsim.diagnostics.diagnostic import suggestion
-from irsim.policies.networks.errors import Problem
-from irsim.policies.networks.features import LAYERS
-from irsim.policies.networks.layers._options import LayerOptions, Plan, ShapeError
+from irsim.diagnostics.diagnostic import Diagnostic, Path, suggestion
+from irsim.policies.networks.errors import flaw
+from irsim.policies.networks.layers._options import LAYERS, LayerOptions, Plan, ShapeError
 from irsim.policies.networks.values import Array, Shape, Value
 
 __all__ = ["GraphPlan", "plan_graph", "run_graph"]
@@ -34,7 +33,7 @@ class GraphPlan:
     memory: dict[str, int]
     work: int
     numbers: int
-    problems: tuple[Problem, ...]
+    problems: tuple[Diagnostic, ...]
 
     @property
     def parameters(self) -> int:
@@ -57,13 +56,13 @@ def plan_graph(parts: Mapping[str, Shape], layers: Sequence[LayerOptions]) -> Gr
     """
     shapes, arrays, memory = dict(parts), {}, {}
     positive: set[str] = set()
-    problems: list[Problem] = []
+    problems: list[Diagnostic] = []
     broken: set[str] = set()
     work = numbers = 0
     for index, layer in enumerate(layers):
-        where = f"network[{index}]"
+        where = ("network", index)
         if layer.label in shapes or layer.label in broken:
-            problems.append(Problem(f"{where}.label", "this name is taken by a part or an earlier layer", layer.label))
+            problems.append(flaw((*where, "label"), "this name is taken by a part or an earlier layer", layer.label))
             continue
         plan = _plan_one(layer, shapes, where, broken, problems)
         if plan is None:
@@ -80,13 +79,13 @@ def plan_graph(parts: Mapping[str, Shape], layers: Sequence[LayerOptions]) -> Gr
 
 
 def _plan_one(
-    layer: LayerOptions, shapes: Mapping[str, Shape], where: str, broken: set[str], problems: list[Problem]
+    layer: LayerOptions, shapes: Mapping[str, Shape], where: Path, broken: set[str], problems: list[Diagnostic]
 ) -> Plan | None:
     """The plan of a layer; None if it cannot be made, with the reasons in ``problems``."""
     unknown = [name for name in layer.inputs if name not in shapes and name not in broken]
     for name in unknown:
         near = suggestion(name, shapes, "name a part or an earlier layer")
-        problems.append(Problem(f"{where}.inputs", f"no part and no earlier layer has this name; {near}", name))
+        problems.append(flaw((*where, "inputs"), f"no part and no earlier layer has this name; {near}", name))
     if unknown or any(name in broken for name in layer.inputs):
         return None
     inputs = [shapes[name] for name in layer.inputs]
@@ -94,7 +93,7 @@ def _plan_one(
         return layer.plan(inputs)
     except ShapeError as error:
         given = ", ".join(f"{name} ({shape})" for name, shape in zip(layer.inputs, inputs, strict=True))
-        problems.append(Problem(where, f"{layer.name} {error}", given))
+        problems.append(flaw(where, f"{layer.name} {error}", given))
         return None
 
 

@@ -12,11 +12,9 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
-from irsim.policies.networks.features import PARTS
-from irsim.policies.networks.parts._options import PartOptions
-from irsim.policies.networks.seen import seen_rows
+from irsim.policies.networks.parts._options import PARTS, PartOptions
 from irsim.policies.networks.values import Shape, Value
-from irsim.policies.observations import Observations
+from irsim.policies.observations import Map, Observations
 from irsim.policies.policy import Needs
 
 __all__ = ["LAYOUT_VERSION", "Layout", "layout_bounds", "layout_needs", "layout_shapes", "observe"]
@@ -40,7 +38,7 @@ class Layout(Options):
         if twice is not None:
             raise problem("invalid-value", f"two parts are called '{twice}'", fix="give one of them another label")
         if len({part.needs().static_neighbors for part in self.parts if part.needs().neighbors}) > 1:
-            raise problem("policy-file", "'static' differs between two parts of neighbors", fix="give both the same")
+            raise problem("invalid-value", "'static' differs between two parts of neighbors", fix="give both the same")
         return self
 
     @cached_property
@@ -100,7 +98,7 @@ def observe(layout: Layout, observations: Observations) -> dict[str, Value]:
     Raises:
         PolicyInputError: Something that a part needs is not observed.
     """
-    rows = seen_rows(observations)
+    rows = _seen_rows(observations)
     found = {}
     for part, kernel in zip(layout.parts, layout.kernels, strict=True):
         part.check(observations)
@@ -113,3 +111,38 @@ def observe(layout: Layout, observations: Observations) -> dict[str, Value]:
             array, mask = core.look(kernel, rows)
             found[part.key] = Value(array, None if mask is None else mask.view(bool))
     return found
+
+
+def _seen_rows(observations: Observations) -> core.SeenRows:
+    """What B robots observe, as the kernels of observation parts take it."""
+    o, flag = observations, np.uint8
+    rows = core.SeenRows(
+        pose=o.pose,
+        steering=o.steering,
+        velocity=o.velocity,
+        commanded=np.zeros_like(o.velocity) if o.commanded is None else o.commanded,
+        yaw_rate=o.yaw_rate,
+        control=o.control,
+        low=o.low,
+        high=o.high,
+        goal=o.goal,
+        goal_threshold=o.goal_threshold,
+        radius=o.radius,
+        arrived=o.arrived.astype(flag),
+    )
+    if (n := o.neighbors) is not None:
+        arrived, robot = n.arrived.astype(flag), n.robot.astype(flag)
+        zeros = np.zeros(n.mask.shape)
+        extent = zeros if n.extent is None else n.extent
+        own = zeros if n.own_extent is None else n.own_extent
+        mask = n.mask.astype(flag)
+        rows.set_neighbors(mask, n.position, n.heading, n.velocity, n.radius, arrived, robot, extent, own)
+    if o.scan is not None:
+        rows.set_scan(o.scan.ranges, o.scan.range_max)
+    if o.maps is not None:
+        distinct: dict[int, tuple[int, Map]] = {}  # rows of one world share their map
+        for seen in o.maps:
+            distinct.setdefault(id(seen), (len(distinct), seen))
+        pictures = [(seen.occupied.astype(flag), seen.origin, seen.resolution) for _, seen in distinct.values()]
+        rows.set_pictures(pictures, [distinct[id(seen)][0] for seen in o.maps])
+    return rows

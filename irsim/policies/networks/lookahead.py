@@ -16,7 +16,17 @@ from irsim.options.units import Fraction, Integer, Meters, Number, Seconds
 from irsim.policies.networks.frames import Frame, turn_back, x_axis
 from irsim.policies.observations import Neighbors, Observations
 
-__all__ = ["Futures", "Lookahead", "MoveSet", "PredictedReward", "look_ahead", "moves_of", "straight", "take_rows"]
+__all__ = [
+    "Futures",
+    "Lookahead",
+    "MoveSet",
+    "PredictedReward",
+    "best_moves",
+    "look_ahead",
+    "moves_of",
+    "straight",
+    "take_rows",
+]
 
 _LARGEST_TURN = math.pi / 4
 """Largest change of the heading in one decision of a unicycle [rad]."""
@@ -199,6 +209,19 @@ def _reward(options: Lookahead, before: Observations, pose: Floats, velocity: Fl
     missing = np.minimum(gap - reward.distance, 0.0) * reward.discomfort * dt
     found = np.where(near, reward.goal, np.where(np.isfinite(missing), missing, 0.0))
     return np.where(gap < 0.0, reward.collision, found)
+
+
+def best_moves(values: Floats, futures: Futures) -> Floats:
+    """(B, 2) moves with the largest return, the first of equal ones.
+
+    Args:
+        values: (B, A) values of the states after the moves.
+        futures: The moves.
+    """
+    returns = futures.reward + futures.discount[:, None] * values
+    best = np.argmax(np.where(np.isnan(returns), -np.inf, returns), axis=1)
+    chosen: Floats = futures.move[np.arange(len(best)), best]
+    return chosen
 
 
 def straight(options: Lookahead, observations: Observations) -> Floats:

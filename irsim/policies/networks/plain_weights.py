@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from irsim.policies.networks.document import PolicyDocument
-from irsim.policies.networks.errors import PolicyFileError, Problem
+from irsim.policies.networks.errors import PolicyFileError, flaw
 from irsim.policies.networks.layers._linear import Activation
 from irsim.policies.networks.layout import Layout, layout_shapes
 from irsim.policies.networks.network import Network, check_network, read_document
@@ -95,13 +95,11 @@ def _pairs(weights: Mapping[str, Any] | Sequence[tuple[Any, Any]], source: str) 
     else:
         found = [(np.asarray(w), np.asarray(b)) for w, b in weights]
     if not found:
-        raise PolicyFileError(source, [Problem("weights", "no layers are found")], _FIX)
+        raise PolicyFileError(source, [flaw("weights", "no layers are found")], _FIX)
     for k, (w, b) in enumerate(found):
         if w.ndim != 2 or b.shape != w.shape[1:]:
             shapes = f"{w.shape} and {b.shape}"
-            raise PolicyFileError(
-                source, [Problem(f"weights[{k}]", "the shapes do not fit", shapes, "(I, O), (O,)")], _FIX
-            )
+            raise PolicyFileError(source, [flaw(("weights", k), "the shapes do not fit", shapes, "(I, O), (O,)")], _FIX)
     return found
 
 

@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 
 from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.policies.networks.document import PolicyDocument
-from irsim.policies.networks.errors import PolicyFileError, Problem
+from irsim.policies.networks.errors import PolicyFileError, flaw
 from irsim.policies.networks.network import Network, check_network, read_document
 from irsim.policies.networks.parts.self_state import Heading
 from irsim.policies.networks.values import Array
@@ -161,47 +162,47 @@ def _perceptron(weights: Mapping[str, Any], name: str) -> _Perceptron:
     return _Perceptron(tuple(layers))
 
 
-def _weight_problems(weights: Mapping[str, Any]) -> Iterator[Problem]:
+def _weight_problems(weights: Mapping[str, Any]) -> Iterator[Diagnostic]:
     """What is wrong with the names, the kinds and the shapes of single arrays."""
     known = set()
     for name in PERCEPTRONS:
         numbers = _numbers(weights, name)
         if numbers != list(range(0, 2 * len(numbers), 2)) or not numbers:
             given = ", ".join(map(str, numbers)) or "none"
-            yield Problem(f"{name}.*.weight", "the layers of this perceptron are not all there", given, "0, 2, 4, …")
+            yield flaw(f"{name}.*.weight", "the layers of this perceptron are not all there", given, "0, 2, 4, …")
             continue
         for number in numbers:
             pair = f"{name}.{number}.weight", f"{name}.{number}.bias"
             known |= set(pair)
             yield from _pair_problems(weights, *pair)
     for key in sorted(set(weights) - known):
-        yield Problem(clean(key, 100), "SARL has no such array, or not in this place")
+        yield flaw(clean(key, 100), "SARL has no such array, or not in this place")
 
 
-def _pair_problems(weights: Mapping[str, Any], weight: str, bias: str) -> Iterator[Problem]:
+def _pair_problems(weights: Mapping[str, Any], weight: str, bias: str) -> Iterator[Diagnostic]:
     if bias not in weights:
-        yield Problem(bias, "this array is missing")
+        yield flaw(bias, "this array is missing")
         return
     arrays = {name: np.asarray(weights[name]) for name in (weight, bias)}
     for name, array in arrays.items():
         if array.dtype.kind != "f":
-            yield Problem(name, "weights are floating-point numbers", clean(str(array.dtype), 60))
+            yield flaw(name, "weights are floating-point numbers", clean(str(array.dtype), 60))
         elif not np.isfinite(array).all():
-            yield Problem(name, "this array has numbers that are not finite")
+            yield flaw(name, "this array has numbers that are not finite")
         elif np.abs(array, dtype=np.float64).max(initial=0.0) > np.finfo(np.float32).max:
-            yield Problem(name, "this array has numbers that are too large for float32")
+            yield flaw(name, "this array has numbers that are too large for float32")
     w, b = arrays[weight], arrays[bias]
     if w.ndim != 2 or b.shape != w.shape[:1] or 0 in w.shape:
-        yield Problem(weight, "the shapes do not fit", f"{w.shape} and {b.shape}", "(outputs, inputs) and (outputs)")
+        yield flaw(weight, "the shapes do not fit", f"{w.shape} and {b.shape}", "(outputs, inputs) and (outputs)")
 
 
-def _shape_problems(parts: Mapping[str, _Perceptron]) -> Iterator[Problem]:
+def _shape_problems(parts: Mapping[str, _Perceptron]) -> Iterator[Diagnostic]:
     """What is wrong with how the perceptrons fit together."""
     for name, given in parts.items():
         for number, ((_, bias), (weight, _)) in enumerate(zip(given.layers, given.layers[1:], strict=False)):
             if len(bias) != len(weight):
                 where = f"{name}.{2 * number + 2}.weight"
-                yield Problem(where, "takes what the layer before returns", str(len(weight)), str(len(bias)))
+                yield flaw(where, "takes what the layer before returns", str(len(weight)), str(len(bias)))
     embedded = parts["mlp1"].outputs
     wanted = {
         "mlp1": (ORDER[2],),
@@ -212,8 +213,8 @@ def _shape_problems(parts: Mapping[str, _Perceptron]) -> Iterator[Problem]:
     for name, sizes in wanted.items():
         if parts[name].inputs not in sizes:
             allowed = " or ".join(map(str, sizes))
-            yield Problem(f"{name}.0.weight", "has another number of inputs", str(parts[name].inputs), allowed)
+            yield flaw(f"{name}.0.weight", "has another number of inputs", str(parts[name].inputs), allowed)
     for name in ("attention", "mlp3"):
         if parts[name].outputs != 1:
             last = 2 * len(parts[name].layers) - 2
-            yield Problem(f"{name}.{last}.weight", "returns one number", str(parts[name].outputs), "1")
+            yield flaw(f"{name}.{last}.weight", "returns one number", str(parts[name].outputs), "1")

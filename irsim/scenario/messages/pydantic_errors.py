@@ -134,7 +134,8 @@ class Explainer:
         allowed = list(model.model_fields) if model is not None else []
         meant = getattr(model, "also_called", {}).get(str(key).lower())
         near = meant or nearest(key, allowed)
-        where = f"'{format_path(parent)}'" if parent else f"a {self.root.__name__.lower()}"
+        title = self.root.model_config.get("title") or self.root.__name__
+        where = f"'{format_path(parent)}'" if parent else f"a {title.lower()}"
         written = at(self.data, parent)
         other, like = (None, None) if meant else advice_on_key(self.path, self.data)
         edit, fix = None, other

@@ -15,7 +15,7 @@ from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.registry import Feature
 from irsim.policies.converters.convert import convert_policy
-from irsim.policies.converters.features import CONVERTERS
+from irsim.policies.converters.weights import CONVERTERS
 from irsim.policies.networks import PolicyFileError, open_network
 from irsim.policies.networks.layout import observe
 from irsim.testing import conformance
@@ -160,7 +160,7 @@ def test_the_command_converts_and_says_what_is_wrong(file: Path, tmp_path: Path)
         (["rl_rv", str(file)], "did you mean rl_rvo"),
         (["rl_rvo", str(tmp_path / "none.pt")], "No such file"),
         (["rl_rvo", str(file), "--set", "acceleration=1"], "has no option 'acceleration'"),
-        (["rl_rvo", str(file), "--set", "acceler=0"], "acceler: Input should be greater than 0"),
+        (["rl_rvo", str(file), "--set", "acceler=0"], "acceler: 'acceler' must be > 0 [m/s], got 0"),
         (["rl_rvo", str(file), "--set", "acceler"], "is not an option"),
         (["rl_rvo", str(tmp_path)], "it is not a file"),
     ):

@@ -17,9 +17,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from irsim.diagnostics.diagnostic import format_path
 from irsim.policies.networks import Limits, Network, PolicyFileError, mlp, open_network, save_network
+from irsim.policies.networks.document import policy_schema_text
 from irsim.policies.networks.files import network_bytes, read_network
-from irsim.policies.networks.schema import policy_schema_text
 from tests.effort import examples
 from tests.policies.networks.examples import crowd, filled, go_to_goal
 from tests.policies.networks.observed import observations, same_bits
@@ -112,33 +113,45 @@ def test_facts_of_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "where", "message"),
     [
-        (lambda d: d.update(format="other"), "format", "allowed: 'irsim-policy'"),
-        (lambda d: d.update(version=2), "version", "given: 2, allowed: 1"),
-        (lambda d: d["layout"].update(version=9), "layout.version", "given: 9, allowed: 1"),
-        (lambda d: d.update(netwrok=[]), "netwrok", "there is no such key"),
-        (lambda d: d["network"][2].update(units=0), "network[2].units", "greater than or equal to 1, given: 0"),
+        (
+            lambda d: d.update(format="other"),
+            "format",
+            "value of 'format' (allowed: irsim-policy)",
+        ),
+        (lambda d: d.update(version=2), "version", "2 is not a valid value of 'version' (allowed: 1)"),
+        (lambda d: d["layout"].update(version=9), "layout.version", "9 is not a valid value of 'version' (allowed: 1)"),
+        (lambda d: d.update(netwrok=[]), "netwrok", "'netwrok' is not a key of a policy (the key is called 'network'"),
+        (lambda d: d["network"][2].update(units=0), "network[2].units", "must be ≥ 1 and ≤ 65536, got 0"),
         (lambda d: d["network"][2].update(units=17), "each.w", "another shape, given: 14 x 16, allowed: 14 x 17"),
-        (lambda d: d["network"][2].update(name="dens"), "network[2].name", "'dens' is not a layer (name: dense)"),
+        (
+            lambda d: d["network"][2].update(name="dens"),
+            "network[2].name",
+            "'dens' is not a layer (allowed: activation,",
+        ),
         (lambda d: d["network"][2].update(inputs=["pear"]), "network[2].inputs", "did you mean pairs?, given: pear"),
         (lambda d: d["network"][3].update(inputs=["self"]), "network[3]", "pool takes a set, not a vector of 5"),
         (lambda d: d["network"].pop(), "output.input", "no part and no layer has this name, given: result"),
-        (lambda d: d.update(network=[]), "network", "at least 1 item"),
-        (lambda d: d["layout"]["parts"][0].update(range=1), "layout.parts[0].range", "there is no such key"),
+        (lambda d: d.update(network=[]), "network", "at least 1 element, got 0"),
+        (
+            lambda d: d["layout"]["parts"][0].update(range=1),
+            "layout.parts[0].range",
+            "not a key of 'layout.parts[0]'",
+        ),
         (lambda d: d.update(drives=None), "(document)", "controls are those of certain drives"),
         (lambda d: d.update(drives=["omni_angular"]), "output", "omni_angular has 3 controls, given: 2"),
         (lambda d: d["output"].update(low=[0]), "output", "different lengths"),
         (lambda d: d["output"].update(low=[0] * 3, high=[1] * 3), "output.low", "given: 3, allowed: 2"),
         (lambda d: d["output"].update(input="each"), "output.input", "a vector, not a set, given: each (4 x 16)"),
         (lambda d: d["output"].update(input="self", low=None, high=None), "output", "up to 3 controls, given: 5"),
-        (lambda d: d.update(decision_dt=0), "decision_dt", "greater than 0"),
-        (lambda d: d.update(decision_dt="0.1"), "decision_dt", "given: '0.1'"),
+        (lambda d: d.update(decision_dt=0), "decision_dt", "must be > 0 [s], got 0"),
+        (lambda d: d.update(decision_dt="0.1"), "decision_dt", "'0.1' is text, not a number (write 0.1)"),
         (lambda d: d.update(precision="float64"), "each.w", "another type, given: float32, allowed: float64"),
         (lambda d: d["card"].update(description="x" * 5000), "card.description", "at most 4000 characters"),
     ],
 )
 def test_what_is_wrong_with_a_document_is_named(change: Any, where: str, message: str) -> None:
     error = refused(changed(change))
-    assert where in [problem.where for problem in error.problems]
+    assert where in [format_path(problem.path) for problem in error.problems]
     assert message in error.message
 
 
@@ -149,7 +162,7 @@ def test_all_problems_arrive_together() -> None:
         data["card"]["seeds"] = ["a"]
 
     error = refused(changed(spoil))
-    assert [problem.where for problem in error.problems] == ["drives", "card.seeds[0]", "network[2].units"]
+    assert [format_path(problem.path) for problem in error.problems] == ["drives", "card.seeds[0]", "network[2].units"]
 
 
 @pytest.mark.parametrize(
@@ -207,7 +220,10 @@ def test_sizes_are_checked_before_anything_is_unpacked() -> None:
     error = refused(zeros.getvalue(), unpacked_bytes=20_000_000)
     assert "too large when unpacked" in error.message
     many = archive({f"a{k}": np.zeros(1) for k in range(30)})
-    assert "too many arrays, given: 30, allowed: up to 20" in refused(many, arrays=20).message
+    assert (
+        "its directory is too large, given: 30 entries, 1580 bytes, allowed: up to 20 entries"
+        in refused(many, arrays=20).message
+    )
     network = filled(crowd())
     whole = network_bytes(network)
     for limit, message in (
@@ -231,7 +247,9 @@ def test_an_archive_that_lies_about_its_sizes_is_refused() -> None:
     with zipfile.ZipFile(twice, "w") as made:
         made.writestr("a.npy", b"")
         made.writestr("b.npy", b"")
-    assert "two arrays have the same name" in refused(twice.getvalue().replace(b"b.npy", b"a.npy")).message
+    assert (
+        "two entries of the archive have the same name" in refused(twice.getvalue().replace(b"b.npy", b"a.npy")).message
+    )
 
 
 @pytest.mark.parametrize(
@@ -242,7 +260,7 @@ def test_an_archive_that_lies_about_its_sizes_is_refused() -> None:
         (b'{"decision_dt": NaN}', "NaN is no number"),
         (b"[" * 100_000, "not valid JSON"),
         (b"\xff", "not valid JSON"),
-        (b"[]", "given: list of 0"),
+        (b"[]", "[] is not a mapping"),
         (b'{"decision_dt": ' + b"9" * 5000 + b"}", ""),
     ],
 )
@@ -258,7 +276,7 @@ def test_files_that_are_no_policies(tmp_path: Path) -> None:
     np.savez(tmp_path / "plain.npz", W0=np.zeros((2, 2)))
     for name, message in (
         ("missing.npz", "No such file"),
-        ("empty.npz", "does not end as a .npz file does"),
+        ("empty.npz", "does not end as an archive does"),
         ("folder.npz", "it is not a file"),
         ("pipe.npz", "it is not a file"),
         ("text.txt", "given: .txt, allowed: .npz or .onnx"),

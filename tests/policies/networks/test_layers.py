@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from irsim.options.registry import Feature
-from irsim.policies.networks.features import LAYERS
 from irsim.policies.networks.graph import GraphPlan, plan_graph, run_graph
+from irsim.policies.networks.layers._options import LAYERS
 from irsim.policies.networks.values import Shape, Value
 from irsim.testing import conformance
 from tests.policies.networks.observed import same_bits
@@ -213,7 +213,7 @@ def test_wiring() -> None:
 @pytest.mark.parametrize(
     ("name", "options", "message"),
     [
-        ("dense", {"inputs": ["won"], "units": 1}, r"network\[0\].inputs: no part .* did you mean own\?, given: won"),
+        ("dense", {"inputs": ["won"], "units": 1}, r"no part .* did you mean own\?, given: won"),
         ("dense", {"inputs": ["own", "goal"], "units": 1}, "takes 1 input, not 2; put a concat layer before it"),
         ("pool", {"inputs": ["own"]}, r"takes a set, not a vector of 5, given: own \(5\)"),
         ("memory", {"inputs": ["crowd"], "units": 2}, "takes a vector, not a set of 6 x 4"),
@@ -227,7 +227,8 @@ def test_wiring() -> None:
 )
 def test_layers_that_do_not_fit_are_named(name: str, options: Any, message: str) -> None:
     (problem,) = plan(name, **options)[1].problems
-    assert re.search(message, str(problem))
+    assert problem.path[:2] == ("network", 0)
+    assert re.search(message, problem.message)
 
 
 def test_a_label_is_used_once_and_layers_after_a_bad_one_are_not_blamed() -> None:
@@ -237,7 +238,7 @@ def test_a_label_is_used_once_and_layers_after_a_bad_one_are_not_blamed() -> Non
         dense.options.model_validate({"label": label, "inputs": inputs, "units": 2})
         for label, inputs in (("goal", ["own"]), ("bad", ["nobody"]), ("after", ["bad"]))
     ]
-    assert [problem.where for problem in plan_graph(PARTS, layers).problems] == [
-        "network[0].label",
-        "network[1].inputs",
+    assert [problem.path for problem in plan_graph(PARTS, layers).problems] == [
+        ("network", 0, "label"),
+        ("network", 1, "inputs"),
     ]

@@ -17,7 +17,7 @@ from irsim.policies.networks import (
     NetworkPolicy,
     PolicyFileError,
     PolicyInputError,
-    lookahead_policy,
+    network_policy,
     observe,
     open_network,
     save_network,
@@ -203,7 +203,7 @@ def test_a_decision_is_the_same_alone_and_in_any_batch(opened: Any, kind: str, m
         assert same_bits(policy.act(rows(whole, order)), together[order])
         for k in range(count):
             assert same_bits(policy.act(rows(whole, [k])), together[k : k + 1])
-        monkeypatch.setattr(lookahead_policy, "_MOVES_AT_ONCE", 250)
+        monkeypatch.setattr(network_policy, "_MOVES_AT_ONCE", 250)
         assert same_bits(policy.act(whole), together)
         monkeypatch.undo()
     assert policy.act(rows(whole, np.zeros(0, dtype=int))).shape == (0, 2)

@@ -13,9 +13,9 @@ from pydantic import ValidationError
 from irsim.options.registry import Feature
 from irsim.policies import Neighbors, Observations, Scan
 from irsim.policies.networks.errors import PolicyInputError
-from irsim.policies.networks.features import PARTS
 from irsim.policies.networks.layout import Layout, layout_bounds, layout_needs, layout_shapes, observe
 from irsim.policies.networks.parts import goal, neighbors, own
+from irsim.policies.networks.parts._options import PARTS
 from irsim.testing import conformance
 from tests.policies.networks.observed import Grid, moved, observations, rows, same_bits
 

@@ -15,8 +15,7 @@ from irsim.learning.training.sarl.task import Plan
 from irsim.learning.training.success import Success
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.layout import layout_needs, observe
-from irsim.policies.networks.lookahead import look_ahead, straight, take_rows
-from irsim.policies.networks.lookahead_policy import best_moves
+from irsim.policies.networks.lookahead import best_moves, look_ahead, straight, take_rows
 from irsim.policies.observe import Observer
 
 __all__ = ["Driver", "Played", "play"]

@@ -10,9 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from irsim.options.units import Integer, Meters, MetersPerSecond, Seconds
-from irsim.policies.converters._options import ConverterOptions
-from irsim.policies.converters.features import CONVERTERS
-from irsim.policies.converters.weights import Weights, sides
+from irsim.policies.converters.weights import CONVERTERS, ConverterOptions, Weights, sides
 from irsim.policies.networks.document import FORMAT, VERSION, PolicyDocument
 from irsim.policies.networks.network import Network, read_document
 from irsim.policies.networks.values import Array

@@ -7,9 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from irsim.options.units import Fraction, Integer, Meters, Seconds
-from irsim.policies.converters._options import ConverterOptions
-from irsim.policies.converters.features import CONVERTERS
-from irsim.policies.converters.weights import Weights
+from irsim.policies.converters.weights import CONVERTERS, ConverterOptions, Weights
 from irsim.policies.networks.network import Network
 from irsim.policies.networks.sarl import sarl_network
 

@@ -11,7 +11,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import IO, Any
 
-__all__ = ["MAX_OPERATIONS", "Name", "PickleError", "Storage", "Stored", "Tensor", "read_pickle"]
+from irsim.common.archives import ContentError
+
+__all__ = ["MAX_OPERATIONS", "Name", "Storage", "Stored", "Tensor", "read_pickle"]
 
 MAX_OPERATIONS = 1_000_000
 """Largest number of operations of a pickle."""
@@ -19,10 +21,6 @@ _MAX_KEY = 16
 """Largest number of items of a tuple that is a key."""
 _BROKEN = (ValueError, IndexError, KeyError, TypeError, OverflowError, MemoryError, EOFError, RecursionError)
 """What :mod:`pickletools` and operations on a stack raise on broken pickles."""
-
-
-class PickleError(Exception):
-    """A pickle cannot be read; the message says why."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,21 +91,21 @@ def read_pickle(stream: IO[bytes], storages: dict[str, str] | None = None) -> An
         storages: Filled with the type of each storage that the pickle refers to, by its key.
 
     Raises:
-        PickleError: It is broken, too long, or uses what files of PyTorch do not use.
+        ContentError: It is broken, too long, or uses what files of PyTorch do not use.
     """
     machine = _Machine({} if storages is None else storages)
     try:
         for count, (operation, argument, _) in enumerate(pickletools.genops(stream)):
             if count > MAX_OPERATIONS:
-                raise PickleError(f"a pickle has more than {MAX_OPERATIONS:,} operations")
+                raise ContentError(f"a pickle has more than {MAX_OPERATIONS:,} operations")
             if operation.name == "STOP":
                 return machine.stack.pop()
             machine.run(operation.name, argument)
-    except PickleError:
+    except ContentError:
         raise
     except _BROKEN as error:
-        raise PickleError(f"a pickle is broken ({type(error).__name__})") from None
-    raise PickleError("a pickle has no end")
+        raise ContentError(f"a pickle is broken ({type(error).__name__})") from None
+    raise ContentError("a pickle has no end")
 
 
 class _Machine:
@@ -136,13 +134,13 @@ class _Machine:
         elif name not in _NOTHING:
             act = _ACTS.get(name)
             if act is None:
-                raise PickleError(f"a pickle uses the operation {name}, which files of PyTorch do not")
+                raise ContentError(f"a pickle uses the operation {name}, which files of PyTorch do not")
             act(self, argument)
 
     def _tuple(self, size: int) -> None:
         items = tuple(self.stack[-size:])
         if len(items) != size:
-            raise PickleError("a pickle is broken (too few items)")
+            raise ContentError("a pickle is broken (too few items)")
         del self.stack[-size:]
         self.stack.append(items)
 
@@ -193,7 +191,7 @@ class _Machine:
         if isinstance(self.stack[-1], list):
             self.stack[-1].extend(items)
         elif not isinstance(self.stack[-1], Stored):  # items of a foreign list are never looked at
-            raise PickleError("a pickle appends to something that is no list")
+            raise ContentError("a pickle appends to something that is no list")
 
     def _set_item(self, _: Any) -> None:
         value, key = self.stack.pop(), self.stack.pop()
@@ -205,7 +203,7 @@ class _Machine:
     def _put(self, items: list[Any]) -> None:
         target = self.stack[-1].entries if isinstance(self.stack[-1], Stored) else self.stack[-1]
         if not isinstance(target, dict) or len(items) % 2:
-            raise PickleError("a pickle sets items of something that is no dictionary")
+            raise ContentError("a pickle sets items of something that is no dictionary")
         for key, value in zip(items[::2], items[1::2], strict=True):
             target[_key(key)] = value
 
@@ -216,7 +214,7 @@ class _Machine:
     def _stack_global(self, _: Any) -> None:
         name, module = self.stack.pop(), self.stack.pop()
         if not (isinstance(name, str) and isinstance(module, str)):
-            raise PickleError("a pickle names a class without text")
+            raise ContentError("a pickle names a class without text")
         self.stack.append(Name(module, name))
 
     def _reduce(self, _: Any) -> None:
@@ -236,13 +234,13 @@ class _Machine:
         if isinstance(self.stack[-1], Stored):
             self.stack[-1].state = state
         elif not isinstance(self.stack[-1], (dict, Tensor)):  # what these have besides is never looked at
-            raise PickleError("a pickle gives attributes to something that has none")
+            raise ContentError("a pickle gives attributes to something that has none")
 
     def _persistent(self, _: Any) -> None:
         found = _from_elsewhere(self.stack.pop())
         self.stack.append(found)
         if isinstance(found, Storage) and self._storages.setdefault(found.key, found.kind) != found.kind:
-            raise PickleError("a storage has two types")
+            raise ContentError("a storage has two types")
 
 
 def _key(key: Any) -> Any:
@@ -250,13 +248,13 @@ def _key(key: Any) -> Any:
     simple = (str, int, float, bytes, type(None), Name)
     items = key if isinstance(key, tuple) and len(key) <= _MAX_KEY else (key,)
     if not all(isinstance(item, simple) for item in items):
-        raise PickleError("a pickle has a dictionary with other keys than numbers and texts")
+        raise ContentError("a pickle has a dictionary with other keys than numbers and texts")
     return key
 
 
 def _name(value: Any) -> Name:
     if not isinstance(value, Name):
-        raise PickleError("a pickle makes an object of something that is no class")
+        raise ContentError("a pickle makes an object of something that is no class")
     return value
 
 
@@ -264,15 +262,15 @@ def _described(function: Any, arguments: Any) -> Any:
     """What calling a function would return, as far as it is known here; nothing is called."""
     name = _name(function)
     if not isinstance(arguments, tuple):
-        raise PickleError("a pickle calls a function without a tuple of arguments")
+        raise ContentError("a pickle calls a function without a tuple of arguments")
     what = str(name)
     if what in ("torch._utils._rebuild_tensor_v2", "torch._utils._rebuild_tensor"):
         if len(arguments) < 4 or not isinstance(arguments[0], Storage):
-            raise PickleError("a tensor has no storage")
+            raise ContentError("a tensor has no storage")
         return Tensor(*arguments[:4])
     if what in ("torch._utils._rebuild_parameter", "torch._utils._rebuild_parameter_with_state"):
         if not arguments or not isinstance(arguments[0], Tensor):
-            raise PickleError("a parameter is no tensor")
+            raise ContentError("a parameter is no tensor")
         return arguments[0]
     if what == "collections.OrderedDict":
         return _ordered(arguments)
@@ -283,7 +281,7 @@ def _ordered(arguments: tuple[Any, ...]) -> dict[Any, Any]:
     found: dict[Any, Any] = {}
     for pair in arguments[0] if arguments and isinstance(arguments[0], list) else ():
         if not (isinstance(pair, (list, tuple)) and len(pair) == 2):
-            raise PickleError("an ordered dictionary is made of something else than pairs")
+            raise ContentError("an ordered dictionary is made of something else than pairs")
         found[_key(pair[0])] = pair[1]
     return found
 
@@ -293,17 +291,17 @@ def _from_elsewhere(place: Any) -> Any:
     if isinstance(place, tuple) and len(place) >= 2 and place[0] == "module":
         return _name(place[1])
     if not (isinstance(place, tuple) and len(place) in (5, 6) and place[0] == "storage"):
-        raise PickleError("a pickle refers to something that is no storage")
+        raise ContentError("a pickle refers to something that is no storage")
     kind, key, count = _name(place[1]), place[2], place[4]
     if not isinstance(key, (str, int)) or not isinstance(count, int) or not 0 <= count < 2**62:
-        raise PickleError("a storage has no key or no size")
+        raise ContentError("a storage has no key or no size")
     offset = 0
     if len(place) == 6 and place[5] is not None:
         view = place[5]
         if not (
             isinstance(view, tuple) and len(view) == 3 and all(isinstance(n, int) and 0 <= n < 2**62 for n in view[1:])
         ):
-            raise PickleError("a view of a storage has no place")
+            raise ContentError("a view of a storage has no place")
         offset, count = view[1], view[2]
     return Storage(kind.name, str(key)[:200], count, offset)
 

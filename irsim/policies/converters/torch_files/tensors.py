@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from irsim.common.archives import ContentError
 from irsim.common.text import clean
 from irsim.policies.converters.torch_files.pickles import Storage, Stored, Tensor
-from irsim.policies.networks.limits import Limits
+from irsim.policies.networks.errors import Limits
 from irsim.policies.networks.values import Array
 
-__all__ = ["ITEM_BYTES", "TensorError", "arrays_of", "named_tensors"]
+__all__ = ["ITEM_BYTES", "arrays_of", "named_tensors"]
 
 _FLOATS = {"FloatStorage": "<f4", "DoubleStorage": "<f8", "HalfStorage": "<f2", "BFloat16Storage": "<u2"}
 _BRAIN = "BFloat16Storage"
@@ -31,21 +32,13 @@ _PARTS = ("_parameters", "_buffers", "_modules")
 """Attributes of a module that hold what its state dictionary has."""
 
 
-class TensorError(Exception):
-    """A tensor cannot be used."""
-
-    def __init__(self, name: str, message: str, given: str = "", allowed: str = "") -> None:
-        self.where, self.message, self.given, self.allowed = clean(name, 100), message, given, allowed
-        super().__init__(message)
-
-
 def named_tensors(root: Any, limits: Limits) -> dict[str, Tensor]:
     """The tensors of an object by the names that the state dictionary of a module gives them.
 
     Dictionaries, lists and objects of foreign classes are searched; keys and attributes are joined by dots.
 
     Raises:
-        TensorError: There are none or too many, they are nested too deeply, or two have the same name.
+        ContentError: There are none or too many, they are nested too deeply, or two have the same name.
     """
     found: dict[str, Tensor] = {}
     waiting: list[tuple[str, Any, int]] = [("", root, 0)]
@@ -54,18 +47,18 @@ def named_tensors(root: Any, limits: Limits) -> dict[str, Tensor]:
         name, value, depth = waiting.pop()
         places += 1
         if places + len(waiting) > _MAX_PLACES or depth > _MAX_DEPTH:
-            raise TensorError(name, "the object is nested too deeply or refers to itself")
+            raise ContentError("the object is nested too deeply or refers to itself", place=name)
         if isinstance(value, Tensor):
             if name in found:
-                raise TensorError(name, "two tensors have the same name")
+                raise ContentError("two tensors have the same name", place=name)
             found[name] = value
             if len(found) > limits.arrays:
-                raise TensorError("", "too many tensors", f"more than {limits.arrays}", f"up to {limits.arrays}")
+                raise ContentError("too many tensors", f"more than {limits.arrays}", f"up to {limits.arrays}")
         else:
             inside = [(f"{name}.{key}" if name else key, one, depth + 1) for key, one in _children(value)]
             waiting += reversed(inside)
     if not found:
-        raise TensorError("", "there are no tensors in it")
+        raise ContentError("there are no tensors in it")
     return found
 
 
@@ -108,14 +101,14 @@ def arrays_of(tensors: Mapping[str, Tensor], content: Mapping[str, bytes], limit
         limits: How many numbers there may be.
 
     Raises:
-        TensorError: One has another type, does not fit its storage, or has numbers that are not finite.
+        ContentError: One has another type, does not fit its storage, or has numbers that are not finite.
     """
     total = 0
     found = {}
     for name, tensor in tensors.items():
         total += _checked_count(name, tensor, limits)
         if total > limits.parameters:
-            raise TensorError(name, "too many numbers in all tensors", str(total), f"up to {limits.parameters}")
+            raise ContentError("too many numbers in all tensors", str(total), f"up to {limits.parameters}", place=name)
         found[name] = _array(name, tensor, content)
     return found
 
@@ -125,22 +118,22 @@ def _checked_count(name: str, tensor: Tensor, limits: Limits) -> int:
     size, stride, offset = tensor.size, tensor.stride, tensor.offset
     fits = isinstance(size, tuple) and isinstance(stride, tuple) and len(size) == len(stride) <= _MAX_SIDES
     if not fits or not all(type(side) is int and side >= 0 for side in (*size, *stride, offset)):
-        raise TensorError(name, "its shape is not one of whole numbers")
+        raise ContentError("its shape is not one of whole numbers", place=name)
     if any(side > limits.parameters for side in size) or math.prod(size) > limits.parameters:
-        raise TensorError(name, "the tensor is too large", _sides(size), f"up to {limits.parameters} numbers")
+        raise ContentError("the tensor is too large", _sides(size), f"up to {limits.parameters} numbers", place=name)
     count: int = math.prod(size)
     last = offset + sum((side - 1) * step for side, step in zip(size, stride, strict=True)) if count else -1
     if last >= tensor.storage.count:
-        raise TensorError(
-            name, "the tensor is larger than its storage", _sides(size), f"{tensor.storage.count} numbers"
-        )
+        most = f"{tensor.storage.count} numbers"
+        raise ContentError("the tensor is larger than its storage", _sides(size), most, place=name)
     return count
 
 
 def _array(name: str, tensor: Tensor, content: Mapping[str, bytes]) -> Array:
     storage = tensor.storage
     if storage.kind not in _FLOATS:
-        raise TensorError(name, "weights are floating-point numbers", clean(storage.kind, 60), ", ".join(_FLOATS))
+        kind, known = clean(storage.kind, 60), ", ".join(_FLOATS)
+        raise ContentError("weights are floating-point numbers", kind, known, place=name)
     numbers = _numbers(name, storage, content.get(storage.key))
     strides = [step * numbers.itemsize for step in tensor.stride]
     first = numbers[tensor.offset :] if math.prod(tensor.size) else numbers[:0]
@@ -150,18 +143,18 @@ def _array(name: str, tensor: Tensor, content: Mapping[str, bytes]) -> Array:
     with np.errstate(over="ignore", invalid="ignore"):
         made = np.array(array, dtype=np.float32, order="C")
     if not np.isfinite(made).all():
-        raise TensorError(name, "the tensor has numbers that are not finite in float32")
+        raise ContentError("the tensor has numbers that are not finite in float32", place=name)
     return made
 
 
 def _numbers(name: str, storage: Storage, raw: bytes | None) -> Array:
     if raw is None:
-        raise TensorError(name, "the file has no numbers for the tensor", clean(storage.key, 60))
+        raise ContentError("the file has no numbers for the tensor", clean(storage.key, 60), place=name)
     numbers = np.frombuffer(raw[: len(raw) // ITEM_BYTES[storage.kind] * ITEM_BYTES[storage.kind]],
                             dtype=_FLOATS[storage.kind])  # fmt: skip
     if storage.offset + storage.count > len(numbers):
         claimed = str(storage.offset + storage.count)
-        raise TensorError(name, "the file has fewer numbers than it claims", f"{len(numbers)} numbers", claimed)
+        raise ContentError("the file has fewer numbers than it claims", f"{len(numbers)} numbers", claimed, place=name)
     return numbers[storage.offset : storage.offset + storage.count]
 
 

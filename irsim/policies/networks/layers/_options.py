@@ -8,12 +8,15 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from irsim.options.base import Options
+from irsim.options.registry import Registry
 from irsim.options.units import Integer
 from irsim.policies.networks.parts._options import Label
 from irsim.policies.networks.values import Array, Shape
 
-__all__ = ["Arrays", "LayerOptions", "Plan", "ShapeError", "Units", "only", "same_set", "vector"]
+__all__ = ["LAYERS", "Arrays", "LayerOptions", "Plan", "ShapeError", "Units", "only", "same_set", "vector"]
 
+LAYERS = Registry("layer", "irsim.policies.networks.layers", "irsim.network_layers")
+"""Layers of networks."""
 Arrays = Mapping[str, Array]
 """Arrays of a layer, by their names in :class:`Plan`."""
 Units = Annotated[Integer, Field(ge=1, le=65536)]

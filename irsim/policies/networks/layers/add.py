@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
-from irsim.policies.networks.features import LAYERS
 from irsim.policies.networks.layers._linear import mask_of, spread
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, ShapeError, same_set
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, ShapeError, same_set
 from irsim.policies.networks.values import Array, Shape, Value, add_in_order
 
 

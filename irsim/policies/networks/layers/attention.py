@@ -9,9 +9,8 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.options.units import Integer
-from irsim.policies.networks.features import LAYERS
 from irsim.policies.networks.layers._linear import linear
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, ShapeError, Units
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, ShapeError, Units
 from irsim.policies.networks.values import Array, Shape, Value
 
 

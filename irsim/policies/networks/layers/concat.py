@@ -7,9 +7,8 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from irsim.policies.networks.features import LAYERS
 from irsim.policies.networks.layers._linear import mask_of, spread
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, same_set
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, same_set
 from irsim.policies.networks.values import Array, Shape, Value
 
 

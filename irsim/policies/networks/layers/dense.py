@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
 from irsim.options.units import Bool
-from irsim.policies.networks.features import LAYERS
 from irsim.policies.networks.layers._linear import Activation, activate, linear
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, Units, only
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, Units, only
 from irsim.policies.networks.values import Array, Shape, Value
 
 

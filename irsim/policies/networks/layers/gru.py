@@ -7,9 +7,8 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from irsim.policies.networks.features import LAYERS
 from irsim.policies.networks.layers._linear import Gates, gates_arrays, gru_cell, linear
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, ShapeError, Units, only
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, ShapeError, Units, only
 from irsim.policies.networks.values import Array, Shape, Value
 
 _BACK = "_back"

@@ -10,8 +10,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.options.units import Bool, Number
-from irsim.policies.networks.features import LAYERS
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, only
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, only
 from irsim.policies.networks.values import Array, Shape, Value
 
 

@@ -7,8 +7,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from irsim.policies.networks.features import LAYERS
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, ShapeError, only
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, ShapeError, only
 from irsim.policies.networks.values import Array, Shape, Value, add_in_order
 
 

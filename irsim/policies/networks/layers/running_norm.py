@@ -9,8 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from irsim.options.units import Number
-from irsim.policies.networks.features import LAYERS
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, only
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, only
 from irsim.policies.networks.values import Array, Shape, Value
 
 

@@ -9,9 +9,8 @@ import numpy as np
 
 import irsim._core as core
 from irsim.options.units import Bool
-from irsim.policies.networks.features import LAYERS
 from irsim.policies.networks.layers._linear import mask_of
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, ShapeError, same_set
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, ShapeError, same_set
 from irsim.policies.networks.values import Array, Shape, Value, add_in_order
 
 

@@ -8,8 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from irsim.options.units import Count, Integer
-from irsim.policies.networks.features import LAYERS
-from irsim.policies.networks.layers._options import Arrays, LayerOptions, Plan, ShapeError, only
+from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, ShapeError, only
 from irsim.policies.networks.values import Array, Shape, Value
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from irsim.common.text import clean
-from irsim.policies.networks.errors import PolicyFileError, Problem
-from irsim.policies.networks.limits import Limits
+from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.policies.networks.errors import Limits, PolicyFileError, flaw
 
 __all__ = ["OPERATIONS", "OnnxModel", "Tensor", "check_model"]
 
@@ -89,7 +89,7 @@ def check_model(content: bytes, source: str, limits: Limits) -> OnnxModel:
             onnx.checker.check_model(model)
             model = onnx.shape_inference.infer_shapes(model, check_type=True, strict_mode=True, data_prop=True)
     except Exception as error:  # the parser, the checker and the inference raise exceptions of many modules
-        problems = [Problem("", f"it is not a valid ONNX model ({clean(str(error) or type(error).__name__, 200)})")]
+        problems = [flaw("", f"it is not a valid ONNX model ({clean(str(error) or type(error).__name__, 200)})")]
     if problems:
         raise PolicyFileError(source, problems, _FIX)
     graph = model.graph
@@ -114,29 +114,29 @@ def _text(value: str | bytes) -> str:
     return value if isinstance(value, str) else value.decode(errors="replace")
 
 
-def _forbidden(model: Any, limits: Limits) -> Iterator[Problem]:
+def _forbidden(model: Any, limits: Limits) -> Iterator[Diagnostic]:
     graph = model.graph
     if model.functions:
-        yield Problem("functions", "a model with functions of its own is not read")
+        yield flaw("functions", "a model with functions of its own is not read")
     if len(graph.node) > limits.layers * 20:
-        yield Problem("graph", "too many operations", str(len(graph.node)), f"up to {limits.layers * 20}")
+        yield flaw("graph", "too many operations", str(len(graph.node)), f"up to {limits.layers * 20}")
         return
     if len(graph.initializer) > limits.arrays:
-        yield Problem("graph", "too many arrays", str(len(graph.initializer)), f"up to {limits.arrays}")
+        yield flaw("graph", "too many arrays", str(len(graph.initializer)), f"up to {limits.arrays}")
         return
     if graph.sparse_initializer:
-        yield Problem("graph", "sparse arrays are not read")
+        yield flaw("graph", "sparse arrays are not read")
     for tensor in _tensors(graph):
         if tensor.data_location or tensor.external_data:
-            yield Problem(clean(tensor.name), "arrays in other files are not read")
+            yield flaw(clean(tensor.name), "arrays in other files are not read")
     for node in graph.node:
         for attribute in node.attribute:
             if attribute.name in _COUNTS and any(count < 1 for count in (*attribute.ints, *_single(attribute))):
-                yield Problem(clean(node.op_type), f"{attribute.name} must be at least 1")
+                yield flaw(clean(node.op_type), f"{attribute.name} must be at least 1")
     unknown = {(node.domain, node.op_type) for node in graph.node
                if node.domain not in ("", "ai.onnx") or node.op_type not in OPERATIONS}  # fmt: skip
     for domain, name in sorted(unknown):
-        yield Problem("graph", "this operation is not run", clean(f"{domain}.{name}" if domain else name))
+        yield flaw("graph", "this operation is not run", clean(f"{domain}.{name}" if domain else name))
 
 
 def _single(attribute: Any) -> tuple[int, ...]:
@@ -177,23 +177,23 @@ def _tensor(item: Any) -> Tensor:
     return Tensor(sizes, str(onnx.helper.tensor_dtype_to_np_dtype(item.type.tensor_type.elem_type)))
 
 
-def _unknown_sizes(graph: Any, sizes: dict[str, tuple[int, ...] | None]) -> Iterator[Problem]:
+def _unknown_sizes(graph: Any, sizes: dict[str, tuple[int, ...] | None]) -> Iterator[Diagnostic]:
     names = [item.name for item in (*graph.input, *graph.initializer)]
     names += [name for node in graph.node for name in node.output if name]
     for name in names:
         known = sizes.get(name)
         if known is None:
-            yield Problem(clean(name), "the size of this tensor is not known before the model runs")
+            yield flaw(clean(name), "the size of this tensor is not known before the model runs")
         elif 0 in known:
-            yield Problem(clean(name), "this tensor is empty")
+            yield flaw(clean(name), "this tensor is empty")
 
 
-def _integer_divisions(graph: Any) -> Iterator[Problem]:
+def _integer_divisions(graph: Any) -> Iterator[Diagnostic]:
     """Divisions of integers, which end the process if they divide by zero."""
     types = {item.name: item.type.tensor_type.elem_type for item in (*graph.value_info, *graph.output)}
     for node in graph.node:
         if node.op_type == "Div" and types.get(node.output[0]) not in _FLOATS:
-            yield Problem(clean(node.output[0]), "only numbers of the types float32 and float64 are divided")
+            yield flaw(clean(node.output[0]), "only numbers of the types float32 and float64 are divided")
 
 
 def _work(node: Any, sizes: dict[str, tuple[int, ...] | None]) -> int:
@@ -217,7 +217,7 @@ def _over_limits(
     sizes: dict[str, tuple[int, ...] | None],
     work: int,
     limits: Limits,
-) -> Iterator[Problem]:
+) -> Iterator[Diagnostic]:
     numbers = sum(math.prod(sizes[name] or ()) for node in graph.node for name in node.output if name)
     for what, size, most in (
         ("parameters", sum(map(math.prod, constants.values())), limits.parameters),
@@ -225,4 +225,4 @@ def _over_limits(
         ("multiplications for each decision", work, limits.work),
     ):
         if size > most:
-            yield Problem("graph", f"too many {what}", str(size), f"up to {most}")
+            yield flaw("graph", f"too many {what}", str(size), f"up to {most}")

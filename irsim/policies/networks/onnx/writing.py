@@ -12,11 +12,10 @@ import numpy as np
 from irsim.common.extras import require
 from irsim.common.files import check_suffix, replace_bytes
 from irsim.common.text import clean
-from irsim.policies.networks.errors import PolicyFileError, Problem
+from irsim.policies.networks.errors import PolicyFileError, flaw
 from irsim.policies.networks.layout import layout_shapes
 from irsim.policies.networks.network import FIX, Network, check_network
-from irsim.policies.networks.onnx.document import OnnxDocument
-from irsim.policies.networks.onnx.reading import METADATA
+from irsim.policies.networks.onnx.policy import METADATA, OnnxDocument
 from irsim.policies.networks.values import Array
 
 __all__ = ["onnx_bytes", "save_onnx"]
@@ -136,12 +135,12 @@ class _Graph:
 def _check_layers(network: Network, source: str) -> None:
     problems = []
     for k, layer in enumerate(network.document.network):
-        where = f"network[{k}]"
+        where = ("network", k)
         if layer.name not in _WRITERS:
-            problems.append(Problem(where, "this layer is not written as ONNX", layer.name, ", ".join(_WRITERS)))
+            problems.append(flaw(where, "this layer is not written as ONNX", layer.name, ", ".join(_WRITERS)))
         elif (activation := getattr(layer, "activation", "none")) not in ("none", *_ACTIVATIONS):
             allowed = ", ".join(("none", *_ACTIVATIONS))
-            problems.append(Problem(where, "this activation is not written as ONNX", activation, allowed))
+            problems.append(flaw(where, "this activation is not written as ONNX", activation, allowed))
     if problems:
         raise PolicyFileError(source, problems, FIX)
 

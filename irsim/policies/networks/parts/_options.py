@@ -7,12 +7,15 @@ from typing import Annotated
 from pydantic import Field
 
 from irsim.options.base import Options, problem
+from irsim.options.registry import Registry
 from irsim.policies.networks.values import Channel
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Needs
 
-__all__ = ["Label", "PartOptions", "unique"]
+__all__ = ["PARTS", "Label", "PartOptions", "unique"]
 
+PARTS = Registry("part", "irsim.policies.networks.parts", "irsim.observation_parts")
+"""Parts of observations: each is a function of :class:`irsim.policies.Observations`."""
 Label = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
 """Name of a value in a network."""
 

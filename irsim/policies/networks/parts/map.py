@@ -9,9 +9,8 @@ from pydantic import Field
 import irsim._core as core
 from irsim.options.units import Bool, Integer, Meters
 from irsim.policies.networks.errors import PolicyInputError
-from irsim.policies.networks.features import PARTS
 from irsim.policies.networks.frames import Frame
-from irsim.policies.networks.parts._options import PartOptions
+from irsim.policies.networks.parts._options import PARTS, PartOptions
 from irsim.policies.networks.values import Channel
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Needs

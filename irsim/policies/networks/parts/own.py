@@ -9,9 +9,8 @@ from pydantic import AfterValidator, Field
 
 import irsim._core as core
 from irsim.options.units import Bool, Integer, Meters, MetersPerSecond, Number, Radians, RadiansPerSecond
-from irsim.policies.networks.features import PARTS
 from irsim.policies.networks.frames import Frame
-from irsim.policies.networks.parts._options import PartOptions, unique
+from irsim.policies.networks.parts._options import PARTS, PartOptions, unique
 from irsim.policies.networks.values import Channel
 
 Feature = Literal[

@@ -9,8 +9,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.options.units import Integer, Meters, MetersPerSecond
-from irsim.policies.networks.features import PARTS
-from irsim.policies.networks.parts._options import PartOptions
+from irsim.policies.networks.parts._options import PARTS, PartOptions
 from irsim.policies.networks.values import Channel
 
 

@@ -8,9 +8,8 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from irsim.policies.networks.errors import PolicyInputError
-from irsim.policies.networks.features import PARTS
 from irsim.policies.networks.frames import turn_back, x_axis
-from irsim.policies.networks.parts._options import PartOptions
+from irsim.policies.networks.parts._options import PARTS, PartOptions
 from irsim.policies.networks.values import Channel, Value
 from irsim.policies.observations import Observations
 
