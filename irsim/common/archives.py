@@ -40,7 +40,7 @@ class ContentError(Exception):
 
     Attributes:
         message: What is wrong.
-        given: The value that is wrong, as text; empty if there is none.
+        given: The value that is wrong, as text; may be empty.
         allowed: What is accepted, as text; empty if the message says so.
         place: Name of the entry, the array or the like; empty for the file.
     """

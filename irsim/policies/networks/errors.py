@@ -51,7 +51,7 @@ def flaw(where: str | Path, message: str, given: str = "", allowed: str = "") ->
     Args:
         where: Place in the document, such as ``("network", 2, "units")``, or name of an array; empty for the file.
         message: What is wrong.
-        given: The value that is wrong, as text; empty if there is none.
+        given: The value that is wrong, as text; may be empty.
         allowed: What is accepted, as text; empty if the message says so.
     """
     path = ((where,) if where else ()) if isinstance(where, str) else where

@@ -1,8 +1,7 @@
-"""Files of networks: the format ``irsim-policy`` is read and written, and networks of every format become policies."""
+"""Files of networks in the format ``irsim-policy``."""
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import stat
@@ -17,45 +16,13 @@ from irsim.common.text import clean
 from irsim.policies.networks.document import FORMAT, PolicyDocument
 from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, content_flaw, flaw
 from irsim.policies.networks.network import FIX, Network, check_network, read_document
-from irsim.policies.networks.network_policy import LayerPolicy, LookaheadPolicy, NetworkPolicy
 
-__all__ = ["SUFFIXES", "network_bytes", "open_network", "parse_json", "read_bytes", "read_network", "save_network"]
+__all__ = ["network_bytes", "parse_json", "read_bytes", "read_network", "save_network"]
 
-SUFFIXES = (".npz", ".onnx")
-"""Suffixes of files of networks."""
 _DOCUMENT = "policy"
 """Name of the array that holds the JSON document as UTF-8."""
 _KINDS = ("f4", "f8", "u1")
 _FIX = "write the file with irsim.policies.networks.save_network, or with numpy.savez and arrays of numbers"
-
-
-def open_network(path: str | Path, *, limits: Limits = LIMITS) -> NetworkPolicy:
-    """The policy in a file; its name is that of the file without the suffix. No code of the file is run.
-
-    Args:
-        path: A ``.npz`` file of the format ``irsim-policy``, or an ``.onnx`` file with its metadata.
-        limits: How large it may be.
-
-    Raises:
-        PolicyFileError: The file is not valid, or over the limits; the error names every place.
-        ExtraError: It is an ``.onnx`` file, and onnxruntime is not installed.
-    """
-    path = Path(path)
-    source = clean(str(path))
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        unknown = flaw("", "the suffix says what kind of network it is", path.suffix, " or ".join(SUFFIXES))
-        raise PolicyFileError(source, [unknown], "name a .npz or .onnx file")
-    content = read_bytes(path, limits.file_bytes)
-    facts = {"file": str(path), "bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
-    if suffix == ".onnx":
-        from irsim.policies.networks.onnx.policy import open_onnx
-
-        return open_onnx(path, content, facts, limits)
-    network = read_network(content, source, limits)
-    plan = check_network(network, source, limits)
-    kind = LayerPolicy if network.document.lookahead is None else LookaheadPolicy
-    return kind(path.stem, network, plan, {"format": "irsim-policy 1", **facts})
 
 
 def network_bytes(network: Network, source: str = "network") -> bytes:

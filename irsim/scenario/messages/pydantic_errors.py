@@ -99,7 +99,9 @@ class Explainer:
             return self._type()
         if self.kind == "string_pattern_mismatch":
             return self._pattern()
-        return error("invalid-value", self.path, self.message.removeprefix("Value error, "), given=self.value)
+        message = self.message.removeprefix("Value error, ")
+        allowed, fix = self.context.get("allowed"), self.context.get("fix")
+        return error("invalid-value", self.path, message, given=self.value, allowed=allowed, fix=fix)
 
     def _own(self) -> Finding:
         """An error of the language's own validators, which bring message, allowed values and fix."""

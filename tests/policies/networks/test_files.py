@@ -126,7 +126,7 @@ def test_facts_of_a_file(tmp_path: Path) -> None:
         (
             lambda d: d["network"][2].update(name="dens"),
             "network[2].name",
-            "'dens' is not a layer (allowed: activation,",
+            "'dens' is not a layer (name: dense)",
         ),
         (lambda d: d["network"][2].update(inputs=["pear"]), "network[2].inputs", "did you mean pairs?, given: pear"),
         (lambda d: d["network"][3].update(inputs=["self"]), "network[3]", "pool takes a set, not a vector of 5"),
