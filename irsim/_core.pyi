@@ -1150,7 +1150,7 @@ class Learners:
         """
 
     def end(self, world: World, state: State, threads: int) -> tuple[Any, ...]:
-        """The arrays of a :class:`irsim.learning.result.Result`, after the step of the simulation.
+        """The arrays of a :class:`irsim.learning.step.Result`, after the step of the simulation.
 
         Terms that are computed elsewhere are 0.
         """

@@ -14,10 +14,9 @@ from irsim.benchmarks.episode import Job, environment_of
 from irsim.benchmarks.plan import Plan, PlannedScenario
 from irsim.benchmarks.policies import job_keys, label_of
 from irsim.benchmarks.report.markdown import markdown
-from irsim.benchmarks.report.names import policy_labels
 from irsim.benchmarks.report.page import Shown, page
+from irsim.benchmarks.report.rows import policy_labels, worst_episodes
 from irsim.benchmarks.report.table import MISSING, TABLE, has_tables, write_table
-from irsim.benchmarks.report.worst import worst_episodes
 from irsim.benchmarks.stored import PLAN
 from irsim.common.files import write_atomically
 from irsim.diagnostics.errors import ScenarioError

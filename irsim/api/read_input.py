@@ -29,7 +29,7 @@ def read_input(path: str | Path | None, text: str | None, **options: Any) -> tup
     """
     named = Path(path) if isinstance(path, (str, os.PathLike)) and text is None else None
     if named is not None and not named.is_file():
-        from irsim.benchmarks.suite_scene import suite_scene
+        from irsim.benchmarks.suite_plan import suite_scene
 
         if (scene := suite_scene(named)) is not None:
             return _with_findings(*read_scenario(scene.document(), **options))
@@ -37,7 +37,7 @@ def read_input(path: str | Path | None, text: str | None, **options: Any) -> tup
         return _with_findings(*read_scenario(path, text=text, **options))
     except ScenarioError:
         if named is not None:
-            from irsim.benchmarks.suite_scene import suite_scene
+            from irsim.benchmarks.suite_plan import suite_scene
 
             suite_scene(named)  # a suite is refused with a sentence of its own
         raise
@@ -59,6 +59,6 @@ def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
     """
     if not isinstance(path, (str, os.PathLike)) or not isinstance(policy, str) or Path(path).is_file():
         return policy
-    from irsim.benchmarks.suite_scene import suite_policy
+    from irsim.benchmarks.suite_plan import suite_policy
 
     return suite_policy(path, policy)

@@ -15,9 +15,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from irsim.benchmarks.assumptions import assumptions_of
+from irsim.benchmarks.assumptions import Limit, assumptions_of, limits_of, unequal_note
 from irsim.benchmarks.cluster import run_on_cluster
-from irsim.benchmarks.decision_timer import time_behavior
 from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.policies import (
@@ -31,8 +30,7 @@ from irsim.benchmarks.policies import (
 )
 from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from, seeds_text
-from irsim.benchmarks.timing import timing_report
-from irsim.benchmarks.unequal_limits import Limit, limits_of, unequal_note
+from irsim.benchmarks.timing import time_behavior, timing_report
 from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError, OverLimitError

@@ -12,8 +12,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from irsim.benchmarks.incidents import incident_messages
-from irsim.benchmarks.summary import notes_of, perturbation_notes, protocols_of, rows_of
+from irsim.benchmarks.summary import incident_messages, notes_of, perturbation_notes, protocols_of, rows_of
 from irsim.common.files import write_atomically
 from irsim.episodes.unopened import CODE
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow

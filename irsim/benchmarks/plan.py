@@ -9,17 +9,20 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
+from irsim.benchmarks.comparison import DEFAULT_SEEDS
 from irsim.benchmarks.episode import Until
-from irsim.benchmarks.policies import open_planned
+from irsim.benchmarks.policies import files_of, open_planned
+from irsim.benchmarks.seeds import seeds_from
 from irsim.benchmarks.suite import Protocol, Suite
 from irsim.common.version import version as this_version
 from irsim.policies.policy import Policy
 from irsim.scenario.limits import DEFAULT_LIMITS
-from irsim.scenario.open import import_modules
+from irsim.scenario.open import import_modules, source_of
+from irsim.scenario.perturbation import perturbation_text, read_perturbations
 from irsim.scenario.read import read
-from irsim.scenario.yaml.document import Document, load_text
+from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["Plan", "PlannedScenario", "map_hashes", "short_hash"]
+__all__ = ["Plan", "PlannedScenario", "file_plan", "map_hashes", "short_hash"]
 
 _HASH_LENGTH = 12
 
@@ -132,3 +135,49 @@ def _hashes(document: Document) -> dict[str, str]:
     return {
         name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in sorted(found.items()) if path.is_file()
     }
+
+
+def file_plan(
+    files: Sequence[str],
+    policies: Sequence[str],
+    seeds: str,
+    *,
+    steps: int | None = None,
+    strict: bool = False,
+    imports: Sequence[str] = (),
+    perturb: Sequence[str] = (),
+) -> Plan:
+    """Everything that a benchmark of scenario files depends on; arguments as of :func:`irsim.benchmark`.
+
+    Raises:
+        ScenarioNotFoundError: A file does not exist.
+        BenchmarkError: The seeds are invalid, or the file of a policy does not exist.
+    """
+    documents = [_document(file) for file in files]
+    scenarios = [
+        PlannedScenario(
+            name=file, family=file, text=str(document.text), maps=maps,
+            folder=str(Path(document.path).parent.resolve()) if maps and document.path is not None else None,
+        )
+        for file, document, maps in zip(files, documents, map_hashes(documents), strict=True)
+    ]  # fmt: skip
+    import_modules(imports)
+    texts = {text: text for text in policies}
+    sources, digests = files_of(texts, {})
+    return Plan(
+        name="benchmark",
+        scenarios=scenarios,
+        policies=texts,
+        sources=sources,
+        digests=digests,
+        seeds=seeds_from(seeds or DEFAULT_SEEDS),
+        steps=steps,
+        strict=strict,
+        imports=list(imports),
+        perturb=[perturbation_text(item) for item in read_perturbations(perturb)],
+    )
+
+
+def _document(file: str) -> Document:
+    found = source_of(file, None, None)
+    return found if isinstance(found, Document) else load_path(found)

@@ -14,11 +14,10 @@ from typing import Any
 
 from irsim.benchmarks.episode import Job, Task
 from irsim.benchmarks.together import run_together
-from irsim.benchmarks.worker import READY
-from irsim.common.child import ONE_THREAD, Child, python
+from irsim.common.child import ONE_THREAD, Child, answers, lines, python, write_line
 from irsim.diagnostics.errors import WorkerError
 
-__all__ = ["MAX_DEATHS", "WorkerError", "cores", "dead_workers", "run_tasks"]
+__all__ = ["MAX_DEATHS", "READY", "WorkerError", "cores", "dead_workers", "main", "run_tasks"]
 
 _START_DELAY_S = 0.7
 """Time [s] after which further processes are started; most benchmarks of a few episodes end before."""
@@ -26,6 +25,8 @@ MAX_DEATHS = 3
 """Number of processes that may die while they run the same episode."""
 MAX_GROUP = 25
 """Number of episodes of one job that a process takes at once."""
+READY = b"ready\n"
+"""The first line of a further process, which says that tasks can be sent."""
 
 
 def cores() -> int:
@@ -313,4 +314,20 @@ class _Helper:
 
 
 def _start() -> Child:
-    return Child(python("irsim.benchmarks.worker"), start_new_session=False, env=os.environ | ONE_THREAD)
+    return Child(python("irsim.benchmarks.pool"), start_new_session=False, env=os.environ | ONE_THREAD)
+
+
+def main() -> None:
+    """Run tasks in a further process: a job and its seeds per line of standard input, a result per line of output.
+
+    It ends immediately when its standard input is closed, so it never outlives the process that started it.
+    """
+    pipe, tasks = answers(), lines()
+    pipe.write(READY)
+    while True:
+        data = json.loads(tasks.get())
+        try:
+            for result in run_together(Job.of_data(data["job"]), data["seeds"]):
+                write_line(pipe, {"result": result})
+        except Exception as error:
+            write_line(pipe, {"error": f"{type(error).__name__}: {error}"})

@@ -1,4 +1,4 @@
-"""The plan of a suite: its scenarios, the chosen policies, protocols and seeds."""
+"""The plan of a suite: its scenarios, the chosen policies, protocols and seeds; and single scenarios by their names."""
 
 from __future__ import annotations
 
@@ -10,14 +10,13 @@ import yaml
 
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes, short_hash
 from irsim.benchmarks.policies import files_of
-from irsim.benchmarks.suite import Protocol, Suite
-from irsim.benchmarks.suite_file import SuiteError, load_suite
+from irsim.benchmarks.suite import SUITES, Protocol, Suite, SuiteError, is_suite, load_suite
 from irsim.benchmarks.suite_scenarios import Expanded, expand
-from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.diagnostic import nearest, suggestion
 from irsim.scenario.behavior_override import behavior_text
 from irsim.scenario.perturbation import perturbation_text, read_perturbations
 
-__all__ = ["suite_plan"]
+__all__ = ["suite_plan", "suite_policy", "suite_scene"]
 
 
 def suite_plan(
@@ -148,3 +147,55 @@ def _with_limit(one: Expanded) -> str:
     world = dict(one.data.get("world") or {})
     world["time_limit"] = round(one.steps * float(world.get("step_time") or 0.1), 9)
     return str(yaml.safe_dump({**one.data, "world": world}, sort_keys=False, allow_unicode=True))
+
+
+def suite_scene(name: str | Path) -> PlannedScenario | None:
+    """The scenario of a suite that a name means; None if the name does not begin with that of a suite.
+
+    Args:
+        name: ``SUITE/SCENARIO``, where the suite is bundled or a file.
+
+    Raises:
+        SuiteError: The suite is not valid, has no such scenario, or no scenario is named.
+    """
+    found = _split(name)
+    return None if found is None else _scene(*found)
+
+
+def suite_policy(name: str | Path, policy: str) -> str:
+    """The text of a policy; where a scenario of a suite is named and the suite has a policy of that name, its text.
+
+    Args:
+        name: ``SUITE/SCENARIO``, or another scenario.
+        policy: Name of a policy, or text.
+
+    Raises:
+        SuiteError: The suite is not valid.
+    """
+    found = _split(name)
+    suite = None if found is None else load_suite(found[0])[0]
+    own = {} if suite is None else suite.known_policies
+    return behavior_text(own[policy]) if policy in own else policy
+
+
+def _split(name: str | Path) -> tuple[str, str] | None:
+    """The suite and the scenario of a name; None if it does not begin with a suite."""
+    given = Path(name)
+    if given.is_file() and not is_suite(str(name)):
+        return None
+    for suite in (given, *given.parents):
+        word = suite.as_posix()
+        if word in SUITES.names() or (suite.is_file() and is_suite(word)):
+            return word, given.relative_to(suite).as_posix()
+    return None
+
+
+def _scene(suite: str, name: str) -> PlannedScenario:
+    known = {scenario.name: scenario for scenario in suite_plan(suite).scenarios}
+    if name in known:
+        return known[name]
+    near = nearest(name, list(known)) or next(iter(known))
+    if name == ".":
+        fix = f"irsim benchmark {suite} runs all; a single one is named {suite}/{near}"
+        raise SuiteError(f"{suite} is a suite of {len(known)} scenarios", fix)
+    raise SuiteError(f"{suite} has no scenario {name!r}", f"did you mean {suite}/{near}?")

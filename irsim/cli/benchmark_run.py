@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from irsim.api.benchmark_report import Report, write_report
 from irsim.benchmarks import DEFAULT_SEEDS, benchmark
-from irsim.benchmarks.file_plan import file_plan
+from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.seeds import seeds_from
 from irsim.benchmarks.stored import default_folder, last_folder, resume_benchmark, run_plan
-from irsim.benchmarks.suite_file import is_suite
+from irsim.benchmarks.suite import is_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.findings import limits_for
 from irsim.cli.output import console, progress

@@ -114,7 +114,7 @@ def not_found(file: str, message: str) -> ValidationReport:
 def _text_of(file: str) -> str | None:
 
     if not Path(file).is_file():
-        from irsim.benchmarks.suite_scene import suite_scene  # which few commands need
+        from irsim.benchmarks.suite_plan import suite_scene  # which few commands need
 
         if (scene := suite_scene(file)) is not None:
             return scene.text

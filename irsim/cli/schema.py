@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from irsim.benchmarks.suite_file import SUITES
+from irsim.benchmarks.suite import SUITES
 from irsim.cli.guard import FAILED
 from irsim.common import data_files as resources
 from irsim.common.files import write_atomically

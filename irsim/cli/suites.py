@@ -7,7 +7,7 @@ import json
 import typer
 from rich.table import Table
 
-from irsim.benchmarks.suite_file import SUITES, load_suite
+from irsim.benchmarks.suite import SUITES, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.options import Json
 from irsim.cli.output import console

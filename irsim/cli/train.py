@@ -78,9 +78,9 @@ def train(
     """Train a policy for a task; needs the extra `learn`. Success is measured on seeds that are not trained on."""
     from irsim.cli.findings import print_findings
     from irsim.cli.output import console
-    from irsim.learning.tasks.report import task_report
     from irsim.learning.training.run_folder import RunFolder
     from irsim.learning.training.settings import read_settings
+    from irsim.validation.file_reports import task_report
 
     if (task is None) != resume:
         what = "a task file is missing" if task is None else "a resumed training has its own task"

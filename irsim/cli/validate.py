@@ -10,8 +10,7 @@ import typer
 from rich.text import Text
 
 from irsim import api
-from irsim.benchmarks.suite_file import SUITES, is_suite
-from irsim.benchmarks.suite_report import suite_report
+from irsim.benchmarks.suite import SUITES, is_suite
 from irsim.cli.findings import import_user_modules, limits_for, not_found, print_findings
 from irsim.cli.guard import INVALID
 from irsim.cli.options import Imports, MaxObjects
@@ -20,8 +19,8 @@ from irsim.common.files import write_atomically
 from irsim.common.text import clean, seconds
 from irsim.diagnostics.errors import ArgumentError, ScenarioNotFoundError
 from irsim.learning.tasks.files import TASKS
-from irsim.learning.tasks.report import task_report
 from irsim.scenario.locate import locate
+from irsim.validation.file_reports import suite_report, task_report
 from irsim.validation.scene_table import scene_table
 from irsim.validation.scene_text import scene_lines
 

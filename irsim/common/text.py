@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-__all__ = ["clean", "listed", "metres", "names_if_different", "quoted", "rounded_pair", "seconds", "shorten_pair"]
+__all__ = [
+    "clean",
+    "listed",
+    "metres",
+    "names_if_different",
+    "plural",
+    "quoted",
+    "rounded_pair",
+    "seconds",
+    "shorten_pair",
+]
 
 MAX_NAME = 40
 """Number of characters of a name that a message shows."""
@@ -116,6 +126,11 @@ def quoted(name: object, longest: int = MAX_NAME) -> str:
         longest: Characters to keep.
     """
     return f"'{clean(name, longest)}'"
+
+
+def plural(count: int, noun: str) -> str:
+    """A number of things: ``1 error``, ``2 errors``."""
+    return f"{count} {noun}{'s' * (count != 1)}"
 
 
 def listed(items: Sequence[str], most: int) -> str:

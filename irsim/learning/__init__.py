@@ -13,10 +13,9 @@ from irsim.learning.registration import register_environments
 
 if TYPE_CHECKING:
     from irsim.learning.gym_env import Env
-    from irsim.learning.moment import Moment
     from irsim.learning.parallel_env import ParallelEnv
-    from irsim.learning.result import Result
     from irsim.learning.sb3_env import SB3VecEnv
+    from irsim.learning.step import Moment, Result
     from irsim.learning.tasks.files import TaskError, open_task
     from irsim.learning.tasks.task import Task
     from irsim.learning.torchrl_env import TorchRLEnv
@@ -32,9 +31,9 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "Env": "irsim.learning.gym_env",
-        "Moment": "irsim.learning.moment",
+        "Moment": "irsim.learning.step",
         "ParallelEnv": "irsim.learning.parallel_env",
-        "Result": "irsim.learning.result",
+        "Result": "irsim.learning.step",
         "SB3VecEnv": "irsim.learning.sb3_env",
         "Task": "irsim.learning.tasks.task",
         "TaskError": "irsim.learning.tasks.files",

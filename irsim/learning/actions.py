@@ -1,4 +1,4 @@
-"""Reads the actions that an environment receives."""
+"""Reads the actions that an environment receives, and delays them where learners have a latency."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError
 
-__all__ = ["read_actions"]
+__all__ = ["Latency", "read_actions"]
 
 
 def read_actions(actions: Any, choices: Sequence[Any] | None, slots: int, width: int) -> Floats:
@@ -41,3 +42,40 @@ def read_actions(actions: Any, choices: Sequence[Any] | None, slots: int, width:
     numbers = np.zeros((slots, len(choices)))
     numbers[np.arange(slots), number] = 1.0
     return numbers
+
+
+class Latency:
+    """Keeps the last actions of all learners.
+
+    Args:
+        most: Largest latency [steps].
+        worlds: Number of worlds.
+        learners: Number of learners in each.
+
+    Attributes:
+        steps: (n * A,) latency of each learner.
+    """
+
+    def __init__(self, most: int, worlds: int, learners: int) -> None:
+        self._most, self._learners = most, learners
+        self._slots = np.arange(worlds * learners)
+        self._sent: Floats | None = None
+        self._now = 0
+        self.steps: NDArray[np.int64] = np.zeros(worlds * learners, dtype=np.int64)
+
+    def pass_on(self, numbers: Floats, count: NDArray[np.int64]) -> tuple[Floats, NDArray[np.bool_]]:
+        """The actions that are executed now.
+
+        Args:
+            numbers: (n * A, F) actions that were decided now.
+            count: (n,) steps of the present episodes.
+
+        Returns:
+            (n * A, F) actions, and (n * A,) whether a learner still waits for its first one.
+        """
+        if self._sent is None:
+            self._sent = np.zeros((self._most + 1, *numbers.shape))
+        self._now = (self._now + 1) % len(self._sent)
+        self._sent[self._now] = numbers
+        found = self._sent[(self._now - self.steps) % len(self._sent), self._slots]
+        return found, np.repeat(count, self._learners) < self.steps

@@ -11,9 +11,8 @@ from irsim.common.arrays import Floats
 from irsim.common.text import clean, listed
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.learning.tasks.files import task_error
-from irsim.learning.tasks.randomize import QUANTITIES, merged
 from irsim.learning.tasks.scene import Scene
-from irsim.learning.tasks.task import Task
+from irsim.learning.tasks.task import QUANTITIES, Task, merged
 from irsim.scenario.resolve.resolved import DrawnQuantity
 from irsim.simulation.simulation import Simulation
 

@@ -7,4 +7,4 @@ from irsim.options.registry import Registry
 __all__ = ["REWARDS"]
 
 REWARDS = Registry("reward", "irsim.learning.rewards", "irsim.rewards")
-"""Terms of rewards: a kernel of the core, or a function of :class:`irsim.learning.moment.Moment` over all learners."""
+"""Terms of rewards: a kernel of the core, or a function of :class:`irsim.learning.step.Moment` over all learners."""

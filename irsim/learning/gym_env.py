@@ -11,8 +11,8 @@ from irsim.common.arguments import as_given
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.pictures import Camera
-from irsim.learning.result import Result
 from irsim.learning.spaces import action_space, observation_space
+from irsim.learning.step import Result
 from irsim.learning.tasks.files import TaskError, TaskSource
 from irsim.learning.workers.divided import AnyWorlds
 from irsim.learning.worlds import Worlds
@@ -158,7 +158,7 @@ def frames_per_second(worlds: AnyWorlds) -> int:
 def facts(result: Result, slot: int) -> dict[str, Any]:
     """What a step has led to for one learner: whether it arrived, which is its success, and whether it collided.
 
-    ``contacts_between_steps`` is the number of those of its episode so far, see :class:`irsim.learning.result.Result`.
+    ``contacts_between_steps`` is the number of those of its episode so far, see :class:`irsim.learning.step.Result`.
     """
     arrived, collided = bool(result.arrived.reshape(-1)[slot]), bool(result.collided.reshape(-1)[slot])
     between = int(result.contacts_between_steps.reshape(-1)[slot])

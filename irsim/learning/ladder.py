@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.learning.result import Result
-from irsim.learning.tasks.curriculum import Curriculum
+from irsim.learning.step import Result
+from irsim.learning.tasks.task import Curriculum
 from irsim.learning.workers.divided import AnyWorlds
 
 __all__ = ["Ladder"]

@@ -13,8 +13,8 @@ from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.gym_env import RENDER_MODES, check_render_mode, frames_per_second
 from irsim.learning.pictures import Camera
-from irsim.learning.result import Result
 from irsim.learning.spaces import action_space, observation_space
+from irsim.learning.step import Result
 from irsim.learning.tasks.files import TaskSource
 from irsim.learning.workers.divided import AnyWorlds, open_worlds
 from irsim.learning.worlds import Autoreset, Worlds

@@ -12,11 +12,10 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError, PlacementError
 from irsim.env.batch import Batch
-from irsim.learning.actions import read_actions
+from irsim.learning.actions import Latency, read_actions
 from irsim.learning.draws import Draws, check_observed
-from irsim.learning.latency import Latency
 from irsim.learning.observing import Eyes
-from irsim.learning.result import Result, Step
+from irsim.learning.step import Result, Step
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.tasks.scene import open_scene
 from irsim.learning.tasks.team import team_of

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from irsim.benchmarks.suite_file import SUITES
+from irsim.benchmarks.suite import SUITES
 from irsim.bundled import templates
 from irsim.bundled.templates import Template
 from irsim.common.event_kinds import BETWEEN_STEPS, EVENTS

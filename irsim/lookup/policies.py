@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from irsim.benchmarks.suite_file import SUITES, load_suite
+from irsim.benchmarks.suite import SUITES, load_suite
 from irsim.lookup.answer import Answer, Key
 from irsim.lookup.suites import model_keys
 from irsim.policies.converters.weights import CONVERTERS

@@ -7,8 +7,7 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel
 
-from irsim.benchmarks.suite import Seeds, Suite, SuiteScenario
-from irsim.benchmarks.suite_file import SUITES, load_suite
+from irsim.benchmarks.suite import SUITES, Seeds, Suite, SuiteScenario, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.lookup.answer import Answer, Key
 from irsim.scenario.behavior_override import behavior_text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from irsim.benchmarks.suite_file import SUITES
+from irsim.benchmarks.suite import SUITES
 from irsim.bundled import templates
 from irsim.common.event_kinds import EVENTS
 from irsim.compat import DIFFERENCES

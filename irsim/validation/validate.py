@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
-from irsim.diagnostics.diagnostic import format_path
+from irsim.common.text import plural
+from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.errors import PlacementError
 from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.diff import ScenarioDiff
@@ -17,7 +20,7 @@ from irsim.scenario.read import Reading, read
 from irsim.scenario.yaml.document import Document, load_path
 from irsim.validation.feasibility.check import feasibility_findings
 
-__all__ = ["diff", "fix", "report_of", "validate"]
+__all__ = ["diff", "fix", "report", "report_of", "validate"]
 
 
 def validate(
@@ -127,26 +130,40 @@ def diff(
 
 def report_of(reading: Reading, file: str) -> ValidationReport:
     """The report on a scenario that has been read."""
-    findings = [Finding.of(d) for d in reading.diagnostics]
-    count = {s: sum(f.severity == s for f in findings) for s in ("error", "warning", "hint")}
-    scenario, counts = reading.scenario, dict[str, int]()
-    if scenario is not None:
-        counts = counts_of(scenario)
-        summary = f"valid: {in_words(counts)}"
-        if count["warning"]:
-            summary += f"; {count['warning']} warning{'s' * (count['warning'] != 1)}"
-    else:
-        summary = f"{count['error']} error{'s' * (count['error'] != 1)}, {count['warning']} warnings"
+    if reading.scenario is None:
+        return report(file, reading.diagnostics)
+    counts = counts_of(reading.scenario)
+    found = report(file, reading.diagnostics, in_words(counts))
+    found.counts = counts
+    return found
+
+
+def report(file: str, found: Sequence[Diagnostic], valid: str | None = None) -> ValidationReport:
+    """The report on a file of any kind.
+
+    Args:
+        file: The file.
+        found: What is wrong with it.
+        valid: What a file without errors holds, in words.
+    """
+    count = Counter(item.severity for item in found)
+    summary = _counted(count["error"], count["warning"])
+    if valid is not None:
+        warnings = f"; {plural(count['warning'], 'warning')}" if count["warning"] else ""
+        summary = f"valid: {valid}{warnings}"
     return ValidationReport(
         file=file,
-        valid=count["error"] == 0,
+        valid=valid is not None,
         summary=summary,
         errors=count["error"],
         warnings=count["warning"],
         hints=count["hint"],
-        findings=findings,
-        counts=counts,
+        findings=[Finding.of(item) for item in found],
     )
+
+
+def _counted(errors: int, warnings: int) -> str:
+    return f"{plural(errors, 'error')}, {plural(warnings, 'warning')}"
 
 
 def _mark_old(findings: list[Finding], base: Reading) -> None:
@@ -170,5 +187,5 @@ def _dry_run_or_findings(
         report.findings = [*crowded, *report.findings]
         report.errors += len(crowded)
         report.valid = False
-        report.summary = f"{report.errors} error{'s' * (report.errors != 1)}, {report.warnings} warnings"
+        report.summary = _counted(report.errors, report.warnings)
         return None

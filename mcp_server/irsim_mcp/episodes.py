@@ -69,7 +69,7 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
 
 def policy_names(result: Mapping[str, Any]) -> dict[str, str]:
     """Text of each policy → its short name, that of the suite if it has one."""
-    from irsim.benchmarks.report.names import labels_of
+    from irsim.benchmarks.report.rows import labels_of
 
     return labels_of(result["behaviors"]) | {text: name for name, text in result.get("policies", {}).items()}
 

@@ -271,7 +271,7 @@ def _suite_plan(job: dict[str, Any], progress: _Progress) -> str:
 
 
 def _suite_policy(job: dict[str, Any], progress: _Progress) -> str:
-    from irsim.benchmarks.suite_scene import suite_policy
+    from irsim.benchmarks.suite_plan import suite_policy
 
     return json.dumps({"text": suite_policy(**job["arguments"])})
 

@@ -43,8 +43,8 @@ def scenario_of_suite(given: str, argument: str) -> str:
     Raises:
         ArgumentError: The suite has no such scenario.
     """
-    from irsim.benchmarks.suite_file import SuiteError
-    from irsim.benchmarks.suite_scene import suite_scene
+    from irsim.benchmarks.suite import SuiteError
+    from irsim.benchmarks.suite_plan import suite_scene
 
     try:
         scene = suite_scene(given)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from irsim.benchmarks.suite_file import load_suite
+from irsim.benchmarks.suite import load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from tests.benchmarks.crowdnav.write import FILE, rows
 

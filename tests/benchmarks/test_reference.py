@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from irsim.benchmarks.stored import run_plan
-from irsim.benchmarks.suite_file import SUITES
+from irsim.benchmarks.suite import SUITES
 from irsim.results.suite import SuiteResult
 from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, changes, counted, lines_of
 

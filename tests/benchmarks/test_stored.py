@@ -12,8 +12,7 @@ from PIL import Image
 
 import irsim
 import irsim.benchmarks
-from irsim.benchmarks.file_plan import file_plan
-from irsim.benchmarks.plan import Plan
+from irsim.benchmarks.plan import Plan, file_plan
 from irsim.benchmarks.stored import EPISODES, PLAN, RESULTS, default_folder, resume_benchmark, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.runs.files import RunError

@@ -10,11 +10,9 @@ import yaml
 
 import irsim
 from irsim.benchmarks.stored import resume_benchmark, run_plan
-from irsim.benchmarks.suite import Suite
-from irsim.benchmarks.suite_file import SUITES, SuiteError, is_suite, load_suite
-from irsim.benchmarks.suite_plan import suite_plan
+from irsim.benchmarks.suite import SUITES, Suite, SuiteError, is_suite, load_suite
+from irsim.benchmarks.suite_plan import suite_plan, suite_policy, suite_scene
 from irsim.benchmarks.suite_scenarios import expand
-from irsim.benchmarks.suite_scene import suite_policy, suite_scene
 from irsim.env import Env
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import load_path, load_text

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
-from irsim.benchmarks.suite_file import SUITES, SuiteError
+from irsim.benchmarks.suite import SUITES, SuiteError
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.app import app
 from irsim.lookup import lookup

@@ -18,7 +18,7 @@ def run_together(job, seeds):
         yield seed
 together.run_together = run_together
 episode.Job.of_data = staticmethod(lambda data: data)
-from irsim.benchmarks.worker import main
+from irsim.benchmarks.pool import main
 main()
 """
 

@@ -12,7 +12,7 @@ import irsim
 from irsim import api
 from irsim.benchmarks import logged
 from irsim.cli.app import app
-from irsim.learning.tasks.report import task_report
+from irsim.validation.file_reports import task_report
 
 SCENE = """
 world: {width: 10, height: 10}

@@ -17,7 +17,7 @@ import irsim
 import irsim.benchmarks
 from irsim.api.benchmark_report import write_report
 from irsim.benchmarks.cluster import ClusterError
-from irsim.benchmarks.file_plan import file_plan
+from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.pool import WorkerError
 from irsim.benchmarks.stored import run_plan
 from tests.cluster.conftest import LocalCluster

@@ -11,8 +11,8 @@ import yaml
 
 from irsim.learning import VectorEnv
 from irsim.learning.tasks.files import TaskError
-from irsim.learning.tasks.report import task_report
 from irsim.learning.worlds import Worlds
+from irsim.validation.file_reports import task_report
 from tests.learning.tasks import RANDOM, task
 
 STARTS: list[dict[str, Any]] = [{"position": 0.5, "heading": "20deg", "objects": ["robot"]}]

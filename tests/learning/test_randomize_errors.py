@@ -10,8 +10,8 @@ import pytest
 import yaml
 
 from irsim.learning.tasks.files import TaskError, open_task
-from irsim.learning.tasks.report import task_report
 from irsim.learning.worlds import Worlds
+from irsim.validation.file_reports import task_report
 from tests.learning.tasks import corridor, lidar_among_boxes, task
 
 

@@ -11,8 +11,7 @@ import irsim
 from irsim.cli.train import SARL_SETTINGS, SETTINGS
 from irsim.learning.tasks.files import open_task
 from irsim.learning.training.run_folder import RunFolder, merit
-from irsim.learning.training.sarl.settings import SarlSettings
-from irsim.learning.training.settings import TrainingSettings
+from irsim.learning.training.settings import SarlSettings, TrainingSettings
 from irsim.learning.worlds import Worlds
 from tests.learning.tasks import corridor, task
 

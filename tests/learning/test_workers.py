@@ -16,7 +16,7 @@ import pytest
 
 from irsim.diagnostics.errors import ArgumentError, WorkerError
 from irsim.learning import VectorEnv
-from irsim.learning.moment import Moment
+from irsim.learning.step import Moment
 from irsim.learning.workers.divided import DividedWorlds
 from irsim.learning.worlds import Worlds
 from irsim.plugins import register_behavior

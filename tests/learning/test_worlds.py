@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from irsim.diagnostics.errors import ArgumentError
-from irsim.learning.result import Result
+from irsim.learning.step import Result
 from irsim.learning.tasks.files import TaskError
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.layout import Layout, layout_needs, observe

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.benchmarks.file_plan import file_plan
+from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.stored import resume_benchmark, run_plan
 from irsim.benchmarks.suite import Suite
 from irsim.benchmarks.suite_plan import suite_plan

@@ -8,7 +8,7 @@ import pytest
 
 import irsim
 from irsim.api.benchmark_report import TABLE, write_report
-from irsim.benchmarks.file_plan import file_plan
+from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.results.suite import SuiteResult

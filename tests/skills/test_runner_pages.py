@@ -20,8 +20,8 @@ from typer.testing import CliRunner
 from irsim.cli.app import app
 from irsim.learning import VectorEnv
 from irsim.learning.tasks.files import TASKS
-from irsim.learning.tasks.report import task_report
 from irsim.options.registry import BRIDGES
+from irsim.validation.file_reports import task_report
 from tests.bridges import crowds
 from tests.cli.conftest import ROOM
 from tests.skills.conftest import ROOT, fences

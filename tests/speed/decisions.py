@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from irsim.benchmarks.decision_timer import time_behavior
 from irsim.benchmarks.episode import Job, environment_of
 from irsim.benchmarks.policies import job_keys
 from irsim.benchmarks.suite_plan import suite_plan
+from irsim.benchmarks.timing import time_behavior
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.driver import driver_of
 

@@ -6,7 +6,7 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from irsim.benchmarks.report.names import families, policy_labels, protocols, series
+from irsim.benchmarks.report.rows import families, policy_labels, protocols, series
 from irsim.benchmarks.summary import is_summary
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow
 

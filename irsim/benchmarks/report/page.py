@@ -19,7 +19,7 @@ from irsim.benchmarks.report.markdown import (
     title_of,
     zones_of,
 )
-from irsim.benchmarks.report.names import policy_labels
+from irsim.benchmarks.report.rows import policy_labels
 from irsim.results.benchmark import BenchmarkResult
 
 __all__ = ["Shown", "page"]

@@ -19,7 +19,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from irsim.benchmarks.report.names import policy_labels
+from irsim.benchmarks.report.rows import policy_labels
 from irsim.benchmarks.summary import KEYS
 from irsim.common.files import replace_bytes
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS

@@ -53,7 +53,7 @@ struct Commands {
   bool velocities;
 };
 
-/// What a step has led to, see `irsim.learning.result.Result`. Terms come first: (T, W * A).
+/// What a step has led to, see `irsim.learning.step.Result`. Terms come first: (T, W * A).
 struct Outcome {
   double *terms, *reward;
   std::uint8_t *terminated, *truncated, *active, *arrived, *collided;  // (W * A,)

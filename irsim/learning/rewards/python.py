@@ -11,8 +11,8 @@ from pydantic import Field
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.features import REWARDS
-from irsim.learning.moment import Moment
 from irsim.learning.rewards._options import RewardOptions
+from irsim.learning.step import Moment
 
 
 class Python(RewardOptions):

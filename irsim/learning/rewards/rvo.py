@@ -9,8 +9,8 @@ from pydantic import Field
 
 from irsim.common.arrays import Floats
 from irsim.learning.features import REWARDS
-from irsim.learning.moment import Moment
 from irsim.learning.rewards._options import RewardOptions
+from irsim.learning.step import Moment
 from irsim.options.units import MetersPerSecond, Number
 
 _OFFSET_S = 0.2

@@ -18,8 +18,7 @@ from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, suggestion
 from irsim.episodes.unopened import unopened_bridges
 from irsim.learning.tasks.files import TaskError, task_error
-from irsim.learning.tasks.randomize import Value
-from irsim.learning.tasks.task import Task
+from irsim.learning.tasks.task import Task, Value
 from irsim.learning.tasks.variation import LevelDraws, drawn_values, level_draws, randomize_path
 from irsim.scenario.behavior_override import BenchmarkError
 from irsim.scenario.perturbation import perturbed

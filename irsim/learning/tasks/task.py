@@ -19,23 +19,161 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from irsim.learning.features import REWARDS
 from irsim.learning.rewards._options import RewardOptions
-from irsim.learning.tasks.curriculum import Curriculum, CurriculumLevel
-from irsim.learning.tasks.randomize import Randomize, Value
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
-from irsim.options.units import Bool, Integer, Seconds
+from irsim.options.units import Bool, Fraction, Integer, Number, Seconds
 from irsim.policies.networks.document import Meaning, OutputOptions
 from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.parts._options import PARTS, PartOptions
 from irsim.scenario.perturbation import Perturbation
 
-__all__ = ["Action", "Ends", "Seeds", "Task"]
+__all__ = [
+    "QUANTITIES",
+    "Action",
+    "Curriculum",
+    "CurriculumLevel",
+    "Ends",
+    "Randomize",
+    "Seeds",
+    "Task",
+    "Value",
+    "merged",
+]
+
+
+Value = bool | int | float | str
+QUANTITIES = ("number", "size", "speed", "acceleration", "sensor_noise", "latency")
+"""What is drawn for objects of the scenario, in the order of the keys."""
+
+
+def _ordered(values: list[Any]) -> list[Any]:
+    if values[0] > values[1]:
+        what = f"the range begins at {values[0]:g}, which is more than its end, {values[1]:g}"
+        raise problem("invalid-value", what, fix=f"write [{values[1]:g}, {values[0]:g}]")
+    return values
+
+
+_Pair = Field(min_length=2, max_length=2)
+Whole = Annotated[list[Annotated[Integer, Field(ge=0, le=100_000)]], _Pair, AfterValidator(_ordered)]
+Steps = Annotated[list[Annotated[Integer, Field(ge=0, le=1000)]], _Pair, AfterValidator(_ordered)]
+Factors = Annotated[list[Annotated[Number, Field(gt=0, le=1000)]], _Pair, AfterValidator(_ordered)]
+FactorsFromZero = Annotated[list[Annotated[Number, Field(ge=0, le=1000)]], _Pair, AfterValidator(_ordered)]
+
+
+class Randomize(Options):
+    """What is drawn for each episode: ranges [low, high], uniformly.
+
+    Objects are named by a word: the name, tag or group of objects, an entry of the scenario such as `obstacle[0]`, or
+    one of `learners`, `robots`, `obstacles` and `people` (obstacles that move). Each object draws its own value. A draw
+    depends only on the seed, on the number of the scene and on the object, and never on what happened before.
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [
+            {"number": {"obstacles": [2, 8]}, "size": {"obstacles": [0.7, 1.3]}, "latency": {"learners": [0, 2]}}
+        ]
+    }
+    also_called: ClassVar[dict[str, str]] = {
+        "count": "number",
+        "numbers": "number",
+        "sizes": "size",
+        "scale": "size",
+        "speeds": "speed",
+        "velocity": "speed",
+        "accelerations": "acceleration",
+        "acce": "acceleration",
+        "noise": "sensor_noise",
+        "delay": "latency",
+        "params": "parameters",
+    }
+
+    number: dict[str, Whole] = {}
+    """How many of the objects take part; the others are absent, as before `appear_time`. Which ones is drawn, too.
+    Robots that learn and are absent are slots that wait."""
+    size: dict[str, Factors] = {}
+    """Factor on the footprint, about the origin of its body frame. Places are drawn for the scaled footprint; where the
+    scenario gives them, scaled footprints may overlap."""
+    speed: dict[str, Factors] = {}
+    """Factor on the limits of speeds (not of turn rates), and on the speeds that behaviors want."""
+    acceleration: dict[str, Factors] = {}
+    """Factor on the limits of accelerations."""
+    sensor_noise: dict[str, FactorsFromZero] = {}
+    """Factor on the standard deviations of the sensors, which need `noise: true`."""
+    latency: dict[str, Steps] = {}
+    """Steps after which actions of learners are executed; 0 is at once. Until the first one a learner stands still."""
+    same: list[Literal["size", "speed", "acceleration", "sensor_noise", "latency"]] = []
+    """Quantities of which all objects of a word share one draw."""
+    parameters: dict[str, Annotated[list[Value], Field(min_length=1, max_length=64)]] = {}
+    """Parameters of the template: [low, high] for numbers, a list of values for others. They change the geometry, so
+    they are drawn as `variants`."""
+    variants: Annotated[Integer, Field(ge=1, le=256)] = 8
+    """Number of variants of the scenario that are made with drawn parameters; each episode draws one of them. Values of
+    a number are spread evenly from low to high, in an order of its own for each parameter."""
+    observed: list[Annotated[str, Field(min_length=1, max_length=100)]] = []
+    """Draws that the policy observes, at the end of its observation, from 0 (low) to 1 (high): `size`, `speed`,
+    `acceleration`, `sensor_noise`, `latency` of the learner itself, `number.WORD`, `parameters.NAME`. A policy that
+    observes them cannot be exported, because only a simulation knows them."""
+
+
+def merged(base: Randomize, change: Randomize) -> Randomize:
+    """The draws of a level: words and parameters that it names replace those of the task, others stay."""
+    given = {}
+    for key in change.model_fields_set:
+        value = getattr(change, key)
+        given[key] = {**getattr(base, key), **value} if isinstance(value, dict) else value
+    return base.model_copy(update=given)
+
+
+class CurriculumLevel(Options):
+    """What a level changes in the task; an empty one is the task as it is."""
+
+    randomize: Randomize = Randomize()
+    """Ranges that replace those of the task with the same word or name; others stay."""
+    parameters: dict[str, Value] = {}
+    """Values of parameters of the template."""
+    values: dict[str, Any] = {}
+    """Values of the scenario by their paths, such as `robot[0].distribution.goal_distance: 2`: places, goals, shapes
+    and ranges. The paths must exist."""
+    horizon: Annotated[Seconds, Field(gt=0)] | None = None
+    """Time after which an episode is cut off; null: that of the task."""
+
+
+class Curriculum(Options):
+    """Levels from easy to hard. A training rises when it succeeds, and its success is measured on the last level."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"levels": [{"randomize": {"number": {"obstacles": [0, 2]}}}, {}], "up": 0.8, "episodes": 200}]
+    }
+    also_called: ClassVar[dict[str, str]] = {"stages": "levels", "threshold": "up", "window": "episodes"}
+
+    levels: Annotated[list[CurriculumLevel], Field(min_length=1, max_length=64)]
+    """The levels."""
+    up: Fraction = 0.9
+    """Share of successes at which the level rises by one."""
+    down: Fraction | None = None
+    """Share of successes at which it falls by one; null: it never falls."""
+    episodes: Annotated[Integer, Field(ge=1, le=1_000_000)] = 200
+    """Number of the last episodes of learners, all of the present level, of which the share is taken. It is taken only
+    when there are as many."""
+    start: Annotated[Integer, Field(ge=0)] = 0
+    """Level at the start, from 0."""
+
+    @model_validator(mode="after")
+    def _is_in_order(self) -> Curriculum:
+        if self.start >= len(self.levels):
+            what = f"'start' is {self.start}, and the last of the {len(self.levels)} levels is {len(self.levels) - 1}"
+            raise problem("invalid-value", what, fix="levels are counted from 0")
+        if self.down is not None and self.down >= self.up:
+            what = f"'down' is {self.down:g}, and must be less than 'up', which is {self.up:g}"
+            raise problem("invalid-value", what, fix=f"give a share below {self.up:g}")
+        return self
+
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_.-]{0,63}$")]
 

@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from irsim.common.text import clean, listed
+from irsim.common.text import clean, listed, plural
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.learning.tasks.files import task_error
-from irsim.learning.tasks.randomize import QUANTITIES, Randomize, Value, merged
-from irsim.learning.tasks.task import Task
+from irsim.learning.tasks.task import QUANTITIES, Randomize, Task, Value, merged
 from irsim.learning.tasks.team import team_of
 from irsim.scenario.resolve.resolved import DrawnQuantity, ObjectRecord, ResolvedScenario
 from irsim.simulation.random_streams import generator
@@ -153,7 +152,7 @@ def _check(
     Raises:
         TaskError: It would have none.
     """
-    objects = f"{len(records)} object{'s' * (len(records) != 1)}"
+    objects = plural(len(records), "object")
     if quantity == "number" and high > len(records):
         what = f"up to {high:g} take part, and {clean(word)!r} names {objects}"
         raise task_error(where, what, f"give at most {len(records)}, or raise `number` of the entry in the scenario")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from irsim.common.extras import require
-from irsim.common.files import check_suffix, write_atomically
+from irsim.common.files import check_suffix, replace_bytes, write_atomically
 from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.draws import observed_names
@@ -16,10 +17,9 @@ from irsim.learning.tasks.files import open_task
 from irsim.learning.tasks.scene import task_scenario
 from irsim.learning.tasks.task import Task
 from irsim.learning.tasks.team import team_of
-from irsim.learning.training.curve import draw_curve
 from irsim.learning.training.extractor import GruExtractor, PartColumns, columns_of
 from irsim.learning.training.run_folder import RunFolder, merit
-from irsim.learning.training.sarl.settings import SarlSettings
+from irsim.learning.training.settings import SarlSettings
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.document import PolicyDocument
 from irsim.policies.networks.files import save_network
@@ -32,7 +32,8 @@ import torch
 from stable_baselines3 import PPO
 from torch import nn
 
-__all__ = ["export_policy", "network_of"]
+__all__ = ["draw_curve", "export_policy", "network_of"]
+
 
 _ACTIVATIONS = {nn.ReLU: "relu", nn.Tanh: "tanh", nn.ELU: "elu", nn.SiLU: "silu", nn.GELU: "gelu"}
 
@@ -205,3 +206,34 @@ def _card_text(file: Path, task: Task, card: Mapping[str, Any]) -> str:
     use = f"Use it: `irsim run SCENARIO --policy {file.name}`"
     curve = f"![learning curve]({file.stem}.png)"
     return f"# {file.stem}\n\n{card['description']}\n\n| | |\n|---|---|\n{table}\n\n{use}\n\n{curve}\n"
+
+
+def draw_curve(rounds: Sequence[Mapping[str, Any]], title: str, file: Path) -> None:
+    """Draw success and collisions on the validation seeds against the decisions of the training.
+
+    With one learner its success is that of the episode, so one line shows both.
+
+    Args:
+        rounds: Facts of the rounds, in order.
+        title: Title of the picture.
+        file: The PNG to write.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 3.6), dpi=100, layout="constrained")
+    axes = figure.add_subplot()
+    decisions = [one["steps"] / 1e6 for one in rounds]
+    for key, label, color in (
+        ("learners", "robots that arrive without a collision", "#0072B2"),
+        ("worlds", "episodes in which all of them do", "#009E73"),
+        ("collided", "robots that collide", "#D55E00"),
+    ):
+        if key == "worlds" and all(one["worlds"] == one["learners"] for one in rounds):
+            continue
+        axes.plot(decisions, [100 * one[key] for one in rounds], color=color, label=label, marker=".", markersize=4)
+    axes.set(xlabel="decisions [million]", ylabel="on validation seeds [%]", ylim=(-2, 102), title=title)
+    axes.grid(alpha=0.3)
+    axes.legend(loc="center right", fontsize="small")
+    content = io.BytesIO()
+    figure.savefig(content, format="png", metadata={"Software": None})
+    replace_bytes(file, content.getvalue(), mode=None)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.worlds import Worlds
 
-__all__ = ["Success", "measure_success"]
+__all__ = ["Round", "Success", "measure_success"]
+
 
 Decide = Callable[[NDArray[np.float32]], Any]
 
@@ -69,3 +70,24 @@ def measure_success(task: TaskSource, decide: Decide, *, seed: int, count: int, 
         reward=float(reward[there].mean()),
         time=float(seconds.mean()),
     )
+
+
+@dataclass(frozen=True)
+class Round:
+    """A finished round.
+
+    Attributes:
+        number: Its number, from 1.
+        steps: Decisions of all learners so far, without those of learners that waited.
+        seconds: Wall-clock time of all rounds so far [s].
+        success: What the policy reaches on the validation seeds.
+        best: Whether it is better than every earlier round: in success or, with equal success, in reward.
+        rounds: Number of rounds of the whole training.
+    """
+
+    number: int
+    steps: int
+    seconds: float
+    success: Success
+    best: bool
+    rounds: int

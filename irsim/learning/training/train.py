@@ -9,7 +9,7 @@ from __future__ import annotations
 import random
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
@@ -23,20 +23,20 @@ from irsim.learning.sb3_env import SB3VecEnv
 from irsim.learning.tasks.files import TaskSource, open_task
 from irsim.learning.tasks.task import Task
 from irsim.learning.training.extractor import READERS, columns_of
-from irsim.learning.training.masked_buffer import MaskedRolloutBuffer
-from irsim.learning.training.round import Round
 from irsim.learning.training.run_folder import RunFolder, merit
 from irsim.learning.training.settings import TrainingSettings
-from irsim.learning.training.success import measure_success
+from irsim.learning.training.success import Round, measure_success
 from irsim.learning.worlds import Worlds
 
 require("learn", "torch", "stable_baselines3")
 import torch
 from stable_baselines3 import PPO
+from stable_baselines3.common.buffers import RolloutBuffer, RolloutBufferSamples
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import configure
 
-__all__ = ["Round", "train"]
+__all__ = ["MaskedRolloutBuffer", "Round", "train"]
+
 
 _LOWEST_RATE = 0.1
 """Share of the learning rate that is left at the end."""
@@ -212,3 +212,40 @@ def _model(env: SB3VecEnv, task: Any, settings: TrainingSettings) -> Any:
         seed=settings.seed,
         device="cpu",
     )
+
+
+class MaskedRolloutBuffer(RolloutBuffer):  # type: ignore[misc] # types of an extra are not read
+    """Keeps which steps counted (``active``), and samples from those only.
+
+    Attributes:
+        active: (steps, slots) set by the environment's owner before each :meth:`add`.
+        now: (slots,) whether the step that is added next counts.
+    """
+
+    now: Any = None
+    generator_ready: bool
+
+    def reset(self) -> None:
+        """Forget everything."""
+        super().reset()
+        self.active = np.ones((self.buffer_size, self.n_envs), dtype=bool)
+
+    def add(self, *args: Any, **kwargs: Any) -> None:
+        """Add a step of all slots."""
+        if self.now is not None:
+            self.active[self.pos] = self.now
+        super().add(*args, **kwargs)
+
+    def get(self, batch_size: int | None = None) -> Generator[RolloutBufferSamples, None, None]:
+        """Minibatches of the steps that counted, in random order and of nearly equal sizes."""
+        assert self.full, "the buffer is sampled when it is full"
+        if not self.generator_ready:
+            for name in ("observations", "actions", "values", "log_probs", "advantages", "returns"):
+                self.__dict__[name] = self.swap_and_flatten(self.__dict__[name])
+            self.active = self.swap_and_flatten(self.active[..., None])[:, 0]
+            self.generator_ready = True
+        chosen = np.random.permutation(np.flatnonzero(self.active))  # noqa: NPY002 - the stream that SB3 seeds
+        count = max(1, -(-len(chosen) // (batch_size or len(chosen) or 1)))
+        for indices in np.array_split(chosen, count):
+            if len(indices) > 1:  # the advantage of a single step has no deviation to divide by
+                yield self._get_samples(indices)

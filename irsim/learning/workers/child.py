@@ -9,7 +9,7 @@ import threading
 from typing import Any
 
 from irsim.common.child import answers, end_with_parent
-from irsim.learning.workers.messages import DONE, packed_error, read_message, write_message
+from irsim.learning.workers.process import DONE, packed_error, read_message, write_message
 
 __all__ = ["main"]
 

@@ -15,7 +15,7 @@ from irsim.common.arguments import as_given
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.actions import read_actions
-from irsim.learning.result import Result, Step
+from irsim.learning.step import Result, Step
 from irsim.learning.tasks.files import TaskSource
 from irsim.learning.workers.memory import SharedMemory
 from irsim.learning.workers.part import DRAWN, RESULTS, Part, layout_of, python_parts

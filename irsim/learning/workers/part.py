@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from irsim.learning.result import Result
+from irsim.learning.step import Result
 from irsim.learning.workers.memory import ArrayLayout
 from irsim.learning.worlds import Worlds
 

@@ -10,11 +10,10 @@ import irsim._core as core
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.vectors import is_vector
-from irsim.scenario.checks._bodies import SizedBody, SizedShape
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, hint, warning
 from irsim.scenario.model.scenario import Entry
-from irsim.scenario.resolve.body_size import has_fixed_shape
+from irsim.scenario.resolve.body_size import SizedBody, SizedShape, has_fixed_shape
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _MAX_REPORTED = 20

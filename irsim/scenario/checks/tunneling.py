@@ -10,10 +10,12 @@ from typing import Any
 import irsim._core as core
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
-from irsim.scenario.checks._bodies import Point, SizedBody, SizedShape
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, warning
 from irsim.scenario.resolve.body_size import (
+    Point,
+    SizedBody,
+    SizedShape,
     has_fixed_shape,
     segment_gap,
 )

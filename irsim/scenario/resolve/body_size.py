@@ -2,21 +2,35 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import irsim._core as core
 from irsim.components.behaviors._options import CustomOptions
 from irsim.options.registry import SHAPES
+from irsim.scenario.resolve.resolved import ObjectRecord
 
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
 
-__all__ = ["has_fixed_shape", "inner_disc", "parts_of", "reach_of", "segment_gap", "thickness", "top_speed"]
+__all__ = [
+    "SizedBody",
+    "SizedShape",
+    "has_fixed_shape",
+    "inner_disc",
+    "parts_of",
+    "reach_of",
+    "segment_gap",
+    "thickness",
+    "top_speed",
+]
 
 Point = tuple[float, float]
+Segment = tuple[Point, Point]
 _SEARCH_ROUNDS = 4
 """Rounds of the search for the largest disc; each searches a smaller square."""
 _POINTS_PER_SIDE = 12
@@ -204,3 +218,69 @@ def _min_width(corners: list[tuple[float, float]]) -> float:
             across = [((x - ax) * (by - ay) - (y - ay) * (bx - ax)) / length for x, y in corners]
             least = min(least, max(across) - min(across))
     return least
+
+
+class SizedShape:
+    """Sizes of a shape, each computed when it is asked for, once for all objects that share the shape [m]."""
+
+    def __init__(self, shape: Any) -> None:
+        self._shape = shape
+
+    @cached_property
+    def parts(self) -> list[Any]:
+        """Geometry for the core, body frame."""
+        return parts_of(self._shape)
+
+    @cached_property
+    def width(self) -> float:
+        """Least extent."""
+        return thickness(self._shape)
+
+    @cached_property
+    def inner_disc(self) -> tuple[float, float, float]:
+        """Middle, body frame, and radius of the largest disc inside."""
+        return inner_disc(self.parts)
+
+    @property
+    def disc(self) -> float:
+        """Radius of the largest disc inside."""
+        return self.inner_disc[2]
+
+    @cached_property
+    def reach(self) -> float:
+        """Upper bound of the distance of all points from the origin."""
+        return reach_of(self._shape)
+
+    @cached_property
+    def around(self) -> float:
+        """Radius of the circle about the middle of the largest inner disc that contains the shape."""
+        x, y, radius = self.inner_disc
+        return radius if self._shape.name == "circle" else self.reach + math.hypot(x, y)
+
+
+@dataclass(frozen=True)
+class SizedBody:
+    """An object with the sizes of its shape, its speed and its way."""
+
+    record: ObjectRecord
+    shape: SizedShape
+
+    @cached_property
+    def speed(self) -> float:
+        """Top speed [m/s]."""
+        return top_speed(self.record)
+
+    @cached_property
+    def legs(self) -> list[Segment]:
+        """Straight legs from the start to each goal in turn."""
+        goals = [] if self.record.kinematics is None else self.record.goals
+        points = [(p[0], p[1]) for p in (self.record.state, *goals)]
+        if self.record.loop and len(points) > 1:
+            points.append(points[1] if len(points) > 2 else points[0])
+        return list(itertools.pairwise(points)) or [(points[0], points[0])]
+
+    @cached_property
+    def box(self) -> tuple[float, float, float, float]:
+        """xmin, ymin, xmax, ymax of the legs."""
+        x, y = zip(*(point for leg in self.legs for point in leg), strict=True)
+        return min(x), min(y), max(x), max(y)

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import difflib
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 
-from irsim.common.text import listed
+from irsim.common.text import listed, plural
+from irsim.diagnostics.diagnostic import Path
 from irsim.diagnostics.errors import PlacementError
-from irsim.results.diff import KeyChange, ScenarioDiff, WorldChange
+from irsim.results.diff import CommentChange, KeyChange, ScenarioDiff, WorldChange
 from irsim.scenario.read import Reading
-from irsim.scenario.yaml.comments import comments
-from irsim.validation.diff.keys import changed_keys, data_of, entry_pairs, place
-from irsim.validation.diff.text import changed_comments, changed_lines, comments_message
+from irsim.scenario.yaml.comments import comments, places_of_comments
+from irsim.scenario.yaml.document import Document
+from irsim.validation.diff.keys import Pairs, changed_keys, data_of, entry_pairs, place
 from irsim.validation.diff.worlds import changed_worlds
 
-__all__ = ["compare"]
+__all__ = ["changed_comments", "changed_lines", "comments_message", "compare"]
 
 _MAX_NAMED = 6
 """Number of keys or objects that the summary names."""
@@ -59,7 +62,7 @@ def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why
         text = "no key differs but for the order" if moved else "no key differs"
     else:
         named = listed([place(change.change, change.path) for change in written], _MAX_NAMED)
-        text = f"{len(written)} key{'s' * (len(written) != 1)} differ{'s' * (len(written) == 1)}: {named}"
+        text = f"{plural(len(written), 'key')} differ{'s' * (len(written) == 1)}: {named}"
     if moved:
         places = listed([f"{change.before} is now {change.after}" for change in moved], _MAX_NAMED)
         text += f"{'; the order differs' * bool(written)}: {places}"
@@ -77,3 +80,95 @@ def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why
         elif not world:
             text += "; the worlds are the same"
     return text + (f"; {comments}" if comments else "")
+
+
+_MIN_LIKENESS = 0.5
+"""Similarity above which two comments count as one that was edited, wherever they stand."""
+_MAX_CANDIDATES = 1_000
+"""Number of pairs of comments that are compared."""
+_MAX_EQUAL = 100
+"""Number of equal comments among which the one about the same key is sought."""
+
+Comment = tuple[str, set[Path]]
+"""Text of a comment, and the paths of the keys that it may be about."""
+
+
+def changed_lines(a: str | None, b: str | None) -> tuple[int, int]:
+    """Number of lines that were removed and added."""
+    if a is None or b is None:
+        return 0, 0
+    found = list(difflib.unified_diff(a.splitlines(), b.splitlines(), lineterm="", n=0))[2:]
+    return sum(line.startswith("-") for line in found), sum(line.startswith("+") for line in found)
+
+
+def changed_comments(a: Document, b: Document, pairs: Mapping[str, Pairs]) -> tuple[list[str], list[CommentChange]]:
+    """Find comments that were lost or edited.
+
+    A comment counts as edited if the other file has one about the same key, or one in similar words.
+
+    Args:
+        a: The first file.
+        b: The second file.
+        pairs: Matching entries of the files, by section.
+
+    Returns:
+        Texts of the lost comments, and both texts of each edited one.
+    """
+    if a.text is None or b.text is None:
+        return [], []
+    entries: dict[Path, Path] = {
+        (role, i): (role, j) for role, found in pairs.items() for i, j in found if i is not None and j is not None
+    }
+    old = [
+        (text, {(*entries.get(path[:2], path[:2]), *path[2:]) for path in about})
+        for text, about in places_of_comments(a)
+    ]
+    new = [(text, set(about)) for text, about in places_of_comments(b)]
+    gone, left = _without_equal(old, new)
+    twins: dict[int, int] = {}
+    if len(gone) * len(left) <= _MAX_CANDIDATES:
+        alike = {(i, j): difflib.SequenceMatcher(None, old[i][0], new[j][0], False).ratio() for i in gone for j in left}
+        about_one = [(-score, *pair) for pair, score in alike.items() if old[pair[0]][1] & new[pair[1]][1]]
+        in_one_way = [(-score, *pair) for pair, score in alike.items() if score > _MIN_LIKENESS]
+        for _, i, j in [*sorted(about_one), *sorted(in_one_way)]:
+            if i not in twins and j not in twins.values():
+                twins[i] = j
+    lost = [old[i][0] for i in gone if i not in twins]
+    return lost, [CommentChange(before=old[i][0], after=new[j][0]) for i, j in sorted(twins.items())]
+
+
+def _without_equal(old: Sequence[Comment], new: Sequence[Comment]) -> tuple[list[int], list[int]]:
+    """Indices of the comments without an equal one in the other file; equal comments about the same key pair first."""
+    there = defaultdict[str, list[int]](list)
+    for j, (text, _) in enumerate(new):
+        there[text].append(j)
+    gone = []
+    for i, (text, about) in enumerate(old):
+        twin = next((j for j in there[text][:_MAX_EQUAL] if new[j][1] & about), None)
+        if twin is not None:
+            there[text].remove(twin)
+        else:
+            gone.append(i)
+    rest = []
+    for i in gone:
+        if there[old[i][0]]:
+            there[old[i][0]].pop(0)
+        else:
+            rest.append(i)
+    return rest, sorted(j for found in there.values() for j in found)
+
+
+def comments_message(there: bool, lost: Sequence[str], edited: Sequence[CommentChange]) -> str:
+    """How many comments were lost and edited, in words.
+
+    Args:
+        there: Whether the first file has comments; without any the message is empty.
+        lost: Texts of the lost comments.
+        edited: The edited comments.
+    """
+    parts = [
+        f"{plural(len(found), 'comment')} {what}" for what, found in (("lost", lost), ("changed", edited)) if found
+    ]
+    if there and not lost:
+        parts.insert(0, "no comment lost")
+    return ", ".join(parts)

@@ -57,13 +57,13 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
                 continue
             found.add((mover.record.id, index))
             what = _goal_term(goals, index)
-            place = free_place(grid_of(scene, movers), (goal[0], goal[1]), mover.around, _start(scene, mover))
+            place = free_place(grid_of(scene, movers), (goal[0], goal[1]), mover.shape.around, _start(scene, mover))
             instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
-            fix = f"a goal with {metres(mover.around)} of free space around it{instead}"
+            fix = f"a goal with {metres(mover.shape.around)} of free space around it{instead}"
             if scene.rough:  # a place that is free with one seed is not free with the next
                 fix = (
-                    f"'range_low' and 'range_high' that keep randomly placed objects {metres(mover.around)} away from "
-                    "the goal, or a goal outside that range"
+                    "'range_low' and 'range_high' that keep randomly placed objects "
+                    f"{metres(mover.shape.around)} away from the goal, or a goal outside that range"
                 )
             tally.add(
                 "goal-blocked",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks import Context
-from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, reach_of, top_speed
+from irsim.scenario.resolve.body_size import SizedBody, SizedShape, has_fixed_shape
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 __all__ = ["Mover", "movers_of"]
@@ -18,45 +18,41 @@ _MAX_MOVERS = 2000
 
 
 @dataclass(frozen=True)
-class Mover:
-    """A robot, or an obstacle with a behavior of its own.
+class Mover(SizedBody):
+    """A robot, or an obstacle with a behavior of its own, whose body has a filled part.
 
     Attributes:
-        record: The object.
-        radius: Radius of the largest disc inside its body [m]; where the disc does not fit, the body does not either.
-        offset: Middle of that disc, body frame [m].
-        around: Radius of the circle about that middle that contains the body [m].
-        speed: Top speed [m/s].
         path: Where its goals are written in the scenario.
         several: Whether a list of goals is written there.
     """
 
-    record: ObjectRecord
-    radius: float
-    offset: tuple[float, float]
-    around: float
-    speed: float
     path: Path
-    several: bool = False
+    several: bool
 
     def goal_path(self, index: int) -> Path:
         """Where one of its goals is written."""
         return (*self.path, index) if self.several else self.path
 
     @property
+    def radius(self) -> float:
+        """Radius of the largest disc inside its body [m]; where the disc does not fit, the body does not either."""
+        return self.shape.disc
+
+    @property
     def is_disc(self) -> bool:
         """Whether the body is the disc."""
-        return self.around <= self.radius * (1 + 1e-9)
+        return self.shape.around <= self.radius * (1 + 1e-9)
 
     @property
     def reach(self) -> float:
         """Greatest distance of the middle of the disc from a goal on arrival [m]."""
-        return self.record.goal_threshold + math.hypot(*self.offset)
+        x, y, _ = self.shape.inner_disc
+        return self.record.goal_threshold + math.hypot(x, y)
 
     def centre(self, pose: Sequence[float]) -> tuple[float, float]:
         """Middle of the disc at a pose of the body [m]."""
         cos, sin = math.cos(pose[2]), math.sin(pose[2])
-        x, y = self.offset
+        x, y, _ = self.shape.inner_disc
         return pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y
 
     @property
@@ -68,7 +64,7 @@ class Mover:
 def movers_of(context: Context) -> list[Mover]:
     """Movers whose body has a filled part and is the same in every scene."""
     found: list[Mover] = []
-    known: dict[int, tuple[float, float, float]] = {}
+    shapes: dict[int, SizedShape] = {}
     for record in context.entry_objects:
         if record.static or record.kinematics is None or not has_fixed_shape(record.shape):
             continue
@@ -76,15 +72,11 @@ def movers_of(context: Context) -> list[Mover]:
             continue
         if record.behavior is None and record.group_behavior is None and not _has_goal(context, record):
             continue  # a program drives it to a goal that the scenario does not name
-        key = id(record.shape)
-        if key not in known:
-            known[key] = inner_disc(parts_of(record.shape))
-        x, y, radius = known[key]
-        if radius <= 0 or len(found) >= _MAX_MOVERS:
+        shape = shapes.setdefault(id(record.shape), SizedShape(record.shape))
+        if shape.disc <= 0 or len(found) >= _MAX_MOVERS:
             continue
-        around = radius if record.shape.name == "circle" else reach_of(record.shape) + math.hypot(x, y)
         path = _goal_path(context, record)
-        found.append(Mover(record, radius, (x, y), around, top_speed(record), path, context.has_goals(path)))
+        found.append(Mover(record, shape, path, context.has_goals(path)))
     return found
 
 

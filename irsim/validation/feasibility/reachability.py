@@ -19,9 +19,8 @@ from irsim.validation.feasibility.clearance_grid import (
     narrowest_gap,
     with_gaps_closed,
 )
-from irsim.validation.feasibility.gaps import find_gaps
+from irsim.validation.feasibility.gaps import Passages, find_gaps, passages_of
 from irsim.validation.feasibility.movers import Mover
-from irsim.validation.feasibility.passages import Passages, passages_of
 from irsim.validation.feasibility.path_reports import EASE, add_unreachable, report_narrow, report_no_path
 from irsim.validation.feasibility.scenes import Scene
 from irsim.validation.feasibility.tally import Tally

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import shapely
 
+import irsim._core as core
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.episodes.episode import HORIZON_FACTOR, MIN_HORIZON
@@ -15,14 +19,13 @@ from irsim.episodes.stuck import REACTIVE
 from irsim.scenario.checks import Context
 from irsim.scenario.resolve.body_size import reach_of
 from irsim.scenario.resolve.braking import follow_text
-from irsim.validation.feasibility.clearance_grid import ClearanceGrid
-from irsim.validation.feasibility.local_minima import Trap, trap_of
+from irsim.validation.feasibility.clearance_grid import ClearanceGrid, Point
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.reachability import Leg
-from irsim.validation.feasibility.scenes import Scene
+from irsim.validation.feasibility.scenes import Scene, Thing
 from irsim.validation.feasibility.tally import Tally
 
-__all__ = ["check"]
+__all__ = ["Trap", "check", "trap_of"]
 
 _EIGHT_NEIGHBOUR_BOUND = math.cos(math.pi / 8)
 """Least ratio of the shortest path to the shortest one over cells with eight neighbours."""
@@ -272,3 +275,81 @@ def _report_detour(mover: Mover, leg: Leg, scene: Scene, around: float, length: 
         scene.seed,
         serious=False,
     )
+
+
+_MAX_CORNERS = 200
+"""Obstacles with more corners are skipped."""
+
+
+@dataclass(frozen=True)
+class Trap:
+    """A side of an obstacle, across the straight line to the goal.
+
+    Attributes:
+        place: The point of the side that is nearest to the goal [m].
+        length: Length of the side [m].
+    """
+
+    place: Point
+    length: float
+
+
+def trap_of(scene: Scene, leg: Leg) -> Trap | None:
+    """The side that the straight line meets first, if its point nearest to the goal is not near one of its ends.
+
+    A robot that slides along the side towards the goal stops at that point, as every further step leads away from the
+    goal. From a point near an end it gets around the corner. Only obstacles whose convex hull holds the start count:
+    the behaviors pass all others on the nearer side.
+    """
+    best: tuple[float, Trap | None] = (math.inf, None)
+    path = [core.Linestring(vertices=[list(leg.start), list(leg.goal)])]
+    for thing in scene.things:
+        if math.dist(leg.start, leg.goal) == 0 or not core.intersects(path, [0.0, 0.0, 0.0], *thing):
+            continue
+        if not _surrounds(thing, leg.start):
+            continue
+        for a, b in _sides(thing):
+            met = _meets(leg.start, leg.goal, a, b)
+            if met is not None and met < best[0]:
+                best = met, _trap(a, b, leg)
+    return best[1]
+
+
+def _surrounds(thing: Thing, place: Point) -> bool:
+    """Whether the convex hull of the sides of an obstacle holds a place. A circle or a map has no sides."""
+    corners = [end for a, b in _sides(thing) for end in (a, b)]
+    return bool(corners) and bool(shapely.MultiPoint(corners).convex_hull.contains(shapely.Point(place)))
+
+
+def _trap(a: Point, b: Point, leg: Leg) -> Trap | None:
+    length = math.dist(a, b)
+    along = ((leg.goal[0] - a[0]) * (b[0] - a[0]) + (leg.goal[1] - a[1]) * (b[1] - a[1])) / length
+    if not leg.mover.radius < along < length - leg.mover.radius:
+        return None
+    place = (a[0] + along / length * (b[0] - a[0]), a[1] + along / length * (b[1] - a[1]))
+    return Trap(place, length)
+
+
+def _sides(thing: Thing) -> Iterator[tuple[Point, Point]]:
+    """Both ends of each side of polygons and lines, world frame."""
+    parts, (x, y, theta) = thing
+    cos, sin = math.cos(theta), math.sin(theta)
+    for part in parts:
+        if not isinstance(part, (core.Polygon, core.Linestring)) or len(part.vertices) > _MAX_CORNERS:
+            continue
+        corners: list[Any] = [(x + cos * u - sin * v, y + sin * u + cos * v) for u, v in part.vertices]
+        line = isinstance(part, core.Linestring)
+        for a, b in itertools.pairwise(corners if line else [*corners, corners[0]]):
+            if a != b:
+                yield a, b
+
+
+def _meets(p: Point, q: Point, a: Point, b: Point) -> float | None:
+    """Share of the way from p to q, 0 to 1, at which it crosses the segment from a to b; None if it does not."""
+    dx, dy, ex, ey = q[0] - p[0], q[1] - p[1], b[0] - a[0], b[1] - a[1]
+    across = dx * ey - dy * ex
+    if across == 0:
+        return None
+    t = ((a[0] - p[0]) * ey - (a[1] - p[1]) * ex) / across
+    s = ((a[0] - p[0]) * dy - (a[1] - p[1]) * dx) / across
+    return t if 0 <= t <= 1 and 0 <= s <= 1 else None

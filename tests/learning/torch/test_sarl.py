@@ -18,10 +18,9 @@ from irsim.learning.training.export import export_policy
 from irsim.learning.training.run_folder import RunFolder
 from irsim.learning.training.sarl.net import ValueNet
 from irsim.learning.training.sarl.play import Driver, play
-from irsim.learning.training.sarl.settings import SarlSettings
 from irsim.learning.training.sarl.task import plan_of
 from irsim.learning.training.sarl.train import train_sarl
-from irsim.learning.training.settings import TrainingSettings, read_settings
+from irsim.learning.training.settings import SarlSettings, TrainingSettings, read_settings
 from irsim.learning.training.train import train
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks import observe, open_network, save_network

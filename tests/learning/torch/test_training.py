@@ -19,10 +19,9 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim.learning import SB3VecEnv, Worlds
 from irsim.learning.training.export import export_policy, network_of
 from irsim.learning.training.extractor import PartsExtractor, columns_of
-from irsim.learning.training.masked_buffer import MaskedRolloutBuffer
 from irsim.learning.training.run_folder import RunFolder
 from irsim.learning.training.settings import TrainingSettings, read_settings
-from irsim.learning.training.train import train
+from irsim.learning.training.train import MaskedRolloutBuffer, train
 from irsim.policies.networks import open_network, save_network
 from irsim.policies.networks.layout import layout_needs, observe
 from irsim.policies.observe import Observer

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from irsim.common.extras import require
-from irsim.learning.training.sarl.settings import SarlSettings
+from irsim.learning.training.settings import SarlSettings
 from irsim.policies.networks.sarl import ORDER
 
 require("learn", "torch")

@@ -14,7 +14,7 @@ from irsim.learning.rewards.collision import Collision
 from irsim.learning.rewards.social import Social
 from irsim.learning.tasks.files import TaskError
 from irsim.learning.tasks.task import Task
-from irsim.learning.training.sarl.settings import SarlSettings
+from irsim.learning.training.settings import SarlSettings
 from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.lookahead import Lookahead
 from irsim.policies.networks.parts.neighbors import NeighborsPart

@@ -21,13 +21,11 @@ from irsim.common.arrays import Floats
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.tasks.files import TaskSource, open_task
-from irsim.learning.training.round import Round
 from irsim.learning.training.run_folder import RunFolder, merit
-from irsim.learning.training.sarl.memory import Experience, Memory
-from irsim.learning.training.sarl.play import Driver, play
-from irsim.learning.training.sarl.settings import SarlSettings
+from irsim.learning.training.sarl.play import Driver, Experience, Memory, play
 from irsim.learning.training.sarl.task import Plan, plan_of
-from irsim.learning.training.success import Success
+from irsim.learning.training.settings import SarlSettings
+from irsim.learning.training.success import Round, Success
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.network import Network
 from irsim.policies.networks.sarl import sarl_network

@@ -1,4 +1,4 @@
-"""Names of scenarios and policies as a report shows them, and the rows in their order."""
+"""What a report shows of a result: names of scenarios and policies, rows in their order, and the worst episodes."""
 
 from __future__ import annotations
 
@@ -7,12 +7,19 @@ from pathlib import Path
 from typing import Any
 
 from irsim.policies.catalog import SUFFIXES
-from irsim.results.benchmark import BenchmarkResult, BenchmarkRow
+from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow
 from irsim.results.suite import SuiteResult
 from irsim.scenario.yaml.document import load_text
 
-__all__ = ["families", "labels_of", "policy_labels", "protocols", "series"]
-
+__all__ = [
+    "MAX_WORST",
+    "families",
+    "labels_of",
+    "policy_labels",
+    "protocols",
+    "series",
+    "worst_episodes",
+]
 
 MAX_LABEL = 24
 """Characters of a behavior that is its own label; a longer one is numbered."""
@@ -75,3 +82,26 @@ def series(result: BenchmarkResult, names: list[str], behavior: str) -> list[Ben
     """The rows of a policy on some scenarios, in the order of the names."""
     found = {row.scenario: row for row in result.rows if row.behavior == behavior}
     return [found[name] for name in names if name in found]
+
+
+MAX_WORST = 2
+"""Number of episodes that are shown of each policy."""
+_ORDER = {"collision": 0, "timeout": 1}
+
+
+def worst_episodes(result: BenchmarkResult) -> list[EpisodeRow]:
+    """For each policy some failed episodes, each of another scenario.
+
+    Those of scenarios in which the policy fails least often come first, collisions before time-outs, low seeds first.
+    """
+    rates = {(row.scenario, row.behavior): row.success.rate for row in result.rows}
+    chosen: list[EpisodeRow] = []
+    for behavior in result.behaviors:
+        failed = [one for one in result.episodes if one.behavior == behavior and one.outcome in _ORDER]
+        failed.sort(key=lambda one: (-rates.get((one.scenario, behavior), 0.0), _ORDER[one.outcome], one.seed))
+        seen: set[str] = set()
+        for one in failed:
+            if one.scenario not in seen and len(seen) < MAX_WORST:
+                seen.add(one.scenario)
+                chosen.append(one)
+    return chosen
