@@ -5,8 +5,8 @@
 # ///
 """List the steps that the changes in a checkout of irsim require, from what git sees as changed. Prints JSON.
 
-Exits with 0 if no step is missing (of those that git shows: tests, changelog), 1 if one is missing, 2 if the folder is
-not a checkout.
+Exits with 0 if no step is missing (that git shows: tests, changelog), 1 if one is missing, 2 if the folder is not a
+checkout.
 """
 
 from __future__ import annotations
