@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 from irsim.api.overlays import Overlay, additions, plot_keys, requested_plans
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
     from irsim.env import Env
@@ -20,7 +20,7 @@ MAX_MOMENTS = 12
 """Greatest number of moments of one picture."""
 
 
-class StripError(ArgumentError):
+class StripError(InputError):
     """A strip has an invalid number of moments."""
 
     where = "strip"

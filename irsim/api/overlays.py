@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
@@ -49,7 +49,7 @@ def overlays_from(words: Iterable[str]) -> list[Overlay]:
     """The overlays with some names.
 
     Raises:
-        ArgumentError: A name is not that of an overlay.
+        InputError: A name is not that of an overlay.
     """
     known: dict[str, Overlay] = {name: name for name in OVERLAYS}
     asked = [word.strip() for word in words if word.strip()]
@@ -57,7 +57,7 @@ def overlays_from(words: Iterable[str]) -> list[Overlay]:
     if unknown is not None:
         near = nearest(unknown, OVERLAYS)
         fix = (f"write {near!r}; " if near else "") + f"overlays are {', '.join(OVERLAYS)}"
-        raise ArgumentError(f"{clean(unknown, 40)!r} is not a valid overlay", fix)
+        raise InputError(f"{clean(unknown, 40)!r} is not a valid overlay", fix)
     return [known[word] for word in asked]
 
 

@@ -17,7 +17,7 @@ from irsim.bridges.connect import connect
 from irsim.bridges.options import bridge_text, read_bridges
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
-from irsim.diagnostics.errors import ArgumentError, PolicyLostError
+from irsim.diagnostics.errors import InputError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import Progress, advance, default_time_limit, horizon_of, seed_of
@@ -30,7 +30,7 @@ from irsim.results.findings import Finding
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
-from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
+from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.checks.bridges import driven_without_goal
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import import_modules, read_scenario
@@ -113,12 +113,12 @@ def run(
         OverLimitError: ``steps`` exceeds the limits.
         PlacementError: There is no room for an object that is placed at random or perturbed; without a seed, with
             none of 20 drawn ones.
-        BenchmarkError: There is no such policy, or ``perturb`` is not a valid perturbation.
+        InputError: There is no such policy, ``perturb`` is not a valid perturbation, ``steps`` is not a whole number,
+            or both ``policy`` and ``behavior`` are given.
         PolicyError: The policy cannot drive these robots, or failed. One in another process that is lost ends the run
             with that reason instead.
         BridgeError: A bridge is not valid, or failed, or may not be opened; a program that is lost during the run ends
             the run with that reason instead.
-        ArgumentError: ``steps`` is not a whole number, or both ``policy`` and ``behavior`` are given.
         RunError: The folder to record to is not empty.
         TargetError: A file to export exists, and ``overwrite`` is not set.
         ValueError: Neither or both of ``path`` and ``text`` are given.
@@ -129,7 +129,7 @@ def run(
     perturbations = read_perturbations(perturb)
     try:
         scenario, warnings = read_input(path, text, strict=strict, limits=limits, behavior=behavior_text)
-    except BenchmarkError as error:
+    except InputError as error:
         error.where = "behavior" if policy is None else "policy"
         raise
     if driver is not None:
@@ -204,19 +204,19 @@ def _opened(policy: Any, behavior: Any, limits: Limits | None) -> tuple[Policy |
     """What drives the robots: a policy in Python, or the text of a behavior that runs in the engine, or neither.
 
     Raises:
-        BenchmarkError: There is no such policy.
+        InputError: There is no such policy.
     """
     from irsim.policies.behavior import BehaviorPolicy
     from irsim.policies.catalog import open_policy
 
     if policy is not None and behavior is not None:
-        raise ArgumentError("policy and behavior are two names of one argument", "give only policy")
+        raise InputError("policy and behavior are two names of one argument", "give only policy")
     chosen, where = (behavior, "behavior") if policy is None else (policy, "policy")
     if chosen is None:
         return None, None
     try:
         opened = open_policy(chosen, root=None if limits is None else limits.root)
-    except BenchmarkError as error:
+    except InputError as error:
         error.where = where
         raise
     if isinstance(opened, BehaviorPolicy):
@@ -261,7 +261,7 @@ def render(
 
     Raises:
         ScenarioError: The scenario has errors.
-        BenchmarkError: There is no such policy.
+        InputError: There is no such policy.
         PolicyError: The policy cannot drive these robots, or failed.
         ValueError: The suffix is unsupported, the region is invalid, or there are too few or too many moments.
     """

@@ -9,7 +9,8 @@ from irsim.common.lazy import lazy_names
 if TYPE_CHECKING:
     from irsim.benchmarks.comparison import DEFAULT_SEEDS, benchmark
     from irsim.benchmarks.log import logged
-    from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
+    from irsim.diagnostics.errors import BenchmarkError
+    from irsim.scenario.behavior_override import AS_WRITTEN
 
 __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged"]
 
@@ -17,7 +18,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "AS_WRITTEN": "irsim.scenario.behavior_override",
-        "BenchmarkError": "irsim.scenario.behavior_override",
+        "BenchmarkError": "irsim.diagnostics.errors",
         "DEFAULT_SEEDS": "irsim.benchmarks.comparison",
         "benchmark": "irsim.benchmarks.comparison",
         "logged": "irsim.benchmarks.log",

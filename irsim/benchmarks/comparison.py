@@ -33,7 +33,7 @@ from irsim.benchmarks.seeds import seeds_from, seeds_text
 from irsim.benchmarks.timing import time_behavior, timing_report
 from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.version import version
-from irsim.diagnostics.errors import ArgumentError, OverLimitError
+from irsim.diagnostics.errors import InputError, OverLimitError
 from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import Progress
 from irsim.episodes.unopened import unopened_findings
@@ -42,7 +42,7 @@ from irsim.policies.catalog import PolicySource
 from irsim.policies.policy import Policy
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.results.findings import Finding
-from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
+from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import import_modules, read_scenario, source_of
 from irsim.scenario.perturbation import (
@@ -56,7 +56,7 @@ from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged"]
+__all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "benchmark", "logged"]
 
 DEFAULT_SEEDS = 10
 """Number of seeds if none are given."""
@@ -130,9 +130,8 @@ def benchmark(
         ScenarioError: A scenario has errors, perhaps only with one of the policies; ScenarioNotFoundError: there is no
             such file.
         OverLimitError: More episodes or steps are requested than the limits allow.
-        BenchmarkError: There is no such policy, or the seeds or a perturbation are invalid.
+        InputError: There is no such policy, or the seeds, a perturbation or another argument are invalid.
         PolicyError: A policy cannot drive the robots of a scenario, or failed.
-        ArgumentError: Another argument is invalid.
         RunError: The log cannot be written.
         ExtraError: Ray is not installed; ClusterError: no cluster answers, or it has another irsim or lacks a module.
         WorkerError: Several processes have died in the same episode.
@@ -255,13 +254,13 @@ def _sources(files: Any) -> list[str]:
     """The scenarios, given as paths or texts, as strings."""
     one = isinstance(files, (str, Path))
     if not one and (isinstance(files, (Mapping, bytes, bytearray)) or not isinstance(files, Iterable)):
-        raise ArgumentError(
+        raise InputError(
             f"files must be scenarios, got {as_given(files)}", "give a path, the text of a scenario, or a list of them"
         )
     listed = [files] if one else list(files)
     for number, source in enumerate(listed):
         if not isinstance(source, (str, Path)):
-            raise ArgumentError(
+            raise InputError(
                 f"files[{number}] must be a scenario, got {as_given(source)}", "give a path or the text of a scenario"
             )
     return [str(source) for source in listed]
@@ -318,15 +317,13 @@ def _check_names(names: list[str], policies: list[str]) -> None:
     for what, listed in (("scenario", names), ("policy", policies)):
         twice = next((name for name in listed if listed.count(name) > 1), None)
         if twice is not None:
-            raise BenchmarkError(f"the {what} {twice!r} is given twice", "give each once")
+            raise InputError(f"the {what} {twice!r} is given twice", "give each once")
 
 
 def _check_size(names: list[str], policies: Sequence[Any], seeds: list[int], most: int | None) -> None:
     for what, given in (("scenarios", names), ("policies", policies)):
         if not given:
-            raise BenchmarkError(
-                f"there must be at least one of the {what}, got none", f"give at least one of the {what}"
-            )
+            raise InputError(f"there must be at least one of the {what}, got none", f"give at least one of the {what}")
     total = len(names) * len(policies) * len(seeds)
     if most is not None and total > most:
         product = f"{len(names)} scenarios x {len(policies)} policies x {len(seeds)} seeds = {total:,} episodes"

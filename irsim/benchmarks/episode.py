@@ -134,7 +134,7 @@ def scenario_of(job: Job) -> ResolvedScenario:
 
     Raises:
         ScenarioError: The scenario has errors.
-        BenchmarkError: The behavior or a perturbation does not fit the scenario.
+        InputError: The behavior or a perturbation does not fit the scenario.
     """
     import_modules(job.imports)
     document = load_text(job.text, name=job.path, path=job.path, limits=Limits(**dict(job.limits)))

@@ -151,7 +151,7 @@ def file_plan(
 
     Raises:
         ScenarioNotFoundError: A file does not exist.
-        BenchmarkError: The seeds are invalid, or the file of a policy does not exist.
+        InputError: The seeds are invalid, or the file of a policy does not exist.
     """
     documents = [_document(file) for file in files]
     scenarios = [

@@ -8,11 +8,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from irsim.diagnostics.errors import ArgumentError, PolicyError
+from irsim.diagnostics.errors import InputError, PolicyError
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import UnknownPolicyError, is_network, open_policy
 from irsim.policies.policy import Policy
-from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
+from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = [
@@ -33,10 +33,10 @@ def listed_policies(policies: Any, behaviors: Any) -> tuple[list[Any], str]:
     """The policies that a caller gives, as a list, and the argument that has them.
 
     Raises:
-        ArgumentError: Both arguments are given.
+        InputError: Both arguments are given.
     """
     if policies is not None and behaviors is not None:
-        raise ArgumentError("policies and behaviors are two names of one argument", "give only policies")
+        raise InputError("policies and behaviors are two names of one argument", "give only policies")
     given, where = (behaviors, "behaviors") if policies is None else (policies, "policies")
     if given is None:
         return [AS_WRITTEN], where
@@ -53,7 +53,7 @@ def opened_policies(given: Sequence[Any], where: str, root: str | None = None) -
         root: Folder that files must lie in, see :func:`irsim.open_policy`.
 
     Raises:
-        BenchmarkError: One of them is not a policy; the error names its place.
+        InputError: One of them is not a policy; the error names its place.
         UnknownPolicyError: There are no such policies; the error names all of them.
     """
     found: list[Policy] = []
@@ -77,7 +77,7 @@ def naming(where: str, number: int) -> Iterator[None]:
     """Context in which errors name one of the policies as their cause."""
     try:
         yield
-    except (BenchmarkError, PolicyError) as error:
+    except (InputError, PolicyError) as error:
         error.where = f"{where}[{number}]"
         raise
 

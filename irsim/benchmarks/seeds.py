@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from irsim.common.arguments import as_given, is_whole_number
-from irsim.scenario.behavior_override import BenchmarkError
+from irsim.diagnostics.errors import InputError
 
 __all__ = ["seeds_from", "seeds_text"]
 
@@ -24,7 +24,7 @@ def seeds_from(given: Any) -> list[int]:
         given: The number of seeds (0, 1, 2, …), an iterable of seeds, or either as text: ``20``, ``5-9``, ``1,4,7``.
 
     Raises:
-        BenchmarkError: ``given`` is neither, or there are no seeds or too many.
+        InputError: ``given`` is neither, or there are no seeds or too many.
     """
     found: Iterable[Any]
     if isinstance(given, str):
@@ -40,9 +40,9 @@ def seeds_from(given: Any) -> list[int]:
             raise _wrong(seed)
     seeds = list(dict.fromkeys(int(seed) for seed in found))
     if not seeds:
-        raise BenchmarkError("there must be at least one seed, got none", "give at least one seed", "seeds")
+        raise InputError("there must be at least one seed, got none", "give at least one seed", "seeds")
     if min(seeds) < 0 or max(seeds) >= 2**64:
-        raise BenchmarkError("a seed must be from 0 to 2^64 - 1", "give seeds from 0", "seeds")
+        raise InputError("a seed must be from 0 to 2^64 - 1", "give seeds from 0", "seeds")
     return seeds
 
 
@@ -63,12 +63,12 @@ def _read(text: str) -> Iterable[int]:
 def _checked_number(number: int) -> int:
     """The number of seeds, unless it is too large."""
     if number > _MAX_SEEDS:
-        raise BenchmarkError(f"{number:,} seeds are too many", f"give at most {_MAX_SEEDS:,}", "seeds")
+        raise InputError(f"{number:,} seeds are too many", f"give at most {_MAX_SEEDS:,}", "seeds")
     return number
 
 
-def _wrong(given: Any) -> BenchmarkError:
-    return BenchmarkError(f"{as_given(given)} is not a valid seed or list of seeds", _FIX, "seeds")
+def _wrong(given: Any) -> InputError:
+    return InputError(f"{as_given(given)} is not a valid seed or list of seeds", _FIX, "seeds")
 
 
 def seeds_text(seeds: list[int]) -> str:

@@ -11,8 +11,9 @@ from pydantic import ValidationError
 from irsim.bridges.base import BridgeError
 from irsim.common.arguments import as_given
 from irsim.diagnostics.diagnostic import Diagnostic, suggestion
+from irsim.diagnostics.errors import InputError
 from irsim.options.registry import BRIDGES
-from irsim.scenario.behavior_override import BenchmarkError, parse_behavior
+from irsim.scenario.behavior_override import parse_behavior
 from irsim.scenario.messages.of_options import option_message, option_problems
 from irsim.scenario.model.scenario import Scenario
 from irsim.scenario.yaml.rewrite import yaml_flow
@@ -40,7 +41,7 @@ def read_bridge(given: str | Mapping[str, Any]) -> Any:
     if isinstance(given, str):
         try:
             data: Any = parse_behavior(given)
-        except BenchmarkError:
+        except InputError:
             raise _wrong(f"{given!r} is not a bridge", fix) from None
     else:
         data = given

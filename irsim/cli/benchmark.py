@@ -13,7 +13,6 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from irsim.benchmarks import BenchmarkError
 from irsim.benchmarks.report.rows import labels_of
 from irsim.benchmarks.summary import KEYS, is_summary
 from irsim.cli.benchmark_run import Wanted, run_benchmark
@@ -21,6 +20,7 @@ from irsim.cli.findings import import_user_modules
 from irsim.cli.options import Imports, Json, MaxObjects, Perturb, Steps, Strict
 from irsim.cli.output import console, print_json
 from irsim.common.text import clean
+from irsim.diagnostics.errors import InputError
 from irsim.results.labels import seeds_of
 
 if TYPE_CHECKING:
@@ -149,9 +149,9 @@ def benchmark(
     as it is done; after an interruption, --resume goes on there, and the results are those of an undisturbed run.
     """
     if json_output and csv_output:
-        raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
+        raise InputError("--json and --csv cannot be combined", "give one of them")
     if policies is not None and behaviors is not None:
-        raise BenchmarkError("--policies and --behaviors are two names of one option", "give only --policies")
+        raise InputError("--policies and --behaviors are two names of one option", "give only --policies")
     import_user_modules(imports)
     wanted = Wanted(
         files=files or [], policies=behaviors if policies is None else policies, seeds=seeds, perturb=perturb or [],

@@ -16,7 +16,7 @@ from irsim.benchmarks.suite import is_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.findings import limits_for
 from irsim.cli.output import console, progress
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
 
 if TYPE_CHECKING:
@@ -51,15 +51,15 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     """Run a benchmark, and write its report where it has a folder.
 
     Raises:
-        ArgumentError: The arguments do not fit together.
+        InputError: The arguments do not fit together.
     """
     suites = [word for word in wanted.files if is_suite(word)]
     if suites and len(wanted.files) > 1:
-        raise ArgumentError(f"{suites[0]} is a suite, which is run alone", "give one suite, or scenario files")
+        raise InputError(f"{suites[0]} is a suite, which is run alone", "give one suite, or scenario files")
     of_suite = {"--full": wanted.full, "--protocol": wanted.protocols, "--scenario": wanted.scenarios}
     odd = [name for name, value in of_suite.items() if value and not suites]
     if odd:
-        raise ArgumentError(f"{odd[0]} belongs to a suite", "name a suite; irsim suites lists them")
+        raise InputError(f"{odd[0]} belongs to a suite", "name a suite; irsim suites lists them")
     limits, reports = limits_for(wanted.max_objects), list[Report]()
 
     def finish(result: BenchmarkResult, folder: Path) -> None:
@@ -68,7 +68,7 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     with progress("simulating") as report:
         if not wanted.files:
             if not wanted.resume:
-                raise ArgumentError("there is nothing to run", "give scenario files, a suite, or --resume")
+                raise InputError("there is nothing to run", "give scenario files, a suite, or --resume")
             folder = wanted.folder or last_folder()
             result = resume_benchmark(
                 folder,
@@ -110,12 +110,12 @@ def _suite(name: str, wanted: Wanted) -> Plan:
     """The plan of a suite.
 
     Raises:
-        ArgumentError: An argument belongs to scenario files.
+        InputError: An argument belongs to scenario files.
     """
     for option, value in (("--steps", wanted.steps), ("--import", wanted.imports)):
         if value:
             fix = "a suite states its horizon and its policies: change them in its file"
-            raise ArgumentError(f"{option} belongs to scenario files", fix)
+            raise InputError(f"{option} belongs to scenario files", fix)
     return suite_plan(
         name,
         policies=None if wanted.policies is None else split_behaviors(wanted.policies),

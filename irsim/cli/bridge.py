@@ -20,7 +20,7 @@ from irsim.cli.options import Json
 from irsim.cli.output import console
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 from irsim.options.registry import BRIDGES
 
 __all__ = ["bridge_app"]
@@ -44,7 +44,7 @@ def doctor(
     for name in names or ():
         if name not in BRIDGES.names():
             known = BRIDGES.names()
-            raise ArgumentError(f"{name!r} is not a bridge", suggestion(name, known, f"they are {', '.join(known)}"))
+            raise InputError(f"{name!r} is not a bridge", suggestion(name, known, f"they are {', '.join(known)}"))
     found = examine(names or ())
     if json_output:
         typer.echo(json.dumps([asdict(one) for one in found], indent=2))

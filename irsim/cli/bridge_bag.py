@@ -15,7 +15,7 @@ from irsim.bridges.ros.bags.importing import BagOptions
 from irsim.bridges.ros.bags.importing import import_bag as convert
 from irsim.cli.options import Json
 from irsim.cli.output import console
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 
 __all__ = ["import_bag"]
 
@@ -66,4 +66,4 @@ def _mount(text: str | None) -> tuple[float, float, float] | None:
             return x, y, yaw
     except ValueError:
         pass
-    raise ArgumentError(f"--mount must be 3 numbers separated by commas, got {text[:40]!r}", "--mount 0.1,0,0")
+    raise InputError(f"--mount must be 3 numbers separated by commas, got {text[:40]!r}", "--mount 0.1,0,0")

@@ -18,7 +18,7 @@ from irsim.bridges.pedestrians.suite import Episodes
 from irsim.bridges.pedestrians.tracks import Window
 from irsim.cli.options import Json
 from irsim.cli.output import console
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 
 __all__ = ["import_pedestrians"]
 
@@ -90,7 +90,7 @@ def import_pedestrians(
     Write into a checkout of your own only what the licence of the data allows; irsim ships none.
     """
     if form is not None and form not in FORMATS:
-        raise ArgumentError(f"{form!r} is not a format of pedestrians", f"choose {', '.join(FORMATS)}")
+        raise InputError(f"{form!r} is not a format of pedestrians", f"choose {', '.join(FORMATS)}")
     box: Any = _numbers("--crop", crop, 4)
     size: Any = _numbers("--image-size", image_size, 2)
     begin: Any = _numbers("--robot-start", robot_start, 2)
@@ -140,5 +140,5 @@ def _numbers(option: str, text: str | None, count: int) -> tuple[float, ...] | N
     except ValueError:
         values = ()
     if len(values) != count or not all(map(math.isfinite, values)):
-        raise ArgumentError(f"{option} must be {count} numbers separated by commas, got {text[:40]!r}", f"{option} 0,0")
+        raise InputError(f"{option} must be {count} numbers separated by commas, got {text[:40]!r}", f"{option} 0,0")
     return values

@@ -14,7 +14,7 @@ from irsim.bridges.maps.importing import import_map
 from irsim.bridges.maps.importing import list_levels as only_list
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
     from irsim.results.map_import import MapImportResult
@@ -154,7 +154,7 @@ def import_(
     if list_levels:
         result = only_list(file, **options)
     elif out is None:
-        raise ArgumentError("the scenario to write is not named", "add -o scene.yaml, or --list-levels to only look")
+        raise InputError("the scenario to write is not named", "add -o scene.yaml, or --list-levels to only look")
     else:
         result = import_map(file, out, ros_map=ros_map, robot=robot, overwrite=force, **options)
     if json_output:
@@ -170,7 +170,7 @@ def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...
     except ValueError:
         found = ()
     if len(found) != count:
-        raise ArgumentError(f"the {what} '{text}' is not {count} numbers", f"write {example}")
+        raise InputError(f"the {what} '{text}' is not {count} numbers", f"write {example}")
     return found
 
 

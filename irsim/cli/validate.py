@@ -17,7 +17,7 @@ from irsim.cli.options import Imports, MaxObjects
 from irsim.cli.output import console, print_json, progress
 from irsim.common.files import write_atomically
 from irsim.common.text import clean, seconds
-from irsim.diagnostics.errors import ArgumentError, ScenarioNotFoundError
+from irsim.diagnostics.errors import InputError, ScenarioNotFoundError
 from irsim.learning.tasks.files import TASKS
 from irsim.scenario.locate import locate
 from irsim.validation.file_reports import suite_report, task_report
@@ -77,9 +77,9 @@ def validate(
     import_user_modules(imports)
     filtering = fix and "-" in files
     if table and json_output:
-        raise ArgumentError("--table prints text, so it cannot be combined with --json", "leave out one of them")
+        raise InputError("--table prints text, so it cannot be combined with --json", "leave out one of them")
     if filtering and (json_output or len(files) > 1):
-        raise ArgumentError(
+        raise InputError(
             "--fix with - prints the repaired text, so it cannot be combined with --json or other files",
             "leave out --json and other files, or give the name of a file instead of -",
         )
@@ -121,7 +121,7 @@ def _check_options(kinds: dict[str, str], **given: bool) -> None:
     used = next((f"--{name}" for name, on in given.items() if on), None)
     if used is not None and "a scenario" not in kinds.values():
         file, kind = next(iter(kinds.items()))
-        raise ArgumentError(f"{used} belongs to scenario files, and {file} is {kind}", f"leave out {used}")
+        raise InputError(f"{used} belongs to scenario files, and {file} is {kind}", f"leave out {used}")
 
 
 def _check_file(
@@ -136,7 +136,7 @@ def _check_file(
     """Return the report on a scenario, a file or standard input, and its text; with ``fix``, on the repaired one."""
     path = None if file == "-" else file
     if text is not None and SUITES.is_text(text):
-        raise ArgumentError("- stands for a scenario, and this is a suite", "give the name of its file instead of -")
+        raise InputError("- stands for a scenario, and this is a suite", "give the name of its file instead of -")
     fixes, fix_texts = [], {}
     if fix:
         mended, report = api.fix(path, text=text, strict=strict, limits=limits)

@@ -6,7 +6,7 @@ from operator import index
 from typing import Any
 
 from irsim.common.text import clean
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 
 __all__ = ["as_given", "check_whole_number", "is_whole_number"]
 
@@ -29,10 +29,10 @@ def check_whole_number(name: str, value: Any, least: int = 0) -> int:
         least: Smallest valid value.
 
     Raises:
-        ArgumentError: The value is not a whole number, or less than ``least``.
+        InputError: The value is not a whole number, or less than ``least``.
     """
     if not is_whole_number(value) or value < least:
-        raise ArgumentError(f"{name} cannot be {as_given(value)}", f"give a whole number, {least} or more")
+        raise InputError(f"{name} cannot be {as_given(value)}", f"give a whole number, {least} or more")
     return int(value)
 
 

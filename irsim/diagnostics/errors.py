@@ -11,7 +11,9 @@ if TYPE_CHECKING:
 __all__ = [
     "ArgumentError",
     "BehaviorError",
+    "BenchmarkError",
     "CodedError",
+    "InputError",
     "IrsimError",
     "NotSimulatedError",
     "OverLimitError",
@@ -83,13 +85,19 @@ class OverLimitError(CodedError, ValueError):
         super().__init__(self.code, message, fix)
 
 
-class ArgumentError(CodedError, ValueError):
-    """An argument of a function or a command has an invalid value."""
+class InputError(CodedError, ValueError):
+    """An argument of a function, a command or a tool has an invalid value."""
 
     code = "bad-argument"
 
-    def __init__(self, message: str, fix: str) -> None:
-        super().__init__(self.code, message, fix)
+    def __init__(self, message: str, fix: str, where: str | None = None) -> None:
+        super().__init__(self.code, message, fix, where=where)
+
+
+ArgumentError = InputError
+"""Another name of :class:`InputError`."""
+BenchmarkError = InputError
+"""The name that ``irsim.benchmarks`` has for :class:`InputError`."""
 
 
 class BehaviorError(CodedError, ValueError):

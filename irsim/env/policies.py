@@ -54,7 +54,7 @@ def set_policy(env: EnvState, policy: PolicySource | None) -> None:
 
     Raises:
         PolicyError: The policy cannot drive these robots (``policy-mismatch``); nothing is changed then.
-        BenchmarkError: There is no such policy, or a behavior cannot drive these robots.
+        InputError: There is no such policy, or a behavior cannot drive these robots.
     """
     from irsim.policies.behavior import with_policy
     from irsim.policies.driver import attach_policy

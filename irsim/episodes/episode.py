@@ -69,7 +69,7 @@ def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: 
 
     Raises:
         OverLimitError: ``steps`` exceeds the limits.
-        ArgumentError: ``steps`` is not a whole number, or negative.
+        InputError: ``steps`` is not a whole number, or negative.
     """
     most, what = _most_steps(len(scenario.objects), limits)
     if steps is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 from irsim.lookup.answer import Answer, TopicError
 from irsim.lookup.topics import lookup
 from irsim.scenario.model.json_schema import json_schema
@@ -27,11 +27,11 @@ def lookup_several(topics: list[str]) -> list[Answer | TopicError]:
         topics: At most :data:`MAX_TOPICS`, as in :func:`irsim.lookup.lookup`.
 
     Raises:
-        ArgumentError: There are too many topics.
+        InputError: There are too many topics.
         TopicError: None of the topics is known.
     """
     if len(topics) > MAX_TOPICS:
-        raise ArgumentError(f"{len(topics)} topics are too many", f"ask for at most {MAX_TOPICS} at once")
+        raise InputError(f"{len(topics)} topics are too many", f"ask for at most {MAX_TOPICS} at once")
     schema, found = json_schema(), list[Answer | TopicError]()
     for topic in topics:
         try:

@@ -56,7 +56,7 @@ def with_policy(scenario: ResolvedScenario, policy: Policy | None) -> ResolvedSc
     """The scenario with the behavior that a policy stands for; unchanged for all other policies.
 
     Raises:
-        BenchmarkError: The behavior has an unknown option or an invalid value, or cannot drive one of the robots.
+        InputError: The behavior has an unknown option or an invalid value, or cannot drive one of the robots.
     """
     if not isinstance(policy, BehaviorPolicy) or policy.options is None:
         return scenario

@@ -14,14 +14,14 @@ from typing import Any
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest, suggestion
-from irsim.diagnostics.errors import CodedError, PolicyError
+from irsim.diagnostics.errors import CodedError, InputError, PolicyError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.observations import Observations
 from irsim.policies.policy import FunctionPolicy, Policy
 from irsim.policies.registry import POLICIES, RANDOM
 from irsim.policies.trained import COMMON_NAMES, trained_policies, trained_policy
-from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text, parse_behavior, split_behaviors
+from irsim.scenario.behavior_override import AS_WRITTEN, behavior_text, parse_behavior, split_behaviors
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.yaml.rewrite import yaml_flow
 
@@ -51,7 +51,7 @@ MAX_FILE_BYTES = 500_000_000
 """Largest file of a policy."""
 
 
-class UnknownPolicyError(BenchmarkError):
+class UnknownPolicyError(InputError):
     """No policy has that name, or there is no such file."""
 
     code = "unknown-policy"
@@ -84,7 +84,7 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
 
     Raises:
         UnknownPolicyError: There is no such policy or file; the message names the most similar one.
-        BenchmarkError: The text is not a policy.
+        InputError: The text is not a policy.
         PolicyError: The policy cannot be made with these options, or its file cannot be used.
     """
     given: Any = os.fspath(source) if isinstance(source, os.PathLike) else source
@@ -93,12 +93,12 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
             given.name = type(given).__name__
         return given
     if isinstance(given, type) and issubclass(given, Policy):
-        raise BenchmarkError(f"{given.__name__} is a class of policies", f"give an object: {given.__name__}(…)")
+        raise InputError(f"{given.__name__} is a class of policies", f"give an object: {given.__name__}(…)")
     if not isinstance(given, (str, Mapping)):
         if callable(given) and root is None:
             return FunctionPolicy(given)
         fix = "give a name, a file, a mapping with a name, or a function of observations"
-        raise BenchmarkError(f"a policy cannot be {as_given(given)}", fix)
+        raise InputError(f"a policy cannot be {as_given(given)}", fix)
     text = behavior_text(given)
     name, keys = _parsed(text)
     if name.endswith(SUFFIXES):
@@ -123,7 +123,7 @@ def names_trained(text: str) -> bool:
     """Whether the text of a policy names one that was trained and ships with irsim.
 
     Raises:
-        BenchmarkError: The text is not a policy.
+        InputError: The text is not a policy.
     """
     return _is_trained(_parsed(text)[0])
 
@@ -136,7 +136,7 @@ def is_network(text: str) -> bool:
     """Whether the text of a policy names a file, or a trained policy that ships with irsim, which is a file, too.
 
     Raises:
-        BenchmarkError: The text is not a policy.
+        InputError: The text is not a policy.
     """
     return names_file(text) or names_trained(text)
 
@@ -145,7 +145,7 @@ def names_file(text: str) -> bool:
     """Whether the text of a policy names a file.
 
     Raises:
-        BenchmarkError: The text is not a policy.
+        InputError: The text is not a policy.
     """
     return file_of(text) is not None
 
@@ -154,7 +154,7 @@ def file_of(text: str) -> Path | None:
     """The file that the text of a policy names; None if it names none.
 
     Raises:
-        BenchmarkError: The text is not a policy.
+        InputError: The text is not a policy.
     """
     name = _parsed(text)[0]
     return Path(name) if name.endswith(SUFFIXES) else None
@@ -176,11 +176,11 @@ def _parsed(text: str) -> tuple[str, dict[str, Any]]:
     plain = text.endswith(SUFFIXES) and not text.startswith("{")
     try:
         options = {"name": text} if plain else parse_behavior(text)
-    except BenchmarkError:
+    except InputError:
         fix = "give a name such as orca, a file (.npz, .onnx), or {name: orca, timeHorizon: 5}"
         if len(split_behaviors(text)) > 1:
             fix = "give one policy; irsim benchmark --policies A,B compares several"
-        raise BenchmarkError(f"{clean(text)!r} is not a policy", fix) from None
+        raise InputError(f"{clean(text)!r} is not a policy", fix) from None
     name = AS_WRITTEN if options is None else str(options["name"])
     return name, {key: value for key, value in (options or {}).items() if key != "name"}
 

@@ -10,7 +10,7 @@ from typing import Any
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
-from irsim.diagnostics.errors import CodedError
+from irsim.diagnostics.errors import InputError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -19,7 +19,6 @@ from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = [
     "AS_WRITTEN",
-    "BenchmarkError",
     "behavior_text",
     "check_behavior_name",
     "merged_options",
@@ -37,15 +36,6 @@ _KEPT = ("wander", "loop", "range_low", "range_high", "target_roles")
 """Options that say what a robot does, not how; they are kept when its behavior is replaced."""
 
 
-class BenchmarkError(CodedError, ValueError):
-    """A benchmark, or an episode with another behavior, cannot be run as requested."""
-
-    code = "bad-argument"
-
-    def __init__(self, message: str, fix: str, where: str | None = None) -> None:
-        super().__init__(self.code, message, fix, where=where)
-
-
 def parse_behavior(text: str) -> dict[str, Any] | None:
     """The mapping that a behavior given as text means.
 
@@ -56,20 +46,20 @@ def parse_behavior(text: str) -> dict[str, Any] | None:
         The mapping to write under ``behavior``; None for ``as-written``.
 
     Raises:
-        BenchmarkError: The text is none of these.
+        InputError: The text is none of these.
     """
     text = text.strip()
     if text == AS_WRITTEN:
         return None
     if not text.startswith("{"):
         if not text or any(character in text for character in " :{}[],"):
-            raise BenchmarkError(f"{text!r} is not a valid behavior", _FIX)
+            raise InputError(f"{text!r} is not a valid behavior", _FIX)
         return {"name": text}
     from irsim.scenario.yaml.document import load_text
 
     document = load_text(text)
     if document.problems or not isinstance(document.data, Mapping) or not isinstance(document.data.get("name"), str):
-        raise BenchmarkError(f"{text!r} is not a valid behavior", _FIX)
+        raise InputError(f"{text!r} is not a valid behavior", _FIX)
     return dict(document.data)
 
 
@@ -89,26 +79,26 @@ def behavior_text(behavior: str | Mapping[str, Any]) -> str:
     """A behavior as text, as it is written on a command line.
 
     Raises:
-        BenchmarkError: The behavior is neither text nor a mapping.
+        InputError: The behavior is neither text nor a mapping.
     """
     if isinstance(behavior, str):
         return behavior.strip()
     if isinstance(behavior, Mapping):
         return yaml_flow(behavior)
-    raise BenchmarkError(f"a behavior must be a name or a mapping, got {as_given(behavior)}", _FIX)
+    raise InputError(f"a behavior must be a name or a mapping, got {as_given(behavior)}", _FIX)
 
 
 def check_behavior_name(behavior: str) -> None:
     """Refuse the name of an unknown behavior.
 
     Raises:
-        BenchmarkError: No behavior has that name.
+        InputError: No behavior has that name.
     """
     known = sorted({AS_WRITTEN, *BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(), *CUSTOM_GROUP_BEHAVIORS.names()})
     name = (parse_behavior(behavior) or {"name": AS_WRITTEN})["name"]
     if name not in known:
         fix = suggestion(name, known, f"choose one of {', '.join(known)}")
-        raise BenchmarkError(f"there is no behavior {clean(name)!r}", fix)
+        raise InputError(f"there is no behavior {clean(name)!r}", fix)
 
 
 def with_behavior(document: Document, behavior: Mapping[str, Any] | None, *, strict: bool) -> ResolvedScenario:
@@ -134,7 +124,7 @@ def read_with_behavior(
 
     Raises:
         ScenarioError: The scenario cannot be used.
-        BenchmarkError: The behavior has an unknown option or an invalid value, or cannot drive a robot of this
+        InputError: The behavior has an unknown option or an invalid value, or cannot drive a robot of this
             scenario.
     """
     if behavior is None or not isinstance(document.data, Mapping):
@@ -166,7 +156,7 @@ def raise_if_about_behavior(item: Diagnostic, behavior: Mapping[str, Any]) -> No
     fix = item.fix or (f"allowed is {known}" if known else "choose another behavior or other options")
     named = f"{place}: " if keys[:1] in ([], ["name"]) else "" if keys[-1] in item.message else f"{'.'.join(keys)}: "
     message = item.message.replace(f"'{place}'", f"behavior {behavior['name']}").replace(f"{place}.", "")
-    raise BenchmarkError(named + message.rstrip("."), fix.replace(f"{place}.", ""))
+    raise InputError(named + message.rstrip("."), fix.replace(f"{place}.", ""))
 
 
 def _set_behavior(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:

@@ -11,8 +11,8 @@ from typing import Any
 
 from irsim.common.arguments import as_given
 from irsim.diagnostics.diagnostic import Diagnostic
-from irsim.diagnostics.errors import ArgumentError
-from irsim.scenario.behavior_override import BenchmarkError, check_behavior_name, parse_behavior, read_with_behavior
+from irsim.diagnostics.errors import InputError
+from irsim.scenario.behavior_override import check_behavior_name, parse_behavior, read_with_behavior
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.locate import locate
 from irsim.scenario.read import or_raise, read
@@ -65,7 +65,7 @@ def read_scenario(
 
     Raises:
         ScenarioError: The scenario has errors.
-        BenchmarkError: ``behavior`` is not a valid behavior.
+        InputError: ``behavior`` is not a valid behavior.
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     source = path if isinstance(path, Document) else source_of(path, text, limits)
@@ -74,7 +74,7 @@ def read_scenario(
         try:
             check_behavior_name(behavior)
             scenario, diagnostics = read_with_behavior(document, parse_behavior(behavior), strict=strict)
-        except BenchmarkError as error:
+        except InputError as error:
             error.where = "behavior"
             raise
         scenario.text = document.text  # a recorded run keeps the text of the user, not the one with the other behavior
@@ -88,13 +88,13 @@ def source_of(path: str | Path | None, text: str | None, limits: Limits | None) 
     Raises:
         ScenarioNotFoundError: There is no such file.
         ValueError: Neither or both of ``path`` and ``text`` are given.
-        ArgumentError: ``path`` is not a path, or ``text`` is not a string.
+        InputError: ``path`` is not a path, or ``text`` is not a string.
     """
     if (path is None) == (text is None):
         raise ValueError("give either a path or a text")
     if path is not None:
         if not isinstance(path, (str, os.PathLike)):
-            raise ArgumentError(
+            raise InputError(
                 f"path must be the path of a file, got {as_given(path)}",
                 "give the path of a file, or its content as text",
             )
@@ -102,7 +102,7 @@ def source_of(path: str | Path | None, text: str | None, limits: Limits | None) 
     given: Any = text
     if not isinstance(given, str):
         fix = "decode it: text.decode()" if isinstance(given, bytes) else "give the YAML text of a scenario"
-        raise ArgumentError(f"text must be a string, got {as_given(given)}", fix)
+        raise InputError(f"text must be a string, got {as_given(given)}", fix)
     return load_text(given, limits=limits or DEFAULT_LIMITS)
 
 
@@ -111,12 +111,10 @@ def import_modules(names: Iterable[str]) -> None:
 
     Raises:
         ImportError: A module cannot be imported; the error has its name.
-        ArgumentError: ``names`` is a string instead of a list.
+        InputError: ``names`` is a string instead of a list.
     """
     if isinstance(names, str):
-        raise ArgumentError(
-            f"imports must be a list, got {as_given(names)}", f"give a list: imports=[{as_given(names)}]"
-        )
+        raise InputError(f"imports must be a list, got {as_given(names)}", f"give a list: imports=[{as_given(names)}]")
     for name in names:
         if "" not in sys.path and str(Path.cwd()) not in sys.path:
             sys.path.insert(0, str(Path.cwd()))

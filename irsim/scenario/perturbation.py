@@ -14,9 +14,9 @@ from pydantic_core import CoreSchema, core_schema
 from irsim.common.arguments import as_given
 from irsim.common.text import clean, listed
 from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.errors import InputError
 from irsim.options.base import Options
 from irsim.options.units import Meters, Number, Radians, Seconds
-from irsim.scenario.behavior_override import BenchmarkError
 from irsim.scenario.messages.number_text import read_number
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Spreads
 from irsim.scenario.yaml.rewrite import yaml_flow
@@ -104,7 +104,7 @@ def read_perturbations(given: Perturbations | None) -> tuple[Perturbation, ...]:
             command line: ``position=0.1,heading=10deg; delay=2,objects=scout,people``, or a mapping in YAML.
 
     Raises:
-        BenchmarkError: ``given`` is none of these; the message has everything that is wrong.
+        InputError: ``given`` is none of these; the message has everything that is wrong.
     """
     one = given is None or isinstance(given, (str, Mapping, Perturbation)) or not isinstance(given, Iterable)
     listed_items = [part for item in ([] if given is None else [given] if one else given) for part in _parts(item)]
@@ -116,7 +116,7 @@ def read_perturbations(given: Perturbations | None) -> tuple[Perturbation, ...]:
         if made is not None:
             found.append(made)
     if problems:
-        raise BenchmarkError("; ".join(problems), _FIX, "perturb")
+        raise InputError("; ".join(problems), _FIX, "perturb")
     return tuple(found)
 
 
@@ -144,7 +144,7 @@ def perturbed(
         called: Name of the scenario in errors; default: its own.
 
     Raises:
-        BenchmarkError: No object has a name, tag or role that is given, or there is nothing to perturb.
+        InputError: No object has a name, tag or role that is given, or there is nothing to perturb.
     """
     if not perturbations:
         return scenario
@@ -155,7 +155,7 @@ def perturbed(
     wanted = any(getattr(item, key) for item in perturbations for key in _SPREADS)
     if wanted and all(record.spreads is None for record in objects):
         why = "the chosen objects have no drive, never move, or are placed at random"
-        raise BenchmarkError(
+        raise InputError(
             f"there is nothing to perturb in {name!r}: {why}",
             "choose other spreads or objects",
             "perturb",
@@ -253,7 +253,7 @@ def _check_names(scenario: ResolvedScenario, perturbations: Sequence[Perturbatio
         return
     near = nearest(unknown[0], known)
     words = listed([repr(clean(word, 40)) for word in unknown], _MAX_NAMED)
-    raise BenchmarkError(
+    raise InputError(
         f"no object of {called!r} has the name, tag or role {words}",
         f"did you mean {clean(near, 40)}?"
         if near

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from irsim.bundled import templates
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 from irsim.lookup import Answer, TopicError, as_brief_text, as_text, lookup_several, schema_part, topics_of
 from irsim.lookup import lookup as look_up
 from irsim.lookup.index import PICTURE
@@ -68,7 +68,7 @@ def _several(topics: list[str]) -> str:
     except TopicError as error:
         fix = f"did you mean {' or '.join(error.near)}?" if error.near else "lookup without a topic lists all topics"
         raise RunError("unknown-topic", error.message, fix, where="topic") from None
-    except ArgumentError as error:
+    except InputError as error:
         raise RunError("bad-argument", error.message, error.fix, where="topic") from None
     parts = []
     for one in found:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import irsim
-from irsim.diagnostics.errors import ArgumentError
+from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
     from irsim.benchmarks.plan import Plan
@@ -41,7 +41,7 @@ def scenario_of_suite(given: str, argument: str) -> str:
         argument: The tool's argument, for errors.
 
     Raises:
-        ArgumentError: The suite has no such scenario.
+        InputError: The suite has no such scenario.
     """
     from irsim.benchmarks.suite import SuiteError
     from irsim.benchmarks.suite_plan import suite_scene
@@ -68,8 +68,8 @@ def plan_of(
         first: First seed; default: that of the suite.
 
     Raises:
-        ArgumentError: A scenario is not of the suite.
-        BenchmarkError, PolicyError: A policy is not valid.
+        InputError: A scenario is not of the suite.
+        InputError, PolicyError: A policy is not valid.
     """
     from irsim.benchmarks.policies import opened_policies
     from irsim.benchmarks.suite_plan import suite_plan
@@ -107,7 +107,7 @@ def _known_policies(suite: str) -> set[str]:
     return set() if found is None else {*found.known_policies}
 
 
-def _unknown(suite: str, known: Sequence[str], given: str, argument: str) -> ArgumentError:
+def _unknown(suite: str, known: Sequence[str], given: str, argument: str) -> InputError:
     from irsim.diagnostics.diagnostic import nearest
 
     near = nearest(given, known)
@@ -115,7 +115,7 @@ def _unknown(suite: str, known: Sequence[str], given: str, argument: str) -> Arg
     return _wrong(f"suite {suite} has no scenario {given!r}", fix, argument)
 
 
-def _wrong(what: str, fix: str, argument: str) -> ArgumentError:
-    error = ArgumentError(what, fix)
+def _wrong(what: str, fix: str, argument: str) -> InputError:
+    error = InputError(what, fix)
     error.where = argument
     return error

@@ -16,12 +16,12 @@ import yaml
 from typer.testing import CliRunner
 
 import irsim
-from irsim.benchmarks import AS_WRITTEN, BenchmarkError
+from irsim.benchmarks import AS_WRITTEN
 from irsim.benchmarks import pool as pool_module
 from irsim.benchmarks.episode import Job, scenario_of
 from irsim.benchmarks.report.rows import labels_of
 from irsim.cli.app import app
-from irsim.diagnostics.errors import BehaviorError, OverLimitError, ScenarioNotFoundError
+from irsim.diagnostics.errors import BehaviorError, InputError, OverLimitError, ScenarioNotFoundError
 from irsim.metrics import wilson
 from irsim.policies import Observations
 from irsim.results.labels import seeds_of
@@ -295,25 +295,25 @@ def test_robots_keep_what_they_are_to_do() -> None:
 
 @pytest.mark.parametrize("wrong", ["", "a b", "{name: 3}", "{timeHorizon: 5}", "{name: [", "name: orca"])
 def test_what_is_no_behavior(wrong) -> None:
-    with pytest.raises(BenchmarkError, match="bad-argument"):
+    with pytest.raises(InputError, match="bad-argument"):
         parse_behavior(wrong)
 
 
 def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path) -> None:
     with pytest.raises(OverLimitError, match="2 scenarios x 3 policies x 100 seeds = 600 episodes"):
         irsim.benchmark(files, ["rvo", "orca", "sfm"], 100, most_episodes=500)
-    with pytest.raises(BenchmarkError, match="did you mean rvo"):
+    with pytest.raises(InputError, match="did you mean rvo"):
         irsim.benchmark(files, "rov")
-    with pytest.raises(BenchmarkError, match="given twice"):
+    with pytest.raises(InputError, match="given twice"):
         irsim.benchmark([files[0], files[0]])
-    with pytest.raises(BenchmarkError, match="at least one seed"):
+    with pytest.raises(InputError, match="at least one seed"):
         irsim.benchmark(files, seeds=0)
-    with pytest.raises(BenchmarkError, match="must be from 0 to"):
+    with pytest.raises(InputError, match="must be from 0 to"):
         irsim.benchmark(files, seeds=[-1])
     with pytest.raises(ScenarioNotFoundError):
         irsim.benchmark([*files, str(tmp_path / "none.yaml")])
     for strict in (True, False):  # no file of IR-SIM has such an argument
-        with pytest.raises(BenchmarkError, match="'timeHorizn' is not a key of behavior orca") as error:
+        with pytest.raises(InputError, match="'timeHorizn' is not a key of behavior orca") as error:
             irsim.benchmark(files, ["dash", "{name: orca, timeHorizn: 5}"], strict=strict)
         assert error.value.where == "policies[1]"
 

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.diagnostics.errors import CodedError, PolicyError
+from irsim.diagnostics.errors import CodedError, InputError, PolicyError
 from irsim.policies import FunctionPolicy, Needs, Observations, Policy, open_policy, register_policy
 from irsim.policies.behavior import BehaviorPolicy, with_policy
 from irsim.policies.catalog import UnknownPolicyError
 from irsim.policies.driver import attach_policy
 from irsim.policies.registry import POLICIES, PolicyRegistry
-from irsim.scenario.behavior_override import BenchmarkError, read_with_behavior
+from irsim.scenario.behavior_override import read_with_behavior
 from irsim.scenario.yaml.document import Document
 from tests.policies.scenes import ROBOT, scenario, simulation
 
@@ -111,7 +111,7 @@ def test_files_have_a_digest_and_are_found_from_their_folder(tmp_path: Path) -> 
 )
 def test_what_is_not_a_policy_is_refused(source: Any, message: str, tmp_path: Path) -> None:
     (tmp_path / "net.npz").write_bytes(b"")
-    with pytest.raises((UnknownPolicyError, BenchmarkError, PolicyError), match=message):
+    with pytest.raises((UnknownPolicyError, InputError, PolicyError), match=message):
         open_policy(source, folder=tmp_path)
 
 
@@ -169,5 +169,5 @@ def test_behaviors_replace_those_of_a_scenario_as_in_its_file() -> None:
 
 
 def test_behaviors_that_do_not_fit_are_refused() -> None:
-    with pytest.raises(BenchmarkError, match="factr"):
+    with pytest.raises(InputError, match="factr"):
         with_policy(scenario({}), open_policy("{name: rvo, factr: 2}"))

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.diagnostics.errors import ArgumentError, PolicyError
+from irsim.diagnostics.errors import ArgumentError, InputError, PolicyError
 from irsim.policies import Needs, Observations, Policy
-from irsim.scenario.behavior_override import BenchmarkError
 
 SCENE = "world: {time_limit: 1}\nrobot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 5]}\n"
 
@@ -55,5 +54,5 @@ def test_periods_of_random_are_checked(period: str) -> None:
 
 def test_a_policy_without_a_name_has_that_of_its_class() -> None:
     assert "Still" in irsim.benchmark(SCENE, Still(), 1).behaviors[0]
-    with pytest.raises(BenchmarkError, match=r"Still\(…\)"):
+    with pytest.raises(InputError, match=r"Still\(…\)"):
         irsim.benchmark(SCENE, Still, 1)

@@ -16,10 +16,9 @@ from irsim.benchmarks.stored import resume_benchmark, run_plan
 from irsim.benchmarks.suite import Suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.benchmarks.timing import timing_report
-from irsim.diagnostics.errors import PolicyError
+from irsim.diagnostics.errors import InputError, PolicyError
 from irsim.policies import Observations, Policy
 from irsim.runs.files import RunError
-from irsim.scenario.behavior_override import BenchmarkError
 
 SCENE = """
 world: {width: 10, height: 10, time_limit: 3}
@@ -76,7 +75,7 @@ def test_behaviors_is_another_name_of_policies() -> None:
     assert irsim.benchmark(FIXED, behaviors="dash") == irsim.benchmark(FIXED, "dash")
     with pytest.raises(ValueError, match="two names of one argument"):
         irsim.benchmark(FIXED, "dash", behaviors="dash")
-    with pytest.raises(BenchmarkError, match="unknown-policy") as error:
+    with pytest.raises(InputError, match="unknown-policy") as error:
         irsim.benchmark(FIXED, ["dash", "dahs"])
     assert error.value.where == "policies[1]"
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from irsim.scenario.behavior_override import BenchmarkError
+from irsim.diagnostics.errors import InputError
 from irsim.scenario.open import read_scenario
 from irsim.scenario.perturbation import (
     Perturbation,
@@ -103,7 +103,7 @@ def test_the_text_of_a_perturbation_means_the_same(values, speed: float, heading
     ],
 )
 def test_everything_that_is_wrong_is_said_at_once(given: object, words: list[str]) -> None:
-    with pytest.raises(BenchmarkError) as error:
+    with pytest.raises(InputError) as error:
         read_perturbations(given)
     assert error.value.where == "perturb"
     assert error.value.code == "bad-argument"
@@ -178,7 +178,7 @@ def test_what_is_perturbed_is_said_by_groups(hall: ResolvedScenario) -> None:
     ],
 )
 def test_what_does_not_fit_the_scenario_is_refused(hall: ResolvedScenario, given: str, message: str, fix: str) -> None:
-    with pytest.raises(BenchmarkError) as error:
+    with pytest.raises(InputError) as error:
         spreads(hall, given)
     assert message in error.value.message
     assert fix in str(error.value.fix)

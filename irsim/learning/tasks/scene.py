@@ -16,11 +16,11 @@ from irsim.bundled.templates.metadata import Template, TemplateError
 from irsim.bundled.templates.store import load
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, suggestion
+from irsim.diagnostics.errors import InputError
 from irsim.episodes.unopened import unopened_bridges
 from irsim.learning.tasks.files import TaskError, task_error
 from irsim.learning.tasks.task import Task, Value
 from irsim.learning.tasks.variation import LevelDraws, drawn_values, level_draws, randomize_path
-from irsim.scenario.behavior_override import BenchmarkError
 from irsim.scenario.perturbation import perturbed
 from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Variation, VariedLevel
@@ -153,7 +153,7 @@ def _resolved(
     scenario, found = or_raise(read(document, strict=True))
     try:
         scenario = perturbed(scenario, task.perturb, called=task.task)
-    except BenchmarkError as error:
+    except InputError as error:
         raise task_error(("perturb",), error.message, error.fix or "") from None
     found = [*found, *unopened_bridges(scenario, "training")]
     return scenario, tuple(item for item in found if item.severity == "warning")
