@@ -6,45 +6,51 @@ import os
 from pathlib import Path
 from typing import Any
 
-from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import ScenarioError
 from irsim.results.findings import Finding
-from irsim.scenario.open import read_scenario
+from irsim.scenario.limits import Limits
+from irsim.scenario.open import read_scenario as read_one
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["policy_of_suite", "read_input"]
+__all__ = ["policy_of_suite", "read_scenario"]
 
 
-def read_input(path: str | Path | None, text: str | None, **options: Any) -> tuple[ResolvedScenario, list[Finding]]:
-    """Read a scenario; see :func:`irsim.scenario.open.read_scenario`.
+def read_scenario(
+    path: str | Path | None = None,
+    *,
+    text: str | None = None,
+    strict: bool,
+    limits: Limits | None = None,
+    behavior: str | None = None,
+) -> tuple[ResolvedScenario, list[Finding]]:
+    """Read a scenario from a file, a suite or a text; see :func:`irsim.scenario.open.read_scenario`.
 
     Args:
         path: Path of the file, or ``SUITE/SCENARIO``, where the suite is bundled or a file.
         text: Text of the scenario, instead of ``path``.
-        **options: ``strict``, ``limits`` and ``behavior``.
+        strict: Refuse what IR-SIM would ignore.
+        limits: Limits of the loader.
+        behavior: Replaces every robot's own behavior.
+
+    Returns:
+        The scenario, ready to build, and the warnings and hints about it.
 
     Raises:
         SuiteError: ``path`` is a suite, or begins with one that has no such scenario.
-        Others: as ``read_scenario``.
+        Others: as ``irsim.scenario.open.read_scenario``.
     """
+    from irsim.benchmarks.suite_plan import suite_scene
+
     named = Path(path) if isinstance(path, (str, os.PathLike)) and text is None else None
-    if named is not None and not named.is_file():
-        from irsim.benchmarks.suite_plan import suite_scene
-
-        if (scene := suite_scene(named)) is not None:
-            return _with_findings(*read_scenario(scene.document(), **options))
+    scene = None if named is None or named.is_file() else suite_scene(named)
     try:
-        return _with_findings(*read_scenario(path, text=text, **options))
+        source = path if scene is None else scene.document()
+        scenario, found = read_one(source, text=text, strict=strict, limits=limits, behavior=behavior)
     except ScenarioError:
-        if named is not None:
-            from irsim.benchmarks.suite_plan import suite_scene
-
+        if named is not None and scene is None:
             suite_scene(named)  # a suite is refused with a sentence of its own
         raise
-
-
-def _with_findings(scenario: ResolvedScenario, told: list[Diagnostic]) -> tuple[ResolvedScenario, list[Finding]]:
-    return scenario, [Finding.of(item) for item in told]
+    return scenario, [Finding.of(item) for item in found]
 
 
 def policy_of_suite(path: str | Path | None, policy: Any) -> Any:

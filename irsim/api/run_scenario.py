@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from irsim.api.export_after import check_exports, export_all, kept_or_temporary
 from irsim.api.open_connections import allowed_bridges, connected_sentence
 from irsim.api.picture_notes import ended_before, extent_of, moved_view
-from irsim.api.read_input import policy_of_suite, read_input
+from irsim.api.read_input import policy_of_suite, read_scenario
 from irsim.api.take_snapshot import snapshot, snapshot_of
 from irsim.bridges.base import BridgeLostError
 from irsim.bridges.connect import connect
@@ -19,13 +19,19 @@ from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
 from irsim.diagnostics.errors import InputError, PolicyLostError
 from irsim.env import Env
-from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import Progress, advance, default_time_limit, horizon_of, seed_of
+from irsim.episodes.opening import (
+    MAX_TRIES,
+    crowded_message,
+    findings_under_policy,
+    first_with_room,
+    unopened_findings,
+)
 from irsim.episodes.reproduce import region_options, reproduce_command
-from irsim.episodes.room import MAX_TRIES, crowded_message, first_with_room
-from irsim.episodes.run_report import run_result
-from irsim.episodes.unopened import unopened_findings
+from irsim.episodes.run_report import RunPlan, run_result
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
+from irsim.policies.behavior import BehaviorPolicy
+from irsim.policies.catalog import open_policy
 from irsim.results.findings import Finding
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
@@ -33,8 +39,9 @@ from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.checks.bridges import driven_without_goal
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.open import import_modules, read_scenario
+from irsim.scenario.open import import_modules
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
+from irsim.simulation.events import read_events
 from irsim.simulation.random_streams import fresh_seed
 from irsim.validation.scene_table import scene_table
 from irsim.validation.validate import diff, fix, validate
@@ -124,39 +131,44 @@ def run(
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
-    policy, behavior = policy_of_suite(path, policy), policy_of_suite(path, behavior)
-    driver, behavior_text = _opened(policy, behavior, limits)
+    driver, behavior = _opened(path, policy, behavior, limits)
     perturbations = read_perturbations(perturb)
     try:
-        scenario, warnings = read_input(path, text, strict=strict, limits=limits, behavior=behavior_text)
+        scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior)
     except InputError as error:
-        error.where = "behavior" if policy is None else "policy"
+        if error.where == "behavior" and policy is not None:
+            error.where = "policy"
         raise
     if driver is not None:
         warnings = findings_under_policy(warnings, scenario)
-    scenario, perturb_texts = perturbed(scenario, perturbations), [perturbation_text(item) for item in perturbations]
+    scenario = perturbed(scenario, perturbations)
     chosen, hidden = seed_of(scenario, seed), save is None and not show
     env, crowded = first_with_room(
         lambda drawn: Env(scenario, seed=drawn, display=show, headless=hidden, log_level="ERROR", policy=driver),
         (fresh_seed() for _ in range(MAX_TRIES)) if chosen is None else [chosen],
     )
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
-    others = read_bridges(bridges)
-    warnings = [*warnings, *(Finding.of(found.diagnostic) for found in driven_without_goal(scenario, others))]
-    opened = allowed_bridges([*scenario.bridges, *others], limits)
-    options = {
-        "strict": strict,
-        "imports": list(imports),
-        **({} if behavior_text is None else {"behavior": behavior_text}),
-        **({} if driver is None else {"policy": driver.text or driver.name, "policy_digest": driver.digest}),
-        **({"perturb": perturb_texts} if perturb_texts else {}),
-        **({"bridges": [bridge.name for bridge in opened]} if opened else {}),
-    }
+    added = read_bridges(bridges)
+    opened = allowed_bridges([*scenario.bridges, *added], limits)
+    plan = RunPlan(
+        path,
+        horizon,
+        source,
+        warnings=[*warnings, *(Finding.of(found.diagnostic) for found in driven_without_goal(scenario, added))],
+        strict=strict,
+        imports=imports,
+        behavior=behavior,
+        policy=driver,
+        perturb=[perturbation_text(one) for one in perturbations],
+        bridges=[bridge.name for bridge in opened],
+        added_bridges=[bridge_text(one) for one in added],
+    )
     targets = check_exports([export] if isinstance(export, (str, Path)) else export, overwrite=overwrite)
+    simulation = env.simulation
     with (
         kept_or_temporary(record, targets) as kept,
         connect(env, opened) if opened else nullcontext() as connection,
-        recording(env, path, kept, horizon=horizon, options=options) as recorder,
+        recording(simulation, path, kept, horizon=horizon, options=plan.record_options()) as recorder,
     ):
         if connection is not None and connected is not None:
             connected(connected_sentence(connection, opened, horizon * env.step_time))
@@ -170,21 +182,7 @@ def run(
                 files = _animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
         except (PolicyLostError, BridgeLostError) as error:
             lost = error
-        result = run_result(
-            env,
-            path,
-            horizon=horizon,
-            source=source,
-            warnings=warnings,
-            files=files,
-            imports=imports,
-            strict=strict,
-            behavior=behavior_text,
-            policy=driver,
-            perturb=perturb_texts,
-            bridges=[bridge_text(one) for one in others],
-            lost=lost,
-        )
+        result = run_result(simulation, read_events(simulation), plan, files=files, lost=lost)
         if connection is not None:
             result.notes += connection.notes()
         if skipped := crowded_message(crowded):
@@ -200,22 +198,21 @@ def run(
     return result
 
 
-def _opened(policy: Any, behavior: Any, limits: Limits | None) -> tuple[Policy | None, str | None]:
+def _opened(
+    path: str | Path | None, policy: Any, behavior: Any, limits: Limits | None
+) -> tuple[Policy | None, str | None]:
     """What drives the robots: a policy in Python, or the text of a behavior that runs in the engine, or neither.
 
     Raises:
-        InputError: There is no such policy.
+        InputError: There is no such policy, or both names of the argument are used.
     """
-    from irsim.policies.behavior import BehaviorPolicy
-    from irsim.policies.catalog import open_policy
-
     if policy is not None and behavior is not None:
         raise InputError("policy and behavior are two names of one argument", "give only policy")
-    chosen, where = (behavior, "behavior") if policy is None else (policy, "policy")
-    if chosen is None:
+    given, where = (behavior, "behavior") if policy is None else (policy, "policy")
+    if given is None:
         return None, None
     try:
-        opened = open_policy(chosen, root=None if limits is None else limits.root)
+        opened = open_policy(policy_of_suite(path, given), root=None if limits is None else limits.root)
     except InputError as error:
         error.where = where
         raise
@@ -271,8 +268,8 @@ def render(
     as_snapshot = strip is not None or overlays is not None
     if as_snapshot:
         check_suffix(target, ["png"])
-    driver, behavior = _opened(policy_of_suite(path, policy), None, limits)
-    scenario, warnings = read_input(path, None, strict=strict, limits=limits, behavior=behavior)
+    driver, behavior = _opened(path, policy, None, limits)
+    scenario, warnings = read_scenario(path, strict=strict, limits=limits, behavior=behavior)
     if driver is not None:
         warnings = findings_under_policy(warnings, scenario)
     animated = target.suffix.lower() in MOVING_SUFFIXES
@@ -325,7 +322,9 @@ def render(
         view=None if region is not None else moved_view(env),
         extent=extent_of(env),
         table=scene_table(scenario, env.seed, driven if driver is not None else None),
-        reproduce=reproduce_command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
+        reproduce=reproduce_command(
+            "render", path, scenario, env.seed, steps, strict, imports, extra=[*sized, "-o", str(out)]
+        ),
     )
     env.end(ending_time=0.0)
     return result

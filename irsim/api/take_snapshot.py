@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Literal
 from irsim.api.film_strip import draw_strip, moments_of
 from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
 from irsim.api.picture_notes import ended_before, moved_view
-from irsim.api.read_input import read_input
+from irsim.api.read_input import read_scenario
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
+from irsim.episodes.opening import MAX_TRIES, first_with_room, unopened_findings
 from irsim.episodes.reproduce import overlay_options, region_options, reproduce_command, strip_options
-from irsim.episodes.room import MAX_TRIES, first_with_room
 from irsim.episodes.scene_summary import counts_of, in_words
-from irsim.episodes.unopened import unopened_findings
 from irsim.results.findings import Finding
 from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
@@ -70,7 +69,7 @@ def snapshot(
         ValueError: Neither or both of ``path`` and ``text`` are given, the region is invalid, or there are too few or
             too many moments.
     """
-    scenario, warnings = read_input(path, text, strict=strict, limits=limits)
+    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits)
     return snapshot_of(
         scenario,
         path,
@@ -151,7 +150,7 @@ def snapshot_of(
         moments=chosen,
         draw=draw,
         warnings=warnings,
-        reproduce=reproduce_command("render", path, env, count, strict, imports, extra=extra),
+        reproduce=reproduce_command("render", path, scenario, env.seed, count, strict, imports, extra=extra),
         progress=progress,
     )
     env.end(ending_time=0.0)

@@ -34,9 +34,8 @@ from irsim.benchmarks.timing import time_behavior, timing_report
 from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.version import version
 from irsim.diagnostics.errors import InputError, OverLimitError
-from irsim.episodes.driven import findings_under_policy
 from irsim.episodes.episode import Progress
-from irsim.episodes.unopened import unopened_findings
+from irsim.episodes.opening import findings_under_policy, unopened_findings
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.catalog import PolicySource
 from irsim.policies.policy import Policy

@@ -14,8 +14,7 @@ from irsim.benchmarks.policies import open_again
 from irsim.diagnostics.errors import PlacementError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of
-from irsim.episodes.incidents import find_incidents
-from irsim.episodes.out_of_bounds import find_exits
+from irsim.episodes.incidents import find_exits, find_incidents
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.progress import UNREACHABLE

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from irsim.benchmarks.summary import incident_messages, notes_of, perturbation_notes, protocols_of, rows_of
 from irsim.common.files import write_atomically
-from irsim.episodes.unopened import CODE
+from irsim.episodes.opening import UNOPENED
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.runs.files import RunError, refusal, unreadable
 
@@ -146,7 +146,9 @@ def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> Benc
     rows = rows_of(episodes, head.scenarios, head.behaviors, head.random, protocols_of(head.scenarios))
     notes = perturbation_notes(head.perturbed) + notes_of(episodes, head.random, head.seeds)
     notes += [f"{name}: {note}" for name, note in head.unequal.items()]
-    unopened = {name: found.message for name in head.warnings for found in head.warnings[name] if found.code == CODE}
+    unopened = {
+        name: found.message for name in head.warnings for found in head.warnings[name] if found.code == UNOPENED
+    }
     notes += [f"{name}: {message}" for name, message in unopened.items()]
     found = {"episodes": list(episodes), "rows": rows, "notes": notes, "incidents": incident_messages(episodes)}
     return head.model_copy(update=found)

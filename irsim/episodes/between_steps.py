@@ -14,7 +14,7 @@ from irsim.episodes.scene_summary import called
 from irsim.simulation.events import BETWEEN_STEPS, Event, partner_of
 
 if TYPE_CHECKING:
-    from irsim.env import Env
+    from irsim.simulation.simulation import Simulation
 
 __all__ = ["BetweenSteps", "between_steps_message", "find_between_steps", "others_between_steps_message"]
 
@@ -69,25 +69,28 @@ def find_between_steps(events: Iterable[Event], robots: Collection[str], passabl
     return found
 
 
-def between_steps_message(env: Env, found: BetweenSteps, hits: Sequence[Event], *, brief: bool = False) -> str | None:
+def between_steps_message(
+    simulation: Simulation, found: BetweenSteps, hits: Sequence[Event], *, brief: bool = False
+) -> str | None:
     """Which robot passed through, or touched, something between two steps, and what prevents that; None if none did.
 
     Passing through comes before touching, and what came first before what came later. Contacts that count as
     collisions (``world.contacts: swept``) are left to the message about collisions.
 
     Args:
-        env: The environment after the last step.
+        simulation: The simulation after the last step.
         found: From :func:`find_between_steps`.
         hits: Collisions of robots.
         brief: Leave out the step and the advice, which another message has.
     """
-    swept = env.scenario.world.contacts == "swept"
+    scenario = simulation.scenario
+    swept = scenario.world.contacts == "swept"
     judged = {(event.step, event.object, event.partner) for event in hits} if swept else set()
     mine = [event for event in found.of_robots if (event.step, event.object, event.partner) not in judged]
     if not mine:
         return None
     first = min(mine, key=lambda event: (event.kind != "passed_through", event.time))
-    one, other = called(env.scenario, first.object), called(env.scenario, first.partner)
+    one, other = called(scenario, first.object), called(scenario, first.partner)
     when = f"between two steps at {seconds(first.time)} near ({first.x:.2f}, {first.y:.2f})"
     through = first.kind == "passed_through"
     what = f"{one} passed through {other} {when}" if through else f"{one} and {other} touched {when}"
@@ -95,7 +98,7 @@ def between_steps_message(env: Env, found: BetweenSteps, hits: Sequence[Event], 
         what += f", overlapping by {metres(first.depth)}"
     if len(mine) > 1:
         what += f", {'the first' if first is mine[0] else 'one'} of {len(mine)} contacts between steps"
-    return what if brief else f"{what} ({_advice(env, first)})"
+    return what if brief else f"{what} ({_advice(simulation, first)})"
 
 
 def others_between_steps_message(found: BetweenSteps) -> str | None:
@@ -104,23 +107,24 @@ def others_between_steps_message(found: BetweenSteps) -> str | None:
     return f"{count} contact{'s' * (count != 1)} between steps without a robot" if count else None
 
 
-def _advice(env: Env, event: Event) -> str:
+def _advice(simulation: Simulation, event: Event) -> str:
     """What prevents a contact between steps, and how far the faster of the two moved in that step."""
-    moved = {name: _step_length(env, name, event.step) for name in (event.object, event.partner)}
+    moved = {name: _step_length(simulation, name, event.step) for name in (event.object, event.partner)}
     name = max(moved, key=lambda name: moved[name])
-    far = f"{called(env.scenario, name)} moved {metres(moved[name])} in that step; " if moved[name] else ""
-    other = ", or set world.contacts: swept" if env.scenario.world.contacts == "step_end" else ""
+    far = f"{called(simulation.scenario, name)} moved {metres(moved[name])} in that step; " if moved[name] else ""
+    other = ", or set world.contacts: swept" if simulation.scenario.world.contacts == "step_end" else ""
     return f"{far}lower step_time{other}"
 
 
-def _step_length(env: Env, name: str | None, step: int) -> float:
+def _step_length(simulation: Simulation, name: str | None, step: int) -> float:
     """Distance that an object moved in a step [m]; 0 for what is no object, or if the step is not kept."""
-    row = next((view.row for view in env.objects if view.name == name), None)
+    records = simulation.scenario.objects
+    row = next((row for row, record in enumerate(records) if record.name == name), None)
     if row is None:
         return 0.0
-    state = env.simulation.state
+    state = simulation.state
     track = np.vstack([state.initial_state(row)[None, :2], state.trajectory(row)[:, :2]])
-    place = step - int(env.simulation.count[0]) - 1
+    place = step - int(simulation.count[0]) - 1
     if -len(track) >= place:
         return 0.0
     moved = float(np.hypot(*(track[place] - track[place - 1])))

@@ -52,14 +52,15 @@ def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
     The latest start of a robot is added: its ``start_time`` or ``appear_time``, and the longest delay if starts are
     perturbed.
     """
-    longest = 0.0
+    longest, starts, state = 0.0, [0.0], env.simulation.state
     for view in env.robot_list:
-        points = [view.init_state[:2, 0], *(goal[:2, 0] for goal in view.goals)]
+        record, goals = view.record, state.goals(view.row)
+        points = [state.initial_state(view.row)[:2], *(goal[:2] for goal in goals)]
         way = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
-        if view.max_speed > 0:
-            longest = max(longest, way / view.max_speed)
-    starts = [record.moves_from + (record.spreads.delay if record.spreads else 0.0) for record in scenario.robots()]
-    return max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(starts, default=0.0)
+        if (speed := view.max_speed) > 0:
+            longest = max(longest, way / speed)
+        starts.append(record.moves_from + (record.spreads.delay if record.spreads else 0.0))
+    return max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(starts)
 
 
 def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: Limits) -> tuple[int, HorizonSource]:
@@ -79,7 +80,7 @@ def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: 
         return steps, "argument"
     limit = scenario.world.time_limit
     seconds = default_time_limit(scenario, env) if limit is None else limit
-    horizon = steps_until(seconds, env.step_time)
+    horizon = steps_until(seconds, scenario.world.step_time)
     if most is not None and horizon > most:
         return most, "limits"
     return horizon, "default" if limit is None else "scenario"

@@ -8,23 +8,30 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
-from irsim.episodes.appearances import absence, appearances_message, is_absent
-from irsim.episodes.between_steps import BetweenSteps, between_steps_message, others_between_steps_message
-from irsim.episodes.detours import closeness_message, shunting_message
-from irsim.episodes.incidents import Incidents, contacts_message, jumps_message, returns_message
-from irsim.episodes.out_of_bounds import exits_message
-from irsim.episodes.reverse import reverse_message
-from irsim.episodes.scene_summary import called
-from irsim.episodes.stalling import stalled_step
-from irsim.episodes.stuck import (
-    find_circling,
+from irsim.episodes.between_steps import between_steps_message, others_between_steps_message
+from irsim.episodes.facts import EpisodeFacts, first_collision
+from irsim.episodes.incidents import (
+    absence,
+    appearances_message,
+    closeness_message,
+    contacts_message,
+    exits_message,
+    is_absent,
+    jumps_message,
+    nearest_to_goals,
+    returns_message,
+    shunting_message,
+)
+from irsim.episodes.obstructions import (
     find_obstruction,
     heading_message,
     is_moving_obstacle,
     jam_message,
-    no_progress_since,
     no_way_message,
+    reverse_message,
 )
+from irsim.episodes.progress import find_circling, has_one_end, no_progress_since, stalled_step
+from irsim.episodes.scene_summary import called
 from irsim.episodes.watching import sights_message, zones_message
 from irsim.results.run import HorizonSource, Left, RobotResult, ZoneResult
 from irsim.simulation.events import Event
@@ -32,16 +39,12 @@ from irsim.simulation.explored import explored_share
 from irsim.simulation.roles import HUMAN, kinds_of
 
 if TYPE_CHECKING:
-    from irsim.env import Env
-    from irsim.objects.view import ObjectView
-    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+    from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["first_collision", "has_one_end", "others_arrived_message", "reason_message", "summary_message"]
+__all__ = ["others_arrived_message", "reason_message", "summary_message"]
 
 _MAX_NAMED = 3
 """Number of robots that a sentence names."""
-_MAX_POSES = 2_000_000
-"""Number of poses, of all objects in all steps, up to which moving obstacles that stand still are looked for."""
 _MAX_STANDING_SPEED = 1e-3
 """Speed [m/s] below which a robot stands still; for a very slow robot a tenth of its top speed."""
 _LIMIT_SOURCES: dict[HorizonSource, str] = {
@@ -54,60 +57,54 @@ _LIMIT_SOURCES: dict[HorizonSource, str] = {
 
 
 def summary_message(
-    env: Env,
+    facts: EpisodeFacts,
     robots: list[RobotResult],
-    hits: Sequence[Event],
-    between: BetweenSteps,
     driven: str | None,
-    parked: Sequence[str],
-    held: dict[str, Event],
-    events: Sequence[Event],
     left: Sequence[Left],
-    incidents: Incidents,
-    nearest: Mapping[str, float],
     zones: Mapping[str, ZoneResult],
 ) -> str:
-    """Say what was touched between steps, which robots arrived, the first collision, and what else happened."""
+    """Say what was touched between steps, which robots arrived, the first collision, and what else happened.
+
+    Args:
+        facts: The episode.
+        robots: Results of its robots.
+        driven: What drove all robots instead of their own behaviors, in words; None if nothing did.
+        left: Objects that left the world.
+        zones: Results of the zones.
+    """
+    simulation, scenario, jumps = facts.simulation, facts.scenario, facts.incidents.jumps
+    names = {robot.name for robot in robots}
     failed = any(robot.outcome != "success" for robot in robots)  # then the reason has the advice
-    parts = list(filter(None, [between_steps_message(env, between, hits, brief=failed)]))
-    parts.append(_arrivals_message(robots, env.sim_time, parked))
-    parts += filter(None, [_waiting_message(env), appearances_message(env)])
-    if hit := _first_collision_message(env.scenario, {robot.name for robot in robots}, hits):
-        parts.append(hit + _standing_message(env, {robot.name for robot in robots}, hits))
-    if out := exits_message(env.scenario, left):
-        parts.append(out)
-    if jumps := jumps_message(incidents.jumps, nearest):
-        parts.append(jumps)
-    if returns := returns_message(incidents.returns, {robot.name for robot in robots}):
-        parts.append(returns)
-    if gone := _departures_message(env, robots):
-        parts.append(gone)
-    if shunted := shunting_message(env, robots, parked):
-        parts.append(shunted)
-    pushes = env.scenario.world.collision_mode == "contact"  # which keeps bodies that push a rounding error apart
-    if not pushes and (close := closeness_message(robots)):
-        parts.append(close)
-    if others := others_arrived_message(env.scenario, events):
-        parts.append(others)
-    if not incidents.human_contacts and _people_may_overlap(env.scenario):
-        parts.append("no contacts between people")
-    said = bool(held) or incidents.human_contacts[:1] == list(hits[:1])
-    if touched := contacts_message(incidents.human_contacts, brief=said):
-        parts.append(touched)
-    if among := others_between_steps_message(between):
-        parts.append(among)
-    if jam := jam_message(env.simulation, held):
-        parts.append(jam)
-    if stand := others_standing_message(env, events):
-        parts.append(stand)
-    if zone := zones_message(zones):
-        parts.append(zone)
-    share = explored_share(env.simulation)
-    if share is not None:
-        parts.append(f"explored {100 * share:.0f} % of the area of the world, insides of obstacles included")
-    if sight := sights_message(events):
-        parts.append(sight)
-    return ("" if driven is None else f"with {driven} for all robots: ") + "; ".join(parts)
+    hit = _first_collision_message(scenario, names, facts.hits)
+    pushes = scenario.world.collision_mode == "contact"  # which keeps bodies that push a rounding error apart
+    contacts = facts.incidents.human_contacts
+    said = bool(facts.jammed) or contacts[:1] == facts.hits[:1]
+    share = explored_share(simulation)
+    parts = [
+        between_steps_message(simulation, facts.between, facts.hits, brief=failed),
+        _arrivals_message(robots, facts.time, facts.parked),
+        _waiting_message(facts),
+        appearances_message(simulation),
+        hit and hit + _standing_message(facts, names),
+        exits_message(scenario, left),
+        jumps_message(jumps, nearest_to_goals(simulation, jumps)),
+        returns_message(facts.incidents.returns, names),
+        _departures_message(facts, robots),
+        shunting_message(simulation, robots, facts.parked),
+        None if pushes else closeness_message(robots),
+        others_arrived_message(scenario, facts.events),
+        "no contacts between people" if not contacts and _people_may_overlap(scenario) else None,
+        contacts_message(contacts, brief=said),
+        others_between_steps_message(facts.between),
+        jam_message(simulation, facts.jammed),
+        _others_standing_message(facts),
+        zones_message(zones),
+        None
+        if share is None
+        else f"explored {100 * share:.0f} % of the area of the world, insides of obstacles included",
+        sights_message(facts.events),
+    ]
+    return ("" if driven is None else f"with {driven} for all robots: ") + "; ".join(filter(None, parts))
 
 
 def _people_may_overlap(scenario: ResolvedScenario) -> bool:
@@ -142,36 +139,32 @@ def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequen
     return f"the robot did not arrive within {seconds(sim_time)}"
 
 
-def _waiting_message(env: Env) -> str | None:
+def _waiting_message(facts: EpisodeFacts) -> str | None:
     """Say which objects have not started yet at the end because of their ``start_time``; None if there are none."""
+    simulation = facts.simulation
     late = [
-        view
-        for view in env.objects
-        if view.record.start_time and env.simulation.waits(view.row) and not is_absent(env, view)
+        record
+        for row, record in enumerate(facts.scenario.objects)
+        if record.start_time and simulation.waits(row) and not is_absent(simulation, row)
     ]
     if not late:
         return None
-    first = min(view.record.start_time for view in late)
-    names = listed([quoted(view.name) for view in late], _MAX_NAMED)
+    first = min(record.start_time for record in late)
+    names = listed([quoted(record.name) for record in late], _MAX_NAMED)
     return f"{names} had not started (start_time {seconds(first)}{' and later' if len(late) > 1 else ''})"
 
 
-def _departures_message(env: Env, robots: list[RobotResult]) -> str | None:
+def _departures_message(facts: EpisodeFacts, robots: list[RobotResult]) -> str | None:
     """Say which robots arrived but are not at their goal at the end; None if there are none."""
-    views = {view.name: view for view in env.robot_list}
+    arrived = {robot.name for robot in robots if robot.outcome == "success"}
     gone = [
-        quoted(robot.name)
-        for robot in robots
-        if robot.outcome == "success" and not views[robot.name].arrive and has_one_end(views[robot.name].record)
+        quoted(record.name)
+        for row, record in facts.robots.items()
+        if record.name in arrived and not facts.simulation.arrived[row] and has_one_end(record)
     ]
     if len(gone) < 2:
         return f"{gone[0]} left its goal again" if gone else None
     return f"{listed(gone, _MAX_NAMED)} left their goals again"
-
-
-def has_one_end(record: ObjectRecord) -> bool:
-    """Whether an object has a fixed last goal."""
-    return not (record.wander or record.loop)
 
 
 def others_arrived_message(scenario: ResolvedScenario, events: Sequence[Event]) -> str | None:
@@ -192,97 +185,81 @@ def others_arrived_message(scenario: ResolvedScenario, events: Sequence[Event]) 
     return f"{len(arrived)} of {len(walking)} moving obstacle{'s' * (len(walking) != 1)} arrived"
 
 
-def others_standing_message(env: Env, events: Sequence[Event]) -> str | None:
+def _others_standing_message(facts: EpisodeFacts) -> str | None:
     """Say how many moving obstacles stand short of their goal, which one first, and where; None if there are none.
 
     Obstacles that a collision has stopped do not count: other messages are about them.
     """
-    simulation, scenario = env.simulation, env.scenario
-    if simulation.objects * (int(simulation.count[0]) + 1) > _MAX_POSES:
+    simulation, records = facts.simulation, facts.scenario.objects
+    moving = [row for row, record in enumerate(records) if is_moving_obstacle(record)]
+    if not facts.is_small:
         return None
-    arrived = {event.object for event in events if event.kind == "arrival"}
+    arrived = {event.object for event in facts.events if event.kind == "arrival"}
     found = []
-    for view in env.obstacle_list:
-        record = view.record
-        if not is_moving_obstacle(record) or not record.goals or view.goal is None:
-            continue
+    for row in moving:
+        record, goals = records[row], simulation.state.goals(row)
         at_its_end = record.name in arrived and has_one_end(record)
-        if at_its_end or simulation.stopped[view.row] or simulation.waits(view.row) or is_absent(env, view):
+        if not record.goals or not goals or at_its_end or simulation.stands(row):
             continue
-        track = simulation.state.trajectory(view.row)[:, :2]
-        since = no_progress_since(track, env.step_time, view.max_speed)
+        track = simulation.state.trajectory(row)[:, :2]
+        since = no_progress_since(track, facts.step_time, simulation.views()[row].max_speed)
         if since is not None:
-            found.append((int(simulation.count[0]) - len(track) + 1 + since, view))
+            found.append((facts.steps - len(track) + 1 + since, row))
     if not found:
         return None
-    step, view = min(found, key=lambda item: (item[0], item[1].row))
-    left = float(np.hypot(*(view.goal[:2, 0] - view.position[:, 0]))) if view.goal is not None else 0.0
-    place = f"{left:.2f} m from its goal since {seconds(step * env.step_time)}"
-    count = sum(is_moving_obstacle(record) for record in scenario.objects)
+    step, row = min(found)
+    name, goal = quoted(records[row].name), simulation.state.goals(row)[0]
+    left = float(np.hypot(*(goal[:2] - simulation.pose[row, :2])))
+    place = f"{left:.2f} m from its goal since {seconds(step * facts.step_time)}"
     if len(found) == 1:
-        return f"the moving obstacle {quoted(view.name)} has stood still {place}"
-    first = f"(first {quoted(view.name)}, {place})"
-    return f"{len(found)} of {count} moving obstacles stand still short of their goals {first}"
+        return f"the moving obstacle {name} has stood still {place}"
+    return f"{len(found)} of {len(moving)} moving obstacles stand still short of their goals (first {name}, {place})"
 
 
-def reason_message(
-    env: Env,
-    robots: list[RobotResult],
-    hits: Sequence[Event],
-    between: BetweenSteps,
-    events: Sequence[Event],
-    source: HorizonSource,
-    parked: Sequence[str],
-    held: dict[str, Event],
-) -> str:
-    """Say why an episode failed: contacts between steps, the first collision, and what late robots were doing."""
+def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: HorizonSource) -> str:
+    """Say why an episode failed: contacts between steps, the first collision, and what late robots were doing.
+
+    Args:
+        facts: The episode.
+        robots: Results of its robots.
+        source: Where its time limit comes from.
+    """
     if not robots:
         return "there are no robots"
-    reasons = list(filter(None, [between_steps_message(env, between, hits)]))
+    reasons = list(filter(None, [between_steps_message(facts.simulation, facts.between, facts.hits)]))
     collided = {robot.name for robot in robots if robot.outcome == "collision"}
-    if hit := _first_collision_message(env.scenario, collided, hits):
+    if hit := _first_collision_message(facts.scenario, collided, facts.hits):
         others = len(collided) - 1
         reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else ""))
-    views = {view.name: view for view in env.robot_list}
-    late = [robot for robot in robots if robot.outcome == "timeout" and robot.name not in parked]
+    rows = {record.name: row for row, record in facts.robots.items()}
+    limit = f"{seconds(facts.time)} ({_LIMIT_SOURCES[source]})"
+    late = [robot for robot in robots if robot.outcome == "timeout" and robot.name not in facts.parked]
     if late:
         shown = late[:_MAX_NAMED]
-        states = [f"{quoted(robot.name)} {_state(env, views[robot.name], robot, events, held)}" for robot in shown]
+        states = [f"{quoted(robot.name)} {_state(facts, rows[robot.name], robot)}" for robot in shown]
         rest = len(late) - _MAX_NAMED
         more = f" and {rest} more robot{'s' * (rest != 1)}" if rest > 0 else ""
-        reasons.append(f"at {seconds(env.sim_time)} ({_LIMIT_SOURCES[source]}) {', '.join(states)}{more}")
-    if still := [robot for robot in robots if robot.outcome == "timeout" and robot.name in parked]:
+        reasons.append(f"at {limit} {', '.join(states)}{more}")
+    if still := [robot for robot in robots if robot.outcome == "timeout" and robot.name in facts.parked]:
         names = listed([quoted(robot.name) for robot in still], _MAX_NAMED)
         reasons.append(f"{names} {'is' if len(still) == 1 else 'are'} parked (cannot move, no goal written)")
         if not (hit or late):
-            reasons.append(f"the run ended at {seconds(env.sim_time)} ({_LIMIT_SOURCES[source]})")
+            reasons.append(f"the run ended at {limit}")
     return "; ".join(reasons)
 
 
-def first_collision(names: Collection[str], events: Sequence[Event]) -> Event | None:
-    """The first collision of one of these objects; None if there was none."""
-    return next((e for e in events if e.kind == "collision" and {e.object, str(e.partner)} & set(names)), None)
-
-
-def _standing_message(env: Env, names: set[str], hits: Sequence[Event]) -> str:
+def _standing_message(facts: EpisodeFacts, names: Collection[str]) -> str:
     """Say who has stood still since the first collision stopped them; empty if nobody has."""
-    first, rows = first_collision(names, hits), {record.name: k for k, record in enumerate(env.scenario.objects)}
-    pair = [] if first is None else [rows[name] for name in (first.object, str(first.partner)) if name in rows]
-    held = [
-        env.scenario.objects[row].name
-        for row in pair
-        if env.simulation.stopped[row] and not env.simulation.arrived[row] and not env.scenario.objects[row].static
-    ]
-    return (
-        ""
-        if not held
-        else ", and both have stood still since"
-        if len(held) == 2
-        else f", and {quoted(held[0])} has stood still since"
-    )
+    simulation, first = facts.simulation, first_collision(names, facts.hits)
+    rows = {record.name: row for row, record in enumerate(facts.scenario.objects) if not record.static}
+    pair = [] if first is None else [name for name in (first.object, str(first.partner)) if name in rows]
+    held = [name for name in pair if simulation.stopped[rows[name]] and not simulation.arrived[rows[name]]]
+    if len(held) == 2:
+        return ", and both have stood still since"
+    return f", and {quoted(held[0])} has stood still since" if held else ""
 
 
-def _first_collision_message(scenario: ResolvedScenario, names: set[str], events: Sequence[Event]) -> str | None:
+def _first_collision_message(scenario: ResolvedScenario, names: Collection[str], events: Sequence[Event]) -> str | None:
     first = first_collision(names, events)
     if first is None:
         return None
@@ -292,68 +269,64 @@ def _first_collision_message(scenario: ResolvedScenario, names: set[str], events
     )
 
 
-def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Event], held: dict[str, Event]) -> str:
+def _state(facts: EpisodeFacts, row: int, robot: RobotResult) -> str:
     """Say what a robot that has not arrived is doing: ``stands still 3.21 m from its goal``."""
-    record = view.record
+    simulation, record, view = facts.simulation, facts.robots[row], facts.simulation.views()[row]
     speed = float(np.linalg.norm(view.velocity_xy))
     standing = min(_MAX_STANDING_SPEED, view.max_speed / 10 or _MAX_STANDING_SPEED)
     place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
-    if not _is_inside(env, robot):
-        place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
-    no_way = no_way_message(env.simulation, events, robot.name)
+    x, y, _ = robot.pose
+    west, south, east, north = facts.scenario.world.bounds
+    if not (west <= x <= east and south <= y <= north):
+        place += f", outside the world at ({x:.2f}, {y:.2f})"
+    no_way = no_way_message(simulation, facts.events, robot.name)
     if no_way is not None and speed < standing:
         return f"stands still {place}: {no_way.replace('to its goal', 'to it')}"
-    if is_absent(env, view):
-        return f"is not in the world yet, {place} ({absence(env, view)})"
-    if env.simulation.waits(view.row):
-        start = float(env.simulation.start_step[view.row]) * env.step_time
+    if is_absent(simulation, row):
+        return f"is not in the world yet, {place} ({absence(simulation, row)})"
+    if simulation.waits(row):
+        start = float(simulation.start_step[row]) * facts.step_time
         when = "it starts at" if record.start_time else "its start is delayed to"
         return f"still waits {place} ({when} {seconds(start)})"
     if speed >= standing:
-        if circle := _circling_message(env, view, events):
+        if circle := _circling_message(facts, row):
             return f"circles its goal: {circle}"
-        if no_progress_since(env.simulation.state.trajectory(view.row)[:, :2], env.step_time, view.max_speed) is None:
-            stalled = stalled_step(env, view, events)
+        if no_progress_since(simulation.state.trajectory(row)[:, :2], facts.step_time, view.max_speed) is None:
+            stalled = stalled_step(simulation, view, facts.events)
             if stalled is not None and no_way is not None:
                 return f"hardly moves {place}: {no_way}"
-            since = "" if stalled is None else f", hardly nearer than at {seconds(stalled * env.step_time)}"
+            since = "" if stalled is None else f", hardly nearer than at {seconds(stalled * facts.step_time)}"
             return f"still moved at {speed:.2g} m/s, {place}{since}"
-        return f"hardly moves {place}" + (f": {no_way}" if no_way else _obstruction_message(env, view, held))
+        return f"hardly moves {place}" + (f": {no_way}" if no_way else _obstruction_message(facts, row))
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"
     if record.behavior is None and record.group_behavior is None:
-        if not env.scenario.has_written_goal(record):
+        if not facts.scenario.has_written_goal(record):
             return "has no behavior, so it stands still; no goal is written for it"
         return f"has no behavior, so it stands still {place}"
-    row = view.row
-    if off := heading_message(record, env.simulation.pose[row], env.simulation.state.goal[row]):
+    pose, goal = simulation.pose[row], simulation.state.goal[row]
+    if off := heading_message(record, pose, goal) or reverse_message(record, pose, goal):
         return f"stands still {place}: {off}"
-    if back := reverse_message(record, env.simulation.pose[row], env.simulation.state.goal[row]):
-        return f"stands still {place}: {back}"
-    return f"stands still {place}{_obstruction_message(env, view, held)}"
+    return f"stands still {place}{_obstruction_message(facts, row)}"
 
 
-def _obstruction_message(env: Env, view: ObjectView, held: dict[str, Event]) -> str:
+def _obstruction_message(facts: EpisodeFacts, row: int) -> str:
     """Say what is in the way of a robot: an object stopped by a collision, or one that its behavior cannot get around.
 
     Empty if there is no such object.
     """
-    near = find_obstruction(env.simulation, view.row, held)
+    near = find_obstruction(facts.simulation, row, facts.jammed)
     if near is None or not (near.held or near.pushed or near.advice):
         return ""
     return f", and {near.message}" + (f" ({near.advice})" if near.advice else "")
 
 
-def _circling_message(env: Env, view: ObjectView, events: Sequence[Event]) -> str | None:
+def _circling_message(facts: EpisodeFacts, row: int) -> str | None:
     """Describe the circle that a robot drives around its goal; None if it does not."""
-    if view.goal is None or not has_one_end(view.record):
+    state, record = facts.simulation.state, facts.robots[row]
+    goals = state.goals(row)
+    if not goals or not has_one_end(record):
         return None
-    turns = (e.step for e in reversed(events) if e.kind == "waypoint" and e.object == view.name)
-    track = env.simulation.state.trajectory(view.row)[next(turns, 0) :, :3]
-    circle = find_circling(track, view.goal[:2, 0])
+    turns = (e.step for e in reversed(facts.events) if e.kind == "waypoint" and e.object == record.name)
+    circle = find_circling(state.trajectory(row)[next(turns, 0) :, :3], np.asarray(goals[0][:2]))
     return None if circle is None else circle.message
-
-
-def _is_inside(env: Env, robot: RobotResult) -> bool:
-    left, low, right, top = env.scenario.world.bounds
-    return left <= robot.pose[0] <= right and low <= robot.pose[1] <= top

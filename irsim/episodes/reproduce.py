@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from irsim.episodes.episode import seed_of
 from irsim.scenario.resolve.randomness import random_parts
 
 if TYPE_CHECKING:
-    from irsim.env import Env
+    from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = ["overlay_options", "region_options", "reproduce_command", "strip_options"]
 
@@ -22,7 +21,8 @@ _NO_FILE = "scenario.yaml"
 def reproduce_command(
     verb: str,
     path: str | Path | None,
-    env: Env,
+    scenario: ResolvedScenario,
+    seed: int,
     steps: int | None,
     strict: bool,
     imports: Sequence[str] = (),
@@ -33,8 +33,8 @@ def reproduce_command(
     It has the seed unless the seed decides nothing and is the default of the command.
     """
     words = ["irsim", verb, _NO_FILE if path is None else str(path)]
-    if random_parts(env.scenario) or env.seed != seed_of(env.scenario, None):
-        words += ["--seed", str(env.seed)]
+    if random_parts(scenario) or seed != (scenario.world.seed or 0):
+        words += ["--seed", str(seed)]
     if steps is not None:
         words += ["--steps", str(steps)]
     if strict:

@@ -1,273 +1,303 @@
-"""Makes the :class:`irsim.results.run.RunResult` of a finished environment."""
+"""Makes the :class:`irsim.results.run.RunResult` of an episode after its last step."""
 
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from irsim.common.arrays import Floats
 from irsim.common.text import clean
 from irsim.common.version import version
 from irsim.diagnostics.errors import CodedError
-from irsim.episodes.between_steps import BetweenSteps, find_between_steps
-from irsim.episodes.decisive import decisive_step, nearest_to_goals
-from irsim.episodes.explanation import has_one_end, reason_message, summary_message
-from irsim.episodes.incidents import find_incidents
-from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, find_exits
+from irsim.episodes.explanation import reason_message, summary_message
+from irsim.episodes.facts import EpisodeFacts, first_collision
+from irsim.episodes.incidents import MAX_LISTED_EXITS, find_exits
+from irsim.episodes.obstructions import find_obstruction
+from irsim.episodes.progress import find_circling, has_one_end, no_progress_since, stalled_step
 from irsim.episodes.reproduce import reproduce_command
 from irsim.episodes.scene_summary import called
-from irsim.episodes.stuck import find_jammed
 from irsim.episodes.watching import goal_visibility, watched_metrics, zone_results
+from irsim.navigation.clearances import Approach, least
 from irsim.results.findings import Finding
 from irsim.results.run import EventRecord, HorizonSource, Left, RobotResult, RunResult
 from irsim.scenario.resolve.randomness import random_parts
-from irsim.simulation.events import BETWEEN_STEPS, SIGHTS, Event, first_events, passable_names
+from irsim.simulation.events import BETWEEN_STEPS, SIGHTS, Event, first_events
 from irsim.simulation.explored import explored_share
 from irsim.simulation.history import all_poses
 from irsim.simulation.outcome import robot_outcomes
 
 if TYPE_CHECKING:
-    from irsim.env import Env
-    from irsim.metrics import Approach
+    from irsim.common.arrays import Floats
     from irsim.policies.policy import Policy
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+    from irsim.simulation.simulation import Simulation
 
-__all__ = ["run_result"]
+__all__ = ["RunPlan", "run_result"]
 
 _MAX_EVENTS = 100
 """Number of events that a result lists."""
 _LOST = {"bridge-lost": "program of a bridge", "policy-lost": "policy"}
 """What was lost, by the code of the error."""
-_MAX_POSES = 2_000_000
-"""Number of poses, of all objects in all steps, up to which clearances of robots are computed."""
+_MAX_LATE = 50
+"""Number of robots without success whose trajectories are searched for the decisive step."""
+
+
+@dataclass(frozen=True)
+class RunPlan:
+    """What one run simulates, and how it was asked for.
+
+    Attributes:
+        path: The scenario file, None for a text.
+        horizon: Greatest number of steps.
+        source: Where the horizon comes from.
+        warnings: Warnings about the scenario.
+        strict: Whether the scenario was read strictly.
+        imports: Modules that were imported for the scenario.
+        behavior: Behavior that every robot has instead of its own.
+        policy: Policy in Python that drives the robots.
+        perturb: Perturbations of the scenario, as on the command line.
+        bridges: Names of all bridges that are opened.
+        added_bridges: Bridges besides those of the scenario, as on the command line.
+    """
+
+    path: str | Path | None
+    horizon: int
+    source: HorizonSource
+    warnings: list[Finding] = field(default_factory=list)
+    strict: bool = False
+    imports: Sequence[str] = ()
+    behavior: str | None = None
+    policy: Policy | None = None
+    perturb: Sequence[str] = ()
+    bridges: Sequence[str] = ()
+    added_bridges: Sequence[str] = ()
+
+    @property
+    def policy_text(self) -> str | None:
+        """What opens the policy in Python, or its name; None without one."""
+        return None if self.policy is None else self.policy.text or self.policy.name
+
+    def record_options(self) -> dict[str, Any]:
+        """What a recorded run keeps besides scenario, seed and horizon."""
+        options: dict[str, Any] = {"strict": self.strict, "imports": list(self.imports)}
+        if self.behavior is not None:
+            options["behavior"] = self.behavior
+        if self.policy is not None:
+            options |= {"policy": self.policy_text, "policy_digest": self.policy.digest}
+        if self.perturb:
+            options["perturb"] = list(self.perturb)
+        if self.bridges:
+            options["bridges"] = list(self.bridges)
+        return options
+
+    def reproduce(self, scenario: ResolvedScenario, seed: int) -> str:
+        """The command that repeats the run."""
+        extra = [] if self.behavior is None else ["--behavior", self.behavior]
+        extra += [] if self.policy_text is None else ["--policy", self.policy_text]
+        extra += [word for one in self.perturb for word in ("--perturb", one)]
+        extra += [word for one in self.added_bridges for word in ("--bridge", one)]
+        given = self.horizon if self.source in ("argument", "limits") else None
+        return reproduce_command("run", self.path, scenario, seed, given, self.strict, self.imports, extra)
 
 
 def run_result(
-    env: Env,
-    path: str | Path | None,
+    simulation: Simulation,
+    events: list[Event],
+    plan: RunPlan,
     *,
-    horizon: int,
-    source: HorizonSource,
-    warnings: list[Finding],
-    files: list[str],
-    imports: Sequence[str] = (),
-    strict: bool = False,
-    behavior: str | None = None,
-    policy: Policy | None = None,
-    perturb: Sequence[str] = (),
-    bridges: Sequence[str] = (),
+    files: Sequence[str] = (),
     lost: CodedError | None = None,
 ) -> RunResult:
     """Make the result of an episode.
 
     Args:
-        env: The environment after the last step.
-        path: The scenario file, None for a text.
-        horizon: Maximum number of steps.
-        source: Where the horizon comes from.
-        warnings: Warnings about the scenario.
+        simulation: The simulation after the last step.
+        events: All its events.
+        plan: What was run.
         files: Files that were written.
-        imports: Modules that were imported for the scenario.
-        strict: Whether the scenario was read strictly.
-        behavior: Behavior that every robot had instead of its own.
-        policy: Policy in Python that drove the robots.
-        perturb: Perturbations of the scenario, as on the command line.
-        bridges: Bridges besides those of the scenario, as on the command line.
         lost: Why the policy or the program of a bridge could not go on, which ended the run.
     """
-    events = env.events
-    hits, counts = _collisions(env, events)
-    listed = _without_repeats(env.scenario, events)
-    held = find_jammed(env.simulation, events)
-    parked = [record.name for record in env.scenario.robots() if env.scenario.is_parked(record)]
-    between = find_between_steps(events, {view.name for view in env.robot_list}, passable_names(env.simulation))
-    robots = _robots(env, events, counts, between, parked)
-    left, incidents = _exits(env), find_incidents(env.scenario.objects, events)
-    zones = zone_results(env, events)
+    facts = EpisodeFacts.of(simulation, events)
+    scenario, seed = facts.scenario, simulation.key()[0]
+    listed = _without_repeats(scenario, events)
+    robots, left, zones = _robots(facts), _exits(facts), zone_results(simulation, events)
     ends = [robot.outcome for robot in robots]
     outcome: Literal["success", "collision", "timeout"] = "timeout"
     if ends and all(end == "success" for end in ends):
         outcome = "success"
     elif "collision" in ends:
         outcome = "collision"
-    extra = [] if behavior is None else ["--behavior", behavior]
-    if policy is not None:
-        extra += ["--policy", policy.text or policy.name]
-    for perturbation in perturb:
-        extra += ["--perturb", perturbation]
-    for bridge in bridges:
-        extra += ["--bridge", bridge]
-    because: str | None = None
+    reason: str | None = None
     if outcome != "success":
-        ended = None if lost is None else f"{lost.message}; the run ended"
-        because = ended or reason_message(env, robots, hits, between, events, source, parked, held)
-    summary = summary_message(
-        env,
-        robots,
-        hits,
-        between,
-        _driven_by(behavior, policy),
-        parked,
-        held,
-        events,
-        left,
-        incidents,
-        nearest_to_goals(env, incidents.jumps),
-        zones,
-    )
-    given = horizon if source in ("argument", "limits") else None
+        reason = reason_message(facts, robots, plan.source) if lost is None else f"{lost.message}; the run ended"
+    summary, lost_code = summary_message(facts, robots, _driven_by(plan), left, zones), _lost_code(lost)
+    if lost_code is not None:
+        summary += f"; the {_LOST[lost_code]} was lost, which ended the run"
     return RunResult(
-        scenario="(text)" if path is None else str(path),
-        seed=env.seed,
-        random=random_parts(env.scenario),
-        behavior=behavior,
-        policy=None if policy is None else policy.text or policy.name,
-        policy_digest=None if policy is None else policy.digest,
-        perturb=list(perturb),
+        scenario="(text)" if plan.path is None else str(plan.path),
+        seed=seed,
+        random=random_parts(scenario),
+        behavior=plan.behavior,
+        policy=plan.policy_text,
+        policy_digest=None if plan.policy is None else plan.policy.digest,
+        perturb=list(plan.perturb),
         outcome=outcome,
-        summary=summary + ("" if lost is None else f"; the {_LOST[_lost_code(lost)]} was lost, which ended the run"),
-        reason=because,
+        summary=summary,
+        reason=reason,
         lost=None if lost is None else lost.message,
-        lost_code=None if lost is None else _lost_code(lost),
-        decisive_step=decisive_step(env, robots, hits, between, events, parked, held),
-        steps=int(env.simulation.count[0]),
-        sim_time=env.sim_time,
-        time_limit=horizon * env.step_time,
-        time_limit_from=source,
+        lost_code=lost_code,
+        decisive_step=_decisive_step(facts, robots),
+        steps=facts.steps,
+        sim_time=facts.time,
+        time_limit=plan.horizon * facts.step_time,
+        time_limit_from=plan.source,
         robots=robots,
-        parked=parked,
-        jammed=list(held),
+        parked=facts.parked,
+        jammed=list(facts.jammed),
         left=left[:MAX_LISTED_EXITS],
-        jumped=list(incidents.jumps)[:MAX_LISTED_EXITS],
-        explored=explored_share(env.simulation),
-        human_contacts=len(incidents.human_contacts),
-        contacts_between_steps=len(between),
+        jumped=list(facts.incidents.jumps)[:MAX_LISTED_EXITS],
+        explored=explored_share(simulation),
+        human_contacts=len(facts.incidents.human_contacts),
+        contacts_between_steps=len(facts.between),
         zones=zones,
         events=[EventRecord(**event._asdict()) for event in _first(listed)],
         event_count=len(listed),
-        warnings=warnings,
-        files=files,
+        warnings=list(plan.warnings),
+        files=list(files),
         version=version(),
-        reproduce=reproduce_command("run", path, env, given, strict, imports, extra),
+        reproduce=plan.reproduce(scenario, seed),
     )
 
 
-def _robots(
-    env: Env, events: list[Event], counts: Counter[str], between: BetweenSteps, parked: Sequence[str]
-) -> list[RobotResult]:
-    outcomes = robot_outcomes(env.simulation, events=events)
-    arrivals = first_events(events, "arrival")
-    robots = []
-    small = (int(env.simulation.count[0]) + 1) * env.simulation.objects <= _MAX_POSES
-    nearest = _approaches(env, arrivals) if small else {}
-    watched = watched_metrics(env, events, arrivals)
-    visible = goal_visibility(env, arrivals) if small else {}
-    for view in env.robot_list:
-        approach, approach_place = nearest.get(view.row, (None, None))
-        ended = outcomes[view.name]
-        goal = None if view.name in parked else view.goal
-        arrival = arrivals.get(view.name)
-        place = (view.init_state if env.simulation.appeared[view.row] < 0 else view.state)[:3, 0]
+def _robots(facts: EpisodeFacts) -> list[RobotResult]:
+    simulation, robots = facts.simulation, []
+    outcomes = robot_outcomes(simulation, events=facts.events)
+    arrivals = first_events(facts.events, "arrival")
+    nearest = _approaches(facts, arrivals) if facts.is_small else {}
+    watched = watched_metrics(simulation, facts.events, arrivals)
+    visible = goal_visibility(simulation, arrivals) if facts.is_small else {}
+    for row, record in facts.robots.items():
+        name, ended, arrival = record.name, outcomes[record.name], arrivals.get(record.name)
+        approach, approach_place = nearest.get(row, (None, None))
+        goals = None if name in facts.parked else simulation.state.goals(row)
+        track = facts.track(row)
+        x, y, heading = track[0] if simulation.appeared[row] < 0 else simulation.pose[row]
         robots.append(
             RobotResult(
-                name=view.name,
+                name=name,
                 outcome="timeout" if ended == "running" else ended,
                 time_to_goal=None if arrival is None else arrival.time,
-                collision_count=counts[view.name],
-                contacts_between_steps=between.counts[view.name],
-                passed_through=between.passed.get(view.name, []),
-                infeasible_steps=int(env.simulation.infeasible[view.row]) or None,
-                path_length=_path_length(env, view.row),
-                distance_to_goal=None if goal is None else math.dist(goal[:2, 0], place[:2]),
+                collision_count=facts.hit_counts[name],
+                contacts_between_steps=facts.between.counts[name],
+                passed_through=facts.between.passed.get(name, []),
+                infeasible_steps=int(simulation.infeasible[row]) or None,
+                path_length=_length(track),
+                distance_to_goal=math.dist(goals[0][:2], (x, y)) if goals else None,
                 min_clearance=None if approach is None else approach.distance,
                 nearest=None if approach is None else approach.partner,
-                nearest_called=None if approach is None else called(env.scenario, approach.partner),
+                nearest_called=None if approach is None else called(facts.scenario, approach.partner),
                 nearest_at=approach_place,
-                heading_error=None if goal is None else _heading_error(view.record, goal[:, 0], float(place[2])),
-                goal_visible_ratio=visible.get(view.name),
-                **watched[view.name],
-                pose=(float(place[0]), float(place[1]), float(place[2])),
+                heading_error=_heading_error(record, goals[0], float(heading)) if goals else None,
+                goal_visible_ratio=visible.get(name),
+                **watched[name],
+                pose=(float(x), float(y), float(heading)),
             )
         )
     return robots
 
 
-def _approaches(env: Env, arrivals: dict[str, Event]) -> dict[int, tuple[Approach | None, tuple[float, float] | None]]:
+def _approaches(
+    facts: EpisodeFacts, arrivals: dict[str, Event]
+) -> dict[int, tuple[Approach | None, tuple[float, float] | None]]:
     """Find what each robot, by row, came nearest to until it arrived, and where it was then.
 
     Empty if objects came or went.
     """
-    from irsim.navigation.clearances import least
-
-    rows, steps = [view.row for view in env.robot_list], int(env.simulation.count[0])
-    poses = all_poses(env.simulation) if rows else None
+    poses = all_poses(facts.simulation) if facts.robots else None
     if poses is None:
         return {}
-    ends = [arrivals[view.name].step + 1 if view.name in arrivals else steps + 1 for view in env.robot_list]
+    names = [record.name for record in facts.robots.values()]
+    ends = [arrivals[name].step + 1 if name in arrivals else facts.steps + 1 for name in names]
     found: dict[int, tuple[Approach | None, tuple[float, float] | None]] = {}
-    for row, approach in zip(rows, least(poses, env.simulation, rows, ends), strict=True):
+    for row, approach in zip(facts.robots, least(poses, facts.simulation, list(facts.robots), ends), strict=True):
         place = None if approach is None else (float(poses[approach.row, row, 0]), float(poses[approach.row, row, 1]))
         found[row] = approach, place
     return found
 
 
-def _heading_error(record: ObjectRecord, goal: Floats, heading: float) -> float | None:
+def _heading_error(record: ObjectRecord, goal: Sequence[float], heading: float) -> float | None:
     """Difference between a heading and that of a goal [rad]; None where the heading does not count."""
-    return abs(math.remainder(heading - float(goal[2]), math.tau)) if record.heading_counts(goal.tolist()) else None
+    return abs(math.remainder(heading - goal[2], math.tau)) if record.heading_counts(goal) else None
 
 
-def _collisions(env: Env, events: list[Event]) -> tuple[list[Event], Counter[str]]:
-    """Return the collisions of robots and the number of each robot; ``unobstructed`` objects do not collide."""
-    passable = passable_names(env.simulation)
-    names = {view.name for view in env.robot_list}
-    hits, counts = list[Event](), Counter[str]()
-    for event in events:
-        if event.kind == "collision":  # cheapest test first: there may be a million events
-            first, second = event.object, event.partner or ""
-            mine, theirs = first in names and second not in passable, second in names and first not in passable
-            if mine or theirs:
-                hits.append(event)
-            if mine:
-                counts[first] += 1
-            if theirs:
-                counts[second] += 1
-    return hits, counts
-
-
-def _path_length(env: Env, row: int) -> float:
-    track = env.simulation.state.trajectory(row)[:, :2]
-    points = np.vstack([env.simulation.state.initial_state(row)[None, :2], track])
+def _length(track: Floats) -> float:
+    """Length of a path [m]."""
     with np.errstate(over="ignore", invalid="ignore"):  # steps may be as long as a float allows
-        return float(np.hypot(*np.diff(points, axis=0).T).sum())
+        return float(np.hypot(*np.diff(track[:, :2], axis=0).T).sum())
 
 
-def _exits(env: Env) -> list[Left]:
+def _exits(facts: EpisodeFacts) -> list[Left]:
     """Find the objects that left the world; in very large runs only robots."""
-    simulation, large = env.simulation, (int(env.simulation.count[0]) + 1) * env.simulation.objects > _MAX_POSES
-    records = env.scenario.objects
 
-    def track(row: int) -> NDArray[np.float64]:
-        past = [] if large and records[row].role != "robot" else [simulation.state.trajectory(row)[:, :3]]
-        return np.vstack([simulation.state.initial_state(row)[None, :3], *past])
+    def track(row: int) -> Floats:
+        searched = facts.is_small or row in facts.robots
+        return facts.track(row) if searched else facts.simulation.state.initial_state(row)[None, :3]
 
-    return find_exits(env.scenario, track, int(simulation.count[0]))
+    return find_exits(facts.scenario, track, facts.steps)
 
 
-def _lost_code(error: CodedError) -> Literal["bridge-lost", "policy-lost"]:
+def _decisive_step(facts: EpisodeFacts, robots: Sequence[RobotResult]) -> int | None:
+    """Find the step that decided the outcome; None on success, and if late robots moved on until the end."""
+    failed = {robot.name for robot in robots if robot.outcome != "success"}
+    passed = [event for event in facts.between.of_robots if event.kind == "passed_through"]
+    through = [event.step for event in passed if failed & {event.object, str(event.partner)}]
+    first = first_collision({robot.name for robot in robots if robot.outcome == "collision"}, facts.hits)
+    if first is not None:
+        return min([first.step, *through])
+    if through:
+        return through[0]
+    late = {robot.name for robot in robots if robot.outcome == "timeout" and robot.name not in facts.parked}
+    rows = [row for row, record in facts.robots.items() if record.name in late]
+    return min((step for row in rows[:_MAX_LATE] if (step := _end_of_progress(facts, row))), default=None)
+
+
+def _end_of_progress(facts: EpisodeFacts, row: int) -> int | None:
+    """The step from which on a robot made no progress; None if it moved on until the end."""
+    simulation, record, view = facts.simulation, facts.robots[row], facts.simulation.views()[row]
+    mine = [event for event in facts.events if event.object == record.name]
+    if (no_path := next((event for event in mine if event.kind == "no_path"), None)) is not None:
+        return no_path.step
+    track = simulation.state.trajectory(row)[:, :3]
+    offset = facts.steps - len(track) + 1  # step of the first row
+    if (since := no_progress_since(track[:, :2], facts.step_time, view.max_speed)) is not None:
+        near = find_obstruction(simulation, row, facts.jammed) if facts.jammed else None
+        if near is not None and near.held:
+            return min(event.step for event in facts.jammed.values())
+        return offset + since
+    if (jump := next((event for event in mine if event.kind == "overshoot"), None)) is not None:
+        return jump.step
+    if view.goal is not None and has_one_end(record):
+        if (circle := find_circling(track, view.goal[:2, 0])) is not None:
+            return offset + circle.since
+        return stalled_step(simulation, view, mine)
+    return None
+
+
+def _lost_code(error: CodedError | None) -> Literal["bridge-lost", "policy-lost"] | None:
+    if error is None:
+        return None
     return "bridge-lost" if error.code == "bridge-lost" else "policy-lost"
 
 
-def _driven_by(behavior: str | None, policy: Policy | None) -> str | None:
+def _driven_by(plan: RunPlan) -> str | None:
     """What drives all robots instead of their own behaviors, in words; None if nothing does."""
-    if policy is not None:
-        return f"policy {clean(policy.text or policy.name)}"
-    return None if behavior is None else f"behavior {behavior}"
+    if plan.policy_text is not None:
+        return f"policy {clean(plan.policy_text)}"
+    return None if plan.behavior is None else f"behavior {plan.behavior}"
 
 
 def _without_repeats(scenario: ResolvedScenario, events: Sequence[Event]) -> list[Event]:

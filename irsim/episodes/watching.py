@@ -7,13 +7,14 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim.common.text import listed, quoted, seconds
+from irsim.metrics.watching import Rows, Watching, goal_visible_ratio, watching_metrics, zone_metrics
 from irsim.results.run import ZoneResult
 from irsim.simulation.history import past_goals, past_poses
 
 if TYPE_CHECKING:
-    from irsim.env import Env
     from irsim.scenario.model.zones import Zone
     from irsim.simulation.events import Event
+    from irsim.simulation.simulation import Simulation
 
 __all__ = ["goal_visibility", "sights_message", "watched_metrics", "zone_results", "zones_message"]
 
@@ -23,60 +24,58 @@ _MAX_NAMED = 3
 """Number of zones that a sentence names."""
 
 
-def watched_metrics(env: Env, events: Sequence[Event], arrivals: Mapping[str, Event]) -> dict[str, dict[str, Any]]:
+def watched_metrics(
+    simulation: Simulation, events: Sequence[Event], arrivals: Mapping[str, Event]
+) -> dict[str, dict[str, Any]]:
     """Metrics of zones and of fields of view by the name of each robot, until it arrived; None where undefined.
 
     Args:
-        env: The environment after the last step.
+        simulation: The simulation after the last step.
         events: Its events.
         arrivals: First arrivals by name.
     """
-    from irsim.metrics.watching import Rows, Watching, watching_metrics
-
-    watching, steps = Watching.read(env.simulation, events), int(env.simulation.count[0])
+    watching, steps = Watching.read(simulation, events), int(simulation.count[0])
     found = {}
-    for view in env.robot_list:
-        last = arrivals[view.name].step if view.name in arrivals else steps
-        metrics = watching_metrics(watching, view.name, Rows(0, last + 1, env.step_time))
-        found[view.name] = {key: None if math.isnan(value) else value for key, value in metrics.items()}
+    for robot in simulation.scenario.robots():
+        last = arrivals[robot.name].step if robot.name in arrivals else steps
+        metrics = watching_metrics(watching, robot.name, Rows(0, last + 1, simulation.scenario.world.step_time))
+        found[robot.name] = {key: None if math.isnan(value) else value for key, value in metrics.items()}
     return found
 
 
-def goal_visibility(env: Env, arrivals: Mapping[str, Event]) -> dict[str, float | None]:
+def goal_visibility(simulation: Simulation, arrivals: Mapping[str, Event]) -> dict[str, float | None]:
     """``goal_visible_ratio`` by the name of each robot; None where undefined, and if its past is unknown.
 
     Args:
-        env: The environment after the last step.
+        simulation: The simulation after the last step.
         arrivals: First arrivals by name.
     """
-    from irsim.metrics.watching import goal_visible_ratio
-
     found: dict[str, float | None] = {}
-    for view in env.robot_list:
-        poses, goals = past_poses(env.simulation, view.row), past_goals(env.simulation, view.row)
-        if env.scenario.is_parked(view.record) or poses is None or goals is None:
+    for row, record in enumerate(simulation.scenario.objects):
+        if record.role != "robot" or simulation.scenario.is_parked(record):
             continue
-        rows = slice(arrivals[view.name].step + 1 if view.name in arrivals else None)
-        share = goal_visible_ratio(poses[rows, :2], goals[rows], env.simulation)
-        found[view.name] = None if math.isnan(share) else share
+        poses, goals = past_poses(simulation, row), past_goals(simulation, row)
+        if poses is None or goals is None:
+            continue
+        rows = slice(arrivals[record.name].step + 1 if record.name in arrivals else None)
+        share = goal_visible_ratio(poses[rows, :2], goals[rows], simulation)
+        found[record.name] = None if math.isnan(share) else share
     return found
 
 
-def zone_results(env: Env, events: Sequence[Event]) -> dict[str, ZoneResult]:
+def zone_results(simulation: Simulation, events: Sequence[Event]) -> dict[str, ZoneResult]:
     """What all objects did in each zone, by its name."""
-    from irsim.metrics.watching import Rows, Watching, zone_metrics
-
-    zones = env.scenario.world.zones
+    zones = simulation.scenario.world.zones
     if not zones:
         return {}
-    watching = Watching.read(env.simulation, events)
-    rows = Rows(0, int(env.simulation.count[0]) + 1, env.step_time)
+    watching = Watching.read(simulation, events)
+    rows = Rows(0, int(simulation.count[0]) + 1, simulation.scenario.world.step_time)
     of = {name: zone_metrics(watching, name, rows) for name in watching.of_object}
     first: dict[str, dict[str, float]] = {zone.name: {} for zone in zones}
     for event in events:
         if event.zone is not None:
             first[event.zone].setdefault(event.object, event.time)
-    robots = {view.name for view in env.robot_list}
+    robots = {robot.name for robot in simulation.scenario.robots()}
     return {zone.name: _zone_result(zone, first[zone.name], of, robots) for zone in zones}
 
 

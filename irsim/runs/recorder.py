@@ -30,7 +30,6 @@ from irsim.simulation.events import Event, read_events
 from irsim.simulation.trace import sensors
 
 if TYPE_CHECKING:
-    from irsim.env import Env
     from irsim.results.run import RunResult
     from irsim.simulation.simulation import Simulation
 
@@ -297,12 +296,17 @@ class Recorder:
 
 @contextmanager
 def recording(
-    env: Env, path: str | Path | None, record: bool | str | Path, *, horizon: int, options: Mapping[str, Any]
+    simulation: Simulation,
+    path: str | Path | None,
+    record: bool | str | Path,
+    *,
+    horizon: int,
+    options: Mapping[str, Any],
 ) -> Iterator[Recorder | None]:
-    """Context with a recorder for the episode of an environment, None if it is not recorded.
+    """Context with a recorder for the episode of a simulation, None if it is not recorded.
 
     Args:
-        env: The environment at its start.
+        simulation: The simulation of one world, at its start.
         path: Scenario file, None for a text.
         record: Whether to record, or the folder to record to.
         horizon: Greatest number of steps.
@@ -313,7 +317,7 @@ def recording(
         yield None
         return
     recorder = Recorder(
-        env.simulation,
+        simulation,
         horizon=horizon,
         scenario=None if path is None else str(path),
         options=options,

@@ -12,27 +12,21 @@ from numpy.typing import NDArray
 
 from irsim.common.text import seconds
 from irsim.env import Env
-from irsim.episodes.between_steps import between_steps_message, find_between_steps
+from irsim.episodes.between_steps import between_steps_message
 from irsim.episodes.episode import horizon_of
-from irsim.episodes.explanation import has_one_end, others_arrived_message
-from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, exits_message, find_exits
-from irsim.episodes.room import MAX_TRIES, crowded_message, first_with_room
-from irsim.episodes.stuck import (
-    find_circling,
-    find_jammed,
-    find_obstruction,
-    heading_message,
-    jam_message,
-    no_progress_since,
-    no_way_message,
-)
+from irsim.episodes.explanation import others_arrived_message
+from irsim.episodes.facts import EpisodeFacts
+from irsim.episodes.incidents import MAX_LISTED_EXITS, exits_message, find_exits
+from irsim.episodes.obstructions import find_obstruction, heading_message, jam_message, no_way_message
+from irsim.episodes.opening import MAX_TRIES, crowded_message, first_with_room
+from irsim.episodes.progress import find_circling, has_one_end, no_progress_since
 from irsim.episodes.watching import zone_results, zones_message
 from irsim.results.run import EventRecord
 from irsim.results.validation import DryRun, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
-from irsim.simulation.events import Event, is_collision_of, partner_of, passable_names
+from irsim.simulation.events import Event, partner_of
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.step_cost import step_work
 from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
@@ -135,15 +129,11 @@ def _summarise(
         cut: Computing time [s] that ended the dry run, None if it ended for another reason.
     """
     steps = len(trace) - 1
-    events, passable = env.events, passable_names(env.simulation)
-    robots = [index for index, item in enumerate(scenario.objects) if item.role == "robot"]
-    names = {scenario.objects[index].name for index in robots}
-    hits = [e for e in events if any(is_collision_of(e, name, passable) for name in names)]
-    between = find_between_steps(events, names, passable)
+    facts = EpisodeFacts.of(env.simulation, env.events)
+    events, hits, parked, held = facts.events, facts.hits, facts.parked, facts.jammed
+    names = {record.name for record in facts.robots.values()}
     arrived = list(dict.fromkeys(e.object for e in events if e.kind == "arrival" and e.object in names))
-    parked = [record.name for record in scenario.robots() if scenario.is_parked(record)]
-    held = find_jammed(env.simulation, events)
-    moving = [row for row in robots if scenario.objects[row].name not in parked]
+    moving = [row for row, record in facts.robots.items() if record.name not in parked]
     driven = [row for row in moving if not _is_undriven(scenario.objects[row])]
     stuck, count = _find_stuck(env, trace, driven, events, held)
     waiting, _ = _find_stuck(env, trace, [row for row in moving if row not in driven], events, held)
@@ -161,8 +151,8 @@ def _summarise(
         ended=ended,
         summary="; ".join(
             [
-                _progress_message(trace, len(robots), arrived, parked, ended, cut),
-                *filter(None, [between_steps_message(env, between, hits)]),
+                _progress_message(trace, len(names), arrived, parked, ended, cut),
+                *filter(None, [between_steps_message(env.simulation, facts.between, hits)]),
                 *_problem_messages(hits, stuck, count),
                 *filter(
                     None,
@@ -170,14 +160,14 @@ def _summarise(
                         others_arrived_message(scenario, events),
                         jam_message(env.simulation, held),
                         exits_message(scenario, left),
-                        zones_message(zone_results(env, events)),
+                        zones_message(zone_results(env.simulation, events)),
                     ),
                 ),
             ]
         ),
         arrived=arrived,
         collisions=[EventRecord(**e._asdict()) for e in hits[:_MAX_LISTED]],
-        contacts_between_steps=[EventRecord(**e._asdict()) for e in between.of_robots[:_MAX_LISTED]],
+        contacts_between_steps=[EventRecord(**e._asdict()) for e in facts.between.of_robots[:_MAX_LISTED]],
         stuck=[*stuck, *waiting][:_MAX_LISTED],
         left=left[:MAX_LISTED_EXITS],
         parked=parked,

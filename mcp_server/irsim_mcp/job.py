@@ -111,7 +111,7 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
     import base64
 
     from irsim.api.take_snapshot import snapshot_of
-    from irsim.episodes.room import MAX_TRIES
+    from irsim.episodes.opening import MAX_TRIES
     from irsim.results.findings import Finding
     from irsim.scenario.open import read_scenario
 

@@ -9,7 +9,7 @@ import pytest
 
 import irsim
 from irsim.api import snapshot
-from irsim.episodes.stuck import stalled_since
+from irsim.episodes.progress import stalled_since
 from irsim.policies import FunctionPolicy
 
 BODY = "kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, behavior: {name: dash}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from irsim.api.read_input import read_input
+from irsim.api.read_input import read_scenario
 from irsim.validation.scene_table import scene_table
 from irsim.validation.scene_text import scene_lines
 
@@ -50,7 +50,7 @@ robot:
 def lines(text: str, tmp_path: Path) -> str:
     file = tmp_path / "scene.yaml"
     file.write_text(text, encoding="utf-8")
-    scenario, _ = read_input(file, None, strict=True)
+    scenario, _ = read_scenario(file, strict=True)
     return "\n".join(scene_lines(scene_table(scenario).model_dump(), {}, 0))
 
 

@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 import irsim
-from irsim.api.read_input import read_input
+from irsim.api.read_input import read_scenario
 from irsim.benchmarks.stored import measure_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.bridges.base import BridgeError
@@ -271,7 +271,7 @@ def test_windows_have_the_people_of_their_time(square: Path, tmp_path: Path) -> 
 
 def test_seeds_draw_free_starts_and_goals_far_apart(square: Path, tmp_path: Path) -> None:
     import_pedestrians(square, suite=tmp_path / "s.yaml", episodes=Episodes(length=40))
-    scenario, _ = read_input(tmp_path / "s.yaml" / "from-40s", None, strict=True)
+    scenario, _ = read_scenario(tmp_path / "s.yaml" / "from-40s", strict=True)
     ways = []
     for seed in range(20):
         env = Env(scenario, seed=seed, headless=True, log_level="ERROR")

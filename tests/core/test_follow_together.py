@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.api.read_input import read_input
+from irsim.api.read_input import read_scenario
 from irsim.navigation.clearances import clearance
 from irsim.simulation.simulation import Simulation
 
@@ -107,7 +107,7 @@ def test_who_goes_first_does_not_depend_on_the_order_of_robots(drive: str) -> No
 
 @pytest.mark.parametrize(("drive", "least"), [("omni", 0.03), ("diff", 0.03), ("acker", 0.009)])
 def test_robots_that_are_pushed_aside_keep_a_margin_to_walls(drive: str, least: float) -> None:
-    scenario, _ = read_input(None, text_of("door of 0.9 m", drive), strict=False)
+    scenario, _ = read_scenario(text=text_of("door of 0.9 m", drive), strict=False)
     simulation = Simulation(scenario, [0])
     poses = []
     for _ in range(200):

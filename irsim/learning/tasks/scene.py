@@ -17,7 +17,7 @@ from irsim.bundled.templates.store import load
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, suggestion
 from irsim.diagnostics.errors import InputError
-from irsim.episodes.unopened import unopened_bridges
+from irsim.episodes.opening import unopened_bridges
 from irsim.learning.tasks.files import TaskError, task_error
 from irsim.learning.tasks.task import Task, Value
 from irsim.learning.tasks.variation import LevelDraws, drawn_values, level_draws, randomize_path

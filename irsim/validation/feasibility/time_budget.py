@@ -15,7 +15,7 @@ import irsim._core as core
 from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.episodes.episode import HORIZON_FACTOR, MIN_HORIZON
-from irsim.episodes.stuck import REACTIVE
+from irsim.episodes.obstructions import REACTIVE
 from irsim.scenario.checks import Context
 from irsim.scenario.resolve.body_size import reach_of
 from irsim.scenario.resolve.braking import follow_text

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from irsim.common.text import metres
-from irsim.episodes.reverse import lacks_reverse, needs_reverse, reverse_fix, turning_radius
+from irsim.episodes.obstructions import lacks_reverse, needs_reverse, reverse_fix, turning_radius
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.reachability import Leg

@@ -1,19 +1,19 @@
-"""Why an object makes no progress: a collision, an obstruction, a missing heading, or a goal that it circles."""
+"""Why an object makes no progress: a collision, an obstruction, a missing heading, or no reverse."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.angles import wrap
 from irsim.common.text import quoted, seconds
 from irsim.navigation.clearances import approaches
 from irsim.scenario.resolve.braking import follow_text
+from irsim.scenario.yaml.formatting import flow
 from irsim.simulation.events import Event, is_collision_of, passable_names
 
 if TYPE_CHECKING:
@@ -22,30 +22,21 @@ if TYPE_CHECKING:
 
 __all__ = [
     "REACTIVE",
-    "Circle",
     "Obstruction",
-    "find_circling",
     "find_jammed",
     "find_obstruction",
     "heading_message",
     "is_moving_obstacle",
     "jam_message",
-    "no_progress_since",
+    "lacks_reverse",
+    "needs_reverse",
     "no_way_message",
     "reactive_behavior",
-    "stalled_since",
+    "reverse_fix",
+    "reverse_message",
+    "turning_radius",
 ]
 
-_WINDOW = 5.0
-"""Time [s] in which an object that makes progress moves by at least ``_MIN_MOVE``."""
-_MIN_MOVE = 0.1
-"""Least movement [m] in the window that counts as progress; very slow objects need half of what they could move."""
-_STALL_SHARE = 0.1
-"""Share of what its top speed allows by which an object that makes progress comes nearer to its goal in the window."""
-_CREEP_SHARE = 0.25
-"""Share of what its top speed allows below which an object without progress creeps."""
-_TO_AND_FRO_SHARE = 0.5
-"""Share of the way driven in the window below which the net movement means driving to and fro."""
 _MAX_OBSTRUCTION_DISTANCE = 0.5
 """Distance [m] up to which an object obstructs one that makes no progress."""
 _PUSHED = 1e-3
@@ -56,33 +47,8 @@ REACTIVE = ("rvo", "orca", "avocado", "footprint_orca", "sfm")
 """Behaviors that avoid obstacles without planning a path."""
 _MAX_JAM_DISTANCE = 2.0
 """Distance [m] up to which a jammed obstacle obstructs an object, as some behaviors keep this far from people."""
-_MIN_CIRCLE_RADIUS = 0.05
-"""Smallest radius [m] that counts as a circle rather than a turn on the spot."""
-_MIN_TURNS = 1.5
-"""Number of full turns after which a path counts as circling."""
-
-
-@dataclass(frozen=True, slots=True)
-class Circle:
-    """A circular path around a goal.
-
-    Attributes:
-        radius: Radius of the path [m].
-        nearest: Least distance to the goal [m].
-        since: First row of the poses that belongs to the circle.
-    """
-
-    radius: float
-    nearest: float
-    since: int
-
-    @property
-    def message(self) -> str:
-        """Size of the circle, and what to change in the scenario."""
-        return (
-            f"radius {self.radius:.1f} m, never nearer than {self.nearest:.2f} m "
-            "(raise goal_threshold, or let it turn more sharply)"
-        )
+_MAX_STEERING = 1.4
+"""Steering angle [rad] that ``follow`` does not exceed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,51 +113,6 @@ def jam_message(simulation: Simulation, held: dict[str, Event]) -> str | None:
         f"{len(held)} of {count} moving obstacle{'s' * (count != 1)} {'was' if len(held) == 1 else 'were'} stopped by "
         f"a collision ({'first ' * (len(held) > 2)}{hit}): collision_mode: unobstructed_obstacles lets them go on"
     )
-
-
-def no_progress_since(places: NDArray[np.float64], step_time: float, max_speed: float) -> int | None:
-    """First row after which an object hardly moves up to the end; None if it moves, or the trajectory is too short.
-
-    Args:
-        places: (T, 2) positions of the object [m].
-        step_time: Time between two rows [s].
-        max_speed: Top speed of the object [m/s].
-    """
-    if not len(places):
-        return None
-    min_move = min(_MIN_MOVE, _WINDOW / 2 * max_speed or _MIN_MOVE)
-    far = np.flatnonzero(np.hypot(*(places - places[-1]).T) >= min_move)
-    since = int(far[-1]) + 1 if far.size else 0
-    return None if len(places) - 1 - since < max(1, round(_WINDOW / step_time)) else since
-
-
-def stalled_since(
-    places: NDArray[np.float64], goal: NDArray[np.float64], step_time: float, max_speed: float
-) -> int | None:
-    """First row from which an object creeps or drives to and fro, hardly nearer to its goal, up to the end; else None.
-
-    An object on a detour is fast and gets somewhere, so it is not stalled.
-
-    Args:
-        places: (T, 2) positions of the object [m] since it had its present goal.
-        goal: (2,) present goal [m].
-        step_time: Time between two rows [s].
-        max_speed: Top speed of the object [m/s].
-    """
-    window = max(1, round(_WINDOW / step_time))
-    if len(places) <= window or not 0 < max_speed < math.inf:
-        return None
-    possible = max_speed * window * step_time
-    nearest = np.minimum.accumulate(np.hypot(*(places - goal).T))
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
-    gained, driven = nearest[:-window] - nearest[window:], way[window:] - way[:-window]
-    moved = np.hypot(*(places[window:] - places[:-window]).T)
-    lost = (driven < _CREEP_SHARE * possible) | (moved < _TO_AND_FRO_SHARE * driven)
-    stalled = lost & (gained < _STALL_SHARE * possible)
-    if not stalled[-1]:
-        return None
-    ended = np.flatnonzero(~stalled)
-    return int(ended[-1]) + 1 if ended.size else 0
 
 
 def find_obstruction(
@@ -295,27 +216,52 @@ def heading_message(record: ObjectRecord, pose: NDArray[np.float64], goal: NDArr
     return f"it is at its goal, but its heading is off by {off:.2f} rad (arrive_mode: state requires the heading)"
 
 
-def find_circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circle | None:
-    """Find the circle around its goal on which an object ends its trajectory; None if there is no such circle.
+def lacks_reverse(record: ObjectRecord) -> bool:
+    """Whether an object is a car under ``follow`` that cannot drive backward."""
+    drive: Any = record.kinematics
+    on_route = getattr(record.active_behavior, "name", "") == "follow"
+    steered = bool(getattr(drive, "steered", False)) and bool(record.wheelbase)
+    return on_route and steered and bool(record.vel_min) and record.vel_min[0] >= 0 and not record.static
+
+
+def turning_radius(record: ObjectRecord) -> float:
+    """Radius of the smallest circle that a car under ``follow`` drives [m]."""
+    drive: Any = record.kinematics
+    steering = min(_MAX_STEERING, math.inf if drive.psi_max is None else drive.psi_max)
+    if drive.mode == "steer":
+        steering = min(steering, record.vel_max[1])
+    return (record.wheelbase or 0.0) / math.tan(steering) if steering > 0 else math.inf
+
+
+def needs_reverse(record: ObjectRecord, pose: Sequence[float], goal: Sequence[float]) -> bool:
+    """Whether a car that :func:`lacks_reverse` stands still because its goal lies inside its turning circle.
+
+    ``follow`` then lets a car back up first; without reverse it waits there for ever.
 
     Args:
-        poses: (T, 3) x, y [m] and heading [rad], from the first row with the present goal on.
-        goal: (2,) present goal [m].
+        record: The car.
+        pose: x, y [m] and heading [rad].
+        goal: x, y [m].
     """
-    if len(poses) < 3:
+    radius = turning_radius(record)
+    dx, dy = goal[0] - pose[0], goal[1] - pose[1]
+    if math.hypot(dx, dy) < record.goal_threshold or not math.isfinite(radius):
+        return False
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    ahead, aside = cos * dx + sin * dy, abs(cos * dy - sin * dx)
+    return math.hypot(ahead, aside - radius) < radius - 0.5 * record.goal_threshold
+
+
+def reverse_fix(record: ObjectRecord) -> str:
+    """The limits with which a car can back up."""
+    return f"vel_min: {flow([-record.vel_max[0], *record.vel_min[1:]])}"
+
+
+def reverse_message(record: ObjectRecord, pose: Sequence[float], goal: Sequence[float]) -> str | None:
+    """Message for a car that stands still because it would have to back up; None if that is not the case."""
+    if not lacks_reverse(record) or not needs_reverse(record, pose, goal):
         return None
-    turned = np.abs(np.cumsum(wrap(np.diff(poses[:, 2]))[::-1]))  # from each row to the end, last row first
-    full, more = (np.flatnonzero(turned >= turns * 2 * math.pi) for turns in (1.0, _MIN_TURNS))
-    if not more.size:
-        return None
-    start = len(poses) - 2 - int(full[0])
-    lap = poses[start:, :2]
-    length = float(np.hypot(*np.diff(lap, axis=0).T).sum())
-    radius = length / (2 * math.pi)
-    away = np.hypot(*(poses[:, :2] - goal).T)
-    nearest, farthest = float(away[start:].min()), float(away[start:].max())
-    closed = math.dist(lap[-1], lap[0]) < radius
-    if radius < _MIN_CIRCLE_RADIUS or not closed or farthest > 2 * radius:
-        return None
-    outside = np.flatnonzero(away > 1.1 * farthest)
-    return Circle(radius, nearest, int(outside[-1]) + 1 if outside.size else 0)
+    return (
+        f"it needs reverse: the goal lies inside its turning circle of radius {turning_radius(record):.2f} m "
+        f"({reverse_fix(record)} lets it back up)"
+    )
