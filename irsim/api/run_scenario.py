@@ -27,7 +27,7 @@ from irsim.episodes.opening import (
     first_with_room,
     unopened_findings,
 )
-from irsim.episodes.reproduce import region_options, reproduce_command
+from irsim.episodes.reproduce import region_options, reproduce_command, seed_to_repeat
 from irsim.episodes.run_report import RunPlan, run_result
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.policies.behavior import BehaviorPolicy
@@ -323,7 +323,7 @@ def render(
         extent=extent_of(env),
         table=scene_table(scenario, env.seed, driven if driver is not None else None),
         reproduce=reproduce_command(
-            "render", path, scenario, env.seed, steps, strict, imports, extra=[*sized, "-o", str(out)]
+            "render", path, seed_to_repeat(scenario, env.seed), steps, strict, imports, extra=[*sized, "-o", str(out)]
         ),
     )
     env.end(ending_time=0.0)

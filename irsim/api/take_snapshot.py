@@ -13,7 +13,7 @@ from irsim.api.read_input import read_scenario
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
 from irsim.episodes.opening import MAX_TRIES, first_with_room, unopened_findings
-from irsim.episodes.reproduce import overlay_options, region_options, reproduce_command, strip_options
+from irsim.episodes.reproduce import overlay_options, region_options, reproduce_command, seed_to_repeat, strip_options
 from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.findings import Finding
 from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
@@ -141,6 +141,7 @@ def snapshot_of(
         warnings = [*warnings, *unopened_findings(scenario, "a picture")]
     options = [*region_options(region), *strip_options(strip), *overlay_options(shown)]
     extra = ["--size", str(size), *options, *([] if driven is None else ["--policy", driven]), "-o", str(out)]
+    repeated = seed_to_repeat(scenario, env.seed)
     result = snapshot_of_env(
         env,
         path,
@@ -150,7 +151,7 @@ def snapshot_of(
         moments=chosen,
         draw=draw,
         warnings=warnings,
-        reproduce=reproduce_command("render", path, scenario, env.seed, count, strict, imports, extra=extra),
+        reproduce=reproduce_command("render", path, repeated, count, strict, imports, extra=extra),
         progress=progress,
     )
     env.end(ending_time=0.0)

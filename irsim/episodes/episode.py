@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from irsim.common.arguments import check_whole_number
@@ -55,8 +55,8 @@ def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
     longest, starts, state = 0.0, [0.0], env.simulation.state
     for view in env.robot_list:
         record, goals = view.record, state.goals(view.row)
-        points = [state.initial_state(view.row)[:2], *(goal[:2] for goal in goals)]
-        way = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
+        start: Sequence[float] = state.initial_state(view.row)[:2].tolist()
+        way = sum(math.dist(a, b) for a, b in itertools.pairwise([start, *(goal[:2] for goal in goals)]))
         if (speed := view.max_speed) > 0:
             longest = max(longest, way / speed)
         starts.append(record.moves_from + (record.spreads.delay if record.spreads else 0.0))

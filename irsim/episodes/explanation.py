@@ -35,7 +35,6 @@ from irsim.episodes.scene_summary import called
 from irsim.episodes.watching import sights_message, zones_message
 from irsim.results.run import HorizonSource, Left, RobotResult, ZoneResult
 from irsim.simulation.events import Event
-from irsim.simulation.explored import explored_share
 from irsim.simulation.roles import HUMAN, kinds_of
 
 if TYPE_CHECKING:
@@ -79,7 +78,7 @@ def summary_message(
     pushes = scenario.world.collision_mode == "contact"  # which keeps bodies that push a rounding error apart
     contacts = facts.incidents.human_contacts
     said = bool(facts.jammed) or contacts[:1] == facts.hits[:1]
-    share = explored_share(simulation)
+    share = facts.explored
     parts = [
         between_steps_message(simulation, facts.between, facts.hits, brief=failed),
         _arrivals_message(robots, facts.time, facts.parked),

@@ -13,7 +13,9 @@ from irsim.common.arrays import Floats
 from irsim.episodes.between_steps import BetweenSteps, find_between_steps
 from irsim.episodes.incidents import Incidents, find_incidents
 from irsim.episodes.obstructions import find_jammed
+from irsim.scenario.resolve.randomness import random_parts
 from irsim.simulation.events import Event, passable_names
+from irsim.simulation.explored import explored_share
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
@@ -43,6 +45,8 @@ class EpisodeFacts:
         steps: Number of executed steps.
         step_time: Period of a step [s].
         time: Simulated time [s].
+        random: What the seed decides.
+        explored: Share of the area of the world that the robots have seen; None without `fog_map`.
         is_small: Whether the trajectories of all objects can be searched.
     """
 
@@ -59,6 +63,8 @@ class EpisodeFacts:
     steps: int
     step_time: float
     time: float
+    random: list[str]
+    explored: float | None
     is_small: bool
 
     @classmethod
@@ -86,7 +92,9 @@ class EpisodeFacts:
             incidents=find_incidents(scenario.objects, events),
             steps=steps,
             step_time=scenario.world.step_time,
-            time=simulation.time,
+            time=steps * scenario.world.step_time,
+            random=random_parts(scenario),
+            explored=explored_share(simulation),
             is_small=(steps + 1) * simulation.objects <= _MAX_POSES,
         )
 

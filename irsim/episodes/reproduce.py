@@ -12,7 +12,7 @@ from irsim.scenario.resolve.randomness import random_parts
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["overlay_options", "region_options", "reproduce_command", "strip_options"]
+__all__ = ["overlay_options", "region_options", "reproduce_command", "seed_to_repeat", "strip_options"]
 
 _NO_FILE = "scenario.yaml"
 """File name in the command of a scenario that is given as text."""
@@ -21,8 +21,7 @@ _NO_FILE = "scenario.yaml"
 def reproduce_command(
     verb: str,
     path: str | Path | None,
-    scenario: ResolvedScenario,
-    seed: int,
+    seed: int | None,
     steps: int | None,
     strict: bool,
     imports: Sequence[str] = (),
@@ -30,10 +29,17 @@ def reproduce_command(
 ) -> str:
     """Write the command line that reproduces an episode; for a scenario without a file it says how to name one.
 
-    It has the seed unless the seed decides nothing and is the default of the command.
+    Args:
+        verb: The command.
+        path: The scenario file, None for a text.
+        seed: The seed; None leaves it out.
+        steps: Number of steps; None leaves it out.
+        strict: Whether the scenario was read strictly.
+        imports: Modules that were imported.
+        extra: Further words.
     """
     words = ["irsim", verb, _NO_FILE if path is None else str(path)]
-    if random_parts(scenario) or seed != (scenario.world.seed or 0):
+    if seed is not None:
         words += ["--seed", str(seed)]
     if steps is not None:
         words += ["--steps", str(steps)]
@@ -43,6 +49,11 @@ def reproduce_command(
         words += ["--import", name]
     text = shlex.join([*words, *extra])
     return text if path is not None else f"{text}  # the text, saved as {_NO_FILE}"
+
+
+def seed_to_repeat(scenario: ResolvedScenario, seed: int) -> int | None:
+    """The seed that a command needs to repeat a run; None if it decides nothing and is the default of the command."""
+    return seed if seed != (scenario.world.seed or 0) or random_parts(scenario) else None
 
 
 def region_options(region: Sequence[float] | None) -> list[str]:

@@ -18,15 +18,13 @@ from irsim.episodes.facts import EpisodeFacts, first_collision
 from irsim.episodes.incidents import MAX_LISTED_EXITS, find_exits
 from irsim.episodes.obstructions import find_obstruction
 from irsim.episodes.progress import find_circling, has_one_end, no_progress_since, stalled_step
-from irsim.episodes.reproduce import reproduce_command
+from irsim.episodes.reproduce import reproduce_command, seed_to_repeat
 from irsim.episodes.scene_summary import called
 from irsim.episodes.watching import goal_visibility, watched_metrics, zone_results
 from irsim.navigation.clearances import Approach, least
 from irsim.results.findings import Finding
 from irsim.results.run import EventRecord, HorizonSource, Left, RobotResult, RunResult
-from irsim.scenario.resolve.randomness import random_parts
 from irsim.simulation.events import BETWEEN_STEPS, SIGHTS, Event, first_events
-from irsim.simulation.explored import explored_share
 from irsim.simulation.history import all_poses
 from irsim.simulation.outcome import robot_outcomes
 
@@ -94,14 +92,14 @@ class RunPlan:
             options["bridges"] = list(self.bridges)
         return options
 
-    def reproduce(self, scenario: ResolvedScenario, seed: int) -> str:
-        """The command that repeats the run."""
+    def reproduce(self, seed: int | None) -> str:
+        """The command that repeats the run; without a seed where the seed decides nothing."""
         extra = [] if self.behavior is None else ["--behavior", self.behavior]
         extra += [] if self.policy_text is None else ["--policy", self.policy_text]
         extra += [word for one in self.perturb for word in ("--perturb", one)]
         extra += [word for one in self.added_bridges for word in ("--bridge", one)]
         given = self.horizon if self.source in ("argument", "limits") else None
-        return reproduce_command("run", self.path, scenario, seed, given, self.strict, self.imports, extra)
+        return reproduce_command("run", self.path, seed, given, self.strict, self.imports, extra)
 
 
 def run_result(
@@ -140,7 +138,7 @@ def run_result(
     return RunResult(
         scenario="(text)" if plan.path is None else str(plan.path),
         seed=seed,
-        random=random_parts(scenario),
+        random=facts.random,
         behavior=plan.behavior,
         policy=plan.policy_text,
         policy_digest=None if plan.policy is None else plan.policy.digest,
@@ -160,7 +158,7 @@ def run_result(
         jammed=list(facts.jammed),
         left=left[:MAX_LISTED_EXITS],
         jumped=list(facts.incidents.jumps)[:MAX_LISTED_EXITS],
-        explored=explored_share(simulation),
+        explored=facts.explored,
         human_contacts=len(facts.incidents.human_contacts),
         contacts_between_steps=len(facts.between),
         zones=zones,
@@ -169,7 +167,7 @@ def run_result(
         warnings=list(plan.warnings),
         files=list(files),
         version=version(),
-        reproduce=plan.reproduce(scenario, seed),
+        reproduce=plan.reproduce(seed_to_repeat(scenario, seed)),
     )
 
 
@@ -178,8 +176,8 @@ def _robots(facts: EpisodeFacts) -> list[RobotResult]:
     outcomes = robot_outcomes(simulation, events=facts.events)
     arrivals = first_events(facts.events, "arrival")
     nearest = _approaches(facts, arrivals) if facts.is_small else {}
-    watched = watched_metrics(simulation, facts.events, arrivals)
-    visible = goal_visibility(simulation, arrivals) if facts.is_small else {}
+    watched = watched_metrics(facts, arrivals)
+    visible = goal_visibility(facts, arrivals) if facts.is_small else {}
     for row, record in facts.robots.items():
         name, ended, arrival = record.name, outcomes[record.name], arrivals.get(record.name)
         approach, approach_place = nearest.get(row, (None, None))

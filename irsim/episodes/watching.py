@@ -12,6 +12,7 @@ from irsim.results.run import ZoneResult
 from irsim.simulation.history import past_goals, past_poses
 
 if TYPE_CHECKING:
+    from irsim.episodes.facts import EpisodeFacts
     from irsim.scenario.model.zones import Zone
     from irsim.simulation.events import Event
     from irsim.simulation.simulation import Simulation
@@ -24,41 +25,36 @@ _MAX_NAMED = 3
 """Number of zones that a sentence names."""
 
 
-def watched_metrics(
-    simulation: Simulation, events: Sequence[Event], arrivals: Mapping[str, Event]
-) -> dict[str, dict[str, Any]]:
+def watched_metrics(facts: EpisodeFacts, arrivals: Mapping[str, Event]) -> dict[str, dict[str, Any]]:
     """Metrics of zones and of fields of view by the name of each robot, until it arrived; None where undefined.
 
     Args:
-        simulation: The simulation after the last step.
-        events: Its events.
+        facts: The episode.
         arrivals: First arrivals by name.
     """
-    watching, steps = Watching.read(simulation, events), int(simulation.count[0])
+    watching = Watching.read(facts.simulation, facts.events)
     found = {}
-    for robot in simulation.scenario.robots():
-        last = arrivals[robot.name].step if robot.name in arrivals else steps
-        metrics = watching_metrics(watching, robot.name, Rows(0, last + 1, simulation.scenario.world.step_time))
+    for robot in facts.robots.values():
+        last = arrivals[robot.name].step if robot.name in arrivals else facts.steps
+        metrics = watching_metrics(watching, robot.name, Rows(0, last + 1, facts.step_time))
         found[robot.name] = {key: None if math.isnan(value) else value for key, value in metrics.items()}
     return found
 
 
-def goal_visibility(simulation: Simulation, arrivals: Mapping[str, Event]) -> dict[str, float | None]:
+def goal_visibility(facts: EpisodeFacts, arrivals: Mapping[str, Event]) -> dict[str, float | None]:
     """``goal_visible_ratio`` by the name of each robot; None where undefined, and if its past is unknown.
 
     Args:
-        simulation: The simulation after the last step.
+        facts: The episode.
         arrivals: First arrivals by name.
     """
     found: dict[str, float | None] = {}
-    for row, record in enumerate(simulation.scenario.objects):
-        if record.role != "robot" or simulation.scenario.is_parked(record):
-            continue
-        poses, goals = past_poses(simulation, row), past_goals(simulation, row)
-        if poses is None or goals is None:
+    for row, record in facts.robots.items():
+        poses, goals = past_poses(facts.simulation, row), past_goals(facts.simulation, row)
+        if record.name in facts.parked or poses is None or goals is None:
             continue
         rows = slice(arrivals[record.name].step + 1 if record.name in arrivals else None)
-        share = goal_visible_ratio(poses[rows, :2], goals[rows], simulation)
+        share = goal_visible_ratio(poses[rows, :2], goals[rows], facts.simulation)
         found[record.name] = None if math.isnan(share) else share
     return found
 
