@@ -109,8 +109,8 @@ def footprint_of(env: Env, ways: list[PlannedPath]) -> Footprint | None:
     view = next((view for view in env.robot_list if view.row == row), None)
     if view is None or view.shape == "circle" or view.original_geometry.geom_type != "Polygon":
         return None
-    found = ways or plan_paths(env.simulation, routes=_routes(env))
-    line = next((way.points for way in found if way.robot == view.id and len(way.points) > 1), None)
+    plans = ways or plan_paths(env.simulation, routes=_routes(env))
+    line = next((way.points for way in plans if way.robot == view.id and len(way.points) > 1), None)
     if line is None:
         return None
     import numpy as np  # here, so that --help does not load it

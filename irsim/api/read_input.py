@@ -45,12 +45,12 @@ def read_scenario(
     scene = None if named is None or named.is_file() else suite_scene(named)
     try:
         source = path if scene is None else scene.document()
-        scenario, found = read_one(source, text=text, strict=strict, limits=limits, behavior=behavior)
+        scenario, diagnostics = read_one(source, text=text, strict=strict, limits=limits, behavior=behavior)
     except ScenarioError:
         if named is not None and scene is None:
             suite_scene(named)  # a suite is refused with a sentence of its own
         raise
-    return scenario, [Finding.of(item) for item in found]
+    return scenario, [Finding.of(item) for item in diagnostics]
 
 
 def policy_of_suite(path: str | Path | None, policy: Any) -> Any:

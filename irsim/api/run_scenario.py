@@ -154,7 +154,7 @@ def run(
         path,
         horizon,
         source,
-        warnings=[*warnings, *(Finding.of(found.diagnostic) for found in driven_without_goal(scenario, added))],
+        warnings=[*warnings, *(Finding.of(one.diagnostic) for one in driven_without_goal(scenario, added))],
         strict=strict,
         imports=imports,
         behavior=behavior,

@@ -27,9 +27,9 @@ class BetweenSteps:
     """Contacts between steps of an episode; objects that are ``unobstructed`` are passed through by intention.
 
     Attributes:
-        of_robots: Those of robots, in order.
-        of_others: Those in which no robot takes part, in order.
-        counts: Number of those of each robot, by its name.
+        of_robots: Contacts of robots, in order.
+        of_others: Contacts in which no robot takes part, in order.
+        counts: Number of contacts of each robot, by its name.
         passed: Names of the first objects that each robot passed through, or that passed through it.
     """
 
@@ -50,27 +50,27 @@ def find_between_steps(events: Iterable[Event], robots: Collection[str], passabl
         robots: Names of the robots.
         passable: Names of the objects that others pass through.
     """
-    found = BetweenSteps()
+    contacts = BetweenSteps()
     for event in events:
         if event.kind not in BETWEEN_STEPS:  # cheapest test first: there may be a million events
             continue
         blocked = [name for name in (event.object, str(event.partner)) if partner_of(event, name) not in passable]
         mine = [name for name in blocked if name in robots]
         if mine:
-            found.of_robots.append(event)
+            contacts.of_robots.append(event)
         elif blocked:
-            found.of_others.append(event)
+            contacts.of_others.append(event)
         for name in mine:
-            found.counts[name] += 1
-            through = found.passed.setdefault(name, [])
+            contacts.counts[name] += 1
+            through = contacts.passed.setdefault(name, [])
             other = str(partner_of(event, name))
             if event.kind == "passed_through" and other not in through and len(through) < _MAX_NAMES:
                 through.append(other)
-    return found
+    return contacts
 
 
 def between_steps_message(
-    simulation: Simulation, found: BetweenSteps, hits: Sequence[Event], *, brief: bool = False
+    simulation: Simulation, contacts: BetweenSteps, hits: Sequence[Event], *, brief: bool = False
 ) -> str | None:
     """Which robot passed through, or touched, something between two steps, and what prevents that; None if none did.
 
@@ -79,14 +79,14 @@ def between_steps_message(
 
     Args:
         simulation: The simulation after the last step.
-        found: From :func:`find_between_steps`.
+        contacts: From :func:`find_between_steps`.
         hits: Collisions of robots.
         brief: Leave out the step and the advice, which another message has.
     """
     scenario = simulation.scenario
     swept = scenario.world.contacts == "swept"
     judged = {(event.step, event.object, event.partner) for event in hits} if swept else set()
-    mine = [event for event in found.of_robots if (event.step, event.object, event.partner) not in judged]
+    mine = [event for event in contacts.of_robots if (event.step, event.object, event.partner) not in judged]
     if not mine:
         return None
     first = min(mine, key=lambda event: (event.kind != "passed_through", event.time))
@@ -101,14 +101,14 @@ def between_steps_message(
     return what if brief else f"{what} ({_advice(simulation, first)})"
 
 
-def others_between_steps_message(found: BetweenSteps) -> str | None:
+def others_between_steps_message(contacts: BetweenSteps) -> str | None:
     """How often objects besides robots touched each other between two steps; None if none did."""
-    count = len(found.of_others)
+    count = len(contacts.of_others)
     return f"{count} contact{'s' * (count != 1)} between steps without a robot" if count else None
 
 
 def _advice(simulation: Simulation, event: Event) -> str:
-    """What prevents a contact between steps, and how far the faster of the two moved in that step."""
+    """Say how to prevent a contact between steps, and how far the faster of the two moved in that step."""
     moved = {name: _step_length(simulation, name, event.step) for name in (event.object, event.partner)}
     name = max(moved, key=lambda name: moved[name])
     far = f"{called(simulation.scenario, name)} moved {metres(moved[name])} in that step; " if moved[name] else ""
@@ -117,7 +117,7 @@ def _advice(simulation: Simulation, event: Event) -> str:
 
 
 def _step_length(simulation: Simulation, name: str | None, step: int) -> float:
-    """Distance that an object moved in a step [m]; 0 for what is no object, or if the step is not kept."""
+    """Distance that an object moved in a step [m]; 0 for the map and the walls, or if the step is not kept."""
     records = simulation.scenario.objects
     row = next((row for row, record in enumerate(records) if record.name == name), None)
     if row is None:

@@ -41,7 +41,7 @@ _CHUNK_STEPS = 50
 
 
 def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
-    """The given seed, else that of the scenario, else 0 if nothing is random; None if a seed must be drawn."""
+    """The given seed, else the seed of the scenario, else 0 if nothing is random; None if a seed must be drawn."""
     chosen = scenario.world.seed if seed is None else seed
     return 0 if chosen is None and not random_parts(scenario) else chosen
 

@@ -33,7 +33,8 @@ from irsim.episodes.obstructions import (
 from irsim.episodes.progress import find_circling, has_one_end, no_progress_since, stalled_step
 from irsim.episodes.scene_summary import called
 from irsim.episodes.watching import sights_message, zones_message
-from irsim.results.run import HorizonSource, Left, RobotResult, ZoneResult
+from irsim.results.episode import Left, RobotResult, ZoneResult
+from irsim.results.run import HorizonSource
 from irsim.simulation.events import Event
 from irsim.simulation.roles import HUMAN, kinds_of
 
@@ -67,7 +68,7 @@ def summary_message(
     Args:
         facts: The episode.
         robots: Results of its robots.
-        driven: What drove all robots instead of their own behaviors, in words; None if nothing did.
+        driven: The policy or behavior that drove all robots, in words; None if each had its own.
         left: Objects that left the world.
         zones: Results of the zones.
     """
@@ -139,7 +140,7 @@ def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequen
 
 
 def _waiting_message(facts: EpisodeFacts) -> str | None:
-    """Say which objects have not started yet at the end because of their ``start_time``; None if there are none."""
+    """Say which objects have not started yet at the end because of their ``start_time``; None if all have."""
     simulation = facts.simulation
     late = [
         record
@@ -154,7 +155,7 @@ def _waiting_message(facts: EpisodeFacts) -> str | None:
 
 
 def _departures_message(facts: EpisodeFacts, robots: list[RobotResult]) -> str | None:
-    """Say which robots arrived but are not at their goal at the end; None if there are none."""
+    """Say which robots arrived but are not at their goal at the end; None if all are."""
     arrived = {robot.name for robot in robots if robot.outcome == "success"}
     gone = [
         quoted(record.name)
@@ -167,7 +168,7 @@ def _departures_message(facts: EpisodeFacts, robots: list[RobotResult]) -> str |
 
 
 def others_arrived_message(scenario: ResolvedScenario, events: Sequence[Event]) -> str | None:
-    """Say how many of the moving obstacles that have a goal arrived; None if there are none.
+    """Say how many of the moving obstacles that have a goal arrived; None without such obstacles.
 
     Args:
         scenario: The scenario.
@@ -185,7 +186,7 @@ def others_arrived_message(scenario: ResolvedScenario, events: Sequence[Event]) 
 
 
 def _others_standing_message(facts: EpisodeFacts) -> str | None:
-    """Say how many moving obstacles stand short of their goal, which one first, and where; None if there are none.
+    """Say how many moving obstacles stand short of their goal, which one first, and where; None if none does.
 
     Obstacles that a collision has stopped do not count: other messages are about them.
     """
@@ -194,7 +195,7 @@ def _others_standing_message(facts: EpisodeFacts) -> str | None:
     if not facts.is_small:
         return None
     arrived = {event.object for event in facts.events if event.kind == "arrival"}
-    found = []
+    standing = []
     for row in moving:
         record, goals = records[row], simulation.state.goals(row)
         at_its_end = record.name in arrived and has_one_end(record)
@@ -203,16 +204,16 @@ def _others_standing_message(facts: EpisodeFacts) -> str | None:
         track = simulation.state.trajectory(row)[:, :2]
         since = no_progress_since(track, facts.step_time, simulation.views()[row].max_speed)
         if since is not None:
-            found.append((facts.steps - len(track) + 1 + since, row))
-    if not found:
+            standing.append((facts.steps - len(track) + 1 + since, row))
+    if not standing:
         return None
-    step, row = min(found)
+    step, row = min(standing)
     name, goal = quoted(records[row].name), simulation.state.goals(row)[0]
     left = float(np.hypot(*(goal[:2] - simulation.pose[row, :2])))
     place = f"{left:.2f} m from its goal since {seconds(step * facts.step_time)}"
-    if len(found) == 1:
+    if len(standing) == 1:
         return f"the moving obstacle {name} has stood still {place}"
-    return f"{len(found)} of {len(moving)} moving obstacles stand still short of their goals (first {name}, {place})"
+    return f"{len(standing)} of {len(moving)} moving obstacles stand still short of their goals (first {name}, {place})"
 
 
 def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: HorizonSource) -> str:
@@ -248,7 +249,7 @@ def reason_message(facts: EpisodeFacts, robots: list[RobotResult], source: Horiz
 
 
 def _standing_message(facts: EpisodeFacts, names: Collection[str]) -> str:
-    """Say who has stood still since the first collision stopped them; empty if nobody has."""
+    """Say which objects have stood still since the first collision stopped them; empty if both move."""
     simulation, first = facts.simulation, first_collision(names, facts.hits)
     rows = {record.name: row for row, record in enumerate(facts.scenario.objects) if not record.static}
     pair = [] if first is None else [name for name in (first.object, str(first.partner)) if name in rows]

@@ -1,4 +1,4 @@
-"""What the events of an episode say about it, found once after its last step, for its result and all its sentences."""
+"""Facts about an episode after its last step, read from its events once, for its result and all its sentences."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ class EpisodeFacts:
         between: Contacts between steps.
         parked: Names of the robots that cannot move and have no goal of their own.
         jammed: Name of each moving obstacle that a collision has stopped -> that collision.
-        incidents: What happened besides outcomes.
+        incidents: Incidents besides the outcomes of robots.
         steps: Number of executed steps.
         step_time: Period of a step [s].
         time: Simulated time [s].
-        random: What the seed decides.
+        random: Names of the parts that the seed decides.
         explored: Share of the area of the world that the robots have seen; None without `fog_map`.
         is_small: Whether the trajectories of all objects can be searched.
     """

@@ -1,4 +1,4 @@
-"""What happened in an episode besides the outcomes of robots.
+"""Incidents of an episode besides the outcomes of robots.
 
 People touched each other, goals were jumped over, objects came late or left the world, and cars drove to and fro.
 """
@@ -13,14 +13,14 @@ import numpy as np
 from irsim.common.arrays import Floats
 from irsim.common.text import listed, metres, quoted, seconds
 from irsim.episodes.progress import has_one_end
-from irsim.results.run import Left
+from irsim.results.episode import Left
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.simulation.build import steps_until
 from irsim.simulation.events import Event
 from irsim.simulation.roles import HUMAN, kinds_of
 
 if TYPE_CHECKING:
-    from irsim.results.run import RobotResult
+    from irsim.results.episode import RobotResult
     from irsim.scenario.resolve.resolved import ResolvedScenario
     from irsim.simulation.simulation import Simulation
 
@@ -54,7 +54,7 @@ _CLOSE = 5e-3
 
 
 class Incidents(NamedTuple):
-    """What happened in an episode besides outcomes.
+    """Incidents of an episode besides outcomes.
 
     Attributes:
         human_contacts: Events of the contacts that began between two humans (:func:`irsim.simulation.roles.kinds_of`).
@@ -69,7 +69,7 @@ class Incidents(NamedTuple):
 
 
 def find_incidents(records: Sequence[ObjectRecord], events: Sequence[Event]) -> Incidents:
-    """Find what happened besides outcomes.
+    """Find the incidents of an episode.
 
     Args:
         records: Objects of the scenario.
@@ -77,22 +77,22 @@ def find_incidents(records: Sequence[ObjectRecord], events: Sequence[Event]) -> 
     """
     kinds = kinds_of(records)
     humans = {record.name for record, kind in zip(records, kinds, strict=True) if kind == HUMAN}
-    found = Incidents([], {}, {})
+    incidents = Incidents([], {}, {})
     for event in events:
         if event.kind == "collision":
             if event.object in humans and event.partner in humans:
-                found.human_contacts.append(event)
+                incidents.human_contacts.append(event)
         elif event.kind in ("arrival", "waypoint", "overshoot"):
-            jump = found.jumps.pop(event.object, None)
+            jump = incidents.jumps.pop(event.object, None)
             if jump is not None and event.kind == "arrival":
-                found.returns[event.object] = (jump, event)
+                incidents.returns[event.object] = (jump, event)
             if event.kind == "overshoot":
-                found.jumps[event.object] = event
-    return found
+                incidents.jumps[event.object] = event
+    return incidents
 
 
 def contacts_message(contacts: Sequence[Event], *, brief: bool) -> str | None:
-    """How often people touched each other, and who did first; None if nobody did.
+    """How often people touched each other, and which two did first; None if they never did.
 
     Args:
         contacts: From :func:`find_human_contacts`.
@@ -149,7 +149,7 @@ def nearest_to_goals(simulation: Simulation, jumps: Mapping[str, Event]) -> dict
         simulation: The simulation after the last step.
         jumps: Name of each object -> its last event ``overshoot``.
     """
-    found, count = dict[str, float](), int(simulation.count[0])
+    nearest, count = dict[str, float](), int(simulation.count[0])
     for row, record in enumerate(simulation.scenario.objects):
         if record.name not in jumps:
             continue
@@ -157,8 +157,8 @@ def nearest_to_goals(simulation: Simulation, jumps: Mapping[str, Event]) -> dict
         start = max(0, jumps[record.name].step - 2 - (count - len(track)))
         goal = simulation.state.goal[row][:2]
         if len(track) > start and not np.isnan(goal).any():
-            found[record.name] = float(np.hypot(*(track[start:] - goal).T).min())
-    return found
+            nearest[record.name] = float(np.hypot(*(track[start:] - goal).T).min())
+    return nearest
 
 
 def find_exits(scenario: ResolvedScenario, track: Callable[[int], Floats], steps: int) -> list[Left]:
@@ -169,7 +169,7 @@ def find_exits(scenario: ResolvedScenario, track: Callable[[int], Floats], steps
         track: Row of an object -> its (K, >= 2) positions [m], world frame, one per step up to the end of the run.
         steps: Number of steps executed by the end of the run.
     """
-    found = []
+    exits = []
     x, y, right, top = scenario.world.bounds
     for row, record in enumerate(scenario.objects):
         if record.static:
@@ -181,8 +181,8 @@ def find_exits(scenario: ResolvedScenario, track: Callable[[int], Floats], steps
         first = int(outside[0])
         px, py = (float(value) for value in place[first])
         time = (steps + 1 - len(place) + first) * scenario.world.step_time
-        found.append(Left(name=record.name, time=time, x=px, y=py))
-    return sorted(found, key=lambda item: item.time)
+        exits.append(Left(name=record.name, time=time, x=px, y=py))
+    return sorted(exits, key=lambda item: item.time)
 
 
 def exits_message(scenario: ResolvedScenario, left: Sequence[Left]) -> str | None:
@@ -224,13 +224,13 @@ def appearances_message(simulation: Simulation) -> str | None:
         elif appeared > steps_until(due, step_time):
             waited = seconds(appeared * step_time - due)
             late.append(f"{quoted(record.name)} appeared {waited} late, when there was room at its start")
-    found = [listed(names, _MAX_NAMED) for names in (late, missing) if names]
-    return "; ".join(found) or None
+    sentences = [listed(names, _MAX_NAMED) for names in (late, missing) if names]
+    return "; ".join(sentences) or None
 
 
 def shunting_message(simulation: Simulation, robots: Sequence[RobotResult], parked: Sequence[str]) -> str | None:
     """Which car was long near its last goal before it arrived, and how far it drove in all; None if none was."""
-    found: list[str] = []
+    shunting: list[str] = []
     state, step_time = simulation.state, simulation.scenario.world.step_time
     rows = {record.name: row for row, record in enumerate(simulation.scenario.objects)}
     for robot in robots:
@@ -254,14 +254,14 @@ def shunting_message(simulation: Simulation, robots: Sequence[RobotResult], park
         if moved < 3 * _NEAR or time < _MIN_TIME:
             continue
         least = "" if arrived is not None else f", no nearer than {metres(float(away.min()))}"
-        found.append(
+        shunting.append(
             f"{quoted(robot.name)} drove {metres(driven)} of a {metres(driven - moved + float(away[first]))} way, "
             f"{seconds(time)} of it to and fro at the goal{least}"
         )
-    if not found:
+    if not shunting:
         return None
-    more = f" and {len(found) - 1} more likewise" if len(found) > 1 else ""
-    return f"{found[0]}{more} (raise goal_threshold)"
+    more = f" and {len(shunting) - 1} more likewise" if len(shunting) > 1 else ""
+    return f"{shunting[0]}{more} (raise goal_threshold)"
 
 
 def closeness_message(robots: Sequence[RobotResult]) -> str | None:

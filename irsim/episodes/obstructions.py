@@ -59,7 +59,7 @@ class Obstruction:
         message: Its name and distance, and the time of the collision that stopped it, if one did.
         held: Whether a collision stopped it.
         pushed: Whether the two are in contact, in a world whose bodies push each other.
-        advice: What the scenario should say instead, None if that is not known.
+        advice: The change of the scenario that helps, None if it is not known.
     """
 
     message: str
@@ -69,7 +69,7 @@ class Obstruction:
 
 
 def is_moving_obstacle(record: ObjectRecord) -> bool:
-    """Whether an object is an obstacle that moves by its own behavior or that of its group."""
+    """Whether an object is an obstacle that moves by its own behavior or the behavior of its group."""
     behaves = record.behavior is not None or record.group_behavior is not None
     return record.role == "obstacle" and not record.static and behaves
 
@@ -103,7 +103,7 @@ def find_jammed(simulation: Simulation, events: Sequence[Event]) -> dict[str, Ev
 
 
 def jam_message(simulation: Simulation, held: dict[str, Event]) -> str | None:
-    """How many moving obstacles a collision has stopped, and what prevents that; None if there are none."""
+    """How many moving obstacles a collision has stopped, and how to prevent that; None without such obstacles."""
     if not held:
         return None
     count = sum(is_moving_obstacle(record) for record in simulation.scenario.objects)
@@ -127,7 +127,7 @@ def find_obstruction(
         pose: (N, 3) poses of all objects; default: the present ones.
     """
     poses = simulation.pose[: simulation.objects] if pose is None else pose
-    [found] = approaches(poses[None], simulation, [index], 1)
+    [near_by] = approaches(poses[None], simulation, [index], 1)
     record = simulation.scenario.objects[index]
     still = {other.name for other in simulation.scenario.objects if other.static}
     car = getattr(record.kinematics, "steered", False) and reactive_behavior(record) is not None
@@ -137,7 +137,7 @@ def find_obstruction(
             return _MAX_JAM_DISTANCE
         return _MAX_WALL_DISTANCE if car and partner in still else _MAX_OBSTRUCTION_DISTANCE
 
-    close = [near for near in found if near.distance < most(near.partner)]
+    close = [near for near in near_by if near.distance < most(near.partner)]
     if not close:
         return None
     near = next((near for near in close if near.partner in held), close[0])

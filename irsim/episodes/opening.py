@@ -39,10 +39,10 @@ def first_with_room(make: Callable[[int], T], seeds: Iterable[int]) -> tuple[T, 
         seeds: Seeds to try, at least one.
 
     Returns:
-        What was made, and the seeds before it that leave no room.
+        The object that was made, and the seeds before it that leave no room.
 
     Raises:
-        PlacementError: None of the seeds leaves room; the error is that of the first one.
+        PlacementError: None of the seeds leaves room; the error of the first one is raised.
     """
     first: PlacementError | None = None
     crowded: list[int] = []
@@ -57,7 +57,7 @@ def first_with_room(make: Callable[[int], T], seeds: Iterable[int]) -> tuple[T, 
 
 
 def crowded_message(crowded: Sequence[int]) -> str | None:
-    """Name the seeds that had no room; None if there are none."""
+    """Name the seeds that had no room; None if every seed had."""
     if not crowded:
         return None
     many = len(crowded) > 1
@@ -76,11 +76,11 @@ def findings_under_policy(findings: Sequence[Finding], scenario: ResolvedScenari
 
 
 def unopened_bridges(scenario: ResolvedScenario, what: str) -> list[Diagnostic]:
-    """A warning for a scenario with bridges; none for others.
+    """A warning for a scenario with bridges; empty without bridges.
 
     Args:
         scenario: The scenario.
-        what: What does not open them, such as ``a benchmark``.
+        what: The work that does not open them, such as ``a benchmark``.
     """
     names = [str(getattr(one, "name", "bridge")) for one in scenario.bridges]
     if not names:
@@ -91,5 +91,5 @@ def unopened_bridges(scenario: ResolvedScenario, what: str) -> list[Diagnostic]:
 
 
 def unopened_findings(scenario: ResolvedScenario, what: str) -> list[Finding]:
-    """The same as results have it."""
+    """The warning of :func:`unopened_bridges`, as results have it."""
     return [Finding.of(item) for item in unopened_bridges(scenario, what)]

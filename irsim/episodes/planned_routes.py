@@ -36,7 +36,7 @@ def planned_routes(
         scenario: The scenario.
         seed: Seed of its random shapes and maps.
         poses: Object id -> x, y [m] and heading [rad] at the start, of all objects.
-        goals: Object id -> goals to visit, of the objects to plan for: x, y [m], and a heading [rad] or none.
+        goals: Object id -> goals to visit, of the objects to plan for: x, y [m], and perhaps a heading [rad].
 
     Returns:
         Object id -> (K, 2) corners of the route to each goal [m]. A route to which there is no path is None, and the
@@ -46,17 +46,17 @@ def planned_routes(
     if not ways:
         return {}
     starts = {key: [float(value) for value in pose[:3]] for key, pose in poses.items()}
-    found: dict[int, list[Route]] = {key: [] for key in ways}
+    routes: dict[int, list[Route]] = {key: [] for key in ways}
     for leg in range(max(map(len, ways.values()))):
         asked = {
-            key: way[leg] for key, way in ways.items() if leg < len(way) and all(one is not None for one in found[key])
+            key: way[leg] for key, way in ways.items() if leg < len(way) and all(one is not None for one in routes[key])
         }
         for key, route in _routes_of_leg(scenario, seed, starts, asked).items():
-            found[key].append(route)
+            routes[key].append(route)
             if route is not None and len(route) > 1:
                 (x, y), (dx, dy) = route[-1], route[-1] - route[-2]
                 starts[key] = [float(x), float(y), math.atan2(dy, dx)]
-    return found
+    return routes
 
 
 def _asked(

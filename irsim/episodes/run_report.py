@@ -22,8 +22,9 @@ from irsim.episodes.reproduce import reproduce_command, seed_to_repeat
 from irsim.episodes.scene_summary import called
 from irsim.episodes.watching import goal_visibility, watched_metrics, zone_results
 from irsim.navigation.clearances import Approach, least
+from irsim.results.episode import EventRecord, Left, RobotResult
 from irsim.results.findings import Finding
-from irsim.results.run import EventRecord, HorizonSource, Left, RobotResult, RunResult
+from irsim.results.run import LOST_THINGS, HorizonSource, RunResult
 from irsim.simulation.events import BETWEEN_STEPS, SIGHTS, Event, first_events
 from irsim.simulation.history import all_poses
 from irsim.simulation.outcome import robot_outcomes
@@ -38,15 +39,13 @@ __all__ = ["RunPlan", "run_result"]
 
 _MAX_EVENTS = 100
 """Number of events that a result lists."""
-_LOST = {"bridge-lost": "program of a bridge", "policy-lost": "policy"}
-"""What was lost, by the code of the error."""
 _MAX_LATE = 50
 """Number of robots without success whose trajectories are searched for the decisive step."""
 
 
 @dataclass(frozen=True)
 class RunPlan:
-    """What one run simulates, and how it was asked for.
+    """The plan of one run: its scenario, its limits, and the arguments that it was called with.
 
     Attributes:
         path: The scenario file, None for a text.
@@ -59,7 +58,7 @@ class RunPlan:
         policy: Policy in Python that drives the robots.
         perturb: Perturbations of the scenario, as on the command line.
         bridges: Names of all bridges that are opened.
-        added_bridges: Bridges besides those of the scenario, as on the command line.
+        added_bridges: Bridges that the scenario does not name, as on the command line.
     """
 
     path: str | Path | None
@@ -76,11 +75,11 @@ class RunPlan:
 
     @property
     def policy_text(self) -> str | None:
-        """What opens the policy in Python, or its name; None without one."""
+        """The text that opens the policy in Python, or its name; None without one."""
         return None if self.policy is None else self.policy.text or self.policy.name
 
     def record_options(self) -> dict[str, Any]:
-        """What a recorded run keeps besides scenario, seed and horizon."""
+        """The options that a recorded run keeps besides scenario, seed and horizon."""
         options: dict[str, Any] = {"strict": self.strict, "imports": list(self.imports)}
         if self.behavior is not None:
             options["behavior"] = self.behavior
@@ -115,7 +114,7 @@ def run_result(
     Args:
         simulation: The simulation after the last step.
         events: All its events.
-        plan: What was run.
+        plan: The plan of the run.
         files: Files that were written.
         lost: Why the policy or the program of a bridge could not go on, which ended the run.
     """
@@ -134,7 +133,7 @@ def run_result(
         reason = reason_message(facts, robots, plan.source) if lost is None else f"{lost.message}; the run ended"
     summary, lost_code = summary_message(facts, robots, _driven_by(plan), left, zones), _lost_code(lost)
     if lost_code is not None:
-        summary += f"; the {_LOST[lost_code]} was lost, which ended the run"
+        summary += f"; the {LOST_THINGS[lost_code]} was lost, which ended the run"
     return RunResult(
         scenario="(text)" if plan.path is None else str(plan.path),
         seed=seed,
@@ -220,15 +219,15 @@ def _approaches(
         return {}
     names = [record.name for record in facts.robots.values()]
     ends = [arrivals[name].step + 1 if name in arrivals else facts.steps + 1 for name in names]
-    found: dict[int, tuple[Approach | None, tuple[float, float] | None]] = {}
+    nearest: dict[int, tuple[Approach | None, tuple[float, float] | None]] = {}
     for row, approach in zip(facts.robots, least(poses, facts.simulation, list(facts.robots), ends), strict=True):
         place = None if approach is None else (float(poses[approach.row, row, 0]), float(poses[approach.row, row, 1]))
-        found[row] = approach, place
-    return found
+        nearest[row] = approach, place
+    return nearest
 
 
 def _heading_error(record: ObjectRecord, goal: Sequence[float], heading: float) -> float | None:
-    """Difference between a heading and that of a goal [rad]; None where the heading does not count."""
+    """Difference between a heading and the heading of a goal [rad]; None where the heading does not count."""
     return abs(math.remainder(heading - goal[2], math.tau)) if record.heading_counts(goal) else None
 
 
@@ -292,7 +291,7 @@ def _lost_code(error: CodedError | None) -> Literal["bridge-lost", "policy-lost"
 
 
 def _driven_by(plan: RunPlan) -> str | None:
-    """What drives all robots instead of their own behaviors, in words; None if nothing does."""
+    """The policy or behavior that drives all robots instead of their own, in words; None if each has its own."""
     if plan.policy_text is not None:
         return f"policy {clean(plan.policy_text)}"
     return None if plan.behavior is None else f"behavior {plan.behavior}"

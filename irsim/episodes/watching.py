@@ -1,4 +1,4 @@
-"""What was watched in a run: metrics of robots, zones, and the sentences about both in the summary."""
+"""Zones and fields of view in a run: metrics of robots, zones, and the sentences about both in the summary."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from irsim.common.text import listed, quoted, seconds
 from irsim.metrics.watching import Rows, Watching, goal_visible_ratio, watching_metrics, zone_metrics
-from irsim.results.run import ZoneResult
+from irsim.results.episode import ZoneResult
 from irsim.simulation.history import past_goals, past_poses
 
 if TYPE_CHECKING:
@@ -33,12 +33,12 @@ def watched_metrics(facts: EpisodeFacts, arrivals: Mapping[str, Event]) -> dict[
         arrivals: First arrivals by name.
     """
     watching = Watching.read(facts.simulation, facts.events)
-    found = {}
+    watched = {}
     for robot in facts.robots.values():
         last = arrivals[robot.name].step if robot.name in arrivals else facts.steps
         metrics = watching_metrics(watching, robot.name, Rows(0, last + 1, facts.step_time))
-        found[robot.name] = {key: None if math.isnan(value) else value for key, value in metrics.items()}
-    return found
+        watched[robot.name] = {key: None if math.isnan(value) else value for key, value in metrics.items()}
+    return watched
 
 
 def goal_visibility(facts: EpisodeFacts, arrivals: Mapping[str, Event]) -> dict[str, float | None]:
@@ -48,19 +48,19 @@ def goal_visibility(facts: EpisodeFacts, arrivals: Mapping[str, Event]) -> dict[
         facts: The episode.
         arrivals: First arrivals by name.
     """
-    found: dict[str, float | None] = {}
+    shares: dict[str, float | None] = {}
     for row, record in facts.robots.items():
         poses, goals = past_poses(facts.simulation, row), past_goals(facts.simulation, row)
         if record.name in facts.parked or poses is None or goals is None:
             continue
         rows = slice(arrivals[record.name].step + 1 if record.name in arrivals else None)
         share = goal_visible_ratio(poses[rows, :2], goals[rows], facts.simulation)
-        found[record.name] = None if math.isnan(share) else share
-    return found
+        shares[record.name] = None if math.isnan(share) else share
+    return shares
 
 
 def zone_results(simulation: Simulation, events: Sequence[Event]) -> dict[str, ZoneResult]:
-    """What all objects did in each zone, by its name."""
+    """Entries, crossings and times of all objects in each zone, by the name of the zone."""
     zones = simulation.scenario.world.zones
     if not zones:
         return {}

@@ -10,9 +10,10 @@ if TYPE_CHECKING:
     from irsim.results.base import Result
     from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, Estimate, Proportion
     from irsim.results.diff import CommentChange, KeyChange, ScenarioDiff, WorldChange
+    from irsim.results.episode import EventRecord, Left, RobotResult
     from irsim.results.findings import Edit, Finding
     from irsim.results.picture import MovingPose, RenderResult, RobotPlan, RobotPose, SnapshotResult
-    from irsim.results.run import EventRecord, HorizonSource, Left, ReplayResult, RobotResult, RunResult, RunTable
+    from irsim.results.run import HorizonSource, ReplayResult, RunResult, RunTable
     from irsim.results.validation import DryRun, Fix, Stuck, ValidationReport
 
 __all__ = [
@@ -50,9 +51,10 @@ _NAMES = {
     "base": ["Result"],
     "benchmark": ["BenchmarkResult", "BenchmarkRow", "EpisodeRow", "Estimate", "Proportion"],
     "diff": ["CommentChange", "KeyChange", "ScenarioDiff", "WorldChange"],
+    "episode": ["EventRecord", "Left", "RobotResult"],
     "findings": ["Edit", "Finding"],
     "picture": ["MovingPose", "RenderResult", "RobotPlan", "RobotPose", "SnapshotResult"],
-    "run": ["EventRecord", "HorizonSource", "Left", "ReplayResult", "RobotResult", "RunResult", "RunTable"],
+    "run": ["HorizonSource", "ReplayResult", "RunResult", "RunTable"],
     "validation": ["DryRun", "Fix", "Stuck", "ValidationReport"],
 }
 """Public names of each module."""

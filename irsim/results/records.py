@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from irsim.results.base import Result
-from irsim.results.run import EventRecord
+from irsim.results.episode import EventRecord
 
 __all__ = ["ExportResult", "Parting", "RunsDiff", "SetupChange"]
 

@@ -2,140 +2,38 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
-from irsim.common.event_kinds import EventKind
+from irsim.common.event_kinds import BETWEEN_STEPS, SIGHTS
+from irsim.common.text import clean
 from irsim.results.base import Result
+from irsim.results.concise import ConciseEvent, ConciseRobot, ConciseRun, is_command, rounded
+from irsim.results.episode import EventRecord, Left, RobotResult, ZoneResult
 from irsim.results.findings import Finding
 
-__all__ = ["EventRecord", "HorizonSource", "Left", "ReplayResult", "RobotResult", "RunResult", "RunTable", "ZoneResult"]
+__all__ = ["LOST_THINGS", "MAX_CONCISE", "MAX_DETAILED", "HorizonSource", "ReplayResult", "RunResult", "RunTable"]
 
 HorizonSource = Literal["argument", "scenario", "default", "limits"]
 """Where the time limit of a run comes from."""
-
-
-class EventRecord(Result):
-    """Something that happened in an episode."""
-
-    kind: EventKind
-    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, or none round
-    ``partner``, which stands for good, ``overshoot`` when an object passes its goal within ``goal_threshold``
-    between two steps without arriving, ``zone_entry`` and ``zone_exit`` when a body begins and ceases to touch a
-    region of ``world.zones``, ``line_crossing`` when a centre crosses a line, ``sight_start`` and ``sight_end`` when
-    another object comes into and goes out of a field of view, ``contact_between_steps`` when two objects touch
-    within a step and are apart at its beginning and at its end, and ``passed_through`` if the middle of one of them
-    went through the other then."""
-    time: float
-    """Simulated time [s]; of a contact between steps, and of a collision with ``world.contacts: swept``, when the two
-    first touch within the step."""
-    step: int
-    """Steps executed; 0 is the initial state."""
-    object: str
-    """Name of the object; in a contact, of the first of the two; of a sight, of the one that sees."""
-    partner: str | None
-    """Name of the other object in a contact, or of the object that is seen."""
-    x: float
-    """Position of the object, or of the one that is seen; for a line, where it is crossed [m]."""
-    y: float
-    """Position of the object, or of the one that is seen; for a line, where it is crossed [m]."""
-    zone: str | None = None
-    """Name of the zone."""
-    direction: Literal["left_to_right", "right_to_left"] | None = None
-    """How a line is crossed, as seen from its first point towards its second."""
-    depth: float | None = None
-    """Deepest overlap within the step, of a contact between steps [m]."""
-
-
-class Left(Result):
-    """An object that left the world."""
-
-    name: str
-    time: float
-    """Time when it left [s]."""
-    x: float
-    y: float
-
-
-class RobotResult(Result):
-    """How the episode ended for one robot."""
-
-    name: str
-    outcome: Literal["success", "collision", "timeout"]
-    """``success``: arrived without a collision before; ``collision``: stopped by one, or arrived after one;
-    ``timeout``: neither."""
-    time_to_goal: float | None
-    """Time of first arrival [s]; None when it never arrived."""
-    collision_count: int
-    """Number of contacts that began."""
-    contacts_between_steps: int = 0
-    """Number of contacts that began and ended within one step; they decide ``outcome`` only with ``world.contacts:
-    swept``."""
-    passed_through: list[str] = Field(default_factory=list)
-    """The first ten objects that it passed through between two steps, or that passed through it."""
-    infeasible_steps: int | None = None
-    """Steps in which its behavior found no velocity that avoids all others (only ``orca`` and ``avocado`` report this);
-    None if there were none."""
-    path_length: float
-    """Distance travelled until the end of the run [m]."""
-    distance_to_goal: float | None
-    """Distance to the present goal at the end [m]; None without a goal."""
-    min_clearance: float | None = None
-    """Smallest distance, edge to edge, to anything it could hit, at the end of any step until it arrived [m]; negative:
-    overlap; None if there is nothing to hit, and in runs of more than two million poses."""
-    nearest: str | None = None
-    """Name of that nearest object."""
-    nearest_called: str | None = None
-    """That object in a sentence: its name in quotes, `the map` or `the walls round the world`."""
-    nearest_at: tuple[float, float] | None = None
-    """Where the robot was then, x and y [m]."""
-    heading_error: float | None = None
-    """Difference between its heading at the end and that of its goal [rad]; None where the heading does not count."""
-    time_in_zone: float | None = None
-    """Time in which its body touched a region of ``world.zones``, until it arrived [s]; None without regions."""
-    zone_crossings: int | None = None
-    """Entries into regions after the start, plus crossings of lines (+1 from left to right, -1 from right to left),
-    until it arrived; None without ``world.zones``."""
-    seen_ratio: float | None = None
-    """Share of time, until it arrived, in the field of view (``fov``) of another object; None if none has one."""
-    goal_visible_ratio: float | None = None
-    """Share of time, until it arrived, with a straight line to its goal free of static objects; None without a goal,
-    and in runs of more than two million poses."""
-    pose: tuple[float, float, float]
-    """x, y [m] and heading [rad] at the end."""
-
-
-class ZoneResult(Result):
-    """What robots and moving obstacles did in a zone of ``world.zones``, in the whole run."""
-
-    objects: int
-    """Number of objects that were in the region, or crossed the line."""
-    names: list[str]
-    """The first ten of them, in order of time."""
-    robots: list[str] = []
-    """The first ten robots among them, in order of time."""
-    first_time: float | None
-    """When the first of them was there [s]; None if there was none."""
-    entries: int | None = None
-    """Entries after the start; None for a line."""
-    time_in_zone: float | None = None
-    """Time in the region, of all objects together [s]; None for a line."""
-    left_to_right: int | None = None
-    """Crossings from left to right, as seen from the first point of the line; None for a region."""
-    right_to_left: int | None = None
-    """Crossings from right to left; None for a region."""
+MAX_CONCISE = 10
+"""Number of robots and events in a concise result."""
+MAX_DETAILED = 50
+"""Number of robots and events in a detailed result."""
+LOST_THINGS = {"bridge-lost": "program of a bridge", "policy-lost": "policy"}
+"""The thing that was lost, by ``lost_code``."""
 
 
 class RunResult(Result):
-    """What ``irsim run`` did."""
+    """The result of ``irsim run``."""
 
     scenario: str
     """The file."""
     seed: int
     """Seed that was used."""
     random: list[str]
-    """What the seed decides; empty if every seed gives the same run."""
+    """Parts that the seed decides; empty if every seed gives the same run."""
     behavior: str | None = None
     """Behavior of every robot instead of its own; None: the scenario as written."""
     policy: str | None = None
@@ -188,7 +86,7 @@ class RunResult(Result):
     contacts_between_steps: int = 0
     """Number of contacts of any two objects that began and ended within one step; ``events`` has the first ones."""
     zones: dict[str, ZoneResult] = Field(default_factory=dict)
-    """What happened in each zone of ``world.zones``, by its name."""
+    """Results of each zone of ``world.zones``, by its name."""
     events: list[EventRecord]
     """The first events, in order; repeated arrivals of an object at the same goal count once. If there are too many,
     ``sight_start`` and ``sight_end`` are left out first, and contacts between steps last."""
@@ -207,11 +105,76 @@ class RunResult(Result):
     artifacts: dict[str, str] = Field(default_factory=dict)
     """Files of the record by name."""
     notes: list[str] = Field(default_factory=list)
-    """What the record leaves out because there was too much of it, and what bridges tell."""
+    """Parts that the record leaves out because there was too much of them, and messages of bridges."""
+
+    def concise(
+        self, *, detailed: bool = False, artifacts: dict[str, str] | None = None, advice: str = ""
+    ) -> ConciseRun:
+        """A short form of the result; its ``text()`` puts it into words.
+
+        Args:
+            detailed: Keep more robots and events, and the path and pose of each robot.
+            artifacts: Addresses of files of the recorded run; None without any.
+            advice: The next call to make.
+        """
+        most = MAX_DETAILED if detailed else MAX_CONCISE
+        robots = sorted(self.robots, key=lambda robot: robot.outcome == "success")
+        return ConciseRun(
+            run_id=self.run_id,
+            outcome=self.outcome,
+            reason=None if self.reason is None else clean(self.reason, 500),
+            summary=clean(self.summary, 300),
+            seed=self.seed,
+            random=self.random,
+            behavior=clean(self.behavior or self.policy or "", 200) or None,
+            incidents=self._incidents() or None,
+            steps=self.steps,
+            sim_time=rounded(self.sim_time),
+            time_limit=rounded(self.time_limit),
+            time_limit_from=self.time_limit_from,
+            robots=[ConciseRobot.of(robot, detailed=detailed) for robot in robots[:most]],
+            robot_count=len(robots),
+            events=[ConciseEvent.of(event) for event in (self.events[:most] if detailed else self._chosen_events())],
+            event_count=self.event_count,
+            warnings=[clean(line, 300) for line in self._warning_lines()],
+            artifacts=artifacts,
+            reproduce=clean(self.reproduce, 300) if is_command(self.reproduce) else None,
+            next=advice,
+        )
+
+    def _incidents(self) -> dict[str, Any]:
+        """Incidents besides outcomes: contacts between steps or people, objects that left the world or jumped goals."""
+        incidents: dict[str, Any] = {
+            "contacts_between_steps": self.contacts_between_steps,
+            "human_contacts": self.human_contacts,
+            "left": [clean(item.name) for item in self.left],
+            "jumped": [clean(name) for name in self.jumped],
+        }
+        return {key: value for key, value in incidents.items() if value}
+
+    def _chosen_events(self) -> list[EventRecord]:
+        """A few events in order; contacts between steps are kept first, then events of robots, waypoints last."""
+        robots = {robot.name for robot in self.robots}
+
+        def rank(event: EventRecord) -> tuple[bool, bool, bool]:
+            of_robot = bool(robots & {event.object, event.partner})
+            return event.kind not in BETWEEN_STEPS, event.kind in SIGHTS, not of_robot
+
+        kept = sorted((event for event in self.events if event.kind != "waypoint"), key=rank)[:MAX_CONCISE]
+        kept += [event for event in self.events if event.kind == "waypoint"][: MAX_CONCISE - len(kept)]
+        return sorted(kept, key=lambda event: event.step)  # a stable sort keeps the order within a step
+
+    def _warning_lines(self) -> list[str]:
+        """The first warnings about the scenario, and the notes on the recording."""
+        warnings = [item for item in self.warnings if item.severity == "warning"]
+        lines = [f"{item.code} at {item.path}: {item.message}" for item in warnings[:MAX_CONCISE]]
+        if len(warnings) > MAX_CONCISE:
+            lines.append(f"{len(warnings) - MAX_CONCISE} more: validate_scenario lists them")
+        return [*lines, *(f"the recording is incomplete: {note}" for note in self.notes)]
 
 
 class RunTable(Result):
-    """What ``irsim inspect`` found in a recorded run."""
+    """A table of ``irsim inspect`` about a recorded run."""
 
     run_id: str
     """Id of the run."""
@@ -224,7 +187,7 @@ class RunTable(Result):
     summary: str
     """One sentence about the run."""
     view: str
-    """What the table shows."""
+    """The view that the table shows."""
     columns: list[str]
     """Names of the columns; lengths in m, times in s, angles in rad."""
     rows: list[list[float | int | str | bool | None]]
@@ -240,7 +203,7 @@ class RunTable(Result):
     next_cursor: str | None
     """Cursor of the next page; None on the last one."""
     notes: list[str] = Field(default_factory=list)
-    """What the record, and so the table, leaves out because there was too much of it."""
+    """Parts that the record, and so the table, leaves out because there was too much of them."""
 
 
 class ReplayResult(Result):
@@ -261,4 +224,4 @@ class ReplayResult(Result):
     scans: Literal["none", "recorded", "computed"]
     """Whether scans are taken from the record, or computed in the page from the shapes it draws."""
     notes: list[str] = Field(default_factory=list)
-    """What the record leaves out because there was too much of it."""
+    """Parts that the record leaves out because there was too much of them."""

@@ -8,8 +8,8 @@ from pydantic import Field
 
 from irsim.results.base import Result
 from irsim.results.diff import ScenarioDiff
+from irsim.results.episode import EventRecord, Left
 from irsim.results.findings import Finding
-from irsim.results.run import EventRecord, Left
 
 __all__ = ["DryRun", "Fix", "Stuck", "ValidationReport"]
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from irsim.common.angles import wrap
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
+from irsim.results.episode import EventRecord
 from irsim.results.records import Parting, RunsDiff, SetupChange
-from irsim.results.run import EventRecord
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.runs.store import SCENARIO_FILE

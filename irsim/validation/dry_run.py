@@ -21,7 +21,7 @@ from irsim.episodes.obstructions import find_obstruction, heading_message, jam_m
 from irsim.episodes.opening import MAX_TRIES, crowded_message, first_with_room
 from irsim.episodes.progress import find_circling, has_one_end, no_progress_since
 from irsim.episodes.watching import zone_results, zones_message
-from irsim.results.run import EventRecord
+from irsim.results.episode import EventRecord
 from irsim.results.validation import DryRun, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts

@@ -18,7 +18,7 @@ from irsim_mcp.sandbox import Workspace
 from irsim_mcp.suites import suite_of
 from irsim_mcp.worker import Progress, Workers
 
-__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Services", "is_command", "line_of"]
+__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Services", "line_of"]
 
 ScenarioPath = Annotated[str | None, Field(description="Workspace file, or id of a text.")]
 ScenarioYaml = Annotated[str | None, Field(description="Or its YAML text (at most 256 KiB).")]
@@ -264,11 +264,6 @@ def _result(answer: dict[str, Any], argument: str) -> Found:
     result = Found(answer["result"])
     result.text = answer["text"]
     return result
-
-
-def is_command(reproduce: str) -> bool:
-    """Whether a command that repeats something works as it is: not where a text has no file yet."""
-    return "# the text, saved as" not in reproduce
 
 
 def line_of(item: dict[str, Any]) -> str:

@@ -263,15 +263,13 @@ obstacle:
 """
 
 
-@pytest.mark.parametrize(
-    ("goal", "said"), [(3, "but it touched nothing, so that did no harm"), (2, "and it did touch something")]
-)
+@pytest.mark.parametrize(("goal", "said"), [(3, "but no contact"), (2, "and it touched something")])
 async def test_steps_without_a_way_to_avoid_everybody_say_whether_that_mattered(
     empty: Path, goal: float, said: str
 ) -> None:
     async with connected(empty) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": POCKET.format(goal=goal), "seed": 0})
-    assert re.search(rf"in \d+ steps no velocity avoided everybody, {said}", text_of(result))
+    assert re.search(rf"\d+ steps? without a collision-free velocity, {said}", text_of(result))
 
 
 async def test_a_success_that_passed_a_wall_is_told_and_not_trusted(workspace: Path) -> None:
