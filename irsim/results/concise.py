@@ -24,7 +24,7 @@ _WATCHED = {
 
 
 class ConciseRobot(BaseModel):
-    """Result of one robot; lengths in m, times in s."""
+    """One robot; lengths in m, times in s."""
 
     model_config = ConfigDict(extra="allow")  # and the facts of _optional that are defined
 

@@ -22,11 +22,11 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["tool"]
 
 _DESCRIPTION = """
-    Simulate an episode, until every robot has arrived or stopped, or time is up. Outcome is success (every robot
+    Simulate an episode until every robot has arrived or stopped, or time is up. Outcome is success (every robot
     reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit or passed
-    through what, where, when, and how far robots were from goals. Returns robots (unsuccessful first), first events, a
-    run_id, kept for 24 hours. Next: after a failure the call that `next` has, change the scenario and run again; after
-    success try other seeds if anything is random.
+    through what, where and when, and distances to goals. Returns robots (unsuccessful first), first events, a run_id,
+    kept for 24 hours. Next: after a failure make the call in `next`, change the scenario and run again; after success
+    try other seeds if anything is random.
 """
 _UNDRIVEN = "has no behavior"
 """Part of the reason of a run with a robot that nothing drives."""
