@@ -24,8 +24,8 @@ __all__ = ["tool"]
 _DESCRIPTION = """
     Simulate an episode until every robot has arrived or stopped, or time is up. Outcome is success (every robot
     reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit or passed
-    through what, where and when, and distances to goals. Returns robots (unsuccessful first), first events, a run_id,
-    kept for 24 hours. Next: after a failure make the call in `next`, change the scenario and run again; after success
+    through what, where, when, and distances to goals. Returns robots (unsuccessful first), first events, a run_id,
+    kept 24 hours. Next: after a failure make the call in `next`, change the scenario and run again; after success
     try other seeds if anything is random.
 """
 _UNDRIVEN = "has no behavior"
