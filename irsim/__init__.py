@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     )
     from irsim.env import Env, EnvBase, EnvBase3D, make
     from irsim.env.batch import Batch, batch
-    from irsim.objects.handlers.registration import register_behavior
+    from irsim.objects.extensions.registration import register_behavior
     from irsim.policies import Policy, open_policy
     from irsim.runs.comparison import diff_runs
     from irsim.runs.replay.export import replay

@@ -22,7 +22,7 @@ from irsim.components.maps._options import MapOptions
 from irsim.components.planners._options import PlannerOptions
 from irsim.components.sensors._options import SensorOptions
 from irsim.components.shapes._options import ShapeOptions
-from irsim.objects.handlers.registration import (
+from irsim.objects.extensions.registration import (
     register_behavior,
     register_behavior_class,
     register_group_behavior,

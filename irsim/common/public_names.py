@@ -24,7 +24,7 @@ PUBLIC_HOMES = {
     "fix": "irsim.api",
     "make": "irsim.env",
     "open_policy": "irsim.policies",
-    "register_behavior": "irsim.objects.handlers.registration",
+    "register_behavior": "irsim.objects.extensions.registration",
     "render": "irsim.api",
     "replay": "irsim.runs.replay.export",
     "run": "irsim.api",

@@ -37,11 +37,11 @@ def missing_names() -> list[str]:
 
 def _instance_attributes(home: type) -> frozenset[str]:
     """Return the attributes of instances: declared fields, and attributes that methods assign."""
-    found: set[str] = set()
+    attributes: set[str] = set()
     for base in home.__mro__:
-        found |= set(vars(base).get("__annotations__", ()))
+        attributes |= set(vars(base).get("__annotations__", ()))
         for method in vars(base).values():
             code = getattr(method, "__code__", None)
             if code is not None:
-                found |= {step.argval for step in dis.get_instructions(code) if step.opname == "STORE_ATTR"}
-    return frozenset(found)
+                attributes |= {step.argval for step in dis.get_instructions(code) if step.opname == "STORE_ATTR"}
+    return frozenset(attributes)

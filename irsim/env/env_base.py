@@ -17,11 +17,11 @@ from irsim.env import (
     loop,
     maps,
     messages,
+    object_list,
     policies,
     queries,
-    random_obstacles,
 )
-from irsim.env import objects as coming_and_going
+from irsim.env.old import random_obstacles
 from irsim.env.parameters import PathParam
 from irsim.env.state import EnvState
 from irsim.graphics.scene.palette import Palette
@@ -29,7 +29,7 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.active_env import use
 
 if TYPE_CHECKING:
-    from irsim.env.factory import EnvConfig, ObjectFactory
+    from irsim.env.old.factory import EnvConfig, ObjectFactory
     from irsim.policies.catalog import PolicySource
     from irsim.rendering.env_plot import EnvPlot
 
@@ -144,15 +144,15 @@ class Env(EnvState):
     get_lidar_scan = queries.get_lidar_scan
     get_lidar_offset = queries.get_lidar_offset
 
-    # adding and deleting objects: objects.py, random_obstacles.py
-    create_robot = coming_and_going.create_robot
-    create_obstacle = coming_and_going.create_obstacle
-    add_object = coming_and_going.add_object
-    add_objects = coming_and_going.add_objects
-    delete_object = coming_and_going.delete_object
-    delete_objects = coming_and_going.delete_objects
-    validate_unique_names = coming_and_going.validate_unique_names
-    build_tree = coming_and_going.build_tree
+    # adding and deleting objects: object_list.py, old/random_obstacles.py
+    create_robot = object_list.create_robot
+    create_obstacle = object_list.create_obstacle
+    add_object = object_list.add_object
+    add_objects = object_list.add_objects
+    delete_object = object_list.delete_object
+    delete_objects = object_list.delete_objects
+    validate_unique_names = object_list.validate_unique_names
+    build_tree = object_list.build_tree
     random_obstacle_position = random_obstacles.random_obstacle_position
     random_polygon_shape = random_obstacles.random_polygon_shape
 
@@ -200,7 +200,7 @@ class Env(EnvState):
     @property
     def env_config(self) -> EnvConfig:
         """The scenario as parsed, with methods that load it again: factory.py."""
-        from irsim.env.factory import EnvConfig
+        from irsim.env.old.factory import EnvConfig
 
         return EnvConfig(self)
 

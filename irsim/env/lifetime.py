@@ -6,18 +6,17 @@ from pathlib import Path
 from typing import Any, NoReturn
 from weakref import ref
 
+from irsim.compat.objects.view import ScriptObject, make_view, views
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.errors import CodedError
 from irsim.env.drawing import finish_drawing, redraw
 from irsim.env.loop import log_collisions
-from irsim.env.objects import count_ids, restore_objects
+from irsim.env.object_list import count_ids, restore_objects
 from irsim.env.parameters import EnvParam, WorldParam, checked_step_mode
 from irsim.env.policies import attach, driven, remember_written
 from irsim.env.queries import objects
 from irsim.env.state import EnvState
 from irsim.objects.extensions.attach import attach_python
-from irsim.objects.view import ObjectView
-from irsim.objects.views import make_view, views
 from irsim.scenario.open import open_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.active_env import next_seed, use
@@ -154,7 +153,7 @@ def quit_program(env: Any) -> NoReturn:
     raise SystemExit(0)
 
 
-def _objects_of(env: EnvState | None) -> list[ObjectView]:
+def _objects_of(env: EnvState | None) -> list[ScriptObject]:
     return [] if env is None else objects(env)
 
 

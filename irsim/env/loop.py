@@ -10,7 +10,6 @@ from irsim.env.live import drive_by_keyboard
 from irsim.env.queries import get_object_by_name
 from irsim.env.state import EnvState
 from irsim.objects.actions import assign_actions
-from irsim.objects.base import SimObject
 from irsim.simulation.active_env import use
 from irsim.simulation.episode_recorder import EpisodeRecorder
 from irsim.simulation.events import BETWEEN_STEPS, Event, read_events
@@ -53,7 +52,7 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
     _after_step(env)
 
 
-def _report_limits(env: EnvState, view: SimObject, control: Sequence[float]) -> None:
+def _report_limits(env: EnvState, view: Any, control: Sequence[float]) -> None:
     """Log, once per object, that its limits cut an action."""
     if view.static:
         return

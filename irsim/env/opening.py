@@ -29,7 +29,7 @@ def make(
     """
     chosen = (projection or "2d").lower()
     if chosen == "3d":
-        from irsim.env.env_base3d import EnvBase3D
+        from irsim.env.old.env_base3d import EnvBase3D
 
         return EnvBase3D(world_name, step_mode=step_mode, **kwargs)
     if chosen != "2d":

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from irsim.components.maps._site import OCCUPIED
 from irsim.objects.base import column
-from irsim.objects.obstacle_map import grid_values
+from irsim.objects.describe import grid_values
 from irsim.objects.setters import refuse
 from irsim.simulation.active_env import last_used
 from irsim.simulation.build import COLLISION_MODES
@@ -23,7 +23,7 @@ from irsim.simulation.fog import FogMap, fog_resolution
 
 if TYPE_CHECKING:
     from irsim.common.log import Logger
-    from irsim.objects.view import ObjectView
+    from irsim.compat.objects.view import ScriptObject
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["EnvParam", "PathParam", "WorldParam", "WorldView"]
@@ -160,13 +160,13 @@ class EnvParam:
         logger: Logger of the environment.
     """
 
-    def __init__(self, objects: Callable[[], list[ObjectView]], logger: Logger) -> None:
+    def __init__(self, objects: Callable[[], list[ScriptObject]], logger: Logger) -> None:
         self._objects, self.logger = objects, logger
         self.platform_name = platform.system()
         self.id_iter: Iterator[int] = count(len(objects()))
 
     @property
-    def objects(self) -> list[ObjectView]:
+    def objects(self) -> list[ScriptObject]:
         """``env.objects``."""
         return self._objects()
 

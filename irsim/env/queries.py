@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from irsim.common.arrays import Floats
+from irsim.compat.objects.info import ObjectInfo, ObstacleInfo
+from irsim.compat.objects.view import ScriptObject
 from irsim.env.object_list import ObjectList
 from irsim.env.state import EnvState
-from irsim.objects.info import ObjectInfo, ObstacleInfo
 from irsim.objects.sensors.contact import Contact, contacts_of
-from irsim.objects.view import ObjectView
 from irsim.simulation.events import Event, read_events
 from irsim.simulation.outcome import Outcome, outcome_of
 from irsim.simulation.simulation import Simulation
@@ -32,17 +32,17 @@ def objects(env: EnvState) -> ObjectList:
     return ObjectList(env)
 
 
-def robot_list(env: EnvState) -> list[ObjectView]:
+def robot_list(env: EnvState) -> list[ScriptObject]:
     """Return the robots."""
     return [view for view in env._objects if view.role == "robot"]
 
 
-def obstacle_list(env: EnvState) -> list[ObjectView]:
+def obstacle_list(env: EnvState) -> list[ScriptObject]:
     """Return the obstacles."""
     return [view for view in env._objects if view.role == "obstacle"]
 
 
-def robot(env: EnvState) -> ObjectView:
+def robot(env: EnvState) -> ScriptObject:
     """Return the first robot.
 
     Raises:
@@ -69,12 +69,12 @@ def names(env: EnvState) -> list[str]:
     return [view.name for view in env._objects]
 
 
-def static_objects(env: EnvState) -> list[ObjectView]:
+def static_objects(env: EnvState) -> list[ScriptObject]:
     """Return the objects that never move."""
     return [view for view in env._objects if view.static]
 
 
-def dynamic_objects(env: EnvState) -> list[ObjectView]:
+def dynamic_objects(env: EnvState) -> list[ScriptObject]:
     """Return the objects that can move."""
     return [view for view in env._objects if not view.static]
 
@@ -90,17 +90,17 @@ def config(env: EnvState) -> dict[str, Any]:
     return {**empty, **env.scenario.document}
 
 
-def get_object_by_name(env: EnvState, name: str) -> ObjectView | None:
+def get_object_by_name(env: EnvState, name: str) -> ScriptObject | None:
     """Return the object with this name; None if no object has it."""
     return next((view for view in env._objects if view.name == name), None)
 
 
-def get_object_by_id(env: EnvState, object_id: int) -> ObjectView | None:
+def get_object_by_id(env: EnvState, object_id: int) -> ScriptObject | None:
     """Return the object with this id; None if no object has it."""
     return next((view for view in env._objects if view.id == object_id), None)
 
 
-def get_group_by_name(env: EnvState, name: str) -> list[ObjectView]:
+def get_group_by_name(env: EnvState, name: str) -> list[ScriptObject]:
     """Return the objects with this ``group_name``."""
     return [view for view in env._objects if view.group_name == name]
 
@@ -143,7 +143,7 @@ def get_lidar_offset(env: EnvState, id: int = 0) -> list[float]:
     return _robot(env, id).get_lidar_offset()
 
 
-def _robot(env: EnvState, index: int) -> ObjectView:
+def _robot(env: EnvState, index: int) -> ScriptObject:
     left = index
     for view in env._objects:
         if view.role == "robot":

@@ -10,9 +10,9 @@ from irsim.env.parameters import EnvParam, PathParam, WorldParam, WorldView
 
 if TYPE_CHECKING:
     from irsim.common.log import Logger
+    from irsim.compat.objects.view import ScriptObject
     from irsim.graphics.scene.palette import Palette
     from irsim.gui import KeyboardControl, MouseControl
-    from irsim.objects.view import ObjectView
     from irsim.policies.policy import Policy
     from irsim.rendering.env_plot import EnvPlot
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
@@ -79,8 +79,8 @@ class EnvState:
     _simulation: Simulation
     _policy: Policy | None
     _written: dict[int, ObjectRecord]
-    _objects: list[ObjectView]
-    _originals: list[ObjectView]
+    _objects: list[ScriptObject]
+    _originals: list[ScriptObject]
     _exchanged: bool
     _world: WorldView
     _plot: EnvPlot | None

@@ -43,9 +43,16 @@ def make_page(title: str, *parts: str) -> str:
 def runner() -> Pages:
     """Return the pages of the skill ``irsim-runner``."""
     from irsim.bridges.export.registry import format_names
+    from irsim.compat.objects.view import ScriptObject
     from irsim.env import Env
     from irsim.env.batch import Batch
+    from irsim.objects.behavior import ObjectBehavior
+    from irsim.objects.body import Body
+    from irsim.objects.drawing.drawing import Drawing
+    from irsim.objects.surroundings import Surroundings
     from irsim.objects.view import ObjectView
+
+    parts = {"body": Body, "drawing": Drawing, "behavior": ObjectBehavior, "surroundings": Surroundings}
 
     functions = (
         *("make", "run", "render", "validate", "benchmark", "batch", "export_run", "diff_runs", "connect"),
@@ -68,6 +75,9 @@ def runner() -> Pages:
             "objects. Arrays are columns, (n, 1), unless stated otherwise, and read-only: use `set_…` to change an "
             "object.",
             _members(ObjectView),
+            *(f"## `x.{name}`\n\n{_one_line(part.__doc__)}\n\n{_members(part)}" for name, part in parts.items()),
+            "## Names of IR-SIM 2.12",
+            _members(ScriptObject, but=ObjectView),
         ),
         "exports": make_page(
             "Formats of recorded runs",
@@ -232,9 +242,11 @@ def _one_line(doc: str | None) -> str:
     return _markup(" ".join((doc or "").partition("\n\n")[0].split()))
 
 
-def _members(cls: type) -> str:
+def _members(cls: type, but: type = object) -> str:
     rows = []
     for name, member in sorted(_public(cls), key=lambda pair: pair[0]):
+        if hasattr(but, name):
+            continue
         if isinstance(member, property):
             rows.append((f"`{name}` ->", _one_line(member.__doc__)))
         else:

@@ -13,7 +13,7 @@ import numpy as np
 import irsim._core as core
 from irsim.components.maps._site import OCCUPIED
 from irsim.navigation.outlines import body_parts, parts_of
-from irsim.objects.geometry import ObjectBody
+from irsim.objects.view import ObjectView
 from irsim.simulation.occupancy import grid_occupied
 
 __all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarsen", "terrain_of", "world_map"]
@@ -247,7 +247,7 @@ def _signature(env_map: Any) -> Any:
     """Return a value that changes when anything in the map has moved or been replaced."""
     things = tuple(
         (id(thing), thing.row, thing._simulation.pose[thing.row].tobytes(), thing.record.unobstructed)
-        if isinstance(thing, ObjectBody)
+        if isinstance(thing, ObjectView)
         else (id(thing), getattr(thing, "geometry", thing).wkb)
         for thing in env_map.obstacle_list
     )

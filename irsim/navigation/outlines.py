@@ -10,7 +10,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.common.outline import outline
-from irsim.objects.geometry import ObjectBody
+from irsim.objects.view import ObjectView
 
 __all__ = ["body_parts", "parts_of"]
 
@@ -24,7 +24,7 @@ def parts_of(thing: Any) -> list[Any]:
     Raises:
         TypeError: The thing has no geometry.
     """
-    if isinstance(thing, ObjectBody):
+    if isinstance(thing, ObjectView):
         return outline(thing._simulation.state, thing.row, world_frame=True).core()
     return list(_parts(_geometry(thing, "geometry")))
 
@@ -39,7 +39,7 @@ def body_parts(thing: Any) -> list[Any]:
     Raises:
         TypeError: The thing has no geometry.
     """
-    if isinstance(thing, ObjectBody):
+    if isinstance(thing, ObjectView):
         return outline(thing._simulation.state, thing.row).core()
     return list(_parts(_geometry(thing, "original_geometry")))
 

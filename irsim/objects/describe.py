@@ -12,7 +12,6 @@ from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Cells, Polygon, outline
 from irsim.common.version import version
 from irsim.components.maps._site import OCCUPIED
-from irsim.objects.obstacle_map import grid_values
 from irsim.objects.views import views
 from irsim.options.color_values import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
@@ -22,7 +21,7 @@ from irsim.simulation.simulation import Simulation
 if TYPE_CHECKING:
     from irsim.objects.drawing.scene_builder import SceneBuilder
 
-__all__ = ["agent_rows", "describe_scene"]
+__all__ = ["agent_rows", "describe_scene", "grid_values"]
 
 _GREY = (0.5, 0.5, 0.5)
 
@@ -158,3 +157,18 @@ def _color(record: ObjectRecord) -> tuple[float, float, float]:
         return rgb(record.color)
     except ValueError:
         return _GREY
+
+
+def grid_values(simulation: Simulation, world: int = 0) -> Floats | None:
+    """Return the occupancies of the map of one world, (nx, ny), from 0 to 100; None without a map."""
+    scenario = simulation.scenario
+    if scenario.grid is None:
+        return None
+    if scenario.grid.raster is not None:
+        return scenario.grid.values()
+    for index, record in enumerate(scenario.objects):
+        if record.is_map:
+            cells = simulation.state.cells(world * simulation.objects + index)
+            assert cells is not None
+            return cells.occupied.astype(np.float64) * 100.0
+    return np.zeros(scenario.grid.size)

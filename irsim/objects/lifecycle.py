@@ -20,16 +20,37 @@ from irsim.simulation.simulation import Simulation
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
-__all__ = ["admit", "alone", "amend", "amend_all", "amend_world", "dismiss", "draw_as", "restore", "set_views"]
+__all__ = [
+    "admit",
+    "alone",
+    "amend",
+    "amend_all",
+    "amend_world",
+    "dismiss",
+    "draw_as",
+    "renumber",
+    "restore",
+    "set_views",
+]
 
 
 def set_views(simulation: Simulation, shown: Sequence[Any]) -> None:
     """Attach objects to the rows of a simulation of one world, in this order."""
     for index, (view, record) in enumerate(zip(shown, simulation.scenario.objects, strict=True)):
         if view.record is not record:
-            view.describe(record)
-        view.attach(simulation, index)
+            view._describe(record)
+        view._attach(simulation, index)
     simulation.keep_views(shown)
+
+
+def renumber(view: SimObject, number: int) -> None:
+    """Change the id of an object in a simulation of its own, and its name if that was generated from the id."""
+    record, simulation = view.record, view._simulation
+    name = f"{record.role}_{number}" if record.name == f"{record.role}_{record.id}" else record.name
+    scenario = replace(simulation.scenario, objects=[replace(record, id=number, name=name)])
+    vars(view).update(id=number, name=name)
+    simulation.exchange(scenario, [(simulation, 0)])
+    set_views(simulation, [view])
 
 
 def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simulation:
@@ -102,7 +123,7 @@ def amend_all(simulation: Simulation, records: Sequence[ObjectRecord]) -> None:
     for view, record in zip(shown, records, strict=True):
         if record.behavior is not view.record.behavior:
             forget_behavior(simulation, view)
-            for shown_keys in ("_keys", "_behavior"):
+            for shown_keys in ("behavior", "_behavior"):
                 vars(view).pop(shown_keys, None)
     _exchange(simulation, shown, records)
 

@@ -8,19 +8,29 @@ of an object replaces the record of the object in the engine and changes nothing
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from pydantic import ValidationError
 
-from irsim.components.behaviors._options import behavior_fields
-
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
 
-__all__ = ["HINTS", "BehaviorKeys", "FixedList", "behavior_keys", "change", "refuse", "sensor_options"]
+__all__ = [
+    "HINTS",
+    "SETTINGS",
+    "FixedList",
+    "change",
+    "goal_list",
+    "names_only_read",
+    "refuse",
+    "sensor_options",
+    "set_state",
+    "set_velocity",
+]
 
 _CHOICES = {"role": ("robot", "obstacle"), "arrive_mode": ("position", "state")}
 
@@ -171,106 +181,63 @@ def change(view: SimObject, name: str, value: Any) -> None:
         view._simulation.twist[view.row] = 0.0
 
 
-# behaviors -----------------------------------------------------------------------------------------------------------
-class BehaviorKeys(dict[str, Any]):
-    """Keys of a behavior as a dictionary; a change takes effect at the next decision.
-
-    Args:
-        keys: The keys.
-        apply: Function that applies the keys after a change and returns the keys in force. If it raises, nothing is
-            changed.
-    """
-
-    def __init__(self, keys: Mapping[str, Any], apply: Callable[[dict[str, Any]], dict[str, Any]]) -> None:
-        super().__init__(keys)
-        self._apply = apply
-
-    def assign(self, keys: Mapping[str, Any] | None) -> None:
-        """Replace all keys."""
-        held = self._apply(dict(keys or {}))
-        super().clear()
-        super().update(held)
-
-    def _changed(self, method: str, *args: Any, **kwargs: Any) -> Any:
-        new = dict(self)
-        result = getattr(new, method)(*args, **kwargs)
-        if new != dict(self):
-            self.assign(new)
-        return result
-
-    def __setitem__(self, key: str, value: Any) -> None:
-        self._changed("__setitem__", key, value)
-
-    def __delitem__(self, key: str) -> None:
-        self._changed("__delitem__", key)
-
-    def __ior__(self, other: Any) -> BehaviorKeys:  # type: ignore[override,misc]
-        self._changed("update", other)
-        return self
-
-    def update(self, *args: Any, **kwargs: Any) -> None:
-        """Do what the method of ``dict`` does, and apply the change."""
-        self._changed("update", *args, **kwargs)
-
-    def pop(self, *args: Any) -> Any:
-        """Do what the method of ``dict`` does, and apply the change."""
-        return self._changed("pop", *args)
-
-    def popitem(self) -> tuple[str, Any]:
-        """Do what the method of ``dict`` does, and apply the change."""
-        item: tuple[str, Any] = self._changed("popitem")
-        return item
-
-    def clear(self) -> None:
-        """Do what the method of ``dict`` does, and apply the change."""
-        self._changed("clear")
-
-    def setdefault(self, *args: Any) -> Any:
-        """Do what the method of ``dict`` does, and apply the change."""
-        return self._changed("setdefault", *args)
-
-    def copy(self) -> dict[str, Any]:
-        """Return the keys as a plain dictionary."""
-        return dict(self)
-
-    def __reduce__(self) -> Any:
-        return dict, (dict(self),)
+def set_state(view: SimObject, state: Any, init: bool) -> None:
+    """Set the state of an object; see :meth:`irsim.objects.view.ObjectView.set_state`."""
+    values = np.zeros(view.state_dim) if state is None else np.asarray(state, dtype=np.float64).reshape(-1)
+    if values.size != view.state_dim or not np.isfinite(values).all():
+        raise ValueError(f"the state of {view.name!r} is {view.state_dim} finite numbers, not {state!r}")
+    simulation, row = view._simulation, view.row
+    simulation.pose[row] = values[:3]
+    simulation.extra[row, : view.state_dim - 3] = values[3:]
+    if init:
+        simulation.state.set_initial(row, pose=True, control=False)
+    simulation.state.moved(row)
 
 
-def behavior_keys(view: SimObject) -> BehaviorKeys:
-    """Return the keys of the behavior of an object, which may be written, or else those of its group behavior."""
-
-    def present() -> dict[str, Any]:
-        options = view.record.behavior or view.record.group_behavior
-        return {} if options is None else options.model_dump(exclude_unset=True)
-
-    def apply(new: dict[str, Any]) -> dict[str, Any]:
-        if view.record.behavior is None and view.record.group_behavior is not None:
-            refuse(repr(view.name), "beh_config", HINTS["group_behavior_dict"])
-        _set_behavior(view, new)
-        return present()
-
-    return BehaviorKeys(present(), apply)
+def set_velocity(view: SimObject, velocity: Any, init: bool) -> None:
+    """Set the control of an object; see :meth:`irsim.objects.view.ObjectView.set_velocity`."""
+    values = np.zeros(view.vel_dim) if velocity is None else np.asarray(velocity, dtype=np.float64).reshape(-1)
+    if values.size != view.vel_dim:
+        raise ValueError(f"the velocity of {view.name!r} is {view.vel_dim} numbers, not {velocity!r}")
+    simulation, row = view._simulation, view.row
+    simulation.control[row, : min(3, view.vel_dim)] = values[:3]
+    if view.vel_dim > 3:
+        simulation.control_of(row, view.vel_dim)[:] = values
+    if init:
+        simulation.state.set_initial(row, pose=False, control=True)
 
 
-def _set_behavior(view: SimObject, keys: dict[str, Any]) -> None:
-    """Replace the behavior of an object by one with the keys of a scenario.
+def goal_list(goal: Any) -> list[list[float]]:
+    """Return a goal, or several goals, as a list of goals of 2 or 3 numbers; an empty list for None.
 
     Raises:
-        ScenarioError: A key or value is not valid. What IR-SIM would ignore is logged as a warning instead.
+        ValueError: A goal does not have 2 or 3 finite numbers.
     """
-    from irsim.scenario.single_object import read_object
+    if goal is None:
+        return []
+    queue = hasattr(goal, "popleft")
+    several = isinstance(goal, Sequence) and not isinstance(goal, str) and len(goal) > 0
+    if queue or (several and all(isinstance(g, (Sequence, np.ndarray)) and np.size(g) in (2, 3) for g in goal)):
+        goals = [np.asarray(g, dtype=np.float64).reshape(-1).tolist() for g in goal]
+    else:
+        goals = [np.asarray(goal, dtype=np.float64).reshape(-1).tolist()]
+    if any(len(g) not in (2, 3) or not all(map(math.isfinite, g)) for g in goals):
+        raise ValueError(f"a goal is 2 or 3 finite numbers (x, y, theta), not {goal!r}")
+    return goals
 
-    record, world = view.record, view._simulation.scenario.world
-    if record.kinematics is None:
-        refuse(repr(view.name), "beh_config", "it has no drive, and never moves by itself")
-    drive = {"name": str(getattr(record.kinematics, "name", ""))}
-    entry = {"kinematics": drive, "behavior": keys or None}
-    made, found = read_object(record.role, entry, world, record.id)
-    for item in found:
-        if "behavior" in item.path and view.logger is not None:
-            view.logger.warning(f"{record.name}: {item.message} [{item.code}]")
-    view.amend(replace(record, behavior=made.behavior, **behavior_fields(made.behavior, world.bounds)))
+
+def names_only_read(cls: type) -> frozenset[str]:
+    """Return the names of properties without a setter, parts, and attributes that only records set."""
+    return frozenset(name for name in {*HINTS, *dir(cls)} - SETTINGS.keys() if _is_only_read(cls, name))
+
+
+def _is_only_read(cls: type, name: str) -> bool:
+    kind = getattr(cls, name, None)
+    return (
+        not hasattr(cls, name)
+        or isinstance(kind, cached_property)
+        or (isinstance(kind, property) and kind.fset is None)
+    )
 
 
 # sensors -------------------------------------------------------------------------------------------------------------

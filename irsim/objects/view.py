@@ -1,35 +1,43 @@
-"""The objects that scripts use; each is a view of one row of a simulation, and every read returns a copy."""
+"""The objects that programs use; each is a view of one row of a simulation, and every read returns a copy."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.objects.avoidance import ObjectAvoidance
+from irsim.objects import setters
 from irsim.objects.base import column
-from irsim.objects.drawing.by_hand import ObjectDrawing
-from irsim.objects.drawing.plot_keys import PLOT_KEYS, ObjectPlotKeys, with_plot_key
-from irsim.objects.dynamics import ObjectDynamics
-from irsim.objects.extensions.hooks import ObjectHooks
-from irsim.objects.info import ObjectInfo, ObstacleInfo
-from irsim.objects.lifecycle import amend, draw_as, set_views
+from irsim.objects.behavior import ObjectBehavior
+from irsim.objects.body import Body
+from irsim.objects.drawing.drawing import Drawing
+from irsim.objects.extensions.drives import heading, max_speed, velocity_xy
+from irsim.objects.extensions.hooks import (
+    limited_control,
+    overridable,
+    renew_goal,
+    step_alone,
+    take_part,
+    wrapped_state,
+)
+from irsim.objects.lifecycle import amend
 from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.lidar import Lidar2D
 from irsim.objects.sensors.sensors import attach_sensors, sensors_of
-from irsim.objects.setters import HINTS, SETTINGS, BehaviorKeys, FixedList, behavior_keys, change, refuse
-from irsim.objects.status import ObjectStatus
+from irsim.objects.setters import HINTS, SETTINGS
+from irsim.objects.surroundings import Surroundings
 
 if TYPE_CHECKING:
-    from irsim.components.kinematics._handler import KinematicsHandler
     from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["ObjectView"]
 
 
-class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, ObjectDrawing, ObjectPlotKeys):
+class ObjectView:
     """One robot or obstacle.
 
     Arrays are columns (n, 1) and read-only copies, which never change. ``set_state``, ``set_velocity`` and
@@ -41,195 +49,351 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
         world: Index of the world in a batch.
         index: Index among the objects of the world; it changes when an object with a lower index is deleted.
         row: Row in the arrays of the simulation.
-        surroundings: Until the object is added to the environment for which it was made, the objects of that
-            environment; otherwise None.
     """
 
+    record: ObjectRecord
+    id: int
+    name: str
+    role: Literal["robot", "obstacle"]
+    group: int
+    group_name: str
+    color: Any
+    description: str | None
+    static: bool
+    unobstructed: bool
+    goal_threshold: float
+    arrive_mode: Literal["position", "state"]
+    fov: float | None
+    fov_radius: float | None
+    fov_occlusion: bool
+    wander: bool
+    loop: bool
+    tags: tuple[str, ...]
+    state_dim: int
+    vel_dim: int
+    wheelbase: float | None
+    sensors: list[Any]
     lidar: Lidar2D | None
+    contact: Contact2D
+    index: int
+    world: int
+    row: int
+    _simulation: Simulation
+    _pose: Floats
+    _pose_column: Floats
+    _made_beside: Sequence[Any] | None
+    _read_only: ClassVar[frozenset[str]] = frozenset()
 
     def __init__(self, simulation: Simulation, index: int, world: int = 0) -> None:
         record = simulation.scenario.objects[index]
-        self.describe(record)
-        self.surroundings: Sequence[ObjectView] | None = None
-        self.text: str | None = None
-        self.goal_text: str | None = None
-        self._plain = record.state_dim == 3
+        self._describe(record)
         own = self.__dict__
+        own["_made_beside"] = None
         own["sensors"] = []
-        self.attach(simulation, index, world)
-        self.contact = Contact2D(self, _contact_options(record.sensors))
-        own["sensors"] = FixedList(sensors_of(simulation, self), f"`sensors` of {self.name!r}", HINTS["sensors"])
+        self._attach(simulation, index, world)
+        contact = next((sensor for sensor in record.sensors if getattr(sensor, "name", "") == "contact2d"), None)
+        own["contact"] = Contact2D(self, contact)
+        made = sensors_of(simulation, self)
+        own["sensors"] = setters.FixedList(made, f"`sensors` of {self.name!r}", HINTS["sensors"])
         own["lidar"] = next((s for s in self.sensors if isinstance(s, Lidar2D)), None)
 
-    def describe(self, record: ObjectRecord) -> None:
-        """Take the attributes of the object from a record; scripts set them through :mod:`irsim.objects.setters`."""
-        self.record = record
-        own = self.__dict__
-        for name in _SHOWN:
-            own[name] = getattr(record, name)
-        own["state_shape"], own["vel_shape"] = (record.state_dim, 1), (record.vel_dim, 1)
-        own["wheelbase"] = getattr(record.shape, "wheelbase", None)
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        cls._read_only = setters.names_only_read(cls)
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name in SETTINGS:
-            change(self, name, value)
-        elif name in PLOT_KEYS:
-            draw_as(self, with_plot_key(self.record, name, value))
-        elif name in _FIXED:
-            refuse(repr(self.name), name, HINTS.get(name, "it can only be read"))
+            setters.change(self, name, value)
+        elif name in self._read_only:
+            setters.refuse(repr(self.name), name, HINTS.get(name, "it can only be read"))
         else:
             object.__setattr__(self, name, value)
 
-    def amend(self, record: ObjectRecord) -> None:
-        """Replace the record of the object; see :func:`irsim.objects.lifecycle.amend`."""
-        amend(self, record)
+    def __repr__(self) -> str:
+        x, y, theta = self._pose
+        return f"<{self.role} {self.name!r} at ({x:.3f}, {y:.3f}, {theta:.3f})>"
 
-    def renumber(self, number: int) -> None:
-        """Change the id of an object in a simulation of its own, and its name if that was generated from the id."""
-        record = self.record
-        name = f"{record.role}_{number}" if record.name == f"{record.role}_{record.id}" else record.name
-        scenario = replace(self._simulation.scenario, objects=[replace(record, id=number, name=name)])
-        self.__dict__.update(id=number, name=name)
-        self._simulation.exchange(scenario, [(self._simulation, 0)])
-        set_views(self._simulation, [self])
+    def _describe(self, record: ObjectRecord) -> None:
+        """Take the attributes of the object from a record; scripts set them through :mod:`irsim.objects.setters`."""
+        own = self.__dict__
+        own["record"] = record
+        for name in _SHOWN:
+            own[name] = getattr(record, name)
+        own["wheelbase"] = getattr(record.shape, "wheelbase", None)
 
-    def attach(self, simulation: Simulation, index: int, world: int = 0) -> None:
+    def _attach(self, simulation: Simulation, index: int, world: int = 0) -> None:
         """Attach the object to a row of a simulation; its row changes when objects are added or deleted."""
         own, row = self.__dict__, world * simulation.objects + index  # without __setattr__: many do this at once
         own["_simulation"], own["index"], own["world"], own["row"] = simulation, index, world, row
         own["_pose"], own["_pose_column"] = simulation.pose[row], simulation.pose[row, :, None]
         if self.sensors:
             attach_sensors(simulation, self)
-        self._take_part()
+        take_part(self)
+
+    def amend(self, record: ObjectRecord) -> None:
+        """Replace the record of the object; see :func:`irsim.objects.lifecycle.amend`."""
+        amend(self, record)
+
+    # parts -----------------------------------------------------------------------------------------------------------
+    @cached_property
+    def body(self) -> Body:
+        """Outline, extent and mass."""
+        return Body(self)
+
+    @cached_property
+    def drawing(self) -> Drawing:
+        """How pictures show the object."""
+        return Drawing(self)
+
+    @cached_property
+    def behavior(self) -> ObjectBehavior:
+        """Keys of the behavior, which may be written."""
+        return ObjectBehavior(self)
+
+    @cached_property
+    def surroundings(self) -> Surroundings:
+        """The other objects of the world."""
+        return Surroundings(self)
+
+    # the entry -------------------------------------------------------------------------------------------------------
+    @property
+    def shape(self) -> str:
+        """Name of the shape."""
+        return str(getattr(self.record.shape, "name", ""))
 
     @property
-    def kf(self) -> KinematicsHandler:
-        """Handler of the drive: for a drive of user code the one in use, otherwise one with the same results."""
-        if (handler := self._handler) is not None:
-            return handler
-        from irsim.objects.handlers.kinematics import KinematicsFactory
-
-        options: Any = self.record.kinematics
-        if options is None:
-            return KinematicsFactory.create_kinematics("static")
-        handler = KinematicsFactory.create_kinematics(
-            options.name, options.noise, options.alpha, options.mode, self.record.wheelbase, self.role, options.tau
-        )
-        handler.integration = self._simulation.scenario.world.integration
-        return handler
+    def kinematics(self) -> str | None:
+        """Name of the drive; None without one."""
+        return None if self.record.kinematics is None else str(getattr(self.record.kinematics, "name", ""))
 
     @property
-    def gf(self) -> Any:
-        """Handler of the shape, placed at the present pose."""
-        from irsim.objects.handlers.geometry import handler_of
-
-        return handler_of(self)
+    def radius(self) -> float:
+        """Radius of the smallest circle round the body [m]."""
+        return self.body.radius
 
     @property
-    def obj_behavior(self) -> Any:
-        """The behavior as an object with the method ``gen_vel``."""
-        from irsim.objects.handlers.behavior import Behavior
+    def length(self) -> float:
+        """Extent of the body along its x axis [m]."""
+        return self.body.length
 
-        if "_behavior" not in self.__dict__:
-            made = self.__dict__["_behavior"] = Behavior(self.info, self.beh_config)
-            made.follow(self.beh_config)
-        return self.__dict__["_behavior"]
+    @property
+    def width(self) -> float:
+        """Extent of the body along its y axis [m]."""
+        return self.body.width
+
+    @property
+    def vertices(self) -> Floats | None:
+        """Outline in the world frame, (2, M) [m]: 64 points for a circle, None for a compound or a map."""
+        return self.body.vertices
+
+    @property
+    def geometry(self) -> Any:
+        """The body as a shapely geometry, world frame (circles as polygons of 64 vertices)."""
+        return self.body.geometry
+
+    @property
+    def vel_min(self) -> Floats:
+        """Lower limits of the control, (vel_dim, 1)."""
+        return column(self._simulation.limits(self.row)[0])
+
+    @property
+    def vel_max(self) -> Floats:
+        """Upper limits of the control, (vel_dim, 1)."""
+        return column(self._simulation.limits(self.row)[1])
+
+    @property
+    def acce(self) -> Floats:
+        """Limits on the change of each control per second, (vel_dim, 1)."""
+        return column(self.record.acce)
+
+    @property
+    def max_speed(self) -> float:
+        """Largest speed that the limits allow [m/s]; 0 for objects without a drive."""
+        return max_speed(self)
+
+    # state -----------------------------------------------------------------------------------------------------------
+    @property
+    def state(self) -> Floats:
+        """State (3 or more, 1): x, y [m], heading [rad], then extra rows such as the steering angle of a car [rad]."""
+        if self.state_dim == 3:
+            state = self._pose_column.copy()
+        else:
+            extra = self._simulation.extra[self.row, : self.state_dim - 3]
+            state = np.concatenate([self._pose, extra])[:, None]
+        state.setflags(False)  # type: ignore[call-arg]  # as in `column`
+        return state
+
+    @property
+    def init_state(self) -> Floats:
+        """The state to which ``reset`` returns, (state_dim, 1)."""
+        return column(self._simulation.state.initial_state(self.row)[: self.state_dim])
+
+    @property
+    def position(self) -> Floats:
+        """Position x, y [m] in the world frame, (2, 1)."""
+        return column(self._pose[:2])
+
+    @property
+    def orientation(self) -> float:
+        """Heading of the body [rad]."""
+        return float(self._pose[2])
+
+    @property
+    def heading(self) -> float:
+        """Direction of travel for an ``omni`` drive, heading of the body for others [rad]."""
+        return heading(self)
+
+    @property
+    def velocity(self) -> Floats:
+        """Executed control in the command frame of the drive, (vel_dim, 1)."""
+        return column(self._simulation.control_of(self.row, self.vel_dim))
+
+    @property
+    def velocity_xy(self) -> Floats:
+        """Velocity in the world frame that follows from the present control, (2, 1) [m/s]."""
+        return velocity_xy(self)
 
     @property
     def trajectory(self) -> list[Floats]:
         """States after each executed step, (state_dim, 1) each, without the initial state."""
         states = [column(row[: self.state_dim]) for row in self._simulation.state.trajectory(self.row)]
-        return FixedList(states, f"`trajectory` of {self.name!r}", HINTS["trajectory"])
+        return setters.FixedList(states, f"`trajectory` of {self.name!r}", HINTS["trajectory"])
 
-    # description ---------------------------------------------------------------------------------------------------
-    @property
-    def beh_config(self) -> BehaviorKeys:
-        """Keys of the behavior as written, which may be set, or else keys of the group behavior."""
-        if "_keys" not in self.__dict__:
-            self.__dict__["_keys"] = behavior_keys(self)
-        keys: BehaviorKeys = self.__dict__["_keys"]
-        return keys
+    def set_state(self, state: Any = None, init: bool = False) -> None:
+        """Set the state of the object.
 
-    @beh_config.setter
-    def beh_config(self, keys: Mapping[str, Any] | None) -> None:
-        self.beh_config.assign(keys)
+        Args:
+            state: ``state_dim`` numbers in any shape: x, y [m], heading [rad] (not wrapped), extra rows; None sets
+                zeros.
+            init: Also make it the state to which ``reset`` returns.
 
-    @property
-    def info(self) -> ObjectInfo:
-        """Description of the object at the present time."""
-        return ObjectInfo.of(self)
-
-    def get_info(self) -> ObjectInfo:
-        """Return the description of the object at the present time."""
-        return self.info
-
-    def get_obstacle_info(self) -> ObstacleInfo:
-        """Return the position and the size of the object."""
-        return ObstacleInfo.of(self)
-
-    def get_lidar_scan(self) -> dict[str, Any]:
-        """Return the scan of the first lidar; see :meth:`irsim.objects.sensors.lidar.Lidar2D.get_scan`."""
-        return self._first_lidar().get_scan()
-
-    def get_lidar_points(self) -> Floats | None:
-        """Return the points of the first lidar in the sensor frame, (2, K) [m]; None without a hit."""
-        return self._first_lidar().get_points()
-
-    def get_lidar_offset(self) -> list[float]:
-        """Return the pose [x, y, theta] of the first lidar in the body frame [m, m, rad]."""
-        return self._first_lidar().get_offset()
-
-    def set_laser_color(self, laser_indices: Any, laser_color: str | None = None, alpha: float = 0.3) -> None:
-        """Draw some beams of the first lidar in another colour; an object without a lidar logs a warning."""
-        if self.lidar is not None:
-            self.lidar.set_laser_color(laser_indices, laser_color, alpha)
-        elif self.logger is not None:
-            self.logger.warning(f"{self.name}: it has no lidar whose beams could be coloured")
-
-    def get_fov_detected_objects(self) -> list[ObjectView]:
-        """Return the other objects of which a part lies in the field of view, ordered by id; empty without one.
-
-        The field of view is a sector of the angle ``fov`` [rad] about the heading and of the radius ``fov_radius`` [m]
-        about the origin of the object. With ``fov_occlusion``, parts behind objects that are not ``unobstructed`` are
-        hidden and do not count.
+        Raises:
+            ValueError: The state does not have ``state_dim`` finite numbers.
         """
-        if self.fov is None or self.fov_radius is None:
-            return []
-        seen = self._simulation.state.in_view(self.row, self.fov, self.fov_radius, self.fov_occlusion)
-        return [self.environment_objects[i] for i in seen]
+        setters.set_state(self, state, init)
 
-    def fov_detect_object(self, detected_object: ObjectView) -> bool:
-        """Return whether a part of another object lies in the field of view."""
-        return any(other.id == detected_object.id for other in self.get_fov_detected_objects())
+    def set_velocity(self, velocity: Any = None, init: bool = False) -> None:
+        """Set the present control, from which acceleration limits are counted.
 
-    def set_text(self, text: str | None) -> None:
-        """Set the text that is drawn in place of ``label``; None restores ``label``."""
-        self.text = text
+        Args:
+            velocity: ``vel_dim`` numbers in the command frame; None sets zeros.
+            init: Also make it the control to which ``reset`` returns.
 
-    def set_goal_text(self, text: str | None) -> None:
-        """Set the text that is drawn at the goal in place of ``G-`` and ``label``; None restores that."""
-        self.goal_text = text
+        Raises:
+            ValueError: The control does not have ``vel_dim`` numbers.
+        """
+        setters.set_velocity(self, velocity, init)
 
-    def __repr__(self) -> str:
-        x, y, theta = self._pose
-        return f"<{self.role} {self.name!r} at ({x:.3f}, {y:.3f}, {theta:.3f})>"
+    # goals and flags -------------------------------------------------------------------------------------------------
+    @property
+    def goal(self) -> Floats | None:
+        """The present goal x, y [m] and possibly heading [rad], (2 or 3, 1); None without one."""
+        goals = self._simulation.state.goals(self.row)
+        return column(goals[0]) if goals else None
 
-    # -----------------------------------------------------------------------------------------------------------------
-    def _first_lidar(self) -> Lidar2D:
-        if self.lidar is None:
-            raise AttributeError(f"{self.name!r} has no lidar: add one under `sensors` in its scenario entry")
-        return self.lidar
+    @property
+    def goals(self) -> list[Floats]:
+        """The present goal and the goals after it, (2 or 3, 1) each."""
+        return [column(goal) for goal in self._simulation.state.goals(self.row)]
 
+    def set_goal(self, goal: Any = None, init: bool = False) -> None:
+        """Set the goal, or several goals that are visited in order.
 
-def _may_not_be_set(name: str) -> bool:
-    kind = getattr(ObjectView, name, None)
-    return not hasattr(ObjectView, name) or (isinstance(kind, property) and kind.fset is None)
+        Args:
+            goal: 2 or 3 numbers in any shape (x, y [m], heading [rad]), a list of such goals, or None for no goal.
+            init: Also make it the goal to which ``reset`` returns.
+
+        Raises:
+            ValueError: A goal does not have 2 or 3 finite numbers.
+        """
+        self._simulation.state.set_goals(self.row, setters.goal_list(goal), init)
+
+    def append_goal(self, goal: Any) -> None:
+        """Add a goal after the present ones."""
+        goals = [list(map(float, g)) for g in self._simulation.state.goals(self.row)]
+        self._simulation.state.set_goals(self.row, goals + setters.goal_list(goal), False)
+
+    @property
+    def arrive(self) -> bool:
+        """Whether the object has reached its last goal."""
+        return bool(self._simulation.arrived[self.row])
+
+    @property
+    def collision(self) -> bool:
+        """Whether the object touches something."""
+        return bool(self._simulation.collided[self.row])
+
+    @property
+    def contacts_between_steps(self) -> int:
+        """Number of contacts of the episode that began and ended within one step, so that ``collision`` tells none."""
+        return int(self._simulation.between_steps[self.row])
+
+    @property
+    def stop_flag(self) -> bool:
+        """Whether the collision mode has stopped the object; may be set, until the next step evaluates it again."""
+        return bool(self._simulation.stopped[self.row])
+
+    @stop_flag.setter
+    def stop_flag(self, value: bool) -> None:
+        self._simulation.stopped[self.row] = bool(value)
+
+    def done(self) -> bool:
+        """Return whether the object has arrived or has been stopped."""
+        return self.arrive or self.stop_flag
+
+    def reset(self) -> None:
+        """Reset the object to its initial state, control and goals, and clear its flags and trajectory."""
+        self._simulation.state.reset_row(self.row)
+
+    # a step: user code may override these methods in subclasses or on instances ---------------------------------------
+    @overridable
+    def pre_process(self) -> None:
+        """Renew the goals of an arrived object with ``wander`` or ``loop``; called before the object decides."""
+        renew_goal(self)
+
+    @overridable
+    def gen_behavior_vel(self, velocity: Any = None) -> Floats:
+        """Return the control of the next step.
+
+        Args:
+            velocity: Desired control; None lets the behavior choose.
+
+        Returns:
+            Control (vel_dim, 1) within the limits of speed and acceleration. An object without a behavior stops at
+            once, whatever its limits; for a robot this is logged once.
+        """
+        return limited_control(self, velocity)
+
+    @overridable
+    def mid_process(self, state: Any) -> Floats:
+        """Wrap the heading into ``angle_range``; called after the motion, before its result takes effect.
+
+        Args:
+            state: State that results from the motion.
+
+        Returns:
+            State (state_dim, 1) that takes effect; rows that ``state`` lacks keep their values.
+        """
+        return wrapped_state(self, state)
+
+    @overridable
+    def post_process(self) -> None:
+        """Do nothing; called after the object has moved."""
+
+    @overridable
+    def step(self, velocity: Any = None, sensor_step: bool = True, **_: Any) -> Floats:
+        """Advance this object alone by one period, without advancing the time of the environment.
+
+        Args:
+            velocity: Control, ``vel_dim`` numbers in the command frame; None lets the behavior choose.
+            sensor_step: Also update the sensors.
+
+        Returns:
+            The new state, (state_dim, 1).
+        """
+        return step_alone(self, velocity, sensor_step)
 
 
 _SHOWN = ("id", "name", "state_dim", "vel_dim", *(name for name in SETTINGS if not hasattr(ObjectView, name)))
 """Fields of the record that are attributes of the object."""
-_FIXED = frozenset(name for name in {*HINTS, *dir(ObjectView)} - SETTINGS.keys() if _may_not_be_set(name))
-
-
-def _contact_options(sensors: Sequence[Any]) -> Any:
-    return next((sensor for sensor in sensors if getattr(sensor, "name", "") == "contact2d"), None)
+ObjectView._read_only = setters.names_only_read(ObjectView)

@@ -133,7 +133,7 @@ def _outlines(view: ObjectView, margin: PathMargin) -> tuple[Floats, ...]:
         return ()
     x, y, heading = margin.pose
     cos, sin = math.cos(heading), math.sin(heading)
-    body = affine_transform(view.original_geometry, (cos, -sin, sin, cos, x, y))
+    body = affine_transform(view.body.original_geometry, (cos, -sin, sin, cos, x, y))
     areas = [body, body.buffer(margin.distance)] if margin.distance > 0 else [body]
     return tuple(np.asarray(area.exterior.coords) for area in areas if area.geom_type == "Polygon")
 

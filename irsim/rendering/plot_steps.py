@@ -100,7 +100,8 @@ class PlotSteps:
         """
         if mode not in MODES:
             raise ValueError(f"unknown mode {mode!r}: choose one of {', '.join(MODES)}")
-        for view in views(self.env.simulation) if objects is None else objects:
+        chosen: Iterable[Any] = views(self.env.simulation) if objects is None else objects
+        for view in chosen:
             if mode == "all" or (mode == "static") == view.static:
                 self._hidden.add(view.id)
                 view.plot_clear(all=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,10 +28,6 @@ CONTACT = COLLISION_MODES["contact"]
 
 def _no_owner() -> None:
     """Stand for the owner of a simulation that does not belong to an environment."""
-
-
-def _no_views(simulation: Simulation, index: int, world: int) -> NoReturn:
-    raise RuntimeError("call irsim.objects.views.views(simulation) to get the objects of a simulation")
 
 
 class Simulation:
@@ -72,7 +68,7 @@ class Simulation:
         revision: Number that grows whenever objects are added, removed or change their shape.
         log: Recorder of every step of the first world, or None.
         owner: Returns the environment that the simulation belongs to, or None.
-        make_view: Makes the object at an index of a world for ``views``; set by :mod:`irsim.objects.views`.
+        make_view: Makes the object at an index of a world for ``views``; None until one is set.
         user: Object id in the random stream of ``rng``: 0 for an environment, another number for a lone object.
 
     Raises:
@@ -108,7 +104,7 @@ class Simulation:
         self.user = 0
         self.log: core.Log | None = None
         self.owner: Callable[[], Any] = _no_owner
-        self.make_view: Callable[[Simulation, int, int], Any] = _no_views
+        self.make_view: Callable[[Simulation, int, int], Any] | None = None
         self._views: dict[int, list[Any]] = {}
         self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
@@ -239,6 +235,8 @@ class Simulation:
     def views(self, world: int = 0) -> list[Any]:
         """Return the objects of one world as scripts see them; the first call makes them with ``make_view``."""
         if world not in self._views:
+            if self.make_view is None:
+                raise RuntimeError("call irsim.objects.views.views(simulation) to get the objects of a simulation")
             self._views[world] = [self.make_view(self, index, world) for index in range(self.objects)]
         return self._views[world]
 

@@ -109,7 +109,7 @@ def test_pickles_name_either_path() -> None:
 
 def test_reload_keeps_the_module() -> None:
     module = importlib.import_module("irsim.lib.algorithm.rvo")
-    assert importlib.reload(module) is importlib.import_module("irsim.functions.rvo")
+    assert importlib.reload(module) is importlib.import_module("irsim.compat.functions.rvo")
 
 
 @pytest.mark.parametrize("path", ["irsim.lib.path_planners.a_star", "irsim.lib.algorithm.rvo", "irsim.world.world"])

@@ -10,6 +10,7 @@ import pytest
 
 from irsim.diagnostics.errors import ScenarioError
 from irsim.env import Env
+from irsim.objects.lifecycle import renumber
 
 WORLD = """
 world: {width: 10, height: 10}
@@ -199,7 +200,7 @@ def test_an_object_made_elsewhere_gets_an_id_of_its_own(make: Callable[..., Env]
     with pytest.raises(ValueError, match="already exists"):
         env.add_object(two)
     named = other.create_obstacle(state=[7, 7, 0], name="b")
-    named.renumber(0)
+    renumber(named, 0)
     env.add_object(named)
     assert sorted({view.id for view in env.objects}) == [0, 1, 2, 3, 4, 5, 6]
     assert env.get_object_by_name("b") is named

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.objects.extensions.hooks import HOOKS
+from irsim.objects.extensions.hooks import HOOKS, overridden
 from irsim.objects.view import ObjectView
 
 Make = Callable[..., irsim.Env]
@@ -129,7 +129,7 @@ def test_a_subclass_takes_part_by_what_it_overrides(make: Make) -> None:
 
     env = make(SCENARIO)
     patrol = Patrol(env.simulation, 0)
-    assert patrol.overridden() == {"pre_process", "gen_behavior_vel"}
+    assert overridden(patrol) == {"pre_process", "gen_behavior_vel"}
     env.step()
     assert patrol.calls == 1
     assert env.robot.velocity[0, 0] == pytest.approx(0.5)
@@ -148,7 +148,7 @@ def test_a_subclass_of_a_subclass_takes_part_by_what_both_override(make: Make) -
 
     env = make(SCENARIO)
     robot = SlowAndCounting(env.simulation, 0)
-    assert robot.overridden() == {"gen_behavior_vel", "post_process"}
+    assert overridden(robot) == {"gen_behavior_vel", "post_process"}
     env.step()
     assert robot.steps == 1
     assert env.robot.velocity[0, 0] == pytest.approx(0.5)

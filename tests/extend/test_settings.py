@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import irsim
+from irsim.compat.objects.view import ScriptObject
 from irsim.diagnostics.errors import ScenarioError
 from irsim.objects.setters import HINTS, SETTINGS
-from irsim.objects.view import ObjectView
 from irsim.objects.views import views
 from irsim.options.registry import CUSTOM_BEHAVIORS
 
@@ -332,10 +332,19 @@ def test_values_are_checked(env, name, value):
 
 def test_every_property_of_an_object_is_written_or_refused():
     """Nothing public keeps a value that the engine does not know of."""
-    for name in dir(ObjectView):
-        kind = getattr(ObjectView, name)
+    written = {"stop_flag", "arrive_flag", "collision_flag", "beh_config", "ax", "text", "goal_text"}
+    for name in dir(ScriptObject):
+        kind = getattr(ScriptObject, name)
         if isinstance(kind, property) and kind.fset is not None:
-            assert name in {"stop_flag", "arrive_flag", "collision_flag", "beh_config", "ax"} or name.startswith("_")
+            assert name in {
+                "stop_flag",
+                "arrive_flag",
+                "collision_flag",
+                "beh_config",
+                "ax",
+                "text",
+                "goal_text",
+            } or name.startswith("_")
     assert not SETTINGS.keys() & HINTS.keys()
 
 

@@ -19,7 +19,7 @@ MAX_ARROWS = 64
 MAX_LINES = 400
 LOOSE = {"__init__.py", "__main__.py", "_core.pyi", "plugins.py", "py.typed"}
 """Files that may stand directly below ``irsim/``."""
-MAY_IMPORT_COMPAT = {"irsim", "compat", "lookup", "cli", "irsim_mcp"}
+MAY_IMPORT_COMPAT = {"irsim", "compat", "env", "lookup", "cli", "irsim_mcp"}
 
 
 @cache

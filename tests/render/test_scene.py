@@ -216,7 +216,7 @@ def test_shapes_of_the_next_scene_are_seen(make: Callable[..., Any]) -> None:
 
 
 def test_a_world_of_a_batch_can_be_looked_at(make: Callable[..., Any]) -> None:
-    from irsim.objects.views import make_view
+    from irsim.objects.view import ObjectView
     from irsim.simulation.simulation import Simulation
 
     env = make(
@@ -224,7 +224,7 @@ def test_a_world_of_a_batch_can_be_looked_at(make: Callable[..., Any]) -> None:
         " number: 2, shape: {name: circle}}"
     )
     simulation = Simulation(env.scenario, [1, 2], history=True)
-    simulation.make_view = make_view
+    simulation.make_view = ObjectView
     simulation.step()
     for world in (0, 1):
         shown = SceneBuilder(simulation, world=world).build()

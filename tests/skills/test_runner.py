@@ -148,13 +148,13 @@ def test_the_data_set_is_the_stated_one(copied: Path) -> None:
 
 
 def test_what_it_names_exists() -> None:
+    from irsim.compat.objects.view import ScriptObject
     from irsim.env import Env
-    from irsim.objects.view import ObjectView
 
     for name in re.findall(r"`env\.(\w+)", BODY):
         assert hasattr(Env, name) or name in ("seed", "scenario"), name
     for name in ("state", "goal", "velocity_xy", "get_lidar_scan", "set_state"):
-        assert hasattr(ObjectView, name)
+        assert hasattr(ScriptObject, name)
     commands = {span.split()[1] for span in spans(BODY) if span.startswith("irsim ")}
     known = {"run", "render", "benchmark", "inspect", "replay", "validate", "export", "diff-runs", "train"}
     assert commands <= known

@@ -14,7 +14,7 @@ from irsim.common.arrays import Floats
 from irsim.common.files import check_new, check_suffix, write_new
 from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of
 from irsim.components.maps._site import OCCUPIED
-from irsim.objects.obstacle_map import grid_values
+from irsim.objects.describe import grid_values
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.random_streams import fresh_seed
 from irsim.simulation.simulation import Simulation

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from irsim.common.arrays import Floats
+from irsim.compat.functions.frames import get_affine_transform
 from irsim.compat.util.random import rng
-from irsim.functions.frames import get_affine_transform
 
 __all__ = [
     "cross_product",

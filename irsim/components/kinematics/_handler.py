@@ -40,7 +40,7 @@ class KinematicsHandler(ABC):
         translation_rows, yaw_rate_row: Which control rows are speeds [m/s] and which is the yaw rate, for contacts.
         tau: Lag of the drive in ``collision_mode: contact`` [s]; None is the world's.
         integration: ``world.integration`` of the scenario, ``euler`` or ``exact``, for :meth:`step` of a drive that
-            turns. The functions of ``irsim.functions`` take it as an argument.
+            turns. The functions of ``irsim.compat.functions`` take it as an argument.
     """
 
     action_dim: ClassVar[int] = 2

@@ -40,7 +40,7 @@ from irsim.objects.sensors.lidar_drawing import draw_scan
 from irsim.simulation.fog import FOG_COLOR
 
 if TYPE_CHECKING:
-    from irsim.objects.base import SimObject
+    from irsim.objects.view import ObjectView
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["MODES", "SceneBuilder"]
@@ -188,14 +188,14 @@ class SceneBuilder:
         self._zones.add_to(scene)
 
     # one object ------------------------------------------------------------------------------------------------------
-    def body(self, view: SimObject) -> Body:
+    def body(self, view: ObjectView) -> Body:
         """Return the shape of an object in its body frame."""
         body = self._bodies.get(view.id)
         if body is None:
             body = self._bodies[view.id] = read_body(self.simulation.state, view.row)
         return body
 
-    def style(self, view: SimObject, overrides: Mapping[str, Any]) -> ObjectStyle:
+    def style(self, view: ObjectView, overrides: Mapping[str, Any]) -> ObjectStyle:
         """Return the resolved plot keys of an object."""
         key = (view.record.plot, view.color, overrides)
         cached = self._styles.get(view.id)
@@ -217,7 +217,7 @@ class SceneBuilder:
     def _add(
         self,
         scene: Scene,
-        view: SimObject,
+        view: ObjectView,
         pose: Pose,
         goal: list[float],
         overrides: Mapping[str, Any],
@@ -237,7 +237,7 @@ class SceneBuilder:
             style = replace(style, obj_alpha=pale * style.obj_alpha)
         heading = self._heading(view, pose) if style.show_arrow else pose[2]
         body = self.body(view)
-        key = (style, body, pose, str(goal), heading, view.text, view.goal_text, view.description)
+        key = (style, body, pose, str(goal), heading, view.drawing.text, view.drawing.goal_text, view.description)
         drawn = self._drawn.get(view.id)
         if drawn is None or drawn.key != key:
             drawn = _draw(view, body, style, pose, heading, goal, key, self._has_picture, drawn)
@@ -249,7 +249,7 @@ class SceneBuilder:
         if not absent and (style.show_trajectory or style.show_trail):
             self._tracks.add(scene, tracks, view.id, view.row, body, style)
 
-    def _grid(self, view: SimObject) -> GridImage:
+    def _grid(self, view: ObjectView) -> GridImage:
         """Return the image of a map, which is made once per scene."""
         if view.id not in self._grids:
             grid = self.simulation.scenario.grid
@@ -262,7 +262,7 @@ class SceneBuilder:
             self._grids[view.id] = GridImage(view.id, levels, (x, x + nx * dx, y, y + ny * dy), _GRID_ZORDER)
         return self._grids[view.id]
 
-    def _heading(self, view: SimObject, pose: Pose) -> float:
+    def _heading(self, view: ObjectView, pose: Pose) -> float:
         if getattr(view.record.kinematics, "turns", True):
             return pose[2]
         vx, vy = self.simulation.twist[view.row, :2].tolist()
@@ -270,7 +270,7 @@ class SceneBuilder:
 
     def drawn_alone(
         self,
-        view: SimObject,
+        view: ObjectView,
         overrides: Mapping[str, Any],
         pose: Pose | None = None,
         goal: Sequence[float] | None = None,
@@ -290,20 +290,20 @@ class SceneBuilder:
         drawn = _draw(view, body, style, placed, heading, shown, (), self._has_picture)
         return drawn.marks, drawn.labels, drawn.picture
 
-    def path_of(self, view: SimObject, states: Floats, overrides: Mapping[str, Any]) -> Mark:
+    def path_of(self, view: ObjectView, states: Floats, overrides: Mapping[str, Any]) -> Mark:
         """Return the line through states (N, 3 or more) of an object."""
         return trajectory_line(view.id, self.body(view), self.style(view, overrides), states)
 
-    def trail_mark(self, view: SimObject, pose: Pose, overrides: Mapping[str, Any]) -> Mark:
+    def trail_mark(self, view: ObjectView, pose: Pose, overrides: Mapping[str, Any]) -> Mark:
         """Return a snapshot of an object at a pose."""
         return trail_mark(view.id, self.body(view), self.style(view, overrides), pose)
 
-    def grid(self, view: SimObject) -> GridImage:
+    def grid(self, view: ObjectView) -> GridImage:
         """Return the image of a map."""
         return self._grid(view)
 
     # sensors ---------------------------------------------------------------------------------------------------------
-    def _add_beams(self, scene: Scene, objects: Sequence[SimObject], overrides: Mapping[str, Any], mode: str) -> None:
+    def _add_beams(self, scene: Scene, objects: Sequence[ObjectView], overrides: Mapping[str, Any], mode: str) -> None:
         for view in objects:
             chosen = mode == "all" or (mode == "static") == view.static
             if self.simulation.appeared[view.row] < 0:
@@ -329,7 +329,7 @@ class SceneBuilder:
 
 
 def _draw(
-    view: SimObject,
+    view: ObjectView,
     body: Body,
     style: ObjectStyle,
     pose: Pose,
@@ -378,9 +378,9 @@ def _draw(
         color = style.arrow_color
         marks.append(Mark(number, "arrow", pointer, color, Stroke(color), style.arrow_alpha, style.arrow_zorder))
     if style.show_text and view.shape != "walls":  # the walls round the world need no label
-        text = view.label if view.text is None else view.text
+        text = view.drawing.label if view.drawing.text is None else view.drawing.text
         drawn.labels.append(name_label(number, text, body, style, pose))
         if style.show_goal and style.show_goal_text and has_goal:
-            text = f"G-{view.label}" if view.goal_text is None else view.goal_text
+            text = f"G-{view.drawing.label}" if view.drawing.goal_text is None else view.drawing.goal_text
             drawn.labels.append(text_label(number, "goal", goal[0], goal[1], text, style))
     return drawn

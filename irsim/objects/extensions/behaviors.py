@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import BehaviorError, ScenarioError
+from irsim.objects.surroundings import Surroundings
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
 
 if TYPE_CHECKING:
@@ -126,7 +127,7 @@ class PythonBehaviors:
         if act is None:
             raise _unknown(self._simulation, view, name)
         roles = view.record.target_roles
-        others = [o for o in view.environment_objects if o is not view and roles in ("all", o.role)]
+        others = [other for other in Surroundings(view).others if roles in ("all", other.role)]
         return act(ego_object=view, external_objects=others, **_keys_as_given(options))
 
     def _decide_group(self, world: int, members: list[SimObject]) -> None:

@@ -14,6 +14,7 @@ from irsim.common.arrays import Floats
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.kinematics._handler import KinematicsHandler, construct, handler_class
 from irsim.diagnostics.errors import BehaviorError
+from irsim.objects.base import SimObject, column
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS
 from irsim.simulation.build import COLLISION_MODES, CORE_CONTROLS, group_behaviors
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["PythonDrives", "attach_python_drives"]
+__all__ = ["PythonDrives", "attach_python_drives", "handler_of", "heading", "max_speed", "velocity_xy"]
 
 _CONTACT = COLLISION_MODES["contact"]
 _ROUNDING = 1e-9
@@ -319,3 +320,39 @@ def attach_python_drives(simulation: Simulation, *, anew: bool = False) -> None:
         simulation.scene_drawn.append(lambda worlds: drives.prepare(worlds, anew=True))
     drives.find()
     drives.prepare(range(simulation.copies), anew=anew)
+
+
+def handler_of(view: SimObject) -> KinematicsHandler | None:
+    """Return the handler of a drive of user code; None for other drives."""
+    drives = view._simulation.drives
+    return None if drives is None else drives.handler(view.row)
+
+
+def heading(view: SimObject) -> float:
+    """Return the direction of travel for an ``omni`` drive, the heading of the body for others [rad]."""
+    if (handler := handler_of(view)) is not None:
+        return float(handler.compute_heading(view.state, view.velocity))
+    simulation, row = view._simulation, view.row
+    if not getattr(view.record.kinematics, "turns", True):
+        forward, lateral = simulation.control[row, :2]
+        return math.atan2(lateral, forward) + float(simulation.pose[row, 2])
+    return float(simulation.pose[row, 2])
+
+
+def velocity_xy(view: SimObject) -> Floats:
+    """Return the velocity in the world frame that follows from the present control, (2, 1) [m/s]."""
+    if (handler := handler_of(view)) is not None:
+        return column(handler.velocity_to_xy(view.state, view.velocity))
+    return column(view._simulation.state.velocity_world(view.row))
+
+
+def max_speed(view: SimObject) -> float:
+    """Return the largest speed that the limits allow [m/s]; 0 for objects without a drive."""
+    top = view._simulation.limits(view.row)[1]
+    if view.record.kinematics is None:
+        return 0.0
+    if (handler := handler_of(view)) is not None:
+        return float(handler.compute_max_speed(column(top)))
+    if getattr(view.record.kinematics, "speeds", 0) == 2:
+        return math.hypot(*top[:2].tolist())
+    return float(top[0])

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cache
 from types import MethodType
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,17 @@ from irsim.objects.base import SimObject
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["HOOKS", "Hooks", "ObjectHooks", "overridable"]
+__all__ = [
+    "HOOKS",
+    "Hooks",
+    "limited_control",
+    "overridable",
+    "overridden",
+    "renew_goal",
+    "step_alone",
+    "take_part",
+    "wrapped_state",
+]
 
 HOOKS = ("step", "pre_process", "gen_behavior_vel", "mid_process", "post_process")
 Method = TypeVar("Method", bound=Callable[..., Any])
@@ -38,143 +49,114 @@ class overridable(Generic[Method]):
 
     def __set__(self, view: Any, method: Any) -> None:
         view.__dict__[self.name] = method
-        view._take_part()
+        take_part(view)
 
     def __delete__(self, view: Any) -> None:
         del view.__dict__[self.name]
 
 
-class ObjectHooks(SimObject):
-    """The stages of a step of one object; part of :class:`irsim.objects.view.ObjectView`."""
+def take_part(view: Any) -> None:
+    """Register an object with its simulation if one of its methods is overridden."""
+    if overridden(view):
+        hooks = view._simulation.hooks
+        if hooks is None:
+            hooks = view._simulation.hooks = Hooks(view._simulation)
+        hooks.add(view)
 
-    _subclassed: ClassVar[frozenset[str]] = frozenset()
 
-    def __init_subclass__(cls, **kwargs: Any) -> None:
-        super().__init_subclass__(**kwargs)
-        own = {name for name in HOOKS if not isinstance(_found(cls, name), overridable)}
-        cls._subclassed = frozenset(own)
+def overridden(view: Any) -> frozenset[str]:
+    """Return the names of the methods of an object that user code has overridden, in its class or on itself."""
+    own = view.__dict__
+    kind: Any = type(view)
+    return overridden_by(kind) | {name for name in HOOKS if name in own}
 
-    def overridden(self) -> frozenset[str]:
-        """Return the names of the methods that user code has overridden."""
-        own = self.__dict__
-        return self._subclassed | {name for name in HOOKS if name in own}
 
-    def _take_part(self) -> None:
-        """Register the object with the simulation if a method is overridden."""
-        if self._subclassed or not self.__dict__.keys().isdisjoint(HOOKS):
-            hooks = self._simulation.hooks
-            if hooks is None:
-                hooks = self._simulation.hooks = Hooks(self._simulation)
-            hooks.add(self)
+@cache
+def overridden_by(kind: Any) -> frozenset[str]:
+    """Return the names of the methods that a class of objects overrides."""
+    return frozenset(name for name in HOOKS if not isinstance(_found(kind, name), overridable))
 
-    @overridable
-    def pre_process(self) -> None:
-        """Renew the goals of an arrived object with ``wander`` or ``loop``; called before the object decides."""
-        if self._simulation.arrived[self.row]:
-            core.renew_row(self._simulation.world, self._simulation.state, self.row)
 
-    @overridable
-    def gen_behavior_vel(self, velocity: Any = None) -> Floats:
-        """Return the control of the next step.
+# what the methods do that are not overridden ---------------------------------------------------------------------
+def renew_goal(view: SimObject) -> None:
+    """Renew the goals of an arrived object with ``wander`` or ``loop``."""
+    if view._simulation.arrived[view.row]:
+        core.renew_row(view._simulation.world, view._simulation.state, view.row)
 
-        Args:
-            velocity: Desired control; None lets the behavior choose.
 
-        Returns:
-            Control (vel_dim, 1) within the limits of speed and acceleration. An object without a behavior stops at
-            once, whatever its limits; for a robot this is logged once.
-        """
-        simulation, row = self._simulation, self.row
-        hooks = simulation.hooks
-        wanted: NDArray[np.float64]
-        if velocity is not None:
-            wanted = np.asarray(velocity, dtype=np.float64).reshape(-1)
-            if wanted.size != self.vel_dim:
-                raise ValueError(f"a control of this object is {self.vel_dim} numbers, not {velocity!r}")
-        elif hooks is not None and row in hooks.decided:
-            wanted = hooks.decided[row]
-        elif self._without_behavior():
-            self._warn_of_standing()
-            return simulation.decide_alone(self)[:, None]  # a drive stops at once, a passive body coasts
-        else:
-            wanted = simulation.decide_alone(self)
-        now, (least, most) = simulation.control_of(row, self.vel_dim), simulation.limits(row)
-        change = np.asarray(self.record.acce) * simulation.scenario.world.step_time
-        low, high = np.maximum(least, now - change), np.minimum(most, now + change)
-        control: Floats = np.minimum(np.maximum(wanted, low), high)[:, None]
-        return control
+def limited_control(view: SimObject, velocity: Any) -> Floats:
+    """Return the control that an object wants, or that it is given, within its limits, (vel_dim, 1)."""
+    simulation, row = view._simulation, view.row
+    hooks = simulation.hooks
+    wanted: NDArray[np.float64]
+    if velocity is not None:
+        wanted = np.asarray(velocity, dtype=np.float64).reshape(-1)
+        if wanted.size != view.vel_dim:
+            raise ValueError(f"a control of this object is {view.vel_dim} numbers, not {velocity!r}")
+    elif hooks is not None and row in hooks.decided:
+        wanted = hooks.decided[row]
+    elif _has_no_behavior(view):
+        _warn_of_standing(view)
+        return simulation.decide_alone(view)[:, None]  # a drive stops at once, a passive body coasts
+    else:
+        wanted = simulation.decide_alone(view)
+    now, (least, most) = simulation.control_of(row, view.vel_dim), simulation.limits(row)
+    change = np.asarray(view.record.acce) * simulation.scenario.world.step_time
+    low, high = np.maximum(least, now - change), np.minimum(most, now + change)
+    control: Floats = np.minimum(np.maximum(wanted, low), high)[:, None]
+    return control
 
-    def _without_behavior(self) -> bool:
-        """Return whether neither a behavior nor a group behavior drives the object."""
-        own = self.record
-        if own.behavior is not None:
-            return False
-        records = self._simulation.scenario.objects
-        return not any(r.joined and r.group == own.group and r.group_behavior is not None for r in records)
 
-    def _warn_of_standing(self) -> None:
-        if self.role == "robot" and self.logger is not None and self._control_mode() == "auto":
-            self.logger.warning_once(f"{self.name}: it has no behavior and got no action, so it stands still")
+def _has_no_behavior(view: SimObject) -> bool:
+    """Return whether neither a behavior nor a group behavior drives the object."""
+    own = view.record
+    if own.behavior is not None:
+        return False
+    records = view._simulation.scenario.objects
+    return not any(r.joined and r.group == own.group and r.group_behavior is not None for r in records)
 
-    def _control_mode(self) -> str:
-        owner = self._simulation.owner()
-        return "auto" if owner is None else str(owner.world_param.control_mode)
 
-    @overridable
-    def mid_process(self, state: Any) -> Floats:
-        """Wrap the heading into ``angle_range``; called after the motion, before its result takes effect.
+def _warn_of_standing(view: SimObject) -> None:
+    env = view._simulation.owner()
+    if env is not None and view.role == "robot" and env.world_param.control_mode == "auto":
+        env.logger.warning_once(f"{view.name}: it has no behavior and got no action, so it stands still")
 
-        Args:
-            state: State that results from the motion.
 
-        Returns:
-            State (state_dim, 1) that takes effect; rows that ``state`` lacks keep their values.
-        """
-        values = np.asarray(state, dtype=np.float64).reshape(-1)
-        out = self._simulation.row_state(self.row, self.state_dim)
-        out[: values.size] = values[: self.state_dim]
-        low, high = self.record.angle_range
-        while out[2] < low:
-            out[2] += 2 * math.pi
-        while out[2] > high:
-            out[2] -= 2 * math.pi
-        return out[:, None]
+def wrapped_state(view: SimObject, state: Any) -> Floats:
+    """Return a state with the heading in ``angle_range``, (state_dim, 1); rows that it lacks keep their values."""
+    values = np.asarray(state, dtype=np.float64).reshape(-1)
+    out = view._simulation.row_state(view.row, view.state_dim)
+    out[: values.size] = values[: view.state_dim]
+    low, high = view.record.angle_range
+    while out[2] < low:
+        out[2] += 2 * math.pi
+    while out[2] > high:
+        out[2] -= 2 * math.pi
+    return out[:, None]
 
-    @overridable
-    def post_process(self) -> None:
-        """Do nothing; called after the object has moved."""
 
-    @overridable
-    def step(self, velocity: Any = None, sensor_step: bool = True, **_: Any) -> Floats:
-        """Advance this object alone by one period, without advancing the time of the environment.
-
-        Args:
-            velocity: Control, ``vel_dim`` numbers in the command frame; None lets the behavior choose.
-            sensor_step: Also update the sensors.
-
-        Returns:
-            The new state, (state_dim, 1).
-        """
-        simulation, row = self._simulation, self.row
-        within = simulation.hooks is not None and row in simulation.hooks.stepping
-        if self.static or simulation.stands(row):
-            simulation.control[row] = 0.0
-            return simulation.row_state(row, self.state_dim)[:, None]
-        if not within:
-            self.pre_process()
-        simulation.impose(row, self.gen_behavior_vel(velocity).reshape(-1))
-        before = simulation.row_state(row, self.state_dim), simulation.control[row].copy()
-        simulation.move_alone(row)
-        if "mid_process" in self.overridden():
-            _settle(self, before)
-        self.post_process()
-        if not within:
-            simulation.given[row] = 0
-            core.remember_row(simulation.world, simulation.state, row)
-            if sensor_step:
-                core.sense(simulation.world, simulation.state)
-                simulation.measure()
-        return simulation.row_state(row, self.state_dim)[:, None]
+def step_alone(view: Any, velocity: Any, sensor_step: bool) -> Floats:
+    """Advance one object by one period, and return its new state, (state_dim, 1)."""
+    simulation, row = view._simulation, view.row
+    within = simulation.hooks is not None and row in simulation.hooks.stepping
+    if view.static or simulation.stands(row):
+        simulation.control[row] = 0.0
+        return simulation.row_state(row, view.state_dim)[:, None]  # type: ignore[no-any-return]
+    if not within:
+        view.pre_process()
+    simulation.impose(row, view.gen_behavior_vel(velocity).reshape(-1))
+    before = simulation.row_state(row, view.state_dim), simulation.control[row].copy()
+    simulation.move_alone(row)
+    if "mid_process" in overridden(view):
+        _settle(view, before)
+    view.post_process()
+    if not within:
+        simulation.given[row] = 0
+        core.remember_row(simulation.world, simulation.state, row)
+        if sensor_step:
+            core.sense(simulation.world, simulation.state)
+            simulation.measure()
+    return simulation.row_state(row, view.state_dim)[:, None]  # type: ignore[no-any-return]
 
 
 class Hooks:
@@ -201,7 +183,7 @@ class Hooks:
     def _present(self) -> list[Any]:
         """Return the objects of the simulation with overridden methods, in the order of their rows."""
         simulation = self._simulation
-        there = [view for view in self._views if view._simulation is simulation and view.overridden()]
+        there = [view for view in self._views if view._simulation is simulation and overridden(view)]
         return sorted(there, key=lambda view: view.row)
 
     def decide(self) -> None:
@@ -212,7 +194,7 @@ class Hooks:
         renewed = []
         for view in self._present():
             row = view.row
-            if "pre_process" in view.overridden() and not (view.static or simulation.stands(row)):
+            if "pre_process" in overridden(view) and not (view.static or simulation.stands(row)):
                 view.pre_process()
                 renewed.append((row, int(simulation.arrived[row])))
             if not self._views_own_step(view):
@@ -227,14 +209,14 @@ class Hooks:
 
     @staticmethod
     def _views_own_step(view: Any) -> bool:
-        return bool(view.overridden() & {"step", "gen_behavior_vel"})
+        return bool(overridden(view) & {"step", "gen_behavior_vel"})
 
     def before_motion(self) -> None:
         """Call ``gen_behavior_vel``, and save the state of objects whose ``step`` or ``mid_process`` is overridden."""
         simulation = self._simulation
         self._before.clear()
         for view in self._present():
-            row, own = view.row, view.overridden()
+            row, own = view.row, overridden(view)
             if view.static or simulation.stands(row):
                 continue
             if own & {"step", "gen_behavior_vel"}:
@@ -249,7 +231,7 @@ class Hooks:
         """Call the overridden ``step``, ``mid_process`` and ``post_process``."""
         simulation = self._simulation
         for view in self._present():
-            row, own = view.row, view.overridden()
+            row, own = view.row, overridden(view)
             if simulation.waits(row):
                 continue
             if "step" in own:

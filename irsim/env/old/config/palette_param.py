@@ -1,0 +1,12 @@
+"""Default colours of the environment used last; see :class:`irsim.graphics.scene.palette.Palette`."""
+
+from irsim.env.old.config._follow import follow
+from irsim.graphics.scene.palette import Palette
+from irsim.options.colors import CYCLE
+
+__all__ = ["DEFAULT_CYCLE", "PaletteParam"]
+
+DEFAULT_CYCLE = CYCLE
+PaletteParam = Palette
+
+follow(__name__, "palette_param", Palette())

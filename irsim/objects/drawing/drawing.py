@@ -1,0 +1,100 @@
+"""How pictures show one object, as attributes that scripts may write at any time: labels and keys of ``plot``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from irsim.common.text import clean
+from irsim.objects.base import SimObject
+from irsim.objects.lifecycle import draw_as
+
+if TYPE_CHECKING:
+    from irsim.scenario.resolve.resolved import ObjectRecord
+
+__all__ = ["PLOT_KEYS", "Drawing"]
+
+MAX_LABEL = 24
+"""Number of characters of a name that pictures show."""
+PLOT_KEYS = ("show_goal", "show_goal_text", "show_sensor", "show_trail", "trail_freq")
+"""Keys of ``plot`` that may be written."""
+
+
+class Drawing:
+    """What is drawn of one object, ``robot.drawing``; what is written here holds from the next frame on.
+
+    Attributes:
+        text: Text that is drawn in place of ``label``; None shows ``label``.
+        goal_text: Text that is drawn at the goal in place of ``G-`` and ``label``; None shows these.
+    """
+
+    text: str | None
+    goal_text: str | None
+
+    def __init__(self, view: SimObject) -> None:
+        self.__dict__.update(_view=view, text=None, goal_text=None)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        view: SimObject = self.__dict__["_view"]
+        if name in PLOT_KEYS:
+            draw_as(view, _with_plot_key(view.record, name, value))
+        else:
+            object.__setattr__(self, name, value)
+
+    @property
+    def short_label(self) -> str:
+        """Role and number: ``r0``, ``o3``."""
+        view: SimObject = self.__dict__["_view"]
+        return f"{view.role[0]}{view.id}"
+
+    @property
+    def label(self) -> str:
+        """What pictures call the object: the name that the user gave, without one ``short_label``."""
+        view: SimObject = self.__dict__["_view"]
+        return self.short_label if view.name == f"{view.role}_{view.id}" else clean(view.name, MAX_LABEL)
+
+    @property
+    def show_goal(self) -> bool:
+        """Whether the goal is drawn."""
+        return bool(self._plot.show_goal)
+
+    @property
+    def show_goal_text(self) -> bool:
+        """Whether the goal is labelled; needs ``show_text`` and ``show_goal`` of the section ``plot``."""
+        return bool(self._plot.show_goal_text)
+
+    @property
+    def show_sensor(self) -> bool:
+        """Whether the sensors are drawn."""
+        return bool(self._plot.show_sensor)
+
+    @property
+    def show_trail(self) -> bool:
+        """Whether snapshots of the footprint are drawn along the trajectory, including the part already driven."""
+        return bool(self._plot.show_trail)
+
+    @property
+    def trail_freq(self) -> int:
+        """Number of steps between two snapshots."""
+        return int(self._plot.trail_freq)
+
+    @property
+    def _plot(self) -> Any:
+        return self.__dict__["_view"].record.plot
+
+
+def _with_plot_key(record: ObjectRecord, name: str, value: Any) -> ObjectRecord:
+    """Return a record with another value of a key of ``plot``.
+
+    Raises:
+        ValueError: The value is not valid.
+    """
+    plain = value.item() if isinstance(value, np.generic) else value
+    try:
+        plot = type(record.plot).model_validate({**record.plot.model_dump(exclude_unset=True), name: plain})
+    except ValidationError as error:
+        raise ValueError(f"{name!r} of {record.name!r}: {error.errors()[0]['msg']}, not {value!r}") from None
+    return replace(record, plot=plot)
