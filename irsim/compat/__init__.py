@@ -1,4 +1,4 @@
-"""What is the same as in IR-SIM 2.12, what differs on purpose, and why: data for tests and for the published page."""
+"""IR-SIM 2.12 over the world of irsim: its names, and its differences as data for tests and the published page."""
 
 from __future__ import annotations
 

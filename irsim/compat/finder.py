@@ -45,9 +45,9 @@ class OldPathFinder:
 
 
 class _Loader:
-    """What loaders of old paths have in common.
+    """Base of the loaders of old paths.
 
-    They do not derive from the base classes of ``importlib.abc``, whose import takes longer than that of irsim.
+    They do not derive from the base classes of ``importlib.abc``, because importing them takes longer than importing irsim.
     """
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 from weakref import ref
 
-from irsim.compat.objects.view import ScriptObject, make_view, views
+from irsim.compat.objects.view import ScriptObject, make_view
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.errors import CodedError
 from irsim.env.drawing import finish_drawing, redraw
@@ -47,7 +47,7 @@ def open_world(env: EnvState, world_name: str | Path | ResolvedScenario | None) 
     attach(simulation, env._policy)
     env.scenario, env._seed, env._simulation = scenario, seed, simulation
     remember_written(env, plain, scenario)
-    env._originals = views(simulation)
+    env._originals = simulation.views()
     env._objects = list(env._originals)
     env._exchanged = False
     env._world = env._world_class(simulation)
