@@ -47,7 +47,7 @@ class OldPathFinder:
 class _Loader:
     """Base of the loaders of old paths.
 
-    They do not derive from the base classes of ``importlib.abc``, because importing them takes longer than importing irsim.
+    They do not derive from classes of ``importlib.abc``, because importing these takes longer than importing irsim.
     """
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
