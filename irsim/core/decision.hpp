@@ -1,4 +1,4 @@
-// What behaviors read and write.
+// The input and output of behaviors.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ struct Decision {
   const int* objects;  // (K,) ids within the world
   int count;           // K
   const std::vector<int>&
-      members;         // ids of all objects of the behavior, or of the group, including those that do not decide now
+      members;         // ids of all objects of the behavior, or of the group, including objects that do not decide now
   bool grouped;        // from `group_behavior`: members know each other
   Workspace& work;     // scratch memory
   Opinions* opinions;  // (R,) memory of `avocado`: only the row of an object that decides is read and written
@@ -27,7 +27,7 @@ struct Decision {
   int row(int k) const { return first_row + objects[k]; }
 };
 
-/// What an object wants: either a world-frame velocity, which its drive turns into controls, or controls.
+/// The intent of an object: either a world-frame velocity, which its drive turns into controls, or controls.
 struct Intent {
   enum Kind { velocity_world, control_body } kind = velocity_world;
   Vec2 velocity;

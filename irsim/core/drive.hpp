@@ -1,4 +1,4 @@
-// What every drive defines. Each header in kinematics/ defines these functions for one options struct, by overload.
+// The interface of drives. Each header in kinematics/ defines these functions for one options struct, by overload.
 //
 //   void    NAME(options, motion)        one period of motion (the function is named like the file)
 //   Vec3    deviation(options, control)  standard deviations of the motion noise
@@ -6,10 +6,10 @@
 //   Rows    rows(options)                which controls are what
 //   Vec3    constrain(options, control)  limits beyond vel_min, vel_max and acce (optional)
 //
-// The struct has `bool noise`. A field `wheelbase` receives that of the drive, else that of the shape, else 1. `dash`
-// calls `follow` with the top speed toward the goal, unless behaviors/dash.hpp has a law for the drive. Planned paths
-// and `orca` (routes/steering.cpp, orca/avoidance.cpp) take a drive that they do not know for one that turns on the
-// spot.
+// The struct has `bool noise`. A field `wheelbase` receives the wheelbase of the drive, else of the shape, else 1.
+// `dash` calls `follow` with the top speed toward the goal, unless behaviors/dash.hpp has a law for the drive. Planned
+// paths and `orca` (routes/steering.cpp, orca/avoidance.cpp) take a drive that they do not know for one that turns on
+// the spot.
 #pragma once
 
 #include "geometry/vec.hpp"
@@ -65,7 +65,7 @@ inline double speed_to_stop_within(double left, double acce, double dt) {
   return left / (dt * (n + 1.0)) + 0.5 * n * change;
 }
 
-/// What the components of a control mean.
+/// The meaning of the components of a control.
 struct Rows {
   int travel;  // number of leading components that are translation: forward, then lateral speed
   int yaw;     // index of the component that is a yaw rate, -1 without one: contacts then change the speed only

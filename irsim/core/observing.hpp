@@ -1,5 +1,5 @@
-// What an observation part gets: what one robot knows of itself, its goal and its surroundings, and the frames in which
-// parts express it.
+// The input of an observation part: what one robot knows of itself, its goal and its surroundings, and the frames in
+// which parts express it.
 #pragma once
 
 #include <cstddef>

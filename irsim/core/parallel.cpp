@@ -71,7 +71,7 @@ struct Crew::Post {
   std::condition_variable begun, ended;
   std::atomic<unsigned> round{0};  // loops that were begun
   std::atomic<int> busy{0};        // helpers that have not ended the present one
-  int threads = 0;                 // those that take part in it
+  int threads = 0;                 // the threads that take part in it
   Call call = nullptr;
   const void* work = nullptr;
   bool over = false;
@@ -124,7 +124,7 @@ int Crew::hire(int wanted) {
       helpers.emplace_back([post = post_, thread, seen = post_->round.load()] { post->help(thread, seen); });
     }
   } catch (const std::system_error&) {
-    // The system gives no more threads; those that were started do the work.
+    // The system gives no more threads; the started ones do the work.
   }
   return std::min(wanted, static_cast<int>(helpers.size()) + 1);
 }

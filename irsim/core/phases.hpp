@@ -12,8 +12,8 @@ void integrate(const World& world, State& state, int w);
 /// Push overlapping bodies apart (`collision_mode: contact`).
 void push_apart(const World& world, State& state, int w, Workspace& work);
 void finish(const World& world, State& state, int w);
-/// Put objects whose time has come at their starts, in their order, each as soon as nobody is there; those that replay
-/// a recording do not wait.
+/// Put objects whose time has come at their starts, in their order, each as soon as its place is free; those that
+/// replay a recording do not wait.
 void appear(const World& world, State& state, int w);
 /// Take objects whose time is over out of the world.
 void vanish(const World& world, State& state, int w);

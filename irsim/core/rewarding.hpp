@@ -1,4 +1,4 @@
-// What a reward term gets: one step of one learner.
+// The input of a reward term: one step of one learner.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace irsim {
 
-/// Measures how far the footprint of a row is from others.
+/// Measures how far the footprint of a row is from the others.
 class GapMeter {
  public:
   GapMeter(const World& world, const State& state, int row, const std::vector<ObjectKind>& kinds)

@@ -1,4 +1,4 @@
-// What sensors read and write. Each header in sensors/ defines for one options struct:
+// The input and output of sensors. Each header in sensors/ defines for one options struct:
 //
 //   void                 NAME(options, sensing)  one scan into sensing.ranges, hits, valid (and velocities)
 //   std::vector<double>  beams(options)          nominal beam angles, sensor frame

@@ -6,7 +6,7 @@ from collections import Counter
 
 from tests.packaging.english import findings
 
-MOST = 2_885
+MOST = 2735
 """All that there were when they were first counted. Lower the number after rewriting some."""
 
 

@@ -21,7 +21,7 @@ double time_to_contact(const OrcaAgent& agent, const OrcaAgent& other) {
   return closing > 0.0 && root2 >= 0.0 ? gap2 / (closing + std::sqrt(root2)) : kInfinity;
 }
 
-/// What the last change of velocity of another object says: from -1, it did not give way, to 1, it did all that was
+/// The reading of another object's last change of velocity: from -1, it did not give way, to 1, it did all that was
 /// needed to avoid a collision. 0 if nothing was needed.
 double evidence(const Opinion& before, Vec2 velocity, double gain) {
   const double needed2 = squared(before.change);

@@ -12,7 +12,7 @@ struct DashOptions {
   static constexpr auto fields() { return std::make_tuple(field("angle_tolerance", &DashOptions::angle_tolerance)); }
 };
 
-/// What the laws need to know about one object.
+/// The facts about one object that the laws need.
 struct Dasher {
   double distance, bearing;  // of the goal: [m], [rad] in the world frame
   double theta;              // heading of the object [rad]

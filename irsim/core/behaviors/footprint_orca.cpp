@@ -1,4 +1,4 @@
-// What an object with footprint_orca sees of others.
+// The other objects, as one with footprint_orca sees them.
 #include "behaviors/footprint_orca.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ bool sees_role(const World& world, int viewer, int other) {
   return wanted == 0 || (wanted == 1) == (world.is_robot[other] != 0);
 }
 
-/// Make the outlines of all movers, and list those that rest.
+/// Make the outlines of all movers, and list the resting ones.
 void fill_crowd(const Decision& decision, const OrcaCrowd& all, FootprintCrowd& crowd) {
   const World& world = decision.world;
   const State& state = decision.state;

@@ -12,7 +12,7 @@ struct FootprintOrcaOptions {
   int maxNeighbors;                // largest number of other moving objects considered, nearest first
   double timeHorizon;              // time horizon for moving objects [s]
   double timeHorizonObst;          // time horizon for what stands [s]
-  double safe_distance;            // distance kept from others [m]
+  double safe_distance;            // distance kept from other objects [m]
   std::optional<double> maxSpeed;  // [m/s]; none: the limit of the object
   bool backward;                   // whether drives that can do so also drive backward
 

@@ -21,7 +21,7 @@ constexpr double kTieMemory = 1.0;    // a tie lasts that long, while the object
 constexpr double kAlmostTied = 0.05;  // largest difference of their directions to the goals then
 constexpr double kMinRolling = 0.2;   // smallest share of the speed at which drives roll while they turn
 
-/// The apex of the cone of a disc. `sine` and `cosine` are those of half its angle.
+/// The apex of the cone of a disc. `sine` and `cosine` belong to half its angle.
 Vec2 apex_of(Avoidance mode, const Ego& ego, const Disc& disc, const Cone& cone, double sine, double cosine) {
   const Vec2 middle = (ego.velocity + disc.velocity) * 0.5;
   if (mode == Avoidance::vo) return disc.velocity;
@@ -131,7 +131,7 @@ bool avoids(const Axis& x, const Axis& y, Vec2 chosen, Vec2 wanted) {
 }
 
 /// How a drive turns to a velocity that avoids something. The next step would ask for the same turn again, so a small
-/// one is made, too, and none takes longer than the drive needs.
+/// one is made, too, and the drive has time for each.
 Turning sharp_turning(const Decision& decision, const Ego& ego) {
   Turning turning;
   turning.tolerance = 0.0;

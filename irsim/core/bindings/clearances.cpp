@@ -22,7 +22,7 @@ std::vector<ObjectKind> kinds_of(const World& world, const Poses& poses, const s
   return kinds;
 }
 
-/// The geometry of all static objects, those that have not appeared yet at their starts.
+/// The geometry of all static objects; objects that have not appeared yet are at their starts.
 std::shared_ptr<const Fixed> all_fixed(const World& world, const State& state, int w) {
   std::vector<Pose> poses;
   bool whole = true;

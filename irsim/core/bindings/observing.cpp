@@ -33,7 +33,7 @@ Triple triple_at(const double* numbers, std::size_t k) {
   return out;
 }
 
-/// What a part observes without a simulation: the arrays of `irsim.policies.Observations`.
+/// The input of a part without a simulation: the arrays of `irsim.policies.Observations`.
 struct SeenRows {
   Given<double, 2> pose, velocity, commanded, control, low, high, goal;
   Given<double, 1> steering, yaw_rate, goal_threshold, radius;

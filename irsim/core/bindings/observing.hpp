@@ -15,7 +15,7 @@ inline void expect_fit(bool fits, const char* what) {
 
 void check_looking(const World& world, const Looking& looking);
 void check_parts(const std::vector<PartAtColumn>& parts, std::size_t columns);
-/// What each object is to others, from its numbers.
+/// The kind of each object, as policies see it, from its numbers.
 std::vector<ObjectKind> kinds_of(const World& world, const Mask& codes);
 
 }  // namespace irsim

@@ -1,4 +1,4 @@
-// What pictures need: painting shapes, laying layers over one another, rows of PNG and frames of GIF.
+// Tools for pictures: painting shapes, laying layers over one another, rows of PNG and frames of GIF.
 #include "bindings/helpers.hpp"
 #include "pictures/gif.hpp"
 #include "pictures/painter.hpp"

@@ -30,7 +30,7 @@ nb::object pieces(BoundState& self, int row) {
   return out;
 }
 
-/// The other objects whose bounding boxes meet that of a row, at the present poses.
+/// The other objects whose bounding boxes meet the box of a row, at the present poses.
 std::vector<int> near_row(BoundState& self, int row) {
   self.check_row(row);
   const World& world = *self.world;

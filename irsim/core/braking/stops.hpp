@@ -16,7 +16,7 @@ struct Stop {
   int first = 0, count = 0;  // centres of its bounding circle: points of `Stops`, the present one first
   double bulge = 0.0;        // largest distance of these centres from the line between the first and the last [m]
   double radius = 0.0;       // of the bounding circle [m]
-  bool plans = false;        // whether it keeps to its side of the borders to others, too
+  bool plans = false;        // whether it keeps to its side of the borders to other objects, too
 };
 
 /// The ways of the movers of one world in the snapshot of a step: scratch memory.

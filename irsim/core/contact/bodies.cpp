@@ -146,7 +146,7 @@ void add_core(Bodies& bodies, const Convex& piece) {
   bodies.cores.push_back({piece.count > 2 ? Kind::polygon : Kind::linestring, first, last, 0.0, 1.0});
 }
 
-/// Radius of the largest disc round the origin inside a piece of an object, 0 if there is none.
+/// Radius of the largest disc round the origin inside a piece of an object, or 0.
 double inner_of(const Bodies& bodies, int object) {
   double most = 0.0;
   for (int p = bodies.begin[object]; p < bodies.begin[object + 1]; ++p) {

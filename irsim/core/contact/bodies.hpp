@@ -26,14 +26,14 @@ struct Bodies {
   std::vector<Vec2> vertices,
       normals;  // normals[k]: outward normal of the edge from vertex k to the next one of its piece
   std::vector<const OccupancyGrid*> cells;  // (N,) cells of maps, which have no pieces; else null
-  // Each piece without its outermost quarter, as parts in the body frame; objects that cannot be pushed have none.
+  // Each piece without its outermost quarter, as parts in the body frame; empty for objects that cannot be pushed.
   std::vector<int> core_begin = {0};  // (N + 1,) first part of each object
   std::vector<Part> cores;
   std::vector<Vec2> core_vertices;
   std::vector<double> width;  // (N,) least extent of the thinnest piece or cell [m]
   double thinnest = kInfinity,
          lightest = kInfinity;          // least width of obstructing objects, and of those to be pushed [m]
-  std::vector<double> inner;            // (N,) radius of a disc round the origin inside a piece, 0 if there is none [m]
+  std::vector<double> inner;            // (N,) radius of a disc round the origin inside a piece, or 0 [m]
   std::vector<Vec2> centroid;           // (N,) centres of mass
   std::vector<double> inverse_mass;     // (N,) [1/kg], 0 for objects that cannot be pushed
   std::vector<double> gyration2;        // (N,) square of the radius of gyration [m^2]

@@ -33,7 +33,7 @@ struct ContactBuffers {
     double turned = 0.0;      // rotation by contacts in this step [rad]
     std::uint32_t moves = 0;  // number of corrections in this step
     bool placed = false;
-    bool driven, passive;  // whether a body that can be pushed has a drive, or none
+    bool driven, passive;  // whether a body that can be pushed has a drive
   };
   /// Two objects that may meet, a < b.
   struct Pair {

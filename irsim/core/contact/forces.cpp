@@ -1,4 +1,4 @@
-// What contacts leave behind: velocities, bounces, records and forces.
+// The traces of contacts: velocities, bounces, records and forces.
 #include "contact/solver.hpp"
 
 namespace irsim {

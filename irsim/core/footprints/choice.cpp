@@ -217,7 +217,8 @@ class BestVelocity {
     }
   }
 
-  /// What a velocity loses on the way to the goal, plus what it risks. The sum stops where it exceeds the best so far.
+  /// The cost of a velocity: its loss on the way to the goal, plus its risk. The sum stops where it exceeds the best so
+  /// far.
   double cost_of(Vec2 velocity) const {
     const double speed = norm(velocity);
     double cost = wanted_ > 0.0 ? 1.0 - dot(velocity, ahead_) * rate_ + kStopWeight * (1.0 - speed * rate_) : speed;

@@ -13,7 +13,7 @@ namespace irsim {
 /// Something that an object may collide with if it takes a velocity.
 struct Threat {
   VelocityCone cone;
-  double gain;     // the relative velocity is `gain` times that of the object
+  double gain;     // the relative velocity is `gain` times the object's
   Vec2 base;       // minus this [m/s]
   double horizon;  // later collisions do not matter [s]
   bool standing;

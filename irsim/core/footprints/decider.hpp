@@ -29,7 +29,7 @@ struct FootprintSelf {
   const MoverReach& limits() const { return crowd.reaches[mover]; }
 };
 
-/// What an object knows of another mover.
+/// Another mover, as an object knows it.
 struct Encounter {
   int mover;
   bool standing, mutual, alike;  // alike: both decide with `footprint_orca` and see each other
@@ -48,7 +48,7 @@ void bound_by_wall(FootprintSelf& self, const Hull& wall, const Separation& apar
 /// The velocity that an object wants: to its goal, on a way round what stands [m/s].
 Vec2 wanted_velocity(FootprintSelf& self);
 
-/// The control whose velocity is best among those that leave the object within its cell.
+/// The control with the best velocity that keeps the object within its cell.
 Intent best_intent(FootprintSelf& self, Vec2 wanted);
 
 }  // namespace irsim

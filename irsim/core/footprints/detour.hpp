@@ -8,7 +8,7 @@
 
 namespace irsim {
 
-/// What an object remembers of its way. It is a part of the state, so that every episode starts without one.
+/// An object's memory of its way. It is a part of the state, so that every episode starts without one.
 struct Detour {
   std::int64_t step = -1;     // step in which it was last used
   std::int64_t planned = -1;  // step in which a way was last searched; -1: the goal is straight ahead
@@ -50,7 +50,7 @@ bool is_open(Vec2 a, Vec2 b, double radius, const std::vector<Blocker>& blockers
 /// Args:
 ///   overlap: How far the disc may overlap something where there is no other way that is not much longer [m].
 ///
-/// Returns: False if there is none; the points then lead as near as possible.
+/// Returns: False without a way; the points then lead as near as possible.
 bool find_detour(Vec2 start, Vec2 goal, double reach, double radius, double overlap,
                  const std::vector<Blocker>& blockers, DetourMemory& memory, std::vector<Vec2>& points);
 

@@ -5,7 +5,7 @@
 namespace irsim {
 namespace {
 
-constexpr double kEvenSpeed = 0.3;  // speed added to those of both bodies, so that none is left without room [m/s]
+constexpr double kEvenSpeed = 0.3;  // speed added to the speeds of both bodies, so that each keeps some room [m/s]
 constexpr int kHalvings = 6;        // of a part of a way whose chord does not tell whether it is free
 
 bool crosses(const Border& border, const CellBody& body, const Manoeuvre& way) {
@@ -50,7 +50,7 @@ class Passage {
     bool known = false;                                               // whether `before_` is the place before
     for (std::size_t k = 1; k < way.places.size(); ++k) {
       const Place &from = way.places[k - 1], &to = way.places[k];
-      if (!fixture_.stands && to.time > 1.0) break;  // nobody knows where it will be then
+      if (!fixture_.stands && to.time > 1.0) break;  // its place at that time is unknown
       const double travel = to.travel + norm(fixture_.shift) * (to.time - from.time);
       if (travel <= left) {
         left -= travel, known = false;

@@ -11,7 +11,7 @@ namespace {
 constexpr int kCircleCorners = 12;  // corners of the polygon that stands for a circle of a compound
 
 /// Whether corners go round a convex polygon counter-clockwise, once. Corners of several parts in a row can turn left
-/// everywhere and yet go round twice, which is no polygon.
+/// everywhere and yet go round twice, which is not a polygon.
 bool is_convex(const std::vector<Vec2>& points) {
   const std::size_t n = points.size();
   if (n < 3) return false;

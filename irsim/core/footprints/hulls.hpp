@@ -86,7 +86,7 @@ void for_axes(const Hull& a, const Hull& b, Visit&& visit) {
 
 Separation separation(const Hull& a, const Hull& b);
 
-/// The same, computed as if the bodies were swapped: whoever looks at both the other way round finds the same axis to
+/// The same, computed as if the bodies were swapped: both bodies find the same axis to
 /// the last bit.
 inline Separation mirrored_separation(const Hull& a, const Hull& b) {
   const Separation apart = separation(b, a);

@@ -1,4 +1,4 @@
-// What a body does until it stands: the poses of a step and of the stop after it, or of a stop that begins at once.
+// The motion of a body until it stands: the poses of a step and of the stop after it, or of a stop that begins at once.
 #pragma once
 
 #include <vector>
@@ -25,7 +25,7 @@ struct Manoeuvre {
   std::vector<Place> places;
   bool arcs = false;    // whether it is on an arc between two places, with a heading that turns linearly
   double bulge = 0.0;   // [m]
-  double travel = 0.0;  // sum of those of the places [m]
+  double travel = 0.0;  // sum over the places [m]
 
   void clear() { places.assign(1, {{}, 0.0, {1.0, 0.0}, 0.0, 0.0}), bulge = travel = 0.0; }
   bool moves() const { return places.size() > 1; }
@@ -43,13 +43,14 @@ struct Ahead {
   Vec3 limited(Vec3 wanted) const;
   /// The control that brakes as hard as possible: a standstill; the wheels of a car keep their angle.
   Vec3 braking() const;
-  /// Write the places of the step with this control, which its limits allow, and those of the stop after it.
+  /// Write the places of the step with this control, which its limits allow, and of the stop after it.
   void step_and_stop(Vec3 control, Manoeuvre& out) const;
   /// Write the places of a stop that begins at once.
   void stop(Manoeuvre& out) const;
   /// Largest distance that a point of it can move in a step and the stop after it [m].
   double range() const;
-  /// Largest distance from the places of a stop that begins at once to those of any step and the stop after it [m].
+  /// Largest distance from the places of a stop that begins at once to the places of any step and the stop after it
+  /// [m].
   double play() const;
 };
 

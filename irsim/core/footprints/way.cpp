@@ -20,7 +20,7 @@ constexpr double kPatience = 1.2;        // time without progress, besides that 
                                          // tries other directions [s]
 constexpr double kTrial = 1.0;           // time for which it tries one, and then its own again [s]
 constexpr double kLeastTrial = kPi / 3;  // smallest angle of such a direction from its own [rad]
-constexpr double kMakeRoom = 0.3;        // gap at which an arrived object makes room for others [m]
+constexpr double kMakeRoom = 0.3;        // gap at which an arrived object makes room for the rest [m]
 constexpr double kStanding = 0.1;        // others that are slower are in the way of an object without progress [m/s]
 
 /// Half the width of the lane in which a body moves [m].
@@ -52,7 +52,7 @@ bool is_spent(const FootprintSelf& self, const Detour& detour, double age) {
   return !detour.leads && age >= kGoOn && squared(detour.points.back() - self.position) < kAtEnd * kAtEnd;
 }
 
-/// Search a way if there is none, if it is old, or if it has become blocked.
+/// Search a way if it is missing, old or blocked.
 void update_way(FootprintSelf& self, Detour& detour, Vec2 to, double reach, Lane lane, std::int64_t now) {
   const std::vector<Blocker>& blockers = self.crowd.blockers;
   const int count = static_cast<int>(blockers.size());

@@ -12,7 +12,7 @@
 
 namespace irsim {
 
-/// A room is a closed line that is solid outside. Cells are those of a map; their vertices are two corners of the box
+/// A room is a closed line that is solid outside. Cells belong to a map; their vertices are two corners of the box
 /// around them.
 enum class Kind : std::uint8_t { circle, polygon, linestring, room, cells };
 

@@ -20,7 +20,7 @@ enum class WorldEnds { all, any, collision };
 /// A reward term and its weight; one without options is computed elsewhere and is 0 here.
 using WeightedTerm = std::pair<RewardTerm, double>;
 
-/// What ends episodes.
+/// The ends of episodes.
 struct Ends {
   bool arrival, collision;  // of a learner
   WorldEnds world;
@@ -46,14 +46,14 @@ struct Learners {
   std::vector<Vec3> control_before;
 };
 
-/// What learners command: (W * A, width) controls, or velocities in the world frame (width 2) [m/s].
+/// The commands of learners: (W * A, width) controls, or velocities in the world frame (width 2) [m/s].
 struct Commands {
   const double* numbers;
   std::size_t width;
   bool velocities;
 };
 
-/// What a step has led to, see `irsim.learning.step.Result`. Terms come first: (T, W * A).
+/// The outcome of a step, see `irsim.learning.step.Result`. Terms come first: (T, W * A).
 struct Outcome {
   double *terms, *reward;
   std::uint8_t *terminated, *truncated, *active, *arrived, *collided;  // (W * A,)

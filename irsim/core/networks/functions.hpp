@@ -33,7 +33,7 @@ inline Exponential split_exponential(double x) {
   p = p * r + 1.0 / 24.0;
   p = p * r + 1.0 / 6.0;
   p = p * r + 0.5;
-  std::uint64_t bits;  // the low bits of `shifted` are those of the integer `power`
+  std::uint64_t bits;  // the low bits of `shifted` hold the integer `power`
   std::memcpy(&bits, &shifted, sizeof bits);
   bits = (bits + 1023) << 52;
   double scale;

@@ -104,7 +104,7 @@ double fastest_along(Vec2 direction, const HalfPlane* planes, int count) {
 }
 
 /// Find controls with which a blocked car backs up as fast as the obstacles behind it allow, turning toward
-/// `preferred`. Returns false if that is not faster than `ahead` [m/s]. The first two planes are those of `face_ahead`,
+/// `preferred`. Returns false if that is not faster than `ahead` [m/s]. The first two planes come from `face_ahead`,
 /// which are reversed.
 bool back_off(const AckerOptions& car, const World& world, const State& state, int row, double speed, int hard,
               double ahead, Vec2 preferred, OrcaCrowd& all, Vec3& control) {
@@ -123,7 +123,7 @@ bool back_off(const AckerOptions& car, const World& world, const State& state, i
 }
 
 /// Add half-planes of walls and static circles, nearest edges first, of equally near ones those on the right of
-/// `ahead`. Those that other planes cover are left out.
+/// `ahead`. Planes that others cover are left out.
 void avoid_obstacles(double horizon, const World& world, const Fixed& fixed, const OrcaAgent& agent, int object,
                      double speed, Vec2 ahead, OrcaCrowd& all) {
   const Obstacles& obstacles = fixed.obstacles;

@@ -1,4 +1,4 @@
-// How objects avoid others with the half-planes of ORCA, whatever share of the avoidance they leave to others.
+// How objects avoid one another with the half-planes of ORCA, whatever share of the avoidance each takes.
 #pragma once
 
 #include "decision.hpp"
@@ -23,7 +23,7 @@ class Reciprocity {
 /// Write, for each object of the decision, the velocity nearest to the wanted one that avoids everything.
 ///
 /// Args:
-///   reciprocity: Shares of the avoidance of moving objects; null: those of the settings.
+///   reciprocity: Shares of the avoidance of moving objects; null: from the settings.
 void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* reciprocity, Intent* intents);
 
 }  // namespace irsim

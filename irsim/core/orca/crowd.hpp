@@ -19,7 +19,7 @@ struct FootprintCrowd;
 /// World::moving.
 struct OrcaCrowd {
   bool known = false;             // whether it holds the present step
-  std::vector<OrcaAgent> movers;  // bounding circles; those of these behaviors include their margin
+  std::vector<OrcaAgent> movers;  // bounding circles; with these behaviors they include the margin
   std::vector<int> group;         // index in World::behaviors of the group that moves each now; -1 without one
   std::vector<int> member_of;     // the same, also for objects that are stopped or have a given command
   Nearest nearest;                // positions of the movers

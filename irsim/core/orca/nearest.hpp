@@ -43,7 +43,7 @@ class Nearest {
       const double farthest2 = farthest(centre, most, likely, seen), limit2 = std::min(best.limit2, farthest2);
       int candidates[kMaxLinearPoints + 1];
       int count = 0;
-      for (int i = 0; i < static_cast<int>(points_.size()); ++i) {  // without a branch that nobody could foresee
+      for (int i = 0; i < static_cast<int>(points_.size()); ++i) {  // without a branch that cannot be predicted
         candidates[count] = i;
         count += squared(points_[i] - centre) <= limit2;
       }

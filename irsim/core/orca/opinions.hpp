@@ -1,5 +1,5 @@
-// What objects with `avocado` think of others. It is a part of the state, so that every episode starts without
-// opinions.
+// The opinions that objects with `avocado` have of one another. They are a part of the state, so that every episode
+// starts without opinions.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace irsim {
 
-/// What one object thinks of another one that it has avoided.
+/// The opinion that one object has of another that it has avoided.
 struct Opinion {
   int about = -1;          // World::number of the other object
   double opinion = 0.0;    // how much it gives way: -1 not at all, 0 as much as this object, 1 alone

@@ -57,7 +57,7 @@ struct SeenCone {
   double numbers[kConeNumbers];  // apex, left leg, right leg, distance, urgency
 };
 
-/// The cone of one neighbor: that of van den Berg et al. (2008), or the velocity obstacle of one that stands still.
+/// The cone of one neighbor: after van den Berg et al. (2008), or the velocity obstacle of one that stands still.
 inline SeenCone cone_of(const RvoConesOptions& o, const Seen& seen, const Neighbor& other, Vec2 away, double distance) {
   const double reach = seen.radius + o.margin + other.radius, far = std::max(distance, reach);
   const double sine = reach / far, cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));

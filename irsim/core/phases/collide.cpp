@@ -8,7 +8,7 @@
 namespace irsim {
 namespace {
 
-/// Find the pairs that touch now, and those that touched since the last evaluation.
+/// Find the pairs that touch now or have touched since the last evaluation.
 void find_pairs(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
   const Shapes& shapes = *scene.shapes;

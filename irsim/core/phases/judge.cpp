@@ -32,7 +32,7 @@ void examine(const World& world, State& state, int w, const std::vector<double>&
   if ((begin == 0.0 && passage.in_contact(0.0)) || !passage.overlap_after(pair.when)) pair.when = kInfinity;
 }
 
-/// The pair that touches first and is not judged yet; null if there is none.
+/// The pair that touches first and is not judged yet, or null.
 NearPair* first_of(std::vector<NearPair>& pairs) {
   NearPair* first = nullptr;
   for (NearPair& pair : pairs) {
@@ -41,7 +41,7 @@ NearPair* first_of(std::vector<NearPair>& pairs) {
   return first;
 }
 
-/// Judge all pairs in the order of their contacts, which is that of time. An object that stops is in the way of others.
+/// Judge all pairs in the order of their contacts in time. An object that stops is in the way of the rest.
 void judge_pairs(const World& world, State& state, int w, std::vector<double>& until) {
   std::vector<NearPair>& near = state.scenes[w].near;
   for (NearPair& pair : near) examine(world, state, w, until, pair);

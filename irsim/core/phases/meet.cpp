@@ -29,7 +29,7 @@ double deepest(const Passage& passage, double when) {
   return most;
 }
 
-/// A point in the middle of an object, in the frame of its stride. Lines, rooms and maps that rest have none.
+/// A point in the middle of an object, in the frame of its stride. Lines, rooms and maps that rest do not have one.
 bool middle_of(const World& world, const Shapes& shapes, int object, const Moving& body, Vec2& middle) {
   middle = world.is_static[object] ? body.centre : shapes.centroid[object];
   if (!world.is_static[object]) return true;

@@ -76,7 +76,7 @@ bool come_near(const World& world, const State& state, int w, int a, int b) {
   const Scene& scene = state.scenes[w];
   const Shapes& shapes = *scene.shapes;
   double reach = shapes.radius[a] + shapes.radius[b] + kRounding;
-  Vec2 to, from;  // from the centre of the circle of `a` to that of `b`, at both ends of the step
+  Vec2 to, from;  // from the centre of the circle of `a` to the centre of the circle of `b`, at both ends of the step
   const auto add = [&](int i, double sign) {
     const bool rests = world.is_static[i];
     const Vec2 end = (rests ? scene.fixed->outlines : scene.moving).centres[shapes.placed[i].object] * sign;

@@ -18,7 +18,7 @@ void bound_steps(const World& world, State& state, int w, std::vector<Box>& out)
 /// pair touches within it.
 bool come_near(const World& world, const State& state, int w, int a, int b);
 
-/// What happens between two objects a < b in a step, which come near each other.
+/// The encounter of two objects a < b that come near each other in a step.
 class Passage {
  public:
   Passage(const World& world, State& state, int w, int a, int b);

@@ -16,7 +16,7 @@ class Palette {
  public:
   explicit Palette(std::vector<std::array<int, 3>> colors);
 
-  /// What is known of a colour.
+  /// The facts about a colour.
   struct Nearest {
     std::uint8_t index = 0;
     bool wrong = false;  ///< whether a channel differs by more than `kWrongLevels`

@@ -35,7 +35,7 @@ class Painter {
   /// The boxes that were painted since this was last asked.
   std::vector<PixelBox> take_boxes() { return std::exchange(boxes_, {}); }
 
-  /// Raise the levels of a mask (height, width) to those of a line; return the box that was touched.
+  /// Raise the levels of a mask (height, width) to the levels of a line; return the box that was touched.
   ///
   /// `snapped` lines that run along the axes of the picture are drawn at whole pixels.
   PixelBox line_mask(std::uint8_t* mask, std::ptrdiff_t stride, const Vec2* points, std::size_t count,

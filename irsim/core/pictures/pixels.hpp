@@ -14,7 +14,7 @@ struct PixelBox {
   int left = 0, top = 0, right = 0, bottom = 0;
 };
 
-/// (height, width, 4) red, green, blue and opacity, not premultiplied, in memory of others.
+/// (height, width, 4) red, green, blue and opacity, not premultiplied, in memory that others own.
 struct Pixels {
   std::uint8_t* data = nullptr;
   std::ptrdiff_t stride = 0;  ///< bytes from one row to the next
@@ -90,7 +90,7 @@ void copy_boxes(const Pixels& from, const Pixels& to, const std::vector<PixelBox
 /// Replace boxes that overlap by one around both, unless that is larger than the two.
 std::vector<PixelBox> merged(const std::vector<PixelBox>& boxes);
 
-/// The part that two boxes share; empty, with `right <= left` or `bottom <= top`, if there is none.
+/// The part that two boxes share; empty, with `right <= left` or `bottom <= top`, if they share nothing.
 inline PixelBox common(const PixelBox& a, const PixelBox& b) {
   return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
 }

@@ -59,7 +59,7 @@ void Raster::edge(Vec2 from, Vec2 to) {
   };
   cut(x0, y0);
   cut(x1, y1);
-  // What lies left or right of the box is moved to its border, so that the shares within stay the same.
+  // Edges left or right of the box are moved to its border, so that the shares within stay the same.
   if (std::min(x0, x1) >= 0.0 && std::max(x0, x1) <= wide) return inner_edge(x0, y0, x1, y1);
   const auto at = [&](double x) { return y0 + (x - x0) / slope; };
   const auto piece = [&](double xa, double ya, double xb, double yb) {

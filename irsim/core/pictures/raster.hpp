@@ -15,7 +15,7 @@ namespace irsim {
 /// The memory of the last picture is used again: only the rows that are touched are read and cleared.
 class Raster {
  public:
-  /// Set the part of the picture that may be covered. What was collected must have been swept before.
+  /// Set the part of the picture that may be covered. Collected edges must have been swept before.
   void clip(PixelBox box);
 
   /// Add a directed edge; the edges of an outline must close it. x grows to the right, y downwards [px].

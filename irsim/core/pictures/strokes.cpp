@@ -15,7 +15,7 @@ int corners_of(double radius) {
   return std::max(kFewestCorners, static_cast<int>(std::ceil(kPi * std::sqrt(std::max(radius, 0.0) / (2 * kSagitta)))));
 }
 
-/// Collect the polygon that stands for a circle; its area is that of the circle.
+/// Collect the polygon that stands for a circle; its area equals the circle's.
 void add_circle(Raster& raster, Vec2 center, double radius, bool backwards) {
   const int count = corners_of(radius);
   const double step = (backwards ? -kTurn : kTurn) / count;

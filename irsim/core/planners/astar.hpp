@@ -7,7 +7,7 @@
 namespace irsim {
 
 struct AstarOptions {
-  double resolution;  // cell size [m]; 0: that of the map
+  double resolution;  // cell size [m]; 0: as in the map
   static constexpr auto fields() { return std::make_tuple(field("resolution", &AstarOptions::resolution)); }
 };
 

@@ -15,7 +15,7 @@ struct Leg {
 
 constexpr int kMaxPoses = 60000;  // poses after which the search for a plan gives up
 
-/// What is to be planned.
+/// The task of the planner.
 struct PoseProblem {
   const Blockers& blockers;
   const Shapes& shapes;

@@ -10,7 +10,7 @@
 
 namespace irsim {
 
-/// Static obstacles of a planner. Ids are those of `shapes`.
+/// Static obstacles of a planner. Ids are rows of `shapes`.
 struct Blockers {
   const Shapes& shapes;
   const Outlines& outlines;

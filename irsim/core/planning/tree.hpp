@@ -11,7 +11,7 @@ struct TreeOptions {
   double path_resolution;      // lengths of extensions are multiples of it [m]
   double goal_sample_rate;     // share of samples that are the goal [%]
   int max_iter;                // largest number of samples
-  bool rewire;                 // whether new nodes choose the best parent and replace longer paths of others
+  bool rewire;                 // whether new nodes choose the best parent and replace longer paths of other nodes
   double connect_circle_dist;  // factor of the radius in which nodes are rewired [m]
   bool search_until_max_iter;  // whether the search continues after the first path
   bool informed;               // whether samples after the first path are limited to places of shorter ones

@@ -29,7 +29,7 @@ class Follower {
 
   /// Plan where that is due, go on along the route, and note the progress.
   void follow_route();
-  /// React to others that are in the way, and set `State::target` to the point that the behavior heads for.
+  /// React to objects that are in the way, and set `State::target` to the point that the behavior heads for.
   void update_target();
   /// Change the command of the behavior so that the object stays on its route and hits no static object.
   void adjust_command();
@@ -130,7 +130,7 @@ class Follower {
   void hold_steering(Vec3& u);
   /// Stop.
   void brake(Vec3& u);
-  /// Set the gap to walls that the next command must keep: that of the route, or a little less than the present one.
+  /// Set the gap to walls that the next command must keep: the gap of the route, or a little less than the present gap.
   void measure_gap();
   /// Whether the body at a pose touches nothing static, keeps the gap to it, and stays on its `Workspace::sides`.
   bool clear_at(const Pose& pose);

@@ -138,7 +138,7 @@ bool Follower::retreat(int other) {
 void Follower::forget_retreat() {
   if (!route_.retreats) return;
   route_.retreats = false;
-  // What was driven back is no longer a part of the track.
+  // The stretch that was driven back is no longer a part of the track.
   const std::size_t driven = route_.legs.empty() ? route_.retraced : route_.leg - 1;
   route_.track.resize(route_.track.size() - std::min(driven, route_.track.size() - 1));
 }

@@ -80,7 +80,7 @@ bool Follower::is_in_avoided() const {
 bool Follower::sees(std::size_t body, Vec2 from, Vec2 to) {
   if (Space{blockers_, route_.bodies[body], bounds(), false, region()}.clear(from, to)) return true;
   if (body != 1 || !is_in_avoided()) return false;
-  // Whoever is in a zone that it avoids heads on for its corner, which lies outside.
+  // An object in a zone that it avoids heads on for its corner, which lies outside.
   Blockers solid = blockers_;
   solid.others = nullptr;
   return Space{solid, route_.bodies[body], bounds(), false, region()}.clear(from, to);

@@ -31,8 +31,8 @@ struct RouteOptions {
   }
 };
 
-/// What others go by when they meet an object on a route: its state after all routes of a step have been followed, and
-/// before one of them reacts to another. So it does not matter which object is declared first.
+/// The facts that others go by when they meet an object on a route: its state after all routes of a step have been
+/// followed, and before one of them reacts to another. So it does not matter which object is declared first.
 struct RightOfWay {
   double way = 0.0;       // length of the rest of the path [m]; infinite at the goal and without a path
   int yielded = 0;        // an object that retreats claims the way of the one it lets pass: how many such steps away
@@ -40,7 +40,7 @@ struct RightOfWay {
   std::int64_t held = 0;  // number of steps without progress
 };
 
-/// What an object remembers of its route from step to step.
+/// An object's memory of its route from step to step.
 struct Route {
   Vec2 goal{kNone, kNone};         // goal of the path
   std::vector<Vec2> path;          // corners from the place of planning to the goal; empty if no path was found

@@ -171,7 +171,7 @@ bool Follower::clear_at(const Pose& pose) {
   for (const Side& side : work_.sides) {
     if (support(body, side.normal) > side.offset) return false;
   }
-  for (const int other : route_.parked_seen) {  // there may be no way round them
+  for (const int other : route_.parked_seen) {  // a way round them may not exist
     if (is_parked(other) && touch(body, state_.scenes[w_].moving.footprint(shapes_, other))) return false;
   }
   if (route_.legs.empty()) return true;

@@ -9,7 +9,7 @@
 
 namespace irsim {
 
-/// What an object is to a robot.
+/// The kind of an object, as a robot sees it.
 enum class ObjectKind : std::uint8_t { robot, human, fixed, ignored };
 constexpr int kKinds = 3;  // number of kinds to which distances are measured
 

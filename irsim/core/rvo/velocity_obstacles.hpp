@@ -8,7 +8,7 @@
 
 namespace irsim {
 
-/// Velocities w with cross(left, w - apex) <= 0 <= cross(right, w - apex): those that lead to a collision.
+/// Velocities w with cross(left, w - apex) <= 0 <= cross(right, w - apex): the velocities that lead to a collision.
 struct Cone {
   Vec2 apex, left, right;  // [m/s]; unit vectors
 
@@ -17,7 +17,7 @@ struct Cone {
   bool over_right(Vec2 w) const { return right.x * (w.y - apex.y) - right.y * (w.x - apex.x) >= 0.0; }
 };
 
-/// What the penalty needs about a disc. The time to reach it at velocity w is gap / ||2 w - sum||.
+/// The facts about a disc that the penalty needs. The time to reach it at velocity w is gap / ||2 w - sum||.
 struct Approach {
   Vec2 sum;         // sum of both velocities [m/s]
   double gap;       // length of the tangent to the disc [m]; 0 inside
@@ -54,7 +54,7 @@ struct VelocityObstacles {
   WallView walls;
   double horizon = 0;      // a wall blocks velocities that reach it sooner [s]
   double look_share = 0;   // part of Front::look within which walls that can be passed block directions
-  std::vector<Cone> ways;  // scratch: `cones`, and those of walls whose every direction is blocked
+  std::vector<Cone> ways;  // scratch: `cones`, and the cones of walls whose every direction is blocked
 
   void clear();
   bool walled(Vec2 w) const { return walls.blocks(w, horizon, look_share); }

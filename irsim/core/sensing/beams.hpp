@@ -1,4 +1,4 @@
-// What planar range sensors share: the directions of their beams, and casting them.
+// The common part of planar range sensors: the directions of their beams, and casting them.
 #pragma once
 
 #include "sensing.hpp"

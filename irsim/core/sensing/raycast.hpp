@@ -8,8 +8,8 @@
 namespace irsim {
 
 /// Casts all beams of one scan. An edge is tested only against the beams between the bearings of its ends, nearer
-/// bodies are tested first, and bodies hidden behind earlier hits are skipped. The results equal those of testing every
-/// beam against every edge: the nearest hit counts, among equal ones that of the lowest object id.
+/// bodies are tested first, and bodies hidden behind earlier hits are skipped. The results equal the ones from testing
+/// every beam against every edge: the nearest hit counts, among equal ones that of the lowest object id.
 class Fan {
  public:
   /// `heading`: cosine and sine of the sensor heading, world frame; `reach` [m].
@@ -42,7 +42,7 @@ class Fan {
   struct Edge;
   /// The nominal beam, as a fractional index, that points at a position relative to the origin.
   double beam_of(Vec2 from_origin) const;
-  /// Call `test` for the beams from low to high, and for those that may be among them within the error of `beam_of`.
+  /// Call `test` for the beams from low to high, and for beams that may be among them within the error of `beam_of`.
   template <class Test>
   void between(double low, double high, Test&& test) const;
   void sort_by_distance();

@@ -9,8 +9,8 @@
 
 namespace irsim {
 
-/// What objects of one decision exert on one another. Object k of the decision takes what earlier ones have added for
-/// it, and adds for later ones. All see others by ascending id, so nothing is searched.
+/// The forces that objects of one decision exert on one another. Object k of the decision takes what earlier ones have
+/// added for it, and adds for later ones. All see others by ascending id, so nothing is searched.
 class MutualForces {
  public:
   /// Begin a decision of these objects, which are among `total`.
@@ -25,7 +25,7 @@ class MutualForces {
     }
   }
   /// Object k of the decision is next. It calls `knows` for the others that it sees, by ascending id, and `expect` for
-  /// those that it does not know; then `sum`.
+  /// the forces that it does not know; then `sum`.
   void decide(int k) { deciding_ = k, next_ = count_ = 0; }
 
   /// Whether the force of `from` is known; if so, it is taken.
@@ -47,7 +47,7 @@ class MutualForces {
   /// Whether the object that decides is a mirror image of another one.
   bool tied() const { return tied_[deciding_] != 0; }
 
-  /// Sum of all forces in the order of the calls; `computed` are the expected ones. Those that others need are kept.
+  /// Sum of all forces in the order of the calls; `computed` are the expected ones. Forces that others need are kept.
   /// `centred`: whether others see the object, `self`, at its origin.
   Vec2 sum(int self, bool centred, const SocialForces& computed) {
     Vec2 sum;

@@ -1,4 +1,4 @@
-// Objects as their bounding circles: what policies observe of others.
+// Objects as their bounding circles, as policies observe them.
 #pragma once
 
 #include <vector>

@@ -28,7 +28,7 @@ constexpr double kClosingShare = 0.4;  // of a gap that is taken in one step
 /// Whether an object could take more than its share of a gap in one step.
 ///
 /// Args:
-///   way: From its centre to that of a round body [m].
+///   way: From its centre to the centre of a round body [m].
 ///   touching: Distance of the centres at which they touch [m].
 ///   ahead: Gap of which the longest way of a step is the share [m].
 inline bool may_close(Vec2 way, double touching, double ahead) {

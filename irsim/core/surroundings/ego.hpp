@@ -1,4 +1,4 @@
-// What an object knows about itself and its surroundings when its behavior decides.
+// An object's knowledge of itself and its surroundings when its behavior decides.
 #pragma once
 
 #include "decision.hpp"

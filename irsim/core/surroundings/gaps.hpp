@@ -11,7 +11,7 @@ namespace irsim {
 struct State;
 
 /// Write the distance [m] between the footprint of a row and the nearest one of each kind to `out` (kKinds numbers).
-/// Distances above `reach` [m] are infinite, those of overlaps negative.
+/// Distances above `reach` [m] are infinite, distances of overlapping bodies negative.
 void gaps(const World& world, const State& state, int row, const std::vector<ObjectKind>& kinds, double reach,
           double* out);
 

@@ -8,10 +8,10 @@ namespace irsim {
 namespace {
 
 constexpr double kRestingTurn = 1e-9;      // an object that turns by less in a step counts as resting [rad]
-constexpr double kRestingSpeed = 0.05;     // slower objects run into nobody [m/s]
+constexpr double kRestingSpeed = 0.05;     // slower objects run into nothing [m/s]
 constexpr double kCollisionHorizon = 2.0;  // collisions that would come later are not avoided yet [s]
 
-/// Whether somebody who moves on as now runs into the object within the horizon if it stands.
+/// Whether another object that moves on as now runs into this one within the horizon if it stands.
 bool is_run_into(const World& world, const State& state, int row, int object) {
   const Shapes& shapes = *state.scenes[row / world.objects].shapes;
   const auto centre_of = [&](int at, int i) {
@@ -55,7 +55,7 @@ double yaw_rate_to_goal(const World& world, const State& state, int row, int obj
 
 namespace {
 
-/// `diff` brakes before its goal, then it stands and turns, unless it avoids somebody.
+/// `diff` brakes before its goal, then it stands and turns, unless it avoids another object.
 void brake_and_turn(const World& world, const State& state, int row, int object, Vec3& control) {
   const Vec2 way = state.goal[row].position() - state.pose[row].position();
   const double gap = norm(way), most = speed_to_goal(world, state, row);

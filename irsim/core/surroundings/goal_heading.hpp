@@ -22,7 +22,7 @@ double yaw_rate_to_goal(const World& world, const State& state, int row, int obj
 /// oscillates.
 ///
 /// Args:
-///   control: What the behavior of the object wants; changed in place.
+///   control: The wish of the object's behavior; changed in place.
 void face_goal(const World& world, const State& state, int row, int object, Vec3& control);
 
 }  // namespace irsim

@@ -1,4 +1,5 @@
-// What robots of a simulation know of themselves and of others: for observation parts and for policies.
+// The knowledge of a simulation's robots about themselves and their surroundings: for observation parts and for
+// policies.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +10,14 @@
 
 namespace irsim {
 
-/// What is observed besides the robots themselves.
+/// The observed objects besides the robots themselves.
 struct Looking {
   int neighbors;                      // number of nearest other objects
   double reach;                       // largest gap between bounding circles [m]
   bool statics;                       // whether static objects count
   bool extents;                       // whether it is measured how far footprints reach toward each other
   std::vector<std::uint8_t> steered;  // (N,) whether the first extra state of an object is a steering angle
-  std::vector<int> first_beam;        // (N,) first beam of the lidar of each object among those of its world
+  std::vector<int> first_beam;        // (N,) first beam of the lidar of each object among all beams of its world
   int beams;                          // number of beams of a lidar, 0 if it is not observed
   double range_max;                   // [m]
 };
@@ -36,7 +37,7 @@ class Observer {
   Observer(const World& world, const State& state, const Looking& looking)
       : world_(world), state_(state), looking_(looking) {}
 
-  /// What a row knows; its neighbors are written to `near`, which the result points to.
+  /// The knowledge of a row; its neighbors are written to `near`, which the result points to.
   Seen see(int row, Near& near) const;
 
  private:

@@ -12,7 +12,8 @@ namespace irsim {
 /// themselves.
 ///
 /// Method: every edge is cut where it meets other polygons; the pieces inside of one of them are dropped, and so are
-/// the pieces on a common edge, except one if both polygons are on the same side. What is left is joined to rings.
+/// the pieces on a common edge, except one if both polygons are on the same side. The remaining pieces are joined to
+/// rings.
 std::vector<std::vector<Vec2>> union_of(const std::vector<std::vector<Vec2>>& polygons);
 
 }  // namespace irsim

@@ -13,7 +13,7 @@
 
 namespace irsim {
 
-/// What a ring is the outline of.
+/// The object whose outline a ring is.
 enum class Inside {
   solid,   // a body
   shell,   // the outer side of a closed line, which is seen only from outside
@@ -57,7 +57,7 @@ struct Ring {
   Box box_;
 };
 
-/// The corners of an outline without those that do not bend it and those that repeat the one before.
+/// The corners of an outline, without corners that do not bend it or that repeat the one before.
 std::vector<Vec2> bends_of(const Vec2* corners, int count);
 
 }  // namespace irsim

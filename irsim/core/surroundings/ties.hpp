@@ -27,7 +27,7 @@ struct MirrorPair {
   double direction;             // for the directions to the goals
 };
 
-/// Whether two velocities may be those of a mirrored pair: their sum has no part along the line through both. This is
+/// Whether two velocities may belong to a mirrored pair: their sum has no part along the line through both. This is
 /// the cheap half of the test, without a root.
 ///
 /// Args:
@@ -58,7 +58,7 @@ struct TieWay {
     const double wrong = off + kRounding * (std::fabs(here.x) + std::fabs(here.y) + reach);
     from = dot(ahead, here) - wrong * (length + 2.0 * reach);
   }
-  /// Whether the ways of a mirrored pair may meet soon: the cheapest part of the test. What is not a number may.
+  /// Whether the ways of a mirrored pair may meet soon: the cheapest part of the test. Values that are not numbers may.
   ///
   /// Args:
   ///   there: Where the other one is [m].

@@ -16,7 +16,7 @@ constexpr std::uint64_t kCrossingSide = std::uint64_t{1} << 41;   // block of th
 struct CrossingPlaces {
   PlacedFootprints starts;
   std::optional<PlacedFootprints> ends;   // without a value if nothing crosses; objects that stand still are in both
-  std::optional<PlacedFootprints> goals;  // those of the ends that are goals of objects that cross
+  std::optional<PlacedFootprints> goals;  // the ends that are goals of objects that cross
 };
 
 struct Crossing {

@@ -61,7 +61,8 @@ std::vector<double> track_of(const State& from, int row, int extra_rows) {
   return track;
 }
 
-/// What was watched, with the indices of the new objects. Objects that have gone leave their zones and all views.
+/// The watched zones and views, with the indices of the new objects. Objects that have gone leave their zones and all
+/// views.
 Watched continue_watching(const World& world, State& state, const World& world_before, const State& before,
                           const std::vector<int>& new_row) {
   const Watched& old = before.scenes[0].watched;

@@ -8,7 +8,7 @@
 namespace irsim {
 namespace {
 
-constexpr std::uint64_t kFirstPose = 1;  // first block of draws for poses; block 0 holds those of speed and delay
+constexpr std::uint64_t kFirstPose = 1;  // first block of draws for poses; block 0 holds the draws of speed and delay
 
 /// A draw in [0, 1) as a number in [-most, most).
 double symmetric(double draw, double most) { return most * (2.0 * draw - 1.0); }
@@ -18,7 +18,7 @@ bool is_within(const World& world, const Pose& pose) {
   return pose.x >= e[0] && pose.x <= e[2] && pose.y >= e[1] && pose.y <= e[3];
 }
 
-/// Draws starts of one scene. Objects do not overlap, except those that overlap in the scene as written.
+/// Draws starts of one scene. Objects do not overlap, except objects that overlap in the scene as written.
 class Starts {
  public:
   Starts(const World& world, State& state, int w)

@@ -43,7 +43,7 @@ class GrowingGrid {
   std::size_t built_ = 0;
 };
 
-/// Footprints that must not overlap. Objects that are `unobstructed` fit everywhere and are in nobody's way.
+/// Footprints that must not overlap. Objects that are `unobstructed` fit everywhere and block no place.
 class PlacedFootprints {
  public:
   PlacedFootprints(const World& world, const Shapes& shapes)
@@ -85,7 +85,7 @@ class PlacedFootprints {
     place(object, pose);
     grid_.add(object, footprint(object).box);
   }
-  /// The objects that overlap one of those that were added, where that is.
+  /// The objects that overlap an added one at its place.
   std::vector<int> overlapping(int object) {
     std::vector<int> found;
     if (world_.unobstructed[object]) return found;

@@ -37,7 +37,7 @@ class Spread {
   std::vector<Vec2> points_;
 };
 
-/// What is known of a scene while its objects are placed.
+/// The facts about a scene while its objects are placed.
 struct Known {
   const World& world;
   const State& state;

@@ -27,7 +27,7 @@ void evaluate(const World& world, State& state, int w, Workspace& work, bool wit
   sense(world, state, w, work);
 }
 
-/// Whether two poses are equal; those of absent objects are.
+/// Whether two poses are equal; poses of absent objects are.
 bool same_pose(const Pose& a, const Pose& b) {
   const auto same = [](double p, double q) { return p == q || (std::isnan(p) && std::isnan(q)); };
   return same(a.x, b.x) && same(a.y, b.y) && same(a.theta, b.theta);

@@ -1,4 +1,4 @@
-// What changes during an episode. Row w * N + i holds object i of world w.
+// The data that changes during an episode. Row w * N + i holds object i of world w.
 #pragma once
 
 #include <cstdint>
@@ -131,7 +131,7 @@ struct State {
   void log(const World& world, int w, EventKind kind, int object, int partner, Vec2 where) {
     log_numbers(w, kind, world.number[object], partner < 0 ? -1 : world.number[partner], where);
   }
-  /// Like `log`, with the number of the object and that of its partner, or the index of a zone.
+  /// Like `log`, with the numbers of the object and its partner, or the index of a zone.
   void log_numbers(int w, EventKind kind, int number, int partner, Vec2 where) {
     scenes[w].events.push_back({kind, count[w], number, partner, where.x, where.y});
     ++event_count[w];
@@ -156,7 +156,7 @@ void place_randomly(const World& world, State& state, int w);
 /// Draw starts, speeds and delays of world w within the spreads of `world.perturbations`. `failed_placement` becomes
 /// the first object for which there is no room.
 void perturb(const World& world, State& state, int w);
-/// Set the limits of a row from those of its object and its pace.
+/// Set the limits of a row from the limits of its object and its pace.
 void set_limits(const World& world, State& state, int row);
 /// Return one object to its initial values; collisions, arrival and sensors are not evaluated.
 void restart_row(const World& world, State& state, int row);

@@ -16,7 +16,7 @@ double drawn_number(double draw, const Variation& v) {
   return std::min(v.high, v.low + std::floor(draw * (v.high - v.low + 1.0)));
 }
 
-/// Let a drawn number of objects take part: those of the lowest rank.
+/// Let a drawn number of objects take part, the lowest ranks first.
 void choose(const World& world, State& state, int w, const Variation& v, double number, const Key& key) {
   std::vector<std::pair<double, int>> order;
   for (const int i : v.objects)

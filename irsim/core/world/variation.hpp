@@ -1,4 +1,5 @@
-// What differs between the episodes of a task, besides places: who takes part, sizes, limits, noise, latency, geometry.
+// The differences between the episodes of a task, besides places: who takes part, sizes, limits, noise, latency,
+// geometry.
 #pragma once
 
 #include <vector>
@@ -23,7 +24,7 @@ struct Variation {
   }
 };
 
-/// What is drawn at one level of a curriculum.
+/// The draws at one level of a curriculum.
 struct Level {
   std::vector<Variation> variations;
   int first_variant;  // the variants of the world of which one is drawn

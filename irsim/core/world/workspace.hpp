@@ -52,7 +52,7 @@ struct Workspace {
   WallView wall_view;          // walls in the way of an object
   std::vector<Nearby> nearby;  // what an object could reach in one step
   OrcaCrowd orca;
-  std::vector<Opinion> opinions;  // those of the step before, of the object that decides
+  std::vector<Opinion> opinions;  // from the step before, of the object that decides
   SearchMemory search;            // memory of planners
   Outlines ghost;                 // outline of an object at a pose that is tried
   std::vector<Side> sides;        // lines that an object on a route must not cross

@@ -65,7 +65,7 @@ void find_members(World& world) {
 
 Mount mount_of(int object, int index) { return {object, index, 0, 0, 0, 0, {}, {}, {}, {}}; }
 
-/// Set the nominal beams of a mount; those of `like` are copied if the angles are equal.
+/// Set the nominal beams of a mount; the beams of `like` are copied if the angles are equal.
 void set_beams(Mount& mount, std::vector<double> angles, const Mount* like = nullptr) {
   mount.count = static_cast<int>(angles.size());
   if (like != nullptr && like->angle == angles) {

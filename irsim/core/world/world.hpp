@@ -1,4 +1,4 @@
-// What never changes during an episode: N objects per world, with the same template for every copy.
+// The data that never changes during an episode: N objects per world, with the same template for every copy.
 #pragma once
 
 #include <array>
@@ -43,11 +43,11 @@ struct Mount {
 };
 
 enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2, kContact = 3 };
-/// What a robot does at its last goal: it counts as arrived only while it is there, it stands still, it arrives for
-/// good.
+/// The conduct of a robot at its last goal: it counts as arrived only while it is there, it stands still, it arrives
+/// for good.
 enum AfterArrival { kUnlatched = 0, kFreeze = 1, kYield = 2 };
 
-/// What contacts need to know about an object besides its shape.
+/// The facts about an object that contacts need besides its shape.
 struct BodyDynamics {
   double mass;         // [kg], may be infinite
   double friction;     // coefficient of friction with the ground
@@ -55,7 +55,7 @@ struct BodyDynamics {
   double restitution;  // bounciness, 0 to 1
   double tau;          // time constant of the drive [s]
   bool driven;         // whether it has a drive; a body without one moves only when it is pushed
-  bool pushable;       // whether it is not static, has a finite mass, and is no obstacle that replays a recording
+  bool pushable;       // whether it is not static, has a finite mass, and is not an obstacle that replays a recording
 };
 
 /// Which contacts are collisions: those at the ends of steps, or those within steps, too.
@@ -94,7 +94,7 @@ struct World {
   std::vector<ObjectSpec> specs;           // as given: initial values, shapes, sensors
 
   // object ids
-  std::vector<int> moving, fixed_objects, robots, visible;  // `visible`: those that are not unobstructed
+  std::vector<int> moving, fixed_objects, robots, visible;  // `visible`: objects that are not unobstructed
   std::vector<int> routed;                                  // objects with a route to follow
   std::vector<int> latecomers;                              // objects that appear after the start
   std::vector<int> leavers;                                 // objects that leave the world before the end

@@ -19,7 +19,7 @@ struct Zones {
   Outlines outlines;
 };
 
-/// What was watched in a world at the end of the last step.
+/// The watched zones and views of a world at the end of the last step.
 struct Watched {
   std::vector<Vec2> position;        // (N,); empty before the first look
   std::vector<std::uint8_t> inside;  // (zones * N,) whether an object overlaps a region
