@@ -49,7 +49,7 @@ from irsim.validation.validate import diff, fix, validate
 if TYPE_CHECKING:
     from irsim.policies.catalog import PolicySource
     from irsim.policies.policy import Policy
-    from irsim.results.scene import SceneTable
+    from irsim.results.picture import SceneTable
 
 __all__ = [
     "default_time_limit",

@@ -21,7 +21,7 @@ from irsim.metrics.progress import UNREACHABLE
 from irsim.navigation.geodesic import Geodesics
 from irsim.policies.driver import PolicyDriver, driver_of
 from irsim.policies.policy import Policy
-from irsim.results.labels import CROWDED
+from irsim.results.benchmark import CROWDED
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
 from irsim.scenario.open import import_modules

@@ -22,8 +22,7 @@ from irsim.benchmarks.timing import was_timed
 from irsim.common.files import TEMPORARY, write_atomically
 from irsim.common.version import version
 from irsim.episodes.episode import Progress
-from irsim.results.benchmark import BenchmarkResult
-from irsim.results.suite import SuiteResult, SuiteScenarioFacts
+from irsim.results.benchmark import BenchmarkResult, SuiteResult, SuiteScenarioFacts
 from irsim.runs.files import RunError
 from irsim.scenario.limits import Limits
 
@@ -87,7 +86,7 @@ def run_plan(
         finish: Called with the result and the folder before another process may work there, to write a report.
 
     Returns:
-        The result; a :class:`irsim.results.suite.SuiteResult` of a suite.
+        The result; a :class:`irsim.results.benchmark.SuiteResult` of a suite.
 
     Raises:
         RunError: The folder holds episodes already and ``resume`` is not given, or those of another plan; or it cannot
@@ -126,7 +125,7 @@ def measure_plan(plan: Plan, **options: Any) -> BenchmarkResult:
             :func:`irsim.benchmark`.
 
     Returns:
-        The result; a :class:`irsim.results.suite.SuiteResult` of a suite.
+        The result; a :class:`irsim.results.benchmark.SuiteResult` of a suite.
 
     Raises:
         Others: as :func:`irsim.benchmark`.

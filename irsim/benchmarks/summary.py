@@ -11,8 +11,7 @@ from irsim.benchmarks.suite import Protocol
 from irsim.common.text import listed, plural
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import bootstraps, newcombe, spread, wilson
-from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proportion
-from irsim.results.labels import CROWDED, LOST
+from irsim.results.benchmark import CROWDED, LOST, BenchmarkRow, EpisodeRow, Estimate, Proportion
 
 __all__ = [
     "ALL",

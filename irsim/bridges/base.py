@@ -27,7 +27,7 @@ Clock: TypeAlias = Literal["irsim", "external", "wall"]
 
 
 class BridgeError(CodedError, ValueError):
-    """A bridge cannot be opened, or failed; the codes are those of :mod:`irsim.diagnostics.codes.bridges`.
+    """A bridge cannot be opened, or failed; the codes are those of :mod:`irsim.diagnostics.codes.tools`.
 
     Attributes:
         diagnostics: The problems of options that are not valid; their codes are those of scenarios.

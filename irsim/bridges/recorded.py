@@ -10,8 +10,8 @@ import numpy as np
 from irsim.bridges.state import WorldState
 from irsim.common.angles import wrap
 from irsim.objects.describe import agent_rows, describe_scene
-from irsim.runs.initial_scene import initial_scene
 from irsim.runs.reading import Run
+from irsim.runs.resimulation import initial_scene
 from irsim.scenario.limits import Limits
 from irsim.simulation.scene import SceneDescription
 

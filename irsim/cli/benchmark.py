@@ -21,7 +21,7 @@ from irsim.cli.options import Imports, Json, MaxObjects, Perturb, Steps, Strict
 from irsim.cli.output import console, print_json
 from irsim.common.text import clean
 from irsim.diagnostics.errors import InputError
-from irsim.results.labels import seeds_of
+from irsim.results.benchmark import seeds_of
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -21,7 +21,7 @@ from irsim.scenario.yaml.rewrite import yaml_flow
 from irsim.validation.diff.keys import place
 
 if TYPE_CHECKING:
-    from irsim.results.diff import ScenarioDiff
+    from irsim.results.validation import ScenarioDiff
 
 __all__ = ["diff"]
 

@@ -12,7 +12,7 @@ from rich.table import Table
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json
 from irsim.common.text import clean
-from irsim.results.labels import ending
+from irsim.results.benchmark import ending
 from irsim.runs import list_runs
 from irsim.runs.files import RunError
 from irsim.runs.inspection import VIEWS, inspect_run

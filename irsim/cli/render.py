@@ -15,7 +15,7 @@ from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Strict
 from irsim.cli.output import console, print_json, progress
 from irsim.common.files import check_suffix
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
-from irsim.results.view_message import view_message
+from irsim.results.picture import view_message
 from irsim.validation.scene_text import scene_lines
 
 __all__ = ["render"]

@@ -19,7 +19,7 @@ from irsim.cli.output import console, print_error, print_json, progress
 from irsim.common.files import check_suffix
 from irsim.common.text import clean, seconds
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
-from irsim.results.labels import ending
+from irsim.results.benchmark import ending
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -1,13 +1,13 @@
-"""Packages whose names are imported when they are first used."""
+"""Names that are imported when they are first used, and attributes that a function computes."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
-__all__ = ["lazy_names"]
+__all__ = ["computed", "lazy_names"]
 
 
 def lazy_names(
@@ -38,3 +38,25 @@ def lazy_names(
         return sorted({*vars(sys.modules[package]), *homes, *own_modules})
 
     return get, listing
+
+
+Value = TypeVar("Value")
+
+
+class computed(property, Generic[Value]):
+    """A read-only attribute whose value a function computes from the instance: ``robot = computed(queries.robot)``.
+
+    It is a :class:`property` whose type is that of the function, so that type checkers and editors know it.
+    """
+
+    if TYPE_CHECKING:
+
+        def __init__(self, fget: Callable[[Any], Value]) -> None: ...
+
+        @overload
+        def __get__(self, instance: None, owner: type | None = None) -> computed[Value]: ...
+
+        @overload
+        def __get__(self, instance: Any, owner: type | None = None) -> Value: ...
+
+        def __get__(self, instance: Any, owner: type | None = None) -> Any: ...

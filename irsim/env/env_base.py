@@ -7,7 +7,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from irsim.common.computed import computed
+from irsim.common.lazy import computed
 from irsim.common.log import Logger
 from irsim.env import (
     drawing,

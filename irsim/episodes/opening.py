@@ -8,8 +8,8 @@ from typing import TypeVar
 from irsim.common.text import listed
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.diagnostics.errors import PlacementError
+from irsim.results.benchmark import CROWDED
 from irsim.results.findings import Finding
-from irsim.results.labels import CROWDED
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = [

@@ -5,9 +5,8 @@ cannot contradict them.
 """
 
 from irsim.lookup.answer import Answer, Answers, Key, TopicError
-from irsim.lookup.several import lookup_several, topics_of
 from irsim.lookup.text import as_brief_text, as_text
-from irsim.lookup.topics import lookup, schema_part
+from irsim.lookup.topics import lookup, lookup_several, schema_part, topics_of
 
 __all__ = [
     "Answer",

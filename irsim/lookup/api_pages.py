@@ -15,7 +15,7 @@ from irsim.common import data_files as resources
 from irsim.common.field_docs import field_docs
 from irsim.common.public_names import PUBLIC_HOMES
 from irsim.lookup.pages import components
-from irsim.lookup.tables import plain_table
+from irsim.lookup.text import plain_table
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.options.registry import REGISTRIES
 

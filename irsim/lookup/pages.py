@@ -9,7 +9,7 @@ from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.schema_walk import COLOR, Node, yaml_text
-from irsim.lookup.tables import key_list, key_table, plain_table
+from irsim.lookup.text import key_list, key_table, plain_table
 from irsim.lookup.topics import lookup
 from irsim.lookup.unsupported import find_gaps
 from irsim.options.registry import KINEMATICS, REGISTRIES

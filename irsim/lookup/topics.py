@@ -8,8 +8,8 @@ from irsim.benchmarks.suite import SUITES
 from irsim.bundled import templates
 from irsim.common.event_kinds import EVENTS
 from irsim.compat import DIFFERENCES
+from irsim.diagnostics.errors import InputError
 from irsim.lookup.answer import Answer, Key, TopicError
-from irsim.lookup.examples import example_of
 from irsim.lookup.full_text import words_of
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.index import (
@@ -39,14 +39,15 @@ from irsim.lookup.schema_walk import (
     step,
 )
 from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
-from irsim.lookup.small_examples import BETTER, small_example
+from irsim.lookup.small_examples import BETTER, example_of, small_example
 from irsim.lookup.suites import suite_answer, suite_key_answer, suites_answer
 from irsim.lookup.synonyms import named
 from irsim.lookup.tasks import task_answer
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
 
-__all__ = ["lookup", "schema_part"]
+__all__ = ["MAX_TOPICS", "lookup", "lookup_several", "schema_part", "topics_of"]
+
 
 _PLACES = {
     "behavior": ("robot", "behavior"),
@@ -296,3 +297,35 @@ def _related(path: tuple[str, ...], registry: Registry | None, name: str | None)
     if registry is not None and name is not None:
         return [".".join(path[:-1]), *(f"{registry.kind} {other}" for other in registry.names() if other != name)][:6]
     return [".".join(path[:-1])] if len(path) > 1 else []
+
+
+MAX_TOPICS = 12
+"""Number of topics that one question may have."""
+
+
+def topics_of(text: str) -> list[str]:
+    """Return the topics of a question: the parts between commas, semicolons and line breaks, without empty ones."""
+    return list(dict.fromkeys(part.strip() for part in re.split(r"[,;\n]", text) if part.strip()))
+
+
+def lookup_several(topics: list[str]) -> list[Answer | TopicError]:
+    """Answer several topics; the error of a topic that is not known stands in its place.
+
+    Args:
+        topics: At most :data:`MAX_TOPICS`, as in :func:`irsim.lookup.lookup`.
+
+    Raises:
+        InputError: There are too many topics.
+        TopicError: None of the topics is known.
+    """
+    if len(topics) > MAX_TOPICS:
+        raise InputError(f"{len(topics)} topics are too many", f"ask for at most {MAX_TOPICS} at once")
+    schema, found = json_schema(), list[Answer | TopicError]()
+    for topic in topics:
+        try:
+            found.append(lookup(topic, schema=schema))
+        except TopicError as error:
+            found.append(error)
+    if all(isinstance(one, TopicError) for one in found):
+        raise next(one for one in found if isinstance(one, TopicError))
+    return found

@@ -12,8 +12,7 @@ import numpy as np
 from irsim.common.arrays import Floats
 from irsim.metrics.definitions import METRICS
 from irsim.metrics.motion import motion_metrics
-from irsim.metrics.outcome import outcome_metrics
-from irsim.metrics.progress import progress_metrics
+from irsim.metrics.progress import outcome_metrics, progress_metrics
 from irsim.metrics.proximity import proximity_metrics
 from irsim.metrics.reward import reward_metrics
 from irsim.metrics.social import social_metrics

@@ -9,12 +9,20 @@ from irsim.common.lazy import lazy_names
 if TYPE_CHECKING:
     from irsim.results.base import Result
     from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, Estimate, Proportion
-    from irsim.results.diff import CommentChange, KeyChange, ScenarioDiff, WorldChange
     from irsim.results.episode import EventRecord, Left, RobotResult
     from irsim.results.findings import Edit, Finding
     from irsim.results.picture import MovingPose, RenderResult, RobotPlan, RobotPose, SnapshotResult
     from irsim.results.run import HorizonSource, ReplayResult, RunResult, RunTable
-    from irsim.results.validation import DryRun, Fix, Stuck, ValidationReport
+    from irsim.results.validation import (
+        CommentChange,
+        DryRun,
+        Fix,
+        KeyChange,
+        ScenarioDiff,
+        Stuck,
+        ValidationReport,
+        WorldChange,
+    )
 
 __all__ = [
     "BenchmarkResult",

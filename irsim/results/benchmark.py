@@ -1,15 +1,28 @@
-"""The typed result of ``irsim.benchmark``: its episodes, and their summary by scenario and behavior."""
+"""The typed result of ``irsim.benchmark``: episodes, their summary by scenario and behavior, and the suite."""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
+from irsim.common.text import listed
 from irsim.results.base import Result
 from irsim.results.findings import Finding
 
-__all__ = ["BenchmarkResult", "BenchmarkRow", "EpisodeRow", "Estimate", "Proportion"]
+__all__ = [
+    "CROWDED",
+    "LOST",
+    "BenchmarkResult",
+    "BenchmarkRow",
+    "EpisodeRow",
+    "Estimate",
+    "Proportion",
+    "SuiteResult",
+    "SuiteScenarioFacts",
+    "ending",
+    "seeds_of",
+]
 
 
 class Proportion(Result):
@@ -160,3 +173,69 @@ class BenchmarkResult(Result):
     """Version of irsim."""
     reproduce: str
     """Command that reproduces this result."""
+
+
+class SuiteScenarioFacts(Result):
+    """What a scenario of a suite is."""
+
+    name: str
+    """Its name in the rows."""
+    family: str
+    """Its name in the suite file."""
+    protocol: str
+    """What robots do that have arrived: ``freeze``, ``yield``, or ``as-written``."""
+    values: dict[str, Any]
+    """The values that vary in its family."""
+
+
+class SuiteResult(BenchmarkResult):
+    """What ``irsim benchmark SUITE`` found."""
+
+    suite: str
+    """Name of the suite."""
+    suite_version: int
+    """Version of the suite."""
+    title: str
+    """What it is about."""
+    about: str = ""
+    """What it measures, and how to read its results."""
+    sources: list[str] = Field(default_factory=list)
+    """Papers and pages that the suite follows."""
+    steps: int | None = None
+    """Horizon in steps; scenarios may have their own."""
+    until: Literal["done", "first_collision"] | None = None
+    """When an episode ends before its horizon: when every robot has arrived or stopped (``done``), or already when one
+    collides."""
+    suite_hash: str
+    """Hash of the suite, whatever part of it is run."""
+    hash: str
+    """Hash of everything that decides the numbers of this run: scenarios, policies, seeds and version."""
+    policies: dict[str, str]
+    """Name in the suite → behavior as the rows have it."""
+    facts: list[SuiteScenarioFacts]
+    """The scenarios in order."""
+
+
+CROWDED = "placement-crowded"
+"""Outcome of an episode of a benchmark whose seed leaves no room for an object."""
+
+LOST = "policy-lost"
+"""Name of what happens to an episode whose policy, in another process, cannot go on."""
+
+
+def ending(outcome: str, lost: str | None) -> str:
+    """The word for how a run ended: its outcome, but ``lost`` if time was left when something was lost."""
+    return "lost" if lost is not None and outcome == "timeout" else outcome
+
+
+def seeds_of(failed: dict[str, list[int]], most: int) -> str:
+    """List the failed seeds: ``timeout: seeds 18, 23, 32; collision: seed 7``; empty if none failed.
+
+    Args:
+        failed: Seeds by outcome.
+        most: Maximum number of seeds to list per outcome.
+    """
+    parts = []
+    for outcome, seeds in failed.items():
+        parts.append(f"{outcome}: seed{'s' * (len(seeds) > 1)} {listed([str(seed) for seed in seeds], most)}")
+    return "; ".join(parts)

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import json
 import zipfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
+from threading import Lock, Thread
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,8 @@ from irsim.common.files import Buffer
 from irsim.runs.files import unreadable
 from irsim.simulation.trace import Trace
 
-__all__ = ["Layout", "load_chunk", "load_events", "pack_chunk"]
+__all__ = ["Layout", "PieceWriter", "load_chunk", "load_events", "pack_chunk"]
+
 
 _MAX_BYTES = 256 * 1024**2
 """Size of the largest piece that is read."""
@@ -247,3 +249,40 @@ def _check_size(path: Path) -> None:
         entries = archive.infolist()
     if sum(entry.file_size for entry in entries) > min(_MAX_BYTES, path.stat().st_size):
         raise ValueError("compressed or too large")
+
+
+class PieceWriter:
+    """Does one piece of work at a time in a thread of its own.
+
+    The core releases the interpreter while it simulates, and the operating system while it copies bytes, so both go on
+    side by side. There is no thread until the first piece is submitted, because short runs have only one.
+    """
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._piece: Callable[[], None] | None = None
+        self._error: BaseException | None = None
+
+    def submit(self, write: Callable[[], None]) -> None:
+        """Begin a piece of work; the one before must be over, see :meth:`wait`."""
+        self._piece = write
+        Thread(target=self._do, name="irsim-recorder", daemon=True).start()
+
+    def wait(self) -> None:
+        """Wait until the last piece is written, and raise the error that this has raised.
+
+        A piece whose thread has not begun, because an interrupt came while it was started, is written here.
+        """
+        self._do()
+        error, self._error = self._error, None
+        if error is not None:
+            raise error
+
+    def _do(self) -> None:
+        with self._lock:
+            write, self._piece = self._piece, None
+            try:
+                if write is not None:
+                    write()
+            except BaseException as error:
+                self._error = error

@@ -17,9 +17,8 @@ from irsim.diagnostics.diagnostic import nearest
 from irsim.results.run import RunResult
 from irsim.runs.chunks import Layout, load_chunk, load_events
 from irsim.runs.files import RunError, json_of, plain_file, text_of, unreadable
-from irsim.runs.omissions import omission_notes
 from irsim.runs.plain_scenario import with_options
-from irsim.runs.store import META, RESULT, Status, find_run, run_folders, runs_folder, status_of
+from irsim.runs.store import META, RESULT, Status, find_run, omission_notes, run_folders, runs_folder, status_of
 from irsim.simulation.events import Event
 from irsim.simulation.trace import Trace, cut_trace, join_traces
 

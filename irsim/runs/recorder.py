@@ -19,13 +19,11 @@ from pydantic_core import to_json
 
 import irsim._core as core
 from irsim.common.files import Buffer
-from irsim.runs.chunks import pack_chunk
+from irsim.runs.chunks import PieceWriter, pack_chunk
 from irsim.runs.files import Claim, RunError, claim, create_file, replace_file
-from irsim.runs.omissions import omission_notes
-from irsim.runs.piece_writer import PieceWriter
 from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.pruning import prune, remove, tidy
-from irsim.runs.store import FILES, META, RESULT, SCENARIO_FILE, make_run_folder, mark_used, runs_path
+from irsim.runs.store import FILES, META, RESULT, SCENARIO_FILE, make_run_folder, mark_used, omission_notes, runs_path
 from irsim.simulation.events import Event, read_events
 from irsim.simulation.trace import sensors
 

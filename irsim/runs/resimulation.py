@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +20,8 @@ from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
 
-__all__ = ["check_reproduced", "has_modules", "resimulate", "scenario_of", "step_of"]
+__all__ = ["check_reproduced", "has_modules", "initial_scene", "resimulate", "scenario_of", "step_of"]
+
 
 _MAP = re.compile(r"map-\d{1,3}(\.\w{1,10})?")
 
@@ -147,3 +150,27 @@ def _scenario_path(run: Run, limits: Limits) -> str | None:
     if limits.root is not None:
         return scenario if why_outside(scenario, Path(limits.root)) is None else None
     return str(Path(folder) / Path(scenario).name) if isinstance(folder, str) else scenario
+
+
+@contextmanager
+def initial_scene(run: Run, limits: Limits | None = None) -> Iterator[Env]:
+    """Context with an environment at the start of a run, whose shapes and map can be read.
+
+    Args:
+        run: The recorded run.
+        limits: Limits of the reader of its scenario.
+
+    Raises:
+        RunError: The scenario now has other initial poses, because a map or irsim itself has changed.
+        ScenarioError: The scenario has errors, for example because another file of it has changed.
+    """
+    recorded = next(run.blocks(1, scans=False)).pose[0]
+    env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
+    try:
+        start = env.simulation.pose
+        if recorded.shape != start.shape or not np.array_equal(recorded, start, equal_nan=True):
+            what = f"the scenario of run {run.id} now has other initial poses"
+            raise RunError("unreadable-run", what, "a map or the version of irsim has changed since: run it again")
+        yield env
+    finally:
+        env.end(ending_time=0.0)

@@ -1,4 +1,4 @@
-"""Folders of runs: their names, dates and status. Uses the standard library only, no NumPy."""
+"""Folders of runs: their names, dates, status and omissions. Uses the standard library only, no NumPy."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import os
 import re
 import stat
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from irsim.common.text import clean
 from irsim.runs.files import RunError, json_of, lock_file, plain_file, refusal, replace_file
@@ -32,12 +32,14 @@ __all__ = [
     "make_run_folder",
     "mark_cancelled",
     "mark_used",
+    "omission_notes",
     "recent_ids",
     "run_folders",
     "runs_folder",
     "runs_path",
     "status_of",
 ]
+
 
 Status = Literal["running", "finished", "cancelled", "interrupted"]
 META = "run.json"
@@ -229,3 +231,22 @@ def being_written(folder: Path) -> bool:
     if free is None:
         return time.time() - max(entry.stat().st_mtime for entry in (path, folder)) < ABANDONED
     return not free
+
+
+def omission_notes(meta: Mapping[str, Any], steps: int | None = None) -> list[str]:
+    """Notes on what was too large to be recorded; empty if everything was recorded.
+
+    Args:
+        meta: Content of ``run.json``.
+        steps: Number of executed steps, None if the run has not ended.
+    """
+    whole = f"of {steps}" if steps is not None else f"of at most {meta.get('horizon')}"
+    until, scans = meta.get("trace_until"), meta.get("scans_until")
+    notes = []
+    if until is not None and until != steps:
+        notes.append(f"recorded until step {until} {whole}: size limit")
+    if meta.get("scans") is False:
+        notes.append("scans not recorded (too large)")
+    elif scans is not None and scans not in (steps, until):
+        notes.append(f"scans recorded until step {scans} {whole} (too large)")
+    return notes

@@ -15,7 +15,7 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.common.outline import outline
 from irsim.episodes.planned_routes import planned_routes
-from irsim.results.scene import ScenePassage
+from irsim.results.picture import ScenePassage
 from irsim.scenario.model.zones import Zone
 from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario

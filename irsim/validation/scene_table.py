@@ -14,7 +14,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.text import plural
 from irsim.episodes.scene_summary import called
-from irsim.results.scene import LidarHits, SceneRow, SceneTable
+from irsim.results.picture import LidarHits, SceneRow, SceneTable
 from irsim.scenario.resolve.body_size import has_fixed_shape
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario

@@ -25,7 +25,7 @@ def scene_lines(table: Mapping[str, Any], labels: Mapping[str, str], seed: int) 
     """Describe the objects of a scenario at its start.
 
     Args:
-        table: A scene table (:class:`irsim.results.scene.SceneTable`) as data.
+        table: A scene table (:class:`irsim.results.picture.SceneTable`) as data.
         labels: Name of each robot -> its label in the picture.
         seed: Seed of the places.
     """

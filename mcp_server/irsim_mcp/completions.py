@@ -11,10 +11,8 @@ from mcp.types import Completion, CompletionArgument, CompletionContext, PromptR
 
 from irsim.common.text import clean
 from irsim.runs.store import ARTIFACTS
-from irsim_mcp.docs import DOC, topics
 from irsim_mcp.prompts import DIFFICULTIES, drives, template_names
-from irsim_mcp.resources import SCHEMA, SECTIONS, TEMPLATE
-from irsim_mcp.run_resources import RUN
+from irsim_mcp.resources import DOC, RUN, SCHEMA, SECTIONS, TEMPLATE, topics
 from irsim_mcp.services import Services
 
 __all__ = ["add_completions"]

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from irsim.common.text import clean
-from irsim.results.labels import CROWDED
-from irsim_mcp.errors import failure
+from irsim.results.benchmark import CROWDED
+from irsim_mcp.answers import failure
 
 __all__ = ["call_to_repeat", "check_finished", "episodes_table", "policy_names"]
 

@@ -34,7 +34,7 @@ from irsim.runs.store import (
     runs_folder,
     status_of,
 )
-from irsim_mcp.errors import failure
+from irsim_mcp.answers import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.worker import HEAD, Progress, Workers, process_options

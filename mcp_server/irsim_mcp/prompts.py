@@ -17,7 +17,7 @@ import irsim
 from irsim.common import data_files as resources
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
-from irsim_mcp.errors import failure
+from irsim_mcp.answers import failure
 from irsim_mcp.services import Services
 
 __all__ = ["DIFFICULTIES", "add_prompts", "drives", "template_names"]

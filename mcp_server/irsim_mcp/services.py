@@ -9,9 +9,8 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from irsim.common.text import clean
-from irsim_mcp.errors import failure
+from irsim_mcp.answers import Found, failure
 from irsim_mcp.jobs import Jobs
-from irsim_mcp.json_answer import Found
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.recent_texts import RecentTexts
 from irsim_mcp.sandbox import Workspace

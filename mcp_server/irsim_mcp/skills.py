@@ -18,7 +18,7 @@ from mcp.types import INVALID_PARAMS, PaginatedRequestParams, RequestParams
 
 from irsim.common import data_files as resources
 from irsim.common.text import clean
-from irsim_mcp.errors import failure
+from irsim_mcp.answers import failure
 
 __all__ = ["Skills", "skill_files"]
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -20,9 +21,11 @@ from pydantic import Field, ValidationError
 
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import format_path, suggestion
-from irsim_mcp.errors import failure
+from irsim_mcp.answers import failure
+from irsim_mcp.worker import Progress
 
-__all__ = ["StrictTool", "strict"]
+__all__ = ["StrictTool", "reporter", "strict"]
+
 
 _MAX_SHOWN = 60
 """Number of characters of a wrong value that a message shows."""
@@ -232,3 +235,26 @@ def _accepted(schema: Mapping[str, Any], given: Any = None) -> str:
     if low is not None:
         return f"give {kind} from {low} on"
     return f"give {kind}"
+
+
+_PERIOD_S = 1.0
+"""Least time between two notifications [s]."""
+
+
+def reporter(context: Context[Any, Any], unit: str) -> Progress:
+    """A callback that reports progress to the client.
+
+    Args:
+        context: Context of the call.
+        unit: Unit of the counted work, such as ``steps``.
+    """
+    last, due = -1, 0.0
+
+    async def report(done: int, total: int) -> None:
+        nonlocal last, due
+        now = time.monotonic()
+        if done > last and now >= due:
+            last, due = done, now + _PERIOD_S
+            await context.report_progress(done, total, f"{done:,} of at most {total:,} {unit}")
+
+    return report

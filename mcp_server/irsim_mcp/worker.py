@@ -18,7 +18,7 @@ from anyio.abc import Process
 from anyio.streams.buffered import BufferedByteReceiveStream
 
 from irsim.common.child import ONE_THREAD, kill_group
-from irsim_mcp.errors import failure
+from irsim_mcp.answers import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
 

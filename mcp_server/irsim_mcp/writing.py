@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import os
 import secrets
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from irsim.common.files import TEMPORARY
 from irsim.common.text import clean
-from irsim_mcp.errors import failure
+from irsim.runs import RunError
+from irsim_mcp.answers import failure
 
-__all__ = ["write_file"]
+__all__ = ["set_aside", "write_file"]
+
 
 _BY_DESCRIPTOR = {os.open, os.mkdir, os.link, os.rename, os.unlink, os.stat} <= os.supports_dir_fd
 _FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW", 0)
@@ -106,3 +110,22 @@ def _exists(target: str, descriptor: int | None) -> bool:
     except FileNotFoundError:
         return False
     return True
+
+
+@contextmanager
+def set_aside(target: Path) -> Iterator[None]:
+    """Set aside the folder of an earlier export of the same run, which comes back if the new one fails."""
+    if not os.path.lexists(target):
+        yield
+        return
+    if target.is_symlink() or not target.is_dir():
+        what = f"'{target}' is in the way: it is not a folder of an earlier export"
+        raise RunError("file-exists", what, "remove it, or give it another name", where="to")
+    aside = target.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
+    target.rename(aside)
+    try:
+        yield
+    except BaseException:
+        aside.rename(target)
+        raise
+    shutil.rmtree(aside, ignore_errors=True)

@@ -30,15 +30,15 @@ obstacle:
 """
 
 
-def diff(before: str, after: str) -> irsim.results.diff.ScenarioDiff:
+def diff(before: str, after: str) -> irsim.results.validation.ScenarioDiff:
     return irsim.diff(before_text=before, after_text=after)
 
 
-def keys(found: irsim.results.diff.ScenarioDiff) -> list[tuple[str, str]]:
+def keys(found: irsim.results.validation.ScenarioDiff) -> list[tuple[str, str]]:
     return [(change.change, change.path) for change in found.keys]
 
 
-def world(found: irsim.results.diff.ScenarioDiff) -> list[tuple[str, str | None, str | None]]:
+def world(found: irsim.results.validation.ScenarioDiff) -> list[tuple[str, str | None, str | None]]:
     assert found.world is not None
     return [(change.change, change.object, change.key) for change in found.world]
 
@@ -283,7 +283,7 @@ LED = (
 )
 
 
-def told(found: irsim.results.diff.ScenarioDiff) -> dict[tuple[str | None, str | None], tuple[object, object]]:
+def told(found: irsim.results.validation.ScenarioDiff) -> dict[tuple[str | None, str | None], tuple[object, object]]:
     """What changed in the world, by object and fact; of options their name."""
     facts = found.world or []
     return {(fact.object, fact.key): (_name(fact.before), _name(fact.after)) for fact in facts}

@@ -24,7 +24,7 @@ from irsim.cli.app import app
 from irsim.diagnostics.errors import BehaviorError, InputError, OverLimitError, ScenarioNotFoundError
 from irsim.metrics import wilson
 from irsim.policies import Observations
-from irsim.results.labels import seeds_of
+from irsim.results.benchmark import seeds_of
 from irsim.scenario.behavior_override import parse_behavior
 
 CROWD = """

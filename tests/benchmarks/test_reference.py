@@ -10,7 +10,7 @@ import pytest
 
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite import SUITES
-from irsim.results.suite import SuiteResult
+from irsim.results.benchmark import SuiteResult
 from tests.benchmarks.reference.write import FOLDER, PAGES, TABLES, changes, counted, lines_of
 
 

@@ -17,7 +17,7 @@ from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.app import app
 from irsim.cli.benchmark import show_benchmark
 from irsim.cli.output import progress
-from irsim.results.suite import SuiteResult
+from irsim.results.benchmark import SuiteResult
 
 SUITE = """
 suite: small

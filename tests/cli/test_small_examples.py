@@ -10,9 +10,8 @@ import pytest
 import yaml
 
 from irsim.lookup import lookup
-from irsim.lookup.examples import example_of
 from irsim.lookup.schema_walk import paths
-from irsim.lookup.small_examples import BETTER, small_example
+from irsim.lookup.small_examples import BETTER, example_of, small_example
 from irsim.scenario.model.json_schema import json_schema
 from irsim.scenario.read import read
 

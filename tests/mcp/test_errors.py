@@ -10,7 +10,7 @@ import pytest
 from mcp import MCPError
 
 from irsim.diagnostics.codes import CODES, TOOL_CODES
-from irsim_mcp.errors import failure
+from irsim_mcp.answers import failure
 from tests.mcp.conftest import ERAS, ROOM, connected, error_of, text_of
 
 pytestmark = pytest.mark.anyio

@@ -153,8 +153,8 @@ async def test_pages(empty: Path, era: str) -> None:
 
 
 async def test_pages_are_cut_at_a_megabyte(monkeypatch: pytest.MonkeyPatch) -> None:
-    from irsim_mcp import docs
+    from irsim_mcp import resources
 
-    monkeypatch.setattr(docs, "_text", lambda topic: "ä" * 2_000_000)
-    assert len(docs.page("readme").encode()) == 1_000_000
-    assert docs.page("readme", 1_999_999) == "ä"
+    monkeypatch.setattr(resources, "_text", lambda topic: "ä" * 2_000_000)
+    assert len(resources.page("readme").encode()) == 1_000_000
+    assert resources.page("readme", 1_999_999) == "ä"

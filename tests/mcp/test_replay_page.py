@@ -11,7 +11,7 @@ from mcp.server.apps import APP_MIME_TYPE, EXTENSION_ID
 
 from irsim.runs import open_run
 from irsim.runs.replay.page import page
-from irsim_mcp.replay_page import PAGE
+from irsim_mcp.resources import PAGE
 from tests.mcp.conftest import CRASH, ERAS, connected, data_of
 from tests.replay.reading import unpacked
 

@@ -11,7 +11,7 @@ from irsim.api.benchmark_report import TABLE, write_report
 from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
-from irsim.results.suite import SuiteResult
+from irsim.results.benchmark import SuiteResult
 
 pytestmark = pytest.mark.records
 

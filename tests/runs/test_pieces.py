@@ -15,8 +15,8 @@ import pytest
 import irsim
 from irsim.runs import RunError, list_runs, open_run
 from irsim.runs import recorder as recorder_module
+from irsim.runs.chunks import PieceWriter
 from irsim.runs.files import replace_file
-from irsim.runs.piece_writer import PieceWriter
 from tests.runs.test_trace import assert_same
 
 

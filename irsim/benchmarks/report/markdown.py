@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from irsim.benchmarks.report.rows import policy_labels
-from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion
-from irsim.results.suite import SuiteResult
+from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion, SuiteResult
 
 __all__ = [
     "INTERVALS",

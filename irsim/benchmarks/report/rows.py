@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.policies.catalog import SUFFIXES
-from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow
-from irsim.results.suite import SuiteResult
+from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, SuiteResult
 from irsim.scenario.yaml.document import load_text
 
 __all__ = [

@@ -23,8 +23,7 @@ from irsim.benchmarks.report.rows import policy_labels
 from irsim.benchmarks.summary import KEYS
 from irsim.common.files import replace_bytes
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
-from irsim.results.benchmark import BenchmarkResult
-from irsim.results.suite import SuiteResult
+from irsim.results.benchmark import BenchmarkResult, SuiteResult
 
 __all__ = ["MISSING", "TABLE", "has_tables", "write_table"]
 

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from irsim.common.text import clean
 from irsim.objects.describe import describe_scene
-from irsim.runs.initial_scene import initial_scene
 from irsim.runs.reading import Run
 from irsim.runs.replay.columns import Columns, changes, folded, quantised
 from irsim.runs.replay.drawing import page_grid, page_objects, page_zones
+from irsim.runs.resimulation import initial_scene
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import BETWEEN_STEPS, Event
 from irsim.simulation.trace import Trace

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from irsim.common.text import listed, plural
 from irsim.diagnostics.diagnostic import Path
 from irsim.diagnostics.errors import PlacementError
-from irsim.results.diff import CommentChange, KeyChange, ScenarioDiff, WorldChange
+from irsim.results.validation import CommentChange, KeyChange, ScenarioDiff, WorldChange
 from irsim.scenario.read import Reading
 from irsim.scenario.yaml.comments import comments, places_of_comments
 from irsim.scenario.yaml.document import Document

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim.diagnostics.diagnostic import Path, format_path
-from irsim.results.diff import KeyChange
+from irsim.results.validation import KeyChange
 
 if TYPE_CHECKING:
     from irsim.scenario.yaml.document import Document

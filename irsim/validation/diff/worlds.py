@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from irsim.env import Env
-from irsim.results.diff import KeyChange, WorldChange
+from irsim.results.validation import KeyChange, WorldChange
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.validation.diff.keys import Pairs, moved, same
 from irsim.validation.diff.world_facts import describe_world

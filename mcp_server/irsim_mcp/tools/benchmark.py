@@ -12,10 +12,10 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean
-from irsim.results.labels import CROWDED, seeds_of
+from irsim.results.benchmark import CROWDED, seeds_of
 from irsim.runs.store import RESULT
+from irsim_mcp.answers import failure
 from irsim_mcp.episodes import call_to_repeat, policy_names
-from irsim_mcp.errors import failure
 from irsim_mcp.jobs import PARTIAL
 from irsim_mcp.limits import (
     MAX_BEHAVIORS,
@@ -26,11 +26,10 @@ from irsim_mcp.limits import (
     MAX_STEPS,
     MAX_WAIT_SECONDS,
 )
-from irsim_mcp.progress import reporter
 from irsim_mcp.recent_texts import RecentTexts
 from irsim_mcp.services import Services, line_of
 from irsim_mcp.suites import suite_of
-from irsim_mcp.tool import StrictTool, strict
+from irsim_mcp.tool import StrictTool, reporter, strict
 
 __all__ = ["Benchmark", "answer", "tool"]
 

@@ -9,9 +9,8 @@ from mcp.types import CallToolResult
 from pydantic import Field
 
 from irsim_mcp.limits import MAX_WAIT_SECONDS
-from irsim_mcp.progress import reporter
 from irsim_mcp.services import Services
-from irsim_mcp.tool import StrictTool, strict
+from irsim_mcp.tool import StrictTool, reporter, strict
 from irsim_mcp.tools.benchmark import Benchmark, answer
 
 __all__ = ["tool"]

@@ -10,8 +10,8 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
 from irsim.common.text import clean
+from irsim_mcp.answers import failure
 from irsim_mcp.episodes import check_finished, episodes_table
-from irsim_mcp.errors import failure
 from irsim_mcp.services import RunId, Services
 from irsim_mcp.tool import StrictTool, strict
 

@@ -13,14 +13,13 @@ from pydantic import Field
 from irsim.api.film_strip import MAX_MOMENTS, MIN_MOMENTS
 from irsim.common.text import clean, metres
 from irsim.results.concise import is_command
-from irsim.results.view_message import view_message
+from irsim.results.picture import view_message
 from irsim.validation.scene_text import scene_lines
-from irsim_mcp.errors import failure
+from irsim_mcp.answers import failure
 from irsim_mcp.limits import MAX_SEED, MAX_STEPS
-from irsim_mcp.progress import reporter
-from irsim_mcp.run_resources import uri
+from irsim_mcp.resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
-from irsim_mcp.tool import StrictTool, strict
+from irsim_mcp.tool import StrictTool, reporter, strict
 from irsim_mcp.tools.validate_scenario import report_of, text_of
 
 __all__ = ["tool"]

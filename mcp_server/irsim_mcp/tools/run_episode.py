@@ -11,13 +11,11 @@ from pydantic import Field
 from irsim.results.concise import ConciseRun
 from irsim.results.episode import EventRecord
 from irsim.results.run import LOST_THINGS, MAX_CONCISE, MAX_DETAILED, RunResult
-from irsim_mcp.json_answer import Found, json_answer
+from irsim_mcp.answers import Found, json_answer
 from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_SEED, MAX_STEPS
-from irsim_mcp.progress import reporter
-from irsim_mcp.replay_page import PAGE
-from irsim_mcp.run_resources import uri
+from irsim_mcp.resources import PAGE, uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
-from irsim_mcp.tool import StrictTool, strict
+from irsim_mcp.tool import StrictTool, reporter, strict
 
 __all__ = ["tool"]
 

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean, names_if_different, rounded_pair, seconds, shorten_pair
 from irsim.validation.diff.keys import place
-from irsim_mcp.json_answer import json_answer
+from irsim_mcp.answers import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
 

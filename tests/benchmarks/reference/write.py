@@ -21,8 +21,7 @@ from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
-from irsim.results.benchmark import EpisodeRow
-from irsim.results.suite import SuiteResult
+from irsim.results.benchmark import EpisodeRow, SuiteResult
 
 __all__ = ["FOLDER", "PAGES", "TABLES", "Table", "changes", "counted", "lines_of", "main"]
 

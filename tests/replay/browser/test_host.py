@@ -10,9 +10,9 @@ from typing import Any
 import anyio
 import pytest
 
-import irsim_mcp.run_resources
+import irsim_mcp.resources
 from irsim.runs import open_run
-from irsim_mcp.replay_page import PAGE
+from irsim_mcp.resources import PAGE
 from tests.browser import Watched, until
 from tests.mcp.conftest import connected
 from tests.replay.conftest import scene
@@ -26,7 +26,7 @@ BROKEN = {"content": [{"type": "text", "text": "invalid-scenario: …"}], "isErr
 @pytest.fixture
 def served(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """What the server gives: the page, a result of run_episode, and its run in several parts."""
-    monkeypatch.setattr(irsim_mcp.run_resources, "_MAX_BYTES", 1500)
+    monkeypatch.setattr(irsim_mcp.resources, "_MAX_BYTES", 1500)
 
     async def ask() -> dict[str, Any]:
         async with connected(workspace) as client:

@@ -18,7 +18,7 @@ from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, re
 from irsim_evals.grader.programs import problems_in, run_program
 
 if TYPE_CHECKING:
-    from irsim.results.diff import ScenarioDiff
+    from irsim.results.validation import ScenarioDiff
     from irsim_evals.grader.material import Material
 
 _MAX_SHOWN = 6

@@ -16,7 +16,7 @@ from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.names import nanoseconds, ros_names
 from irsim.common.arrays import Floats
 from irsim.objects.describe import describe_scene
-from irsim.runs.initial_scene import initial_scene
+from irsim.runs.resimulation import initial_scene
 from irsim.simulation.events import BETWEEN_STEPS, Event
 from irsim.simulation.trace import Trace
 

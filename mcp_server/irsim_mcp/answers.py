@@ -1,13 +1,17 @@
-"""Errors of tools: one line that says what is wrong, where, and how to fix it."""
+"""Answers of tools: an error in one line, or the complete JSON of a result."""
 
 from __future__ import annotations
 
+from typing import Any
+
 from mcp.server.mcpserver.exceptions import ToolError
+from mcp.types import TextContent
 
 from irsim.common.text import clean
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 
-__all__ = ["failure"]
+__all__ = ["Found", "failure", "json_answer"]
+
 
 _MAX_LENGTH = 400
 """Number of characters of an error."""
@@ -37,3 +41,28 @@ def _one_line(text: str) -> str:
 def _sentence(text: str) -> str:
     line = _one_line(text)
     return line if line.endswith(("?", "!")) else f"{line}."
+
+
+class Found(dict[str, Any]):
+    """The result of a worker, and the JSON text in which it was written."""
+
+    text: str = ""
+
+
+def json_answer(found: Found, most: int, alternative: str, *, prefix: str = "") -> TextContent:
+    """The complete result as JSON.
+
+    Args:
+        found: The result.
+        most: Greatest number of characters.
+        alternative: What to do if the JSON is longer.
+        prefix: Beginning of the message if the JSON is longer.
+
+    Raises:
+        ToolError: The JSON is longer.
+    """
+    text = found.text
+    if len(text) > most:
+        what = f"{prefix}the whole result has {len(text):,} characters; at most {most:,} are returned"
+        raise failure("over-limit", what, where="response_format", fix=alternative)
+    return TextContent(type="text", text=text)
