@@ -80,10 +80,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-if __name__ == "__main__":
-    sys.exit(main())
-
-
 _INTRO = (
     "Scenario files and Python programs for IR-SIM 2.12 run without changes. *same* means the same meaning, defaults, "
     "units and array shapes. An id refers to an intended difference in the first table. *added* marks optional keys "
@@ -156,3 +152,7 @@ def _names() -> Iterator[tuple[str, list[tuple[str, str]]]]:
             rows.append((f"`{name}`", f"missing: {absent}" if absent else difference))
         if rows:
             yield place, rows
+
+
+if __name__ == "__main__":
+    sys.exit(main())
