@@ -3,9 +3,9 @@
 ``irsim/components/bridges/x.py`` has the options, derived from ``BridgeOptions``, and
 ``BRIDGES.register(X)(opened_by("x"))``; its ``driven`` says which robots the program may command.
 ``irsim/bridges/x/bridge.py`` has a subclass of :class:`Bridge` and ``make(options)``, and imports libraries when it
-is opened; ``doctor.py`` beside it has ``PARTS``, the libraries and their tests on one machine for ``irsim bridge
-doctor``. ``peer`` and ``mode`` of the bridge are what a run says that it is connected to; ``renew`` gets each new
-scene. ``irsim/bridges/frames.py`` has the frames of other programs.
+is opened; ``PARTS`` of ``irsim/bridges/doctor.py`` has its libraries and their tests on one machine for ``irsim
+bridge doctor``. A run says that it is connected to ``peer`` in a ``mode``; ``renew`` gets each new scene.
+``irsim/bridges/frames.py`` has the frames of other programs.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ import typer
 from rich.text import Text
 
 from irsim.bridges.export.cameras import PoseOptions
-from irsim.bridges.export.options import chosen_options
+from irsim.bridges.export.registry import chosen_options
 from irsim.bridges.splats.page import write_page
 from irsim.bridges.splats.preview import PreviewOptions, write_preview
 from irsim.cli.options import Json

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.bridges.footprint import Box, box_of
+from irsim.bridges.solids import Box, box_of
 from irsim.common.outline import Circle, Line, Polygon
 from irsim.simulation.scene import SceneObject
 

@@ -16,8 +16,7 @@ import shapely
 from typer.testing import CliRunner
 
 import irsim
-from irsim.bridges.gazebo.meshes import prism
-from irsim.bridges.gazebo.sdf import SdfWorld
+from irsim.bridges.sdf import SdfWorld, prism
 from irsim.cli.app import app
 from irsim.runs import Run, RunError, open_run
 from irsim.simulation.scene import Grid

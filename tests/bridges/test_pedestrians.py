@@ -15,10 +15,9 @@ from irsim.api.read_input import read_scenario
 from irsim.benchmarks.stored import measure_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.bridges.base import BridgeError
-from irsim.bridges.pedestrians.importing import import_pedestrians
+from irsim.bridges.pedestrians.importing import Episodes, import_pedestrians
 from irsim.bridges.pedestrians.rows import read_recording
 from irsim.bridges.pedestrians.scenario import Layout
-from irsim.bridges.pedestrians.suite import Episodes
 from irsim.bridges.pedestrians.tracks import Window
 from irsim.common.files import TargetError
 from irsim.diagnostics.errors import ArgumentError

@@ -10,9 +10,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.bridges.solids.cells import merged_cells
-from irsim.bridges.solids.convex import convex_pieces, is_convex, triangles
-from irsim.bridges.solids.solids import Box, solids_of
+from irsim.bridges.solids import Box, convex_pieces, is_convex, merged_cells, solids_of, triangles
 from irsim.common.outline import Circle, Line, Polygon
 from irsim.simulation.scene import Grid
 from tests.effort import examples

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.bridges.usd.names import prim_names
 from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
+from irsim.bridges.usd.stage import prim_names
 from irsim.common.outline import Circle, Line, Polygon
 from irsim.simulation.scene import Grid
 from tests.effort import examples

@@ -15,7 +15,7 @@ import pytest
 import irsim
 from irsim.bridges.base import BridgeError
 from irsim.bridges.mujoco.bridge import MujocoBridge, make
-from irsim.bridges.mujoco.report import MujocoReport
+from irsim.bridges.mujoco.contacts import MujocoReport
 from irsim.bridges.options import read_bridges
 from irsim.components.bridges.mujoco import Mujoco
 from tests.bridges.scenes import gallery, motion_of, state_of
@@ -133,7 +133,7 @@ def test_a_contact_that_is_there_is_found_and_is_no_ghost() -> None:
 def test_a_ghost_contact_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     from shapely import MultiPoint
 
-    from irsim.bridges.solids import solids
+    from irsim.bridges import solids
 
     def hull(corners: Any) -> list[Any]:
         return [np.array(MultiPoint(corners).convex_hull.exterior.coords)[:-1][::-1]]

@@ -12,8 +12,7 @@ import pytest
 from irsim.bridges.maps.grid import Grid
 from irsim.bridges.maps.importing import import_map, read_occupancy
 from irsim.bridges.maps.occupancy import eroded
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
-from irsim.bridges.maps.source import FREE, Occupancy
+from irsim.bridges.maps.source import FREE, ImportLimits, ImportOptions, Occupancy
 from tests.bridges.maps.flat import flat, house, write_glb, y_up
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("recast")]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import irsim
-from irsim.bridges.gazebo.sdf import SdfWorld
+from irsim.bridges.sdf import SdfWorld
 from irsim.objects.describe import describe_scene
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("sdf")]

@@ -23,8 +23,8 @@ from PIL import Image
 import irsim
 from irsim.bridges.frames import axes_of, camera_pose
 from irsim.bridges.maps.importing import import_map, read_occupancy
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.sidecar import MapSidecar, read_sidecar
+from irsim.bridges.maps.source import ImportLimits, ImportOptions
 from irsim.bridges.splats.page import write_page
 from irsim.bridges.splats.reading import read_splats
 from irsim.bridges.splats.render import View, picture

@@ -13,9 +13,8 @@ import pytest
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, read_sidecar
 from irsim.bridges.maps.importing import read_occupancy
-from irsim.bridges.maps.kinds._usd_shapes import Collector
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
-from irsim.bridges.maps.source import FREE
+from irsim.bridges.maps.kinds._usd_process import Collector
+from irsim.bridges.maps.source import FREE, ImportLimits, ImportOptions
 from irsim.scenario.read import read
 from tests.bridges.maps.flat import box, flat, house, y_up
 

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.bridges.export.episode import open_episode
-from irsim.bridges.export.options import chosen_options
-from irsim.bridges.export.registry import Format, find_format
+from irsim.bridges.export.registry import Format, chosen_options, find_format
 from irsim.common.extras import require
 from irsim.common.files import TEMPORARY, TargetError, check_new, check_suffix, make_folder_of, replacing
 from irsim.common.text import clean

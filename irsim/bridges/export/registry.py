@@ -1,22 +1,60 @@
-"""The formats that runs are exported to, found by the names of their modules and imported on first use."""
+"""Formats that runs are exported to, and their options."""
 
 from __future__ import annotations
 
 import pkgutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypeVar, overload
+
+from pydantic import ValidationError
 
 from irsim.bridges.export.episode import Episode
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import ArgumentError
 from irsim.options.base import Options
 from irsim.runs.files import RunError
+from irsim.scenario.messages.of_options import option_message, option_problems
 
-__all__ = ["Format", "Writer", "find_format", "format_names"]
+__all__ = ["Format", "Writer", "chosen_options", "find_format", "format_names"]
+
+Model = TypeVar("Model", bound=Options)
+
+
+@overload
+def chosen_options(model: type[Model], given: Mapping[str, Any], owner: str) -> Model: ...
+@overload
+def chosen_options(model: None, given: Mapping[str, Any], owner: str) -> None: ...
+@overload
+def chosen_options(model: type[Options] | None, given: Mapping[str, Any], owner: str) -> Options | None: ...
+def chosen_options(model: type[Options] | None, given: Mapping[str, Any], owner: str) -> Options | None:
+    """The options of something.
+
+    Args:
+        model: Their model; None if there are none.
+        given: What was given.
+        owner: What the options are of, as the subject of a sentence.
+
+    Raises:
+        ArgumentError: There is no such option, or a value is not allowed.
+    """
+    known = list(model.model_fields) if model is not None else []
+    for key in given:
+        if key not in known:
+            listed = f"its options are {', '.join(known)}" if known else "it has none: leave it out"
+            raise ArgumentError(f"{owner} has no option {clean(key)!r}", suggestion(key, known, listed))
+    if model is None:
+        return None
+    try:
+        return model.model_validate(dict(given))
+    except ValidationError as error:
+        message, fix = option_message(option_problems(error, dict(given), model))
+        raise ArgumentError(f"{owner}: {message}", fix or "give an allowed value") from None
+
 
 _PACKAGE = "irsim.bridges.export.formats"
 Writer: TypeAlias = Callable[[Sequence[Episode], Path, str], list[str]]

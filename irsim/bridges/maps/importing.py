@@ -11,11 +11,9 @@ from pydantic import ValidationError
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.occupancy import eroded, occupancy_of
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.sidecar import MapSidecar, scene_transform
-from irsim.bridges.maps.source import Kind, Occupancy, Scene, find_kind, unusable
-from irsim.bridges.maps.suggest import Trip, suggest_trip
-from irsim.bridges.maps.writing import files_of, write_all_or_none
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Occupancy, Scene, find_kind, unusable
+from irsim.bridges.maps.writing import Trip, files_of, suggest_trip, write_all_or_none
 from irsim.common.arrays import Floats
 from irsim.common.extras import require
 from irsim.common.files import TargetError, check_suffix
@@ -52,7 +50,7 @@ def import_map(
         robot: Whether the scenario gets a robot that drives from one end of the map to the other.
         overwrite: Whether to replace existing files.
         limits: How much an import may cost, and the folder that all files must lie in.
-        **options: Those of :class:`~irsim.bridges.maps.options.ImportOptions`.
+        **options: Those of :class:`~irsim.bridges.maps.source.ImportOptions`.
 
     Returns:
         The files, the size of the map, its levels, and a start and a goal in it.
@@ -105,7 +103,7 @@ def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **optio
     Args:
         file: The file.
         limits: How much it may cost.
-        **options: Those of :class:`~irsim.bridges.maps.options.ImportOptions`.
+        **options: Those of :class:`~irsim.bridges.maps.source.ImportOptions`.
 
     Raises:
         BridgeError: The file cannot be used.

@@ -9,9 +9,8 @@ import numpy as np
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Bools, Grid, Ints, clipped, grid_over
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.regions import Level, find_levels
-from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, Occupancy, Scene
+from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Occupancy, Scene
 from irsim.bridges.maps.voxels import Spans, Surfaces, floors_of, spans_of, walkable_of
 from irsim.common.arrays import Floats
 

@@ -10,12 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from irsim.bridges.base import Bridge, BridgeError
-from irsim.bridges.mujoco.contacts import Contacts
+from irsim.bridges.mujoco.contacts import Contacts, MujocoReport, log_report, write_report
 from irsim.bridges.mujoco.mjcf import choose_agents
 from irsim.bridges.mujoco.physics import Physics
 from irsim.bridges.mujoco.rays import LidarComparison, Rays
-from irsim.bridges.mujoco.report import MujocoReport, log_report, write_report
-from irsim.bridges.mujoco.rigs import PUSHED
+from irsim.bridges.mujoco.robots import PUSHED
 from irsim.bridges.mujoco.video import Film, prepare_display
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.common.arrays import Floats

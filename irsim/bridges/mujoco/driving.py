@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from irsim.bridges.mujoco.rigs import PUSHED, Rig
+from irsim.bridges.mujoco.robots import PUSHED, Rig
 from irsim.bridges.state import Motion
 from irsim.common.arrays import Floats
 from irsim.components.bridges.mujoco import Mujoco

@@ -12,11 +12,17 @@ from collections.abc import Iterable
 from xml.etree import ElementTree as ET
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.mujoco.rigs import DRIVES, LIDAR_HEIGHT, Rig, can_move, default_agents, rig_of
-from irsim.bridges.mujoco.robots import add_actuators, add_robot
-from irsim.bridges.mujoco.xml import colored, numbers
-from irsim.bridges.solids.cells import merged_cells
-from irsim.bridges.solids.solids import Box, Solid, room_of, solids_of
+from irsim.bridges.mujoco.robots import (
+    DRIVES,
+    LIDAR_HEIGHT,
+    Rig,
+    add_actuators,
+    add_robot,
+    can_move,
+    default_agents,
+    rig_of,
+)
+from irsim.bridges.solids import Box, Solid, colored, merged_cells, numbers, room_of, solids_of
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Line, Polygon
 from irsim.components.bridges.mujoco import Mujoco

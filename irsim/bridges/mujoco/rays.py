@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from irsim.bridges.mujoco.mjcf import body_name
 from irsim.bridges.mujoco.physics import Physics
-from irsim.bridges.mujoco.rigs import LIDAR_HEIGHT
+from irsim.bridges.mujoco.robots import LIDAR_HEIGHT
 from irsim.common.arrays import Floats
 from irsim.simulation.scene import Lidar, SceneObject
 

@@ -11,16 +11,13 @@ from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.ros.backends.bag import BagBackend
 from irsim.bridges.ros.backends.base import Backend
 from irsim.bridges.ros.backends.opening import AnyOptions, make_messages, open_backend
+from irsim.bridges.ros.guard import ZERO, Velocity
 from irsim.bridges.ros.guarded import Guard
-from irsim.bridges.ros.inbox import Inbox
-from irsim.bridges.ros.limiting import ZERO, Velocity
-from irsim.bridges.ros.names import nanoseconds, ros_names
+from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.outgoing import Outgoing
-from irsim.bridges.ros.qos import Qos
 from irsim.bridges.ros.real import RealRobots
-from irsim.bridges.ros.receiver import Receiver
-from irsim.bridges.ros.reports import Reports
-from irsim.bridges.ros.topics import Mode, Topic, scene_topics
+from irsim.bridges.ros.receiver import Receiver, Reports
+from irsim.bridges.ros.topics import Mode, Qos, Topic, nanoseconds, ros_names, scene_topics
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.components.bridges._ros import RosOptions
 from irsim.diagnostics.diagnostic import suggestion

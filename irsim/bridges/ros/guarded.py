@@ -12,8 +12,7 @@ from contextlib import suppress
 from dataclasses import asdict
 
 from irsim.bridges.base import BridgeError, BridgeLostError
-from irsim.bridges.ros.guard import READY
-from irsim.bridges.ros.limiting import Velocity
+from irsim.bridges.ros.guard import READY, Velocity
 from irsim.bridges.ros.topics import Topic
 from irsim.common.child import Child
 from irsim.components.bridges._ros import RosOptions

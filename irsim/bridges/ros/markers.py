@@ -10,7 +10,9 @@ import numpy as np
 from irsim.bridges.ros.messages import Messages
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Circle, Polygon
-from irsim.simulation.scene import SceneDescription
+from irsim.graphics.scene.bodies import geometry_of
+from irsim.graphics.scene.scene import Region
+from irsim.simulation.scene import SceneDescription, SceneObject
 
 __all__ = ["CYLINDER", "LINE_STRIP", "TRIANGLES", "body_markers", "label_marker", "make_marker", "triangles"]
 
@@ -23,7 +25,9 @@ _TEXT_HEIGHT_M = 0.25
 RGB = tuple[float, float, float]
 
 
-def body_markers(messages: Messages, scene: SceneDescription, frames: Mapping[str, str], world: str) -> Any:
+def body_markers(
+    messages: Messages, scene: SceneDescription, frames: Mapping[str, str], world: str, *, united: bool = False
+) -> Any:
     """Markers of all bodies, and the names of the robots.
 
     Args:
@@ -31,19 +35,37 @@ def body_markers(messages: Messages, scene: SceneDescription, frames: Mapping[st
         scene: The scene.
         frames: Name of each object that moves -> its frame, which its marker follows.
         world: Frame of all other markers.
+        united: Each body is one marker, so that none of its parts shows through another, numbered by its row and as
+            opaque as it is drawn; objects that move without a frame are left out.
 
     Returns:
         A ``visualization_msgs/MarkerArray``.
     """
     markers: list[Any] = []
     for agent in scene.agents:
-        place = (frames[agent.name], (0.0, 0.0, 0.0)) if agent.name in frames else (world, agent.pose)
-        looks = agent.color, 1.0
-        for part in agent.parts:
-            markers.append(part_marker(messages, len(markers), part, looks, *place))
+        frame = frames.get(agent.name)
+        if united and frame is None and not agent.static:
+            continue
+        place = (world, agent.pose) if frame is None else (frame, (0.0, 0.0, 0.0))
+        if united:
+            markers.append(_united_marker(messages, agent, *place))
+        else:
+            looks = agent.color, 1.0
+            for part in agent.parts:
+                markers.append(part_marker(messages, len(markers), part, looks, *place))
         if agent.role == "robot":
-            markers.append(label_marker(messages, agent.index, agent.name, *place))
+            markers.append(label_marker(messages, agent.row if united else agent.index, agent.name, *place))
     return messages("visualization_msgs", "MarkerArray")(markers)
+
+
+def _united_marker(messages: Messages, agent: SceneObject, frame: str, pose: Any) -> Any:
+    assert agent.look is not None
+    looks = agent.look.color, agent.look.alpha
+    if len(agent.parts) == 1:
+        return part_marker(messages, agent.row, agent.parts[0], looks, frame, pose)
+    region = geometry_of(agent.parts)
+    assert isinstance(region, Region)
+    return triangles_marker(messages, agent.row, region.rings, looks, frame, pose)
 
 
 def label_marker(messages: Messages, number: int, text: str, frame: str, pose: Any) -> Any:

@@ -10,8 +10,16 @@ import numpy as np
 
 from irsim.bridges.ros.markers import body_markers
 from irsim.bridges.ros.messages import Messages
-from irsim.bridges.ros.names import nanoseconds, ros_names
-from irsim.bridges.ros.topics import Mode, Topic, frame_of, laser_frame, pedestrian_names, pedestrians
+from irsim.bridges.ros.topics import (
+    Mode,
+    Topic,
+    frame_of,
+    laser_frame,
+    nanoseconds,
+    pedestrian_names,
+    pedestrians,
+    ros_names,
+)
 from irsim.bridges.state import WorldState
 from irsim.common.arrays import Floats
 from irsim.simulation.scene import Lidar, SceneDescription

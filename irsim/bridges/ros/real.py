@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from irsim.bridges.base import BridgeLostError
+from irsim.bridges.ros.guard import ZERO, Velocity
 from irsim.bridges.ros.incoming import Odometry
-from irsim.bridges.ros.limiting import ZERO, Velocity
 from irsim.bridges.ros.outgoing import body_velocity
 from irsim.bridges.state import Motion
 from irsim.common.angles import wrap

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 import time
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.inbox import Arrival, Inbox
+from irsim.bridges.ros.guard import ZERO, Velocity
 from irsim.bridges.ros.incoming import (
+    Arrival,
+    Inbox,
     MessageError,
     decode,
     fitted_ranges,
@@ -19,16 +23,64 @@ from irsim.bridges.ros.incoming import (
     read_scan,
     read_twist,
 )
-from irsim.bridges.ros.limiting import ZERO, Velocity
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.real import Pose, RealRobots
-from irsim.bridges.ros.reports import Reports
 from irsim.bridges.ros.topics import Topic
 from irsim.bridges.state import Feedback
+from irsim.common.text import clean
 from irsim.components.bridges._ros import RosOptions
 from irsim.simulation.scene import SceneObject
 
-__all__ = ["Receiver"]
+__all__ = ["Receiver", "Reports"]
+
+_MAX_KINDS = 100
+"""Reasons that are told apart; what a peer sends must not fill the memory."""
+
+
+def _print(text: str) -> None:
+    print(text, file=sys.stderr)
+
+
+class Reports:
+    """Counts problems of messages.
+
+    Args:
+        name: Name of the bridge.
+        say: Shows a line; default: on standard error.
+
+    Attributes:
+        counts: Topic and problem -> how often it occurred.
+        heard: What the other program has said -> how often.
+    """
+
+    def __init__(self, name: str, say: Callable[[str], None] = _print) -> None:
+        self.counts: Counter[tuple[str, str]] = Counter()
+        self.heard: Counter[str] = Counter()
+        self._name, self._say = name, say
+
+    def add(self, topic: str, problem: str) -> None:
+        """Count a problem; the first one of each kind is shown."""
+        key = (topic, clean(problem, 200))
+        if key not in self.counts:
+            if len(self.counts) >= _MAX_KINDS:
+                key = ("", "further problems")
+            self._say(f"{self._name}: {topic}: {key[1]}; the message is ignored")
+        self.counts[key] += 1
+
+    def hear(self, sentence: str) -> None:
+        """Count what the other program says; the first time it is shown."""
+        text = clean(sentence, 300)
+        if text not in self.heard:
+            if len(self.heard) >= _MAX_KINDS:
+                return
+            self._say(f"{self._name}: {text}")
+        self.heard[text] += 1
+
+    def finish(self) -> None:
+        """Say how often repeated problems occurred."""
+        for (topic, problem), count in self.counts.items():
+            if count > 1:
+                self._say(f"{self._name}: {topic}: {count} times: {problem}")
 
 
 class Receiver:

@@ -1,19 +1,86 @@
-"""The topics of a scene: the one table of names, types, directions and qualities of service that all backends share."""
+"""Topics of a bridge to ROS: names, types and quality of service, and which of them go out."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.names import ros_names
-from irsim.bridges.ros.qos import LATCHED, SENSOR, STATE, TRANSFORMS, Qos
 from irsim.components.bridges._ros import TOPIC_NAME
 from irsim.simulation.scene import SceneDescription, SceneObject
 
-__all__ = ["TABLE", "Mode", "Row", "Topic", "frame_of", "laser_frame", "scene_topics"]
+__all__ = [
+    "LATCHED",
+    "SENSOR",
+    "STATE",
+    "TABLE",
+    "TRANSFORMS",
+    "Mode",
+    "Qos",
+    "Row",
+    "Topic",
+    "frame_of",
+    "laser_frame",
+    "nanoseconds",
+    "ros_names",
+    "scene_topics",
+]
+
+_FITS = re.compile(r"[A-Za-z](_?[A-Za-z0-9])*")
+_NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9]+")
+
+
+def nanoseconds(seconds: float) -> int:
+    """A time [s] in whole nanoseconds."""
+    return round(seconds * 1e9)
+
+
+def ros_names(names: Iterable[str]) -> list[str]:
+    """Names of objects as parts of topics: letters, digits and single underscores, each only once.
+
+    ``robot 1`` becomes ``robot_1``, and a name that begins with a digit gets ``object_`` in front. A name that can be
+    part of a topic stays as it is, whatever the others are.
+    """
+    given = list(names)
+    fitting = {name for name in given if _FITS.fullmatch(name)}
+    made: list[str] = []
+    for name in given:
+        if name in fitting:
+            made.append(name)
+            continue
+        plain = _NOT_IN_NAMES.sub("_", name).strip("_")
+        plain = plain if plain and not plain[0].isdigit() else f"object_{plain}".rstrip("_")
+        number, unique = 1, plain
+        while unique in made or unique in fitting:
+            number += 1
+            unique = f"{plain}_{number}"
+        made.append(unique)
+    return made
+
+
+@dataclass(frozen=True)
+class Qos:
+    """How the messages of a topic are delivered.
+
+    Attributes:
+        reliable: Whether lost messages are sent again; a best-effort writer never matches a reliable reader.
+        latched: Whether those who subscribe later get the last messages (``transient_local``).
+        depth: Number of messages that are kept (``keep_last``).
+    """
+
+    reliable: bool = True
+    latched: bool = False
+    depth: int = 10
+
+
+STATE = Qos()
+SENSOR = Qos(reliable=False, depth=5)
+LATCHED = Qos(latched=True, depth=1)
+TRANSFORMS = Qos(depth=100)
+
 
 Mode: TypeAlias = Literal["sim", "real"]
 Direction: TypeAlias = Literal["out", "in", ""]

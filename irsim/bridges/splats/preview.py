@@ -16,9 +16,8 @@ from pydantic import Field
 from irsim.bridges.base import BridgeError
 from irsim.bridges.export.cameras import CameraOptions, Scene
 from irsim.bridges.frames import CAMERA_AXES, camera_pose, inverse
-from irsim.bridges.splats.bodies import body_splats, path_splats
 from irsim.bridges.splats.reading import read_splats
-from irsim.bridges.splats.recording import Recording, open_recording
+from irsim.bridges.splats.recording import Recording, body_splats, open_recording, path_splats
 from irsim.bridges.splats.render import View, picture
 from irsim.bridges.splats.splats import Splats, join_splats, moved
 from irsim.common.arrays import Floats

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.bridges.solids.cells import merged_cells
+from irsim.bridges.solids import merged_cells
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Line, Polygon
 from irsim.simulation.scene import Grid

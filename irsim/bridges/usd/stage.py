@@ -12,19 +12,72 @@ as cylinders, convex solids as their hulls, others as a convex decomposition, an
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from irsim.bridges.usd.looks import paint
-from irsim.bridges.usd.names import prim_names
 from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Line
 from irsim.simulation.scene import SceneDescription, SceneObject
 
-__all__ = ["Heights", "Mover", "author_scene", "new_stage"]
+__all__ = ["Heights", "Mover", "author_scene", "new_stage", "paint", "prim_names"]
+
+_LONGEST = 100
+
+
+def prim_names(names: Iterable[str]) -> list[str]:
+    """A valid name for each name, all different: ``robot 1`` becomes ``robot_1``, a second one ``robot_1_2``."""
+    taken: set[str] = set()
+    found = []
+    for name in names:
+        plain = re.sub(r"[^A-Za-z0-9_]", "_", name)[:_LONGEST] or "object"
+        plain = f"_{plain}" if plain[0].isdigit() else plain
+        chosen, number = plain, 2
+        while chosen.lower() in taken:
+            chosen, number = f"{plain}_{number}", number + 1
+        taken.add(chosen.lower())
+        found.append(chosen)
+    return found
+
+
+_ROUGHNESS = 0.6
+
+
+def paint(stage: Any, prim: Any, color: tuple[float, float, float]) -> None:
+    """Give a prim a color, as ``displayColor`` and as a material under ``/World/Looks``.
+
+    Args:
+        stage: The stage.
+        prim: A mesh or another solid.
+        color: Red, green, blue, from 0 to 1, as on a screen (sRGB).
+    """
+    from pxr import Gf, Sdf, UsdGeom, UsdShade, Vt
+
+    linear = Gf.Vec3f(*(_linear(min(1.0, max(0.0, part))) for part in color))
+    UsdGeom.Gprim(prim).CreateDisplayColorAttr(Vt.Vec3fArray([linear]))
+    name = "color_" + "".join(f"{round(255 * min(1.0, max(0.0, part))):02x}" for part in color)
+    UsdGeom.Scope.Define(stage, "/World/Looks")
+    path = f"/World/Looks/{name}"
+    made = stage.GetPrimAtPath(path)
+    material = UsdShade.Material(made) if made else UsdShade.Material.Define(stage, path)
+    if not made:
+        shader = UsdShade.Shader.Define(stage, f"{path}/surface")
+        shader.CreateIdAttr("UsdPreviewSurface")
+        shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(linear)
+        shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(_ROUGHNESS)
+        shader.CreateOutput("surface", Sdf.ValueTypeNames.Token)
+        material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
+    UsdShade.MaterialBindingAPI.Apply(prim).Bind(material)
+
+
+def _linear(part: float) -> float:
+    """A part of a color without the gamma of sRGB, as OpenUSD has it (IEC 61966-2-1)."""
+    return part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
+
 
 _GROUND_COLOR = (0.78, 0.78, 0.76)
 _MAP_COLOR = (0.35, 0.37, 0.4)

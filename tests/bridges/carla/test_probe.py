@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from irsim.bridges.base import BridgeError, BridgeLostError
-from irsim.bridges.carla.probe import server_version
+from irsim.bridges.carla.client import server_version
 
 Serve = Callable[..., int]
 

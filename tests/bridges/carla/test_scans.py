@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.bridges.carla.scans import scan_of_points, usual_points
+from irsim.bridges.carla.lidars import scan_of_points, usual_points
 from irsim.simulation.scene import Lidar
 
 

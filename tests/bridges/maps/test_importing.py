@@ -16,8 +16,7 @@ from typer.testing import CliRunner
 from irsim import api
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, list_levels, read_sidecar
-from irsim.bridges.maps.options import ImportLimits
-from irsim.bridges.maps.source import find_kind, kinds
+from irsim.bridges.maps.source import ImportLimits, find_kind, kinds
 from irsim.cli.app import app
 from irsim.common.extras import ExtraError
 from irsim.common.files import TargetError

@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.occupancy import eroded, occupancy_of, within
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.regions import connected, masked_regions
-from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, Occupancy, Scene
-from irsim.bridges.maps.suggest import suggest_trip
+from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Occupancy, Scene
+from irsim.bridges.maps.writing import suggest_trip
 from tests.bridges.maps.flat import box, flat, house
 
 

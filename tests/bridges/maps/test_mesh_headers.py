@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.kinds import _gltf, _mesh_headers
-from irsim.bridges.maps.options import ImportLimits
+from irsim.bridges.maps.kinds import _gltf, mesh
+from irsim.bridges.maps.source import ImportLimits
 from tests.bridges.maps.flat import box, write_glb
 
 LIMITS = ImportLimits()
@@ -158,10 +158,10 @@ FACE = "property list uchar int vertex_indices\n"
 )
 def test_ply_headers(tmp_path, header, said) -> None:
     with pytest.raises(BridgeError, match=said):
-        _mesh_headers.check_ply(ply(tmp_path, header, bytes(300)))
+        mesh.check_ply(ply(tmp_path, header, bytes(300)))
     (tmp_path / "scan.ply").write_bytes(b"ply\nformat ascii 1.0\n")
     with pytest.raises(BridgeError, match="no end"):
-        _mesh_headers.check_ply(tmp_path / "scan.ply")
+        mesh.check_ply(tmp_path / "scan.ply")
 
 
 def test_stl_headers(tmp_path) -> None:
@@ -174,7 +174,7 @@ def test_stl_headers(tmp_path) -> None:
     ]:
         file.write_bytes(content)
         if said is None:
-            _mesh_headers.check_stl(file)
+            mesh.check_stl(file)
         else:
             with pytest.raises(BridgeError, match=said):
-                _mesh_headers.check_stl(file)
+                mesh.check_stl(file)

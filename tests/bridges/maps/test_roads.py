@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, read_sidecar
-from irsim.bridges.maps.kinds._road import read_roads, reference_line
+from irsim.bridges.maps.kinds.opendrive import read_roads, reference_line
 
 LANES = """<lanes><laneSection s="0">
 <left><lane id="1" type="sidewalk"><width sOffset="0" a="2" b="0" c="0" d="0"/></lane></left>

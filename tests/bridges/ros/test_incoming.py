@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.bridges.ros.inbox import MAX_BYTES, Inbox
 from irsim.bridges.ros.incoming import (
+    MAX_BYTES,
+    Inbox,
     MessageError,
     Scan,
     decode,
@@ -21,10 +22,8 @@ from irsim.bridges.ros.incoming import (
     read_scan,
     read_twist,
 )
-from irsim.bridges.ros.qos import STATE
-from irsim.bridges.ros.receiver import Receiver
-from irsim.bridges.ros.reports import Reports
-from irsim.bridges.ros.topics import Topic
+from irsim.bridges.ros.receiver import Receiver, Reports
+from irsim.bridges.ros.topics import STATE, Topic
 from irsim.components.bridges.ros2 import Ros2
 from irsim.simulation.scene import Lidar
 from tests.bridges.ros.test_topics import SCENE

@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 import irsim
-from irsim.bridges.export.formats import _ros_scene
-from irsim.bridges.ros import markers
+from irsim.bridges.export.formats import _ros_run
+from irsim.bridges.ros.markers import body_markers
 from irsim.objects.describe import describe_scene
 
 SCENE = """
@@ -59,10 +59,8 @@ def env(tmp_path: Any) -> irsim.Env:
 @pytest.mark.parametrize("kind", ["live", "recorded"])
 def test_each_body_is_a_marker_where_it_is(env: irsim.Env, kind: str) -> None:
     frames: Any = {"rover": "rover/base"}
-    if kind == "live":
-        made = markers.body_markers(Plain(), describe_scene(env.simulation), frames, "map")  # type: ignore[arg-type]
-    else:
-        made = _ros_scene.body_markers(Plain(), describe_scene(env.simulation), frames, "map")  # type: ignore[arg-type]
+    scene: Any = describe_scene(env.simulation)
+    made = body_markers(Plain(), scene, frames, "map", united=kind == "recorded")  # type: ignore[arg-type]
     bodies = [marker for marker in made.given[0] if marker.ns == "bodies"]
     rover, disk, line, area = bodies
     assert [marker.type for marker in bodies] == [3, 3, 4, 11]
@@ -78,6 +76,6 @@ def test_each_body_is_a_marker_where_it_is(env: irsim.Env, kind: str) -> None:
 
 
 def test_a_grid_keeps_the_levels_of_its_map(env: irsim.Env) -> None:
-    grid = _ros_scene.occupancy_grid(Plain(), describe_scene(env.simulation), "map")  # type: ignore[arg-type]
+    grid = _ros_run.occupancy_grid(Plain(), describe_scene(env.simulation), "map")  # type: ignore[arg-type]
     assert (grid.side, grid.origin) == (1, (0, 0))
     assert grid.levels.tolist() == [[0, 0], [30, 0], [0, 100], [70, 0]], "(nx, ny), from below"

@@ -9,7 +9,7 @@ import pytest
 
 import irsim
 from irsim.bridges.ros.backends.opening import open_backend
-from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.topics import TABLE
 from irsim.common.extras import ExtraError
 from irsim.components.bridges._ros import TOPIC_KEYS, TOPIC_NAME

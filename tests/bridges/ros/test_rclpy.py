@@ -12,9 +12,8 @@ import pytest
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.ros.backends.opening import open_backend
-from irsim.bridges.ros.inbox import Inbox
-from irsim.bridges.ros.qos import LATCHED, STATE
-from irsim.bridges.ros.topics import Topic
+from irsim.bridges.ros.incoming import Inbox
+from irsim.bridges.ros.topics import LATCHED, STATE, Topic
 from irsim.components.bridges.ros2 import Ros2
 
 ODOM = Topic("odom", "/r/odom", "nav_msgs/msg/Odometry", True, LATCHED, "r")

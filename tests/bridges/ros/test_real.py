@@ -18,8 +18,8 @@ from hypothesis import strategies as st
 
 from irsim.bridges.base import BridgeLostError
 from irsim.bridges.ros import guard
+from irsim.bridges.ros.guard import ZERO, Limits, limited
 from irsim.bridges.ros.incoming import Odometry
-from irsim.bridges.ros.limiting import ZERO, Limits, limited
 from irsim.bridges.ros.real import RealRobots, composed, inverted
 from irsim.bridges.state import Motion
 from irsim.components.bridges.ros2 import Ros2

@@ -7,9 +7,7 @@ import pytest
 from irsim.bridges.base import BridgeError
 from irsim.bridges.options import read_bridge
 from irsim.bridges.ros.bridge import RosBridge
-from irsim.bridges.ros.names import ros_names
-from irsim.bridges.ros.qos import Qos
-from irsim.bridges.ros.topics import TABLE, scene_topics
+from irsim.bridges.ros.topics import TABLE, Qos, ros_names, scene_topics
 from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 
 

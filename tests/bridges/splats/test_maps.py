@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import axes_of
 from irsim.bridges.maps.importing import import_map, list_levels, read_occupancy
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.sidecar import read_sidecar
+from irsim.bridges.maps.source import ImportLimits, ImportOptions
 from irsim.cli.app import app
 from tests.bridges.splats.conftest import Site
 from tests.bridges.splats.scenes import room, write_ply

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.splats import footprints as spreading
-from irsim.bridges.splats.footprints import Footprints, spread
-from irsim.bridges.splats.occupancy import PlanOptions, find_floor, ground_plan
+from irsim.bridges.splats import occupancy
+from irsim.bridges.splats.occupancy import Footprints, PlanOptions, find_floor, ground_plan, spread
 from irsim.bridges.splats.splats import Splats
 
 
@@ -51,7 +50,7 @@ def test_large_splats_on_coarser_grids_are_the_same(monkeypatch: pytest.MonkeyPa
     cover = np.stack([cover[:, 0, 0], cover[:, 0, 1], cover[:, 1, 1]], axis=1)
     some = Footprints(rng.uniform(-1, 5, (40, 2)), rng.uniform(0.1, 1, 40), cover)
     coarse = spread(some, (0.0, 0.0), (80, 60), 0.05)
-    monkeypatch.setattr(spreading, "_MAX_REACH", 10_000)
+    monkeypatch.setattr(occupancy, "_MAX_REACH", 10_000)
     fine = spread(some, (0.0, 0.0), (80, 60), 0.05)
     assert np.abs(coarse - fine).max() < 0.1 * fine.max()
 
@@ -61,7 +60,7 @@ def test_plans_do_not_depend_on_batches_and_order(monkeypatch: pytest.MonkeyPatc
     scene = balls(rng.uniform(0, 3, (300, 3)).tolist(), 0.04, 0.4)
     options = PlanOptions(low=0.5, high=2.0, bounds=(0, 0, 3, 3))
     before = ground_plan(scene, np.eye(4), options).density
-    monkeypatch.setattr(spreading, "_PAIRS", 1000)
+    monkeypatch.setattr(occupancy, "_PAIRS", 1000)
     np.testing.assert_allclose(ground_plan(scene, np.eye(4), options).density, before, atol=1e-6)
     mixed = scene.take(rng.permutation(300))
     np.testing.assert_allclose(ground_plan(mixed, np.eye(4), options).density, before, atol=1e-6)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from irsim.bridges.frames import FRAMES, axes_of
-from irsim.bridges.splats.harmonics import colors_seen
+from irsim.bridges.splats.render import colors_seen
 from irsim.bridges.splats.splats import Splats, covariance_of, join_splats, moved, rotation_matrices, scale_of
 
 NUMBERS = st.floats(-1, 1)

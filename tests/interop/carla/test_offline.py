@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.bridges.carla.doctor import LEFT_CURVE
-from irsim.bridges.carla.places import Places
-from irsim.bridges.doctor import examine
+from irsim.bridges.carla.moving import Places
+from irsim.bridges.doctor import LEFT_CURVE, examine
 
 pytestmark = pytest.mark.interop
 

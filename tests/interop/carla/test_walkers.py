@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.bridges.carla.doctor import LEFT_CURVE
+from irsim.bridges.doctor import LEFT_CURVE
 from tests.interop.carla.conftest import StandIn
 from tests.interop.carla.scenes import CROWD, in_town
 

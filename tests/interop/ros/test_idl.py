@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from irsim.bridges.ros.backends.idl import dds_type_name, struct_type
+from irsim.bridges.ros.backends.dds import dds_type_name, struct_type
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.outgoing import Outgoing
 from irsim.bridges.ros.topics import TABLE, scene_topics

@@ -12,16 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.bridges.export.episode import Block, Episode, Lidar
+from irsim.bridges.ros.markers import body_markers
 from irsim.bridges.ros.messages import Messages
-from irsim.bridges.ros.names import nanoseconds, ros_names
+from irsim.bridges.ros.topics import nanoseconds, ros_names
 from irsim.common.arrays import Floats
 from irsim.objects.describe import describe_scene
 from irsim.runs.resimulation import initial_scene
 from irsim.simulation.events import BETWEEN_STEPS, Event
+from irsim.simulation.scene import SceneDescription
 from irsim.simulation.trace import Trace
 
-__all__ = ["Bag", "write_run"]
+__all__ = ["Bag", "occupancy_grid", "write_run"]
 
+_MAX_ASPECT_ERROR = 1e-6
+"""Share by which the sides of a cell may differ for it to count as square."""
 _WORLD = "world"
 _INFO, _WARN = 20, 30
 """Severities of ``rcl_interfaces/Log``."""
@@ -114,12 +118,10 @@ def _layout(bag: Bag, episode: Episode) -> _Layout:
 
 def _add_scene(bag: Bag, messages: Messages, episode: Episode, layout: _Layout) -> bool:
     """Add bodies and map; whether the map, if there is one, could be added."""
-    from irsim.bridges.export.formats._ros_scene import body_markers, occupancy_grid
-
     follows = {actor.name: frame for actor, frame in zip(episode.actors, layout.frames, strict=True)}
     with initial_scene(episode.run, episode.limits) as env:
         scene = describe_scene(env.simulation)
-    markers = body_markers(messages, scene, follows, _WORLD)
+    markers = body_markers(messages, scene, follows, _WORLD, united=True)
     grid = occupancy_grid(messages, scene, _WORLD)
     bag.add(bag.topic("/markers", "visualization_msgs/msg/MarkerArray", latched=True), 0, markers)
     if grid is not None:
@@ -208,3 +210,13 @@ def _log(messages: Messages, stamp: int, event: Event) -> Any:
     text = f"{event.kind}{partner}{zone}{way} at x {event.x:.3f} y {event.y:.3f}"
     level = _WARN if event.kind in ("collision", "no_path", *BETWEEN_STEPS) else _INFO
     return messages("rcl_interfaces", "Log")(messages.time(stamp), level, event.object, text, "", "", 0)
+
+
+def occupancy_grid(messages: Messages, scene: SceneDescription, world: str) -> Any | None:
+    """The map as a ``nav_msgs/OccupancyGrid``; None without a map, or if its cells are not square."""
+    if scene.grid is None or scene.grid.levels is None:
+        return None
+    side, other = scene.grid.cell
+    if abs(other / side - 1) > _MAX_ASPECT_ERROR:
+        return None
+    return messages.grid(0, world, side, scene.grid.origin, scene.grid.levels.astype(np.int8))

@@ -12,7 +12,7 @@ from pathlib import Path
 from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.mujoco.mjcf import is_mocap, write_mjcf
-from irsim.bridges.mujoco.rigs import default_agents
+from irsim.bridges.mujoco.robots import default_agents
 from irsim.bridges.recorded import recorded_scene
 from irsim.components.bridges.mujoco import Mujoco
 

@@ -22,8 +22,8 @@ import numpy as np
 
 from irsim.bridges.export.episode import Actor, Episode
 from irsim.bridges.export.registry import Format
-from irsim.bridges.footprint import box_of
 from irsim.bridges.recorded import recorded_scene
+from irsim.bridges.solids import box_of
 from irsim.common.arrays import Floats
 from irsim.common.version import version
 from irsim.options.base import Options

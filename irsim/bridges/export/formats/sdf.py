@@ -15,8 +15,8 @@ import numpy as np
 
 from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
-from irsim.bridges.gazebo.sdf import SdfWorld
 from irsim.bridges.recorded import recorded_scene, recorded_states
+from irsim.bridges.sdf import SdfWorld
 from irsim.common.arrays import Floats
 from irsim.simulation.scene import SceneDescription
 

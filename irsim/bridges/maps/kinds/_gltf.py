@@ -11,8 +11,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.maps.options import ImportLimits
-from irsim.bridges.maps.source import unusable
+from irsim.bridges.maps.source import ImportLimits, unusable
 from irsim.common.text import clean
 from irsim.scenario.path_confinement import why_outside
 

@@ -2,18 +2,249 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+import math
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from irsim.bridges.maps.kinds._usd_shapes import Collector, Refused
+from irsim.common.arrays import Floats
 from irsim.common.child import limit
 
-__all__ = ["main"]
+__all__ = ["Collector", "Refused", "main"]
+
+_CUBE = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+"""Sides of a cube whose corner k has x, y, z from the bits of k, counterclockwise from outside."""
+_AROUND, _RINGS = 32, 8
+"""Corners of round shapes: around the axis, and from the middle of a cap to its rim."""
+_MAX_DEPTH = 8
+"""How deep instancers may be nested."""
+
+
+class Refused(Exception):
+    """The stage cannot be used; the second argument is the advice."""
+
+
+class Collector:
+    """Collects triangles of all prims that are drawn.
+
+    Args:
+        most: Largest number of triangles.
+
+    Attributes:
+        left_out: Types of prims that have surfaces which are not read.
+    """
+
+    def __init__(self, most: int) -> None:
+        from pxr import Usd, UsdGeom
+
+        self.left_out: set[str] = set()
+        self._room = self._most = most
+        self._time = Usd.TimeCode.EarliestTime()
+        self._cache = UsdGeom.XformCache(self._time)
+
+    def stage(self, stage: Any) -> Floats:
+        """(T, 3, 3) corners of the triangles of a stage, frame and unit of the stage."""
+        from pxr import Usd
+
+        prims = Usd.PrimRange.Stage(stage, Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate))
+        return _joined([self._one(prim, self._world, 0) for prim in self._drawn(prims)])
+
+    def _world(self, prim: Any) -> Any:
+        return self._cache.GetLocalToWorldTransform(prim)
+
+    def _drawn(self, prims: Any) -> Iterator[Any]:
+        """Prims that are drawn, but for those below an instancer, which are only its prototypes."""
+        from pxr import UsdGeom
+
+        prims = iter(prims)
+        for prim in prims:
+            image = UsdGeom.Imageable(prim)
+            if not image:
+                continue
+            hidden = image.GetVisibilityAttr().Get(self._time) == UsdGeom.Tokens.invisible
+            if hidden or image.GetPurposeAttr().Get() in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy):
+                prims.PruneChildren()
+                continue
+            if prim.HasAuthoredMetadata("clips"):
+                raise Refused(f"{prim.GetPath()} has value clips, which are other files", "flatten the stage")
+            if prim.IsA(UsdGeom.PointInstancer):
+                prims.PruneChildren()
+            yield prim
+
+    def _one(self, prim: Any, place: Any, depth: int) -> Floats:
+        """Triangles of one prim; ``place`` gives its transform."""
+        from pxr import UsdGeom
+
+        if prim.IsA(UsdGeom.PointInstancer):
+            corners = self._instances(UsdGeom.PointInstancer(prim), depth)
+        else:
+            found = _corners(prim, self._time, self._room)
+            if found is None and prim.IsA(UsdGeom.Gprim):
+                self.left_out.add(str(prim.GetTypeName()))
+            if found is None:
+                return np.zeros((0, 3, 3))
+            corners = found
+            self._take(len(corners))
+        return _placed(corners, place(prim))
+
+    def _take(self, triangles: int) -> None:
+        self._room -= triangles
+        if self._room < 0:
+            raise Refused(f"it has more than {self._most:,} triangles", "simplify the stage")
+
+    def _instances(self, instancer: Any, depth: int) -> Floats:
+        """Triangles of all instances, frame of the instancer."""
+        index, transforms = self._arrangement(instancer)
+        parts = []
+        for number, path in enumerate(instancer.GetPrototypesRel().GetForwardedTargets()):
+            which = np.flatnonzero(index == number)
+            if not len(which):
+                continue
+            room = self._room
+            one = self._prototype(instancer.GetPrim().GetStage().GetPrimAtPath(path), depth + 1)
+            self._room = room
+            self._take(len(one) * len(which))
+            parts += [_placed(one, transforms[int(k)]) for k in which]
+        return _joined(parts)
+
+    def _arrangement(self, instancer: Any) -> tuple[Any, Any]:
+        """Number of the prototype of each instance that is shown, and its transform."""
+        index = np.asarray(instancer.GetProtoIndicesAttr().Get(self._time) or [], dtype=np.int64)
+        mask = np.asarray(instancer.ComputeMaskAtTime(self._time), dtype=bool)
+        name = str(instancer.GetPath())
+        if len(mask) not in (0, len(index)):
+            raise Refused(f"the instances of {name} and what hides them do not fit together")
+        transforms = instancer.ComputeInstanceTransformsAtTime(self._time, self._time) if len(index) else []
+        index = index[mask] if len(mask) else index
+        if len(transforms) != len(index):
+            raise Refused(f"{name} has {len(index):,} instances, and places for {len(transforms):,}")
+        return index, transforms
+
+    def _prototype(self, root: Any, depth: int) -> Floats:
+        """Triangles of a prototype, frame of its own prim."""
+        from pxr import Usd
+
+        if depth > _MAX_DEPTH:
+            raise Refused(f"its instancers are nested more than {_MAX_DEPTH} deep", "flatten the stage")
+        if not root:
+            return np.zeros((0, 3, 3))
+
+        def place(prim: Any) -> Any:
+            return self._cache.ComputeRelativeTransform(prim, root)[0]
+
+        # A prototype may be an `over` or a class, which is drawn only where it is an instance.
+        prims = Usd.PrimRange(root, Usd.TraverseInstanceProxies(Usd.PrimIsActive & Usd.PrimIsLoaded))
+        return _joined([self._one(prim, place, depth) for prim in self._drawn(prims)])
+
+
+def _joined(parts: list[Floats]) -> Floats:
+    return np.concatenate(parts) if parts else np.zeros((0, 3, 3))
+
+
+def _placed(corners: Floats, transform: Any) -> Floats:
+    """Corners moved by a matrix of the library, whose rows are images of the axes; mirrored faces are turned around."""
+    matrix = np.array(transform)
+    with np.errstate(all="ignore"):
+        placed: Floats = corners @ matrix[:3, :3] + matrix[3, :3]
+    return placed[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else placed
+
+
+def _corners(prim: Any, time: Any, most: int) -> Floats | None:
+    """(T, 3, 3) triangles of a prim in its own frame; None for those that are no surfaces, or none that are read."""
+    from pxr import UsdGeom
+
+    if prim.IsA(UsdGeom.Mesh):
+        return _mesh(UsdGeom.Mesh(prim), str(prim.GetPath()), time, most)
+    if prim.IsA(UsdGeom.Cube):
+        half = float(UsdGeom.Cube(prim).GetSizeAttr().Get(time)) / 2
+        ends = np.array([[half * (1 if k >> axis & 1 else -1) for axis in range(3)] for k in range(8)])
+        return np.array([[ends[k] for k in part] for a, b, c, d in _CUBE for part in ((a, b, c), (a, c, d))])
+    if prim.IsA(UsdGeom.Sphere):
+        radius = float(UsdGeom.Sphere(prim).GetRadiusAttr().Get(time))
+        return _turned([(radius * math.cos(a), radius * math.sin(a)) for a in _arc(-90, 90)], "Z")
+    if prim.IsA(UsdGeom.Plane):
+        return _plane(UsdGeom.Plane(prim), time)
+    profile = _profile(prim, time)
+    return None if profile is None else _turned(profile, str(prim.GetAttribute("axis").Get(time) or "Z"))
+
+
+def _arc(start: float, end: float) -> list[float]:
+    steps = max(1, round(abs(end - start) / 90 * _RINGS))
+    return [math.radians(start + (end - start) * k / steps) for k in range(steps + 1)]
+
+
+def _profile(prim: Any, time: Any) -> list[tuple[float, float]] | None:
+    """Radius and height of the rim of a shape around an axis, from its bottom to its top."""
+
+    def value(name: str) -> float:
+        return float(prim.GetAttribute(name).Get(time))
+
+    kind = str(prim.GetTypeName())
+    if kind in ("Cylinder", "Cylinder_1", "Cone", "Capsule", "Capsule_1"):
+        half = value("height") / 2
+        ends = ("radiusBottom", "radiusTop") if kind.endswith("_1") else ("radius", "radius")
+        low, high = value(ends[0]), value(ends[1])
+        if kind == "Cone":
+            return [(0.0, -half), (low, -half), (0.0, half)]
+        if kind.startswith("Cylinder"):
+            return [(0.0, -half), (low, -half), (high, half), (0.0, half)]
+        below = [(low * math.cos(a), low * math.sin(a) - half) for a in _arc(-90, 0)]
+        return below + [(high * math.cos(a), high * math.sin(a) + half) for a in _arc(0, 90)]
+    return None
+
+
+def _plane(plane: Any, time: Any) -> Floats:
+    """Both sides of a rectangle; its width and length are along x and y if its axis is z, z and y if it is x."""
+    half = np.array([float(plane.GetWidthAttr().Get(time)), float(plane.GetLengthAttr().Get(time))]) / 2
+    flat = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half
+    order = {"X": [2, 1, 0], "Y": [0, 2, 1]}.get(str(plane.GetAxisAttr().Get(time)), [0, 1, 2])
+    ends = np.column_stack([flat, np.zeros(4)])[:, order]
+    return np.array([[ends[k] for k in part] for part in ((0, 1, 2), (0, 2, 3), (2, 1, 0), (3, 2, 0))])
+
+
+def _turned(profile: list[tuple[float, float]], axis: str) -> Floats:
+    """Triangles of the surface that a profile makes around an axis, counterclockwise from outside."""
+    angle = np.linspace(0, 2 * math.pi, _AROUND, endpoint=False)
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    rings = [np.column_stack([radius * circle, np.full(_AROUND, height)]) for radius, height in profile]
+    parts = []
+    for low, high in itertools.pairwise(rings):
+        a, b, c, d = low, np.roll(low, -1, axis=0), np.roll(high, -1, axis=0), high
+        parts += [np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]
+    triangles = _joined(parts)
+    order = {"X": [2, 0, 1], "Y": [1, 2, 0]}.get(axis, [0, 1, 2])
+    return np.ascontiguousarray(triangles[..., order])
+
+
+def _mesh(mesh: Any, name: str, time: Any, most: int) -> Floats:
+    from pxr import UsdGeom
+
+    values = [attr.Get(time) for attr in (mesh.GetPointsAttr(), mesh.GetFaceVertexCountsAttr())]
+    index = mesh.GetFaceVertexIndicesAttr().Get(time)
+    if index is None or any(value is None for value in values):
+        return np.zeros((0, 3, 3))
+    points = np.asarray(values[0], dtype=np.float64).reshape(-1, 3)
+    counts, index = np.asarray(values[1], dtype=np.int64), np.asarray(index, dtype=np.int64)
+    if (counts < 0).any() or counts.sum() != len(index):
+        raise Refused(f"the faces of {name} need {counts.sum():,} vertices, and {len(index):,} are named")
+    if len(index) and (index.min() < 0 or index.max() >= len(points)):
+        raise Refused(f"a face of {name} names a vertex that it does not have")
+    triangles = np.maximum(counts - 2, 0)
+    if triangles.sum() > most:
+        raise Refused("it has too many triangles", "simplify the stage")
+    face = np.repeat(np.arange(len(counts)), triangles)
+    step = np.arange(len(face)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
+    first = (np.cumsum(counts) - counts)[face]
+    corners: Floats = points[np.stack([index[first], index[first + step + 1], index[first + step + 2]], axis=1)]
+    left_handed = mesh.GetOrientationAttr().Get(time) == UsdGeom.Tokens.leftHanded
+    return corners[:, ::-1] if left_handed else corners
+
 
 _MEMORY = 12 * 1024**3
 """Address space of the process [bytes]."""

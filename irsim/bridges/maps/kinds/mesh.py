@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import logging
+import struct
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,104 @@ import numpy as np
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Triangles
-from irsim.bridges.maps.kinds import _gltf, _mesh_headers
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
-from irsim.bridges.maps.source import Kind, Scene, unusable
+from irsim.bridges.maps.kinds import _gltf
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
 
-__all__ = ["KIND"]
+__all__ = ["KIND", "check_ply", "check_stl", "may_be_mesh", "ply_header"]
+
+_MAX_HEADER = 64 * 1024
+_SIZES = {
+    "char": 1, "uchar": 1, "int8": 1, "uint8": 1, "short": 2, "ushort": 2, "int16": 2, "uint16": 2, "int": 4, "uint": 4,
+    "int32": 4, "uint32": 4, "float": 4, "float32": 4, "double": 8, "float64": 8,
+}  # fmt: skip
+
+
+def may_be_mesh(head: bytes) -> bool:
+    """Whether the first bytes of a file look like one of the formats of meshes."""
+    if head.startswith((b"glTF", b"solid")):
+        return True
+    if head.startswith(b"ply"):
+        return b"element face" in head or not any(mark in head for mark in (b"f_dc_0", b"scale_0", b"packed_"))
+    if head.lstrip().startswith(b"{"):
+        return b"asset" in head or b"accessors" in head or b"nodes" in head
+    if len(head) >= 84 and not head.startswith((b"TESM", b"PXR-USDC", b"#usda", b"PK", b"\x89PNG")):
+        count = int(struct.unpack_from("<I", head, 80)[0])
+        if len(head) == 84 + 50 * count or (len(head) >= 4096 and b"\0" in head[:84]):
+            return True
+    lines = head.split(b"\n")[:200]
+    return any(line.split()[:1] in ([b"v"], [b"f"], [b"o"], [b"g"], [b"mtllib"]) for line in lines)
+
+
+def check_stl(path: Path) -> None:
+    """Check the number of triangles of a binary file.
+
+    Raises:
+        BridgeError: The file is shorter than that.
+    """
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        head = file.read(84)
+    if head.lstrip().startswith(b"solid") and (size < 84 or size != 84 + 50 * struct.unpack_from("<I", head, 80)[0]):
+        return  # text
+    if size < 84:
+        raise unusable(path, f"it ends within its header, after {size} bytes")
+    count = int(struct.unpack_from("<I", head, 80)[0])
+    if size != 84 + 50 * count:
+        raise unusable(path, f"its header promises {count:,} triangles, {84 + 50 * count:,} bytes, and it has {size:,}")
+
+
+def check_ply(path: Path) -> None:
+    """Check the counts of the header against the size of the file.
+
+    Raises:
+        BridgeError: The header is damaged, the file is shorter than it says, or has no faces.
+    """
+    elements, text, start = ply_header(path)
+    left = path.stat().st_size - start
+    if not any(name == "face" and count for name, count, _ in elements):
+        splats = any("f_dc_0" in properties for _, _, properties in elements)
+        what = "it holds Gaussian splats, and no faces" if splats else "it has no faces, only points"
+        raise unusable(path, what, "give a mesh")
+    need = 0
+    for _, count, properties in elements:
+        need += count * (2 * len(properties) if text else sum(properties.values()))
+    if need > left + (2 if text else 0):
+        raise unusable(path, f"its header promises at least {need:,} bytes after byte {start}, and there are {left:,}")
+
+
+def ply_header(path: Path) -> tuple[list[tuple[str, int, dict[str, int]]], bool, int]:
+    """Elements (name, count, property -> smallest size [bytes]), whether the file is text, and where its data begin.
+
+    Raises:
+        BridgeError: The header is damaged.
+    """
+    with path.open("rb") as file:
+        head = file.read(_MAX_HEADER)
+    end = head.find(b"end_header")
+    stop = head.find(b"\n", end)
+    if not head.startswith(b"ply") or end < 0 or stop < 0:
+        raise unusable(path, "its header has no end")
+    elements: list[tuple[str, int, dict[str, int]]] = []
+    text = False
+    for number, line in enumerate(head[:end].decode("latin-1").splitlines(), start=1):
+        words = line.split()
+        try:
+            if words[:1] == ["format"]:
+                text = words[1] == "ascii"
+            elif words[:1] == ["element"]:
+                count = int(words[2])
+                if count < 0:
+                    raise ValueError
+                elements.append((words[1], count, {}))
+            elif words[:2] == ["property", "list"]:
+                least = 3 * _SIZES[words[3]] if elements[-1][0] == "face" else 0
+                elements[-1][2][words[4]] = _SIZES[words[2]] + least
+            elif words[:1] == ["property"]:
+                elements[-1][2][words[2]] = _SIZES[words[1]]
+        except (IndexError, KeyError, ValueError):
+            raise unusable(path, f"line {number} of its header is '{line[:80]}'") from None
+    return elements, text, stop + 1
+
 
 _FRAMES = {"y": "habitat_yup", "z": "irsim", "-y": "colmap"}
 _Y_UP = (".glb", ".gltf", ".obj")
@@ -38,9 +132,9 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     if suffix in ("glb", "gltf"):
         resolver = _gltf.check(path, limits)
     elif suffix == "stl":
-        _mesh_headers.check_stl(path)
+        check_stl(path)
     elif suffix == "ply":
-        _mesh_headers.check_ply(path)
+        check_ply(path)
     up = options.up if options.up != "auto" else ("y" if path.suffix.lower() in _Y_UP else "z")
     triangles = _checked(path, _load(path, suffix, resolver, limits))
     areas = np.abs(_normals(triangles)).sum(axis=0)
@@ -133,7 +227,7 @@ KIND = Kind(
     name="mesh",
     title="a mesh",
     suffixes=(".glb", ".gltf", ".obj", ".ply", ".stl"),
-    accepts=_mesh_headers.may_be_mesh,
+    accepts=may_be_mesh,
     read=read,
     libraries=("trimesh",),
     unused=("opacity", "lanes"),

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.bridges.maps.grid import spread
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
-from irsim.bridges.maps.source import Kind, Scene, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
 from irsim.common.arrays import Floats
 
 __all__ = ["KIND", "Tile", "read_tiles"]

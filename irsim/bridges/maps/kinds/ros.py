@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from irsim.bridges.maps.grid import Grid
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.ros_server import MapFileError
-from irsim.bridges.maps.source import OCCUPIED, UNKNOWN, Kind, Occupancy
+from irsim.bridges.maps.source import OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy
 from irsim.components.maps._rosmap import read_meta, ros_raster
 from irsim.components.maps._site import MapProblem, MapSite
 from irsim.scenario.path_confinement import why_outside

@@ -10,10 +10,9 @@ from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import axes_of, inverse
 from irsim.bridges.maps.grid import Grid
 from irsim.bridges.maps.occupancy import cropped
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
 from irsim.bridges.maps.regions import masked_regions
 from irsim.bridges.maps.sidecar import scene_transform
-from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, Kind, Occupancy
+from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy
 from irsim.bridges.splats.occupancy import Plan, PlanOptions, find_floor, ground_plan, level_shares
 from irsim.bridges.splats.reading import read_splats
 from irsim.common.arrays import Floats

@@ -18,8 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from irsim.bridges.maps.options import ImportLimits, ImportOptions
-from irsim.bridges.maps.source import Kind, Scene, unusable
+from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
 from irsim.common.child import ONE_THREAD
 
 __all__ = ["KIND"]

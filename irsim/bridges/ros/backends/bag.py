@@ -10,10 +10,9 @@ from typing import Any, Literal
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.messages import Messages
-from irsim.bridges.ros.qos import LATCHED, STATE, Qos
-from irsim.bridges.ros.topics import Topic
+from irsim.bridges.ros.topics import LATCHED, STATE, Qos, Topic
 from irsim.common.extras import require
 from irsim.common.files import TEMPORARY
 

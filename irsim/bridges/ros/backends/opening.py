@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import Topic
 from irsim.components.bridges.ros1 import Ros1

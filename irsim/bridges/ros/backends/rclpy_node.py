@@ -12,10 +12,9 @@ from typing import Any
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.messages import Messages
-from irsim.bridges.ros.qos import Qos
-from irsim.bridges.ros.topics import Topic
+from irsim.bridges.ros.topics import Qos, Topic
 
 __all__ = ["RclpyBackend"]
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from irsim.bridges.base import BridgeError, BridgeLostError
 from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import Topic
 

@@ -16,10 +16,9 @@ from typing import Any
 
 from irsim.bridges.base import BridgeError, BridgeLostError
 from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.inbox import Inbox
+from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.messages import Messages
-from irsim.bridges.ros.qos import Qos
-from irsim.bridges.ros.topics import Topic
+from irsim.bridges.ros.topics import Qos, Topic
 from irsim.common.extras import require
 
 __all__ = ["ZenohBackend"]

@@ -11,16 +11,34 @@ import re
 from collections.abc import Mapping
 from xml.etree import ElementTree as ET
 
-from irsim.bridges.gazebo.meshes import prism
-from irsim.bridges.mujoco.rigs import LIDAR_HEIGHT, rig_of
-from irsim.bridges.mujoco.xml import colored, numbers
-from irsim.bridges.solids.cells import merged_cells
-from irsim.bridges.solids.solids import Box, Solid, room_of, solids_of
+from irsim.bridges.mujoco.robots import LIDAR_HEIGHT, rig_of
+from irsim.bridges.solids import Box, Solid, colored, merged_cells, numbers, room_of, solids_of
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Line
 from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 
-__all__ = ["SDF_VERSION", "SdfWorld"]
+__all__ = ["SDF_VERSION", "SdfWorld", "prism"]
+
+
+def prism(corners: Floats, bottom: float, top: float) -> str:
+    """A convex outline between two heights, as text of an OBJ file whose faces look outwards.
+
+    Args:
+        corners: (K, 2) counterclockwise [m].
+        bottom: Height of its lower end [m].
+        top: Height of its upper end [m].
+    """
+    count = len(corners)
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for z in (bottom, top) for x, y in corners.tolist()]
+    for k in range(1, count - 1):
+        lines.append(f"f 1 {k + 2} {k + 1}")
+        lines.append(f"f {count + 1} {count + k + 1} {count + k + 2}")
+    for k in range(count):
+        a, b = k + 1, (k + 1) % count + 1
+        lines.append(f"f {a} {b} {count + b}")
+        lines.append(f"f {a} {count + b} {count + a}")
+    return "\n".join(lines) + "\n"
+
 
 SDF_VERSION = "1.9"
 _HEIGHT = 1.0

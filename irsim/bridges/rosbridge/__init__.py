@@ -1,1 +1,0 @@
-"""What ``irsim bridge doctor`` says of rosbridge; the bridge itself is in :mod:`irsim.bridges.ros`."""

@@ -1,1 +1,0 @@
-"""Footprints and maps as solids that simulators in three dimensions know: boxes, cylinders and convex prisms."""
