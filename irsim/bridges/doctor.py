@@ -20,7 +20,7 @@ from typing import Literal
 import numpy as np
 
 from irsim.bridges.carla.client import NEWEST_PYTHON
-from irsim.bridges.carla.moving import Places
+from irsim.bridges.carla.places import Places
 from irsim.bridges.ros.backends.bag import BagFolder
 from irsim.bridges.ros.backends.opening import make_messages, open_backend
 from irsim.bridges.ros.backends.rospy_node import find_rospy

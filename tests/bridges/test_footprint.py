@@ -26,5 +26,5 @@ def _agent(*parts: Any) -> SceneObject:
         ((), BoundingBox(0, 0, 1, 1)),
     ],
 )
-def test_box(parts: Any, box: Box) -> None:
+def test_box(parts: Any, box: BoundingBox) -> None:
     assert vars(box_of(_agent(*parts))) == pytest.approx(vars(box))

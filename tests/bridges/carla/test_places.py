@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from irsim.bridges.carla.moving import Places
+from irsim.bridges.carla.places import Places
 
 NUMBERS = st.floats(-1000, 1000)
 PLACES = st.builds(Places, NUMBERS, NUMBERS, st.floats(-360, 360))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.bridges.carla.moving import Places
+from irsim.bridges.carla.places import Places
 from irsim.bridges.doctor import LEFT_CURVE, examine
 
 pytestmark = pytest.mark.interop
