@@ -14,7 +14,7 @@ from irsim.diagnostics.diagnostic import Diagnostic, suggestion
 from irsim.diagnostics.errors import InputError
 from irsim.options.registry import BRIDGES
 from irsim.scenario.behavior_override import parse_behavior
-from irsim.scenario.messages.of_options import option_message, option_problems
+from irsim.scenario.messages.translate import option_message, option_problems
 from irsim.scenario.model.scenario import Scenario
 from irsim.scenario.yaml.rewrite import yaml_flow
 

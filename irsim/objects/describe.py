@@ -13,7 +13,7 @@ from irsim.common.outline import BodyPart, Cells, Polygon, outline
 from irsim.common.version import version
 from irsim.components.maps._site import OCCUPIED
 from irsim.objects.views import views
-from irsim.options.color_values import rgb
+from irsim.options.colors import rgb
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.simulation.scene import Grid, Lidar, Look, SceneDescription, SceneObject
 from irsim.simulation.simulation import Simulation

@@ -1,4 +1,4 @@
-"""Colors as a scenario writes them, checked without loading a drawing library; the default palette."""
+"""Colors as a scenario writes them, checked and read without loading a drawing library; the default palette."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pydantic_core import CoreSchema, core_schema
 from irsim.diagnostics.diagnostic import nearest
 from irsim.options.base import problem, shared_schema
 
-__all__ = ["ACKER_COLOR", "CYCLE", "OBSTACLE_COLOR", "PUSHABLE_COLOR", "ROBOT_COLOR", "Color", "cycle_color"]
+__all__ = ["ACKER_COLOR", "CYCLE", "OBSTACLE_COLOR", "PUSHABLE_COLOR", "ROBOT_COLOR", "Color", "cycle_color", "rgb"]
 
 ROBOT_COLOR = "#009E73"
 ACKER_COLOR = "#117733"
@@ -40,11 +40,14 @@ palegoldenrod palegreen paleturquoise palevioletred papayawhip peachpuff peru pi
 rebeccapurple red rosybrown royalblue saddlebrown salmon sandybrown seagreen seashell sienna silver skyblue slateblue
 slategray slategrey snow springgreen steelblue tan teal thistle tomato turquoise violet wheat white whitesmoke yellow
 yellowgreen"""
-_TABLEAU = "blue orange green red purple brown pink gray grey olive cyan"
+_TABLEAU = {
+    "blue": "#1f77b4", "orange": "#ff7f0e", "green": "#2ca02c", "red": "#d62728", "purple": "#9467bd",
+    "brown": "#8c564b", "pink": "#e377c2", "gray": "#7f7f7f", "grey": "#7f7f7f", "olive": "#bcbd22", "cyan": "#17becf",
+}  # fmt: skip
 NAMES = (
     *_LETTERS.split(),
     *_CSS.split(),
-    *(f"tab:{name}" for name in _TABLEAU.split()),
+    *(f"tab:{name}" for name in _TABLEAU),
     "none",
 )
 _KNOWN = frozenset(NAMES)
@@ -121,3 +124,51 @@ ObjectColor = Annotated[Any, _ColorSchema(cycle=True)]
 def cycle_color(index: int) -> str:
     """The palette color of the ``index``-th object of an entry."""
     return CYCLE[index % len(CYCLE)]
+
+
+_NAMED = {
+    "b": (0.0, 0.0, 1.0), "g": (0.0, 0.5, 0.0), "r": (1.0, 0.0, 0.0), "c": (0.0, 0.75, 0.75), "m": (0.75, 0.0, 0.75),
+    "y": (0.75, 0.75, 0.0), "k": (0.0, 0.0, 0.0), "w": (1.0, 1.0, 1.0), "none": (0.0, 0.0, 0.0),
+}  # fmt: skip
+_CYCLED = tuple(color for name, color in _TABLEAU.items() if name != "grey")
+"""The colors ``C0`` to ``C9``."""
+
+
+def rgb(color: Any) -> tuple[float, float, float]:
+    """Red, green and blue, 0 to 1, of a color as scenarios write it.
+
+    Args:
+        color: A name, ``#RRGGBB``, a grey level as text, or three or four numbers.
+
+    Raises:
+        ValueError: It is no color.
+    """
+    if not isinstance(color, str):
+        red, green, blue, *_ = (float(value) for value in color)
+        return red, green, blue
+    if color in _NAMED:
+        return _NAMED[color]
+    if color.startswith("#"):
+        return _of_digits(color[1:])
+    if color.startswith("tab:") and color[4:] in _TABLEAU:
+        return _of_digits(_TABLEAU[color[4:]][1:])
+    if color[:1] == "C" and color[1:].isdecimal():
+        return _of_digits(_CYCLED[int(color[1:]) % len(_CYCLED)][1:])
+    if color[:1] in "01.":
+        return (float(color),) * 3
+    from PIL.ImageColor import colormap, getrgb
+
+    if (name := color.lower()) in colormap:
+        red, green, blue, *_ = (value / 255 for value in getrgb(name))
+        return red, green, blue
+    from matplotlib.colors import to_rgb  # knows the many names of xkcd, and takes half a second to load
+
+    red, green, blue = to_rgb(color)
+    return float(red), float(green), float(blue)
+
+
+def _of_digits(digits: str) -> tuple[float, float, float]:
+    width = 1 if len(digits) in (3, 4) else 2
+    most = 16**width - 1
+    red, green, blue = (int(digits[width * k : width * (k + 1)], 16) / most for k in range(3))
+    return red, green, blue

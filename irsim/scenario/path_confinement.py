@@ -1,14 +1,15 @@
-"""Keeping file names inside a folder: the one rule for scenario files and for files that scenarios name."""
+"""Files that a scenario names: where images are looked for, and the rule that keeps names inside a folder."""
 
 from __future__ import annotations
 
 import re
 import stat
+import sys
 import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = ["why_outside"]
+__all__ = ["BUNDLED", "IMAGES", "image_places", "why_outside"]
 
 _INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
 """Unicode categories: control characters, text-direction marks, lone surrogates, line and paragraph separators."""
@@ -60,3 +61,14 @@ def why_outside(name: str, root: Path, bases: Iterable[Path] = ()) -> str | None
 def _is_ordinary(target: Path) -> bool:
     mode = target.stat().st_mode
     return stat.S_ISREG(mode) or stat.S_ISDIR(mode)
+
+
+IMAGES = Path(__file__).parents[1] / "graphics" / "images"
+"""Folder of the bundled images."""
+BUNDLED = ("car_green.png", "car_blue.png", "car_red.png", "diff_robot0.png", "diff_robot1.png")
+"""Names of the bundled images, which show a robot from above, facing right."""
+
+
+def image_places(name: str, folder: str | Path | None) -> list[Path]:
+    """Candidates for an image file: as given, beside the script, beside the scenario (``folder``), bundled."""
+    return [place / name for place in (Path(), Path(sys.path[0] or "."), *([Path(folder)] if folder else []), IMAGES)]

@@ -10,8 +10,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from PIL.ImageColor import getrgb
 
-from irsim.options.color_values import rgb
-from irsim.options.colors import CYCLE, NAMES
+from irsim.options.colors import CYCLE, NAMES, rgb
 
 OTHERS = ("#abc", "#abcd", "#12aBcD", "#12345678", "0", "1", "0.25", ".5", "1.", "C0", "C7", "C12", "xkcd:sky blue")
 
@@ -37,7 +36,7 @@ def test_what_is_no_color(color: str) -> None:
 
 def test_the_usual_ones_do_not_load_a_drawing_library() -> None:
     program = (
-        "import sys; from irsim.options.color_values import rgb; from irsim.options.colors import NAMES\n"
+        "import sys; from irsim.options.colors import rgb; from irsim.options.colors import NAMES\n"
         "for name in (*NAMES, 'C3', '#123456', '0.5'): rgb(name)\n"
         "sys.exit('matplotlib' in sys.modules)"
     )

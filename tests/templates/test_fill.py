@@ -4,8 +4,7 @@ import pytest
 import yaml
 
 from irsim.bundled.templates import Template, TemplateError, fill, parse_settings
-from irsim.bundled.templates.expressions import evaluate
-from irsim.bundled.templates.fill import parse_path, replace_values
+from irsim.bundled.templates.fill import evaluate, parse_path, replace_values
 
 TEXT = """\
 # a room

@@ -15,7 +15,7 @@ from PIL import Image
 import irsim
 from irsim.bundled import templates
 from irsim.bundled.templates import Template
-from irsim.bundled.templates.expressions import names_in
+from irsim.bundled.templates.fill import names_in
 from irsim.common import data_files as resources
 from tests.templates.draw import draw
 

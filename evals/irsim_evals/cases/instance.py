@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from irsim.bundled.templates.expressions import evaluate
+from irsim.bundled.templates.fill import evaluate
 from irsim_evals.cases.model import Case, Parameter
 
 __all__ = ["Instance", "in_words", "instance_of", "substitute"]

@@ -18,7 +18,7 @@ from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.base import Options
 from irsim.runs.files import RunError
-from irsim.scenario.messages.of_options import option_message, option_problems
+from irsim.scenario.messages.translate import option_message, option_problems
 
 __all__ = ["Format", "Writer", "chosen_options", "find_format", "format_names"]
 

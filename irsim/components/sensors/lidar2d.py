@@ -8,11 +8,10 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.components.sensors._options import SensorOptions
-from irsim.options.angles import SpanAngle
 from irsim.options.base import Options
 from irsim.options.colors import Color
 from irsim.options.registry import SENSORS
-from irsim.options.units import Bool, Fraction, Integer, Meters, Radians, Seconds
+from irsim.options.units import Bool, Fraction, Integer, Meters, Radians, Seconds, SpanAngle
 from irsim.options.vectors import Offset
 
 

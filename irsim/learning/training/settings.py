@@ -14,6 +14,7 @@ from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.base import Options
 from irsim.options.units import Bool, Fraction, Integer, Number, Seconds
+from irsim.scenario.messages.translate import option_message, option_problems
 
 __all__ = ["AnySettings", "SarlSettings", "TrainingSettings", "read_settings", "settings_class"]
 
@@ -171,16 +172,12 @@ def read_settings(given: Mapping[str, Any], texts: Sequence[str]) -> AnySettings
                 f"there is no setting {clean(key)!r}", suggestion(key, known, f"choose from {', '.join(known)}")
             )
         read = yaml.safe_load(value)
-        number = number_of(read) if isinstance(read, str) else read
-        values[key] = number
+        values[key] = number_of(read) if isinstance(read, str) else read
     try:
         return model.model_validate(values)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        raise ArgumentError(
-            f"{where}: {first['msg']}, got {as_given(first.get('input'))}", "give an allowed value"
-        ) from None
+        message, fix = option_message(option_problems(error, values, model))
+        raise ArgumentError(message, fix or "give an allowed value") from None
 
 
 def number_of(text: str) -> Any:

@@ -1,4 +1,4 @@
-"""Checks the files that a scenario names: whether images exist, and files are inside the workspace, if any."""
+"""Checks the files that a scenario names: images, maps, and whether files are inside the workspace, if any."""
 
 from __future__ import annotations
 
@@ -9,13 +9,17 @@ from typing import Any
 from irsim.diagnostics.diagnostic import Edit, Path, nearest
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error, warning
-from irsim.scenario.path_confinement import why_outside
-from irsim.scenario.resolve.images import BUNDLED, image_places
+from irsim.scenario.path_confinement import BUNDLED, image_places, why_outside
 from irsim.scenario.yaml.formatting import quote_value
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Report missing images and, if there is a workspace, files outside it."""
+    """Report missing images, files outside the workspace if there is one, and what is wrong with the map."""
+    yield from _named_files(context)
+    yield from context.map_findings
+
+
+def _named_files(context: Context) -> Iterator[Finding]:
     source = context.document.path
     yield from _missing_images(context, FilePath(source).resolve().parent if source is not None else None)
     root = context.document.limits.root

@@ -1,4 +1,4 @@
-"""Checks group behaviors: whether they can drive a group, which one counts, and which objects it drives."""
+"""Checks groups and crowds: whether a behavior can drive its group, which one counts, and crowds that stop for good."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Check each group."""
+    """Check each group, and crowds without one."""
     groups: dict[int, list[ObjectRecord]] = defaultdict(list)
     for record in context.entry_objects:
         groups[record.group].append(record)
@@ -29,6 +29,7 @@ def check(context: Context) -> Iterator[Finding]:
             yield from _unused_behavior(context, group, members)
         elif leader.role == "robot":
             yield from _driven_obstacles(group, members)
+    yield from _crowd_that_stops(context)
 
 
 def _not_a_group_behavior(context: Context, members: list[ObjectRecord]) -> Iterator[Finding]:
@@ -104,3 +105,42 @@ def _driven_obstacles(group: int, members: list[ObjectRecord]) -> Iterator[Findi
                 fix="write 'obstacle' as a list, or give it a 'group' of its own",
                 edit=Edit("add", (*member.path, "group"), group + 1),
             )
+
+
+_CROWD = 6
+"""Number of people with a way to one goal, as obstacles, from which some are likely to touch."""
+
+
+def _crowd_that_stops(context: Context) -> Iterator[Finding]:
+    """One finding: people who walk by forces, in a world where a contact stops both for good."""
+    world = context.scenario.world
+    if world.collision_mode != "stop":
+        return
+    pushed = [record for record in context.entry_objects if _is_pushed(record)]
+    people = [record for record in pushed if record.wander or record.loop]
+    if len(people) < 2:
+        people = [record for record in pushed if record.role == "obstacle"]
+        if len(people) < _CROWD:
+            return
+    mode = "unobstructed" if any(record.role == "robot" for record in people) else "unobstructed_obstacles"
+    given = "collision_mode" in (context.data.get("world") or {})
+    yield hint(
+        "crowd-stops",
+        ("world", "collision_mode") if given else people[0].path,
+        f"'{people[0].name}' and {len(people) - 1} more walk by 'sfm', whose people touch now and then, and "
+        "collision_mode: stop stops both for good: more and more of them stand still",
+        given="stop" if given else None,
+        fix=f"world.collision_mode: {mode}"
+        + (" (robots stop as before)" if mode != "unobstructed" else "")
+        + ", or behavior: {name: orca}",
+        edit=Edit("replace" if given else "add", ("world", "collision_mode"), mode, safe=False),
+    )
+
+
+def _is_pushed(record: ObjectRecord) -> bool:
+    """Whether an object walks by forces."""
+    options: Any = record.active_behavior
+    options = getattr(options, "local", options)
+    if record.static or record.unobstructed or record.kinematics is None:
+        return False
+    return bool(getattr(options, "touches", False))

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 from irsim.components.behaviors.follow import Follow
 from irsim.diagnostics.diagnostic import Edit, Path, nearest
 from irsim.options.regions import OUTLINES, Region
-from irsim.scenario.checks._areas import check_polygon, check_rectangle
 from irsim.scenario.checks._context import Context, distinct
+from irsim.scenario.checks._outlines import check_polygon, check_rectangle
 from irsim.scenario.messages.findings import Finding, error, warning
 from irsim.scenario.model.zones import OUTLINES as ZONE_OUTLINES
 from irsim.scenario.model.zones import Zone

@@ -8,7 +8,7 @@ from typing import Any
 
 from irsim.common.angles import FULL_TURN
 from irsim.diagnostics.diagnostic import Edit, Path
-from irsim.options.angles import is_span
+from irsim.options.units import is_span
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.lookup import at

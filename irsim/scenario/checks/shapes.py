@@ -7,7 +7,7 @@ from typing import Any
 
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.checks._context import Context
-from irsim.scenario.checks._outline import crosses_itself, distinct_corners, repair_outline
+from irsim.scenario.checks._outlines import crosses_itself, distinct_corners, repair_outline
 from irsim.scenario.messages.findings import Finding, error, hint
 from irsim.scenario.resolve.expand import DEFAULT_RADIUS
 from irsim.scenario.yaml.formatting import flow

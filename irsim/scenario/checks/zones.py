@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from irsim.diagnostics.diagnostic import Path
-from irsim.scenario.checks._areas import check_polygon, check_rectangle
 from irsim.scenario.checks._context import Context
+from irsim.scenario.checks._outlines import check_polygon, check_rectangle
 from irsim.scenario.messages.findings import Finding, error, warning
 from irsim.scenario.model.zones import OUTLINES, Zone
 

@@ -12,11 +12,10 @@ from pydantic import BaseModel
 from irsim.diagnostics.codes import CODES
 from irsim.diagnostics.diagnostic import Edit, Path, format_path, is_slip_of, nearest
 from irsim.options.vectors import is_vector
+from irsim.scenario.messages.advice import advice_on_key, split_poses, split_waypoints, vector_of
 from irsim.scenario.messages.findings import Finding, error, key_path
-from irsim.scenario.messages.flat_poses import split_poses, split_waypoints
 from irsim.scenario.messages.leniency import carry_on_group, carry_on_type, carry_on_unknown_key, carry_on_value
 from irsim.scenario.messages.number_text import decimal_commas, read_number
-from irsim.scenario.messages.synonyms import advice_on_key, vector_of
 from irsim.scenario.model.lookup import at, field_at, lengths_of, literals, model_at, unit_of
 from irsim.scenario.model.scenario import Scenario
 from irsim.scenario.yaml.document import Document

@@ -7,7 +7,6 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from irsim.components.behaviors._options import CustomOptions
-from irsim.options.angles import SpanAngle
 from irsim.options.base import Options
 from irsim.options.colors import ObjectColor
 from irsim.options.registry import (
@@ -20,7 +19,7 @@ from irsim.options.registry import (
     SHAPES,
 )
 from irsim.options.selection import Select
-from irsim.options.units import Bool, Fraction, Integer, Meters, Number, Seconds
+from irsim.options.units import Bool, Fraction, Integer, Meters, Number, Seconds, SpanAngle
 from irsim.options.vectors import Component, OrNull, PerObject, Pose, Range
 from irsim.scenario.model.plot import ObjectPlot
 
