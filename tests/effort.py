@@ -1,10 +1,14 @@
-"""How many examples of a property are tried: a quarter in the quick tests, all of them in ``nox -s slow``."""
+"""How much the quick tests try: a quarter of a property's examples, some of many values; ``nox -s slow`` tries more."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
+from typing import Any
 
-__all__ = ["examples"]
+import pytest
+
+__all__ = ["examples", "some"]
 
 THOROUGH = os.environ.get("IRSIM_TESTS") == "thorough"
 
@@ -12,3 +16,10 @@ THOROUGH = os.environ.get("IRSIM_TESTS") == "thorough"
 def examples(count: int) -> int:
     """What to give ``settings(max_examples=…)`` for a property that is to hold in this number of examples."""
     return count if THOROUGH else count // 4
+
+
+def some(values: Iterable[Any], every: int = 4) -> list[Any]:
+    """Values for ``parametrize``: the quick tests take one of so many, and the gate others each day."""
+    later = (pytest.mark.slow, pytest.mark.rotates(every - 1))
+    rows = [value if isinstance(value, tuple) else (value,) for value in values]
+    return [pytest.param(*row, marks=later if k % every else ()) for k, row in enumerate(rows)]

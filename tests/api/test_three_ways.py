@@ -22,11 +22,13 @@ from irsim.cli.app import app
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.sandbox import Workspace
+from tests.effort import some
 from tests.mcp.conftest import connected, text_of
+
+pytestmark = pytest.mark.one_python
 
 LEFT_OUT = re.compile(rb'("run_id":)(?:"[^"]*"|null)|("artifacts":)\{[^}]*\}|("files":)\[[^]]*\]')
 """Names and files of a record."""
-QUICK = ("crossing", "random-polygons", "fmcw-watch")
 SEED, STEPS = 5, 40
 
 
@@ -51,10 +53,6 @@ def tool(workspace: Path, name: str, **arguments: Any) -> bytes:
     return bytes_of(anyio.run(call))
 
 
-def all_templates() -> list[Any]:
-    return [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in templates.names()]
-
-
 @pytest.fixture
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name in templates.names():
@@ -63,7 +61,7 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("name", all_templates())
+@pytest.mark.parametrize("name", some(templates.names(), 15))
 def test_validate(workspace: Path, name: str) -> None:
     file = f"{name}/scenario.yaml"
     expected = bytes_of(irsim.validate(file).model_dump_json())
@@ -93,7 +91,7 @@ def test_json_is_indented_for_people_only(workspace: Path, monkeypatch: pytest.M
     assert len(CliRunner().invoke(app, ["validate", file, "--json"]).stdout.splitlines()) == 1
 
 
-@pytest.mark.parametrize("name", all_templates())
+@pytest.mark.parametrize("name", some(templates.names(), 15))
 def test_run(workspace: Path, name: str) -> None:
     file = f"{name}/scenario.yaml"
     expected = bytes_of(irsim.run(file, seed=SEED, steps=STEPS, strict=True).model_dump_json())

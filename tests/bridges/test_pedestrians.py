@@ -24,6 +24,8 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim.env import Env
 from tests.bridges import crowds
 
+pytestmark = pytest.mark.one_python
+
 FILES = {"obsmat.txt": crowds.obsmat, "biwi.txt": crowds.trajnet, "commas.csv": lambda: crowds.trajnet(", ")}
 
 

@@ -14,6 +14,8 @@ from irsim.metrics import EPISODE_METRICS, METRICS
 from irsim.options.registry import REGISTRIES
 from tests.cli.conftest import Run, parsed
 
+pytestmark = pytest.mark.one_python
+
 
 def test_without_a_topic_it_lists_what_there_is(irsim: Run) -> None:
     shown = irsim("describe").stdout

@@ -9,6 +9,7 @@ import pytest
 from irsim.compat import DIFFERENCES
 from tests.compat.differences import KNOWN
 from tests.compat.scripts import NAMES, play, recorded, same
+from tests.effort import some
 from tests.warm import LIBRARIES, warm
 
 pytestmark = pytest.mark.one_python
@@ -18,13 +19,7 @@ def _name(fact: str) -> str:
     return fact.removeprefix(">> ").partition(" = ")[0]
 
 
-QUICK = NAMES[::2]
-"""Scripts that are played in the quick tests, too."""
-
-
-@pytest.mark.parametrize(
-    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in NAMES]
-)
+@pytest.mark.parametrize("name", some(NAMES))
 def test_a_script_prints_what_it_printed(name: str) -> None:
     facts, complaint = play(name, sys.executable, lambda command: warm(command, LIBRARIES))
     assert complaint == ""

@@ -31,7 +31,7 @@ from irsim_evals.results import Trial, trial_of
 
 SNAPSHOT = Path(__file__).with_name("baselines.json")
 REGENERATE = "irsim-evals run --arm baselines --verdicts tests/evals/baselines.json"
-QUICK_CASES = 3
+QUICK_CASES = 1
 
 NO_NETWORK = """
 import socket, sys

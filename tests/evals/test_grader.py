@@ -18,6 +18,7 @@ from irsim_evals.grader.hues import discernible
 from irsim_evals.grader.limited import grade_answer, grade_folder, run_limited
 from irsim_evals.grader.matching import Match, matches, quantity
 from irsim_evals.grader.outcome import Verdict
+from tests.effort import some
 
 RIGHT = """
 world: {width: 14, height: 9}
@@ -83,16 +84,16 @@ def test_a_case_is_named_like_its_file_and_every_instance_is_valid(case_id: str)
     assert not any("$(" in instance.prompt for instance in instances)
 
 
-@pytest.mark.parametrize("case_id", case_ids())
-def test_golds_pass(case_id: str) -> None:
-    for seed in (None, 1):
-        instance = case_of(case_id, seed)
-        golds = golds_of(instance)
-        assert len(golds) >= 2
-        for gold in golds:
-            verdict = grade(instance, gold)
-            assert [(o.assertion, o.expected, o.observed) for o in verdict.failed()] == []
-            assert verdict.strict
+@pytest.mark.parametrize("case_id", some(case_ids()))
+def test_golds_pass_with_other_numbers(case_id: str) -> None:
+    """With the numbers of the prompt, ``irsim-evals prove`` grades all of them."""
+    instance = case_of(case_id, 1)
+    golds = golds_of(instance)
+    assert len(golds) >= 2
+    for gold in golds:
+        verdict = grade(instance, gold)
+        assert [(o.assertion, o.expected, o.observed) for o in verdict.failed()] == []
+        assert verdict.strict
 
 
 @pytest.mark.parametrize(

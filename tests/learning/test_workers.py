@@ -20,7 +20,10 @@ from irsim.learning.step import Moment
 from irsim.learning.workers.divided import DividedWorlds
 from irsim.learning.worlds import Worlds
 from irsim.plugins import register_behavior
+from tests.effort import some
 from tests.learning.tasks import LIDAR, RANDOM, corridor, crowd, lidar_among_boxes, task
+
+pytestmark = pytest.mark.one_python
 
 NOISY = {**LIDAR, "noise": True, "std": 0.1}
 EVERYTHING: dict[str, Any] = {
@@ -96,7 +99,7 @@ def lives(pid: int) -> bool:
 
 # results --------------------------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
-    ("name", "mode"), [*((name, "SameStep") for name in TASKS), ("drawn", "NextStep"), ("crowd", "NextStep")]
+    ("name", "mode"), some([*((name, "SameStep") for name in TASKS), ("drawn", "NextStep"), ("crowd", "NextStep")], 3)
 )
 def test_results_do_not_depend_on_the_number_of_workers(name: str, mode: str) -> None:
     slots = 5 * Worlds(TASKS[name]).learners

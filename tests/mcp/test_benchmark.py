@@ -13,7 +13,7 @@ from irsim.lookup.topics import lookup
 from irsim_mcp.recent_texts import RecentTexts
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
 
-pytestmark = pytest.mark.anyio
+pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 RANDOM = """\
 world: {width: 8, height: 8, time_limit: 12}

@@ -19,6 +19,8 @@ from irsim_mcp.call_log import CallLog
 from tests.mcp.conftest import ROOM, as_process, image_of, text_of
 from tests.mcp.test_lifetime import HANDSHAKE
 
+pytestmark = pytest.mark.one_python
+
 KEYS = [
     "call", "at_s", "took_s", "tool", "arguments", "error", "argument_characters", "answer_characters", "pictures",
     "tokens",

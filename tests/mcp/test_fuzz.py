@@ -16,6 +16,8 @@ from tests.effort import examples
 from tests.mcp.conftest import CRASH, ROOM, connected, error_of, text_of
 from tests.mcp.golden.write import FILE
 
+pytestmark = pytest.mark.one_python
+
 TOOLS = {tool["name"]: tool for tool in json.loads(FILE.read_text(encoding="utf-8"))}
 MOST_TEXT = 24_500
 OPTIONS = {"deadline": None, "derandomize": True, "suppress_health_check": [*HealthCheck]}

@@ -15,7 +15,7 @@ from irsim.bundled import templates
 from irsim.options.registry import REGISTRIES
 from tests.mcp.conftest import ERAS, connected, error_of, text_of
 
-pytestmark = pytest.mark.anyio
+pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 SECTIONS = ["scenario", "world", "robot", "obstacle", "gui", *sorted(REGISTRIES)]
 MOST_CHARACTERS = 32_000  # 8k tokens

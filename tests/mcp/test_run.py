@@ -17,7 +17,7 @@ from irsim.results.run import RunResult
 from tests.api.test_between_steps import scene as tunnel
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
 
-pytestmark = pytest.mark.anyio
+pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 
 async def test_success(empty: Path) -> None:

@@ -13,7 +13,7 @@ from irsim.policies.networks import save_network
 from tests.mcp.conftest import connected, data_of, error_of, text_of
 from tests.policies.networks.examples import go_to_goal
 
-pytestmark = pytest.mark.anyio
+pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 
 async def test_a_suite_is_a_benchmark_and_a_failed_episode_can_be_looked_at(workspace: Path) -> None:

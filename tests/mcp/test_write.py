@@ -18,7 +18,7 @@ from irsim_mcp.server import build_server
 from tests.mcp.conftest import ERAS, ROOM, connected, data_of, error_of, text_of
 from tests.mcp.golden.write import listed
 
-pytestmark = pytest.mark.anyio
+pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="links and permissions of POSIX")
 MOST_BYTES = 1_700

@@ -41,7 +41,7 @@ def findings(*folders: str) -> Iterator[tuple[str, str, str]]:
                     continue
                 for match in re.finditer(pattern, words):
                     yield name, f"{place}:{line}", words[max(0, match.start() - 30) : match.end() + 40].strip()
-        if path.suffix == ".py" and (tree := _tree(text)):
+        if path.suffix == ".py" and any(name in text for name in NAMES) and (tree := _tree(text)):
             for node in ast.walk(tree):
                 if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in NAMES:
                     yield f"the name {node.id}", f"{place}:{node.lineno}", node.id

@@ -22,6 +22,8 @@ from irsim.scenario.read import read
 from irsim.scenario.yaml.compose import compose
 from tests.effort import examples
 
+pytestmark = pytest.mark.one_python
+
 ROOT = Path(__file__).parent.parent.parent
 VALID = sorted(ROOT.glob("templates/*/scenario.yaml")) + sorted(ROOT.glob("tests/parity/scenarios/*.yaml"))
 CONTROLS = {"vel_min", "vel_max", "acce", "velocity"}
