@@ -7,17 +7,13 @@ from typing import TYPE_CHECKING
 from irsim.common.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from irsim.api.run_scenario import (
-        default_time_limit,
-        diff,
-        fix,
-        import_modules,
-        read_scenario,
-        render,
-        run,
-        snapshot,
-        validate,
-    )
+    from irsim.api.read_input import read_scenario
+    from irsim.api.render_scenario import render
+    from irsim.api.run_scenario import run
+    from irsim.api.take_snapshot import snapshot
+    from irsim.episodes.episode import default_time_limit
+    from irsim.scenario.open import import_modules
+    from irsim.validation.validate import diff, fix, validate
 
 __all__ = [
     "default_time_limit",
@@ -31,4 +27,17 @@ __all__ = [
     "validate",
 ]
 
-__getattr__, __dir__ = lazy_names(__name__, dict.fromkeys(__all__, "irsim.api.run_scenario"))
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "default_time_limit": "irsim.episodes.episode",
+        "diff": "irsim.validation.validate",
+        "fix": "irsim.validation.validate",
+        "import_modules": "irsim.scenario.open",
+        "read_scenario": "irsim.api.read_input",
+        "render": "irsim.api.render_scenario",
+        "run": "irsim.api.run_scenario",
+        "snapshot": "irsim.api.take_snapshot",
+        "validate": "irsim.validation.validate",
+    },
+)

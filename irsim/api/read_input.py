@@ -6,13 +6,17 @@ import os
 from pathlib import Path
 from typing import Any
 
-from irsim.diagnostics.errors import ScenarioError
+from irsim.diagnostics.errors import InputError, ScenarioError
+from irsim.policies.behavior import BehaviorPolicy
+from irsim.policies.catalog import open_policy
+from irsim.policies.policy import Policy
 from irsim.results.findings import Finding
+from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.limits import Limits
 from irsim.scenario.open import read_scenario as read_one
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["policy_of_suite", "read_scenario"]
+__all__ = ["opened_policy", "policy_of_suite", "read_scenario"]
 
 
 def read_scenario(
@@ -68,3 +72,26 @@ def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
     from irsim.benchmarks.suite_plan import suite_policy
 
     return suite_policy(path, policy)
+
+
+def opened_policy(
+    path: str | Path | None, policy: Any, behavior: Any, limits: Limits | None
+) -> tuple[Policy | None, str | None]:
+    """What drives the robots: a policy in Python, or the text of a behavior that runs in the engine, or neither.
+
+    Raises:
+        InputError: There is no such policy, or both names of the argument are used.
+    """
+    if policy is not None and behavior is not None:
+        raise InputError("policy and behavior are two names of one argument", "give only policy")
+    given, where = (behavior, "behavior") if policy is None else (policy, "policy")
+    if given is None:
+        return None, None
+    try:
+        opened = open_policy(policy_of_suite(path, given), root=None if limits is None else limits.root)
+    except InputError as error:
+        error.where = where
+        raise
+    if isinstance(opened, BehaviorPolicy):
+        return None, None if opened.text == AS_WRITTEN else opened.text
+    return opened, None

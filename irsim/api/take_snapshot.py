@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Literal
 
 from irsim.api.film_strip import draw_strip, moments_of
 from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
-from irsim.api.picture_notes import ended_before, moved_view
 from irsim.api.read_input import read_scenario
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
@@ -20,15 +19,27 @@ from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.simulation.build import steps_until
+from irsim.simulation.events import first_collisions, first_events
 from irsim.simulation.explored import explored_share
 from irsim.simulation.outcome import robot_outcomes
 from irsim.simulation.random_streams import fresh_seed
 
 if TYPE_CHECKING:
+    from irsim.env import Env
     from irsim.objects.view import ObjectView
     from irsim.policies.policy import Policy
 
-__all__ = ["OVERLAYS", "Overlay", "snapshot", "snapshot_of", "snapshot_of_env"]
+__all__ = [
+    "OVERLAYS",
+    "Overlay",
+    "ended_before",
+    "extent_of",
+    "moved_view",
+    "snapshot",
+    "snapshot_of",
+    "snapshot_of_env",
+]
 
 
 def snapshot(
@@ -255,3 +266,50 @@ def _moving(view: ObjectView) -> MovingPose:
 def _size_of(png: bytes) -> tuple[int, int]:
     """Width and height [px] from the header of a PNG file."""
     return int.from_bytes(png[16:20], "big"), int.from_bytes(png[20:24], "big")
+
+
+def moved_view(env: Env) -> tuple[float, float, float, float] | None:
+    """x_min, x_max, y_min, y_max [m] of a view that ``world.plot.viewpoint`` moves away from the world; else None.
+
+    Args:
+        env: The environment at the moment of the picture.
+    """
+    world = env.scenario.world
+    point = world.plot.viewpoint
+    if point is None:
+        return None
+    if isinstance(point, str):
+        place = next((view.position[:, 0] for view in env.objects if view.name == point), None)
+        if place is None:
+            return None
+        point = place.tolist()
+    x, y = (float(value) for value in point[:2])
+    view = (x - world.width / 2, x + world.width / 2, y - world.height / 2, y + world.height / 2)
+    left, low, right, top = world.bounds
+    return None if view == (left, right, low, top) else view
+
+
+def extent_of(env: Env) -> tuple[float, float, float, float]:
+    """x_min, x_max, y_min, y_max [m] of the world."""
+    left, low, right, top = env.scenario.world.bounds
+    return left, right, low, top
+
+
+def ended_before(env: Env) -> int | None:
+    """Step in which ``irsim run`` ends the episode, if the environment is beyond it; else None.
+
+    It ends when every robot has arrived or been stopped, or at ``world.time_limit``.
+
+    Args:
+        env: The environment at the moment of the picture.
+    """
+    count, limit, ends = int(env.simulation.count[0]), env.scenario.world.time_limit, list[int]()
+    outcomes = robot_outcomes(env.simulation, events=env.events)
+    if outcomes and "running" not in outcomes.values():
+        arrivals = first_events(env.events, "arrival")
+        hits = first_collisions(env.simulation, env.events)
+        ends.append(max((arrivals[name] if name in arrivals else hits[name]).step for name in outcomes))
+    if limit is not None:
+        ends.append(steps_until(limit, env.step_time))
+    ended = min(ends, default=count)
+    return ended if ended < count else None

@@ -32,7 +32,7 @@ COMMANDS = {
     "suites": "suites:suites",
     "policies": "policies:policies",
     "train": "train:train",
-    "export-policy": "export_policy:export_policy",
+    "export-policy": "convert:export_policy",
     "convert": "convert:convert",
     "render": "render:render",
     "describe": "describe:describe",

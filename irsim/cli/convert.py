@@ -1,4 +1,4 @@
-"""``irsim convert``: make a policy file of weights that a user brings."""
+"""``irsim convert`` and ``irsim export-policy``: make a policy file of weights, or of a training."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import typer
 
 from irsim.policies.converters.convert import convert_policy, parse_options
 
-__all__ = ["convert"]
+__all__ = ["convert", "export_policy"]
 
 
 def convert(
@@ -39,3 +39,23 @@ def convert(
     network = convert_policy(kind, file, out, parse_options(options or []))
     parameters = sum(array.size for array in network.arrays.values())
     typer.echo(f"wrote {out} with {parameters:,} parameters; try it: irsim run SCENARIO --policy {out}")
+
+
+def export_policy(
+    training: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of the training.")],
+    out: Annotated[
+        Path, typer.Argument(metavar="FILE", help="File to write, .npz or .onnx; its card and curve get .md and .png.")
+    ],
+    license: Annotated[str, typer.Option("--license", help="Licence of the weights, such as MIT.")] = "",
+    description: Annotated[str, typer.Option("--description", help="What the policy does; default: the title.")] = "",
+) -> None:
+    """Make a policy file of a training, with its model card and curve; needs the extra `learn`.
+
+    irsim runs .npz files with NumPy alone, without torch. An .onnx file is for other programs and takes the extra
+    `onnx`.
+    """
+    from irsim.learning.training.export import export_policy as export
+
+    file = export(training, out, license=license, description=description)
+    card, curve = file.with_suffix(".md"), file.with_suffix(".png")
+    typer.echo(f"wrote {file}, {card} and {curve}; try it: irsim run SCENARIO --policy {file}")

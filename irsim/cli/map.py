@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 import json
+import shlex
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.text import Text
 
 from irsim import api
+from irsim.bridges.maps.importing import import_map
+from irsim.bridges.maps.importing import list_levels as only_list
 from irsim.bridges.maps.ros_server import export_map
 from irsim.cli.guard import handle_errors
-from irsim.cli.map_import import import_
 from irsim.cli.options import File, Imports, Json, Seed
-from irsim.cli.output import console
+from irsim.cli.output import console, print_json
+from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
     from irsim.bridges.maps.ros_server import MapFiles
+    from irsim.results.map_import import MapImportResult
 
-__all__ = ["map_app"]
+__all__ = ["import_", "map_app"]
+
 
 map_app = typer.Typer(
     name="map",
@@ -70,6 +75,191 @@ def _show(written: MapFiles, json_output: bool) -> None:
         return
     size = f"{written.columns} x {written.rows} cells of {written.resolution:g} m, {written.occupied:,} occupied"
     console().print(Text.assemble("wrote ", (" and ".join(written.files), "bold"), f": {size}"), soft_wrap=True)
+
+
+class Unknown(str, Enum):
+    """Treatment of unknown cells."""
+
+    free = "free"
+    occupied = "occupied"
+
+
+class Up(str, Enum):
+    """Axis of a mesh that points up."""
+
+    auto = "auto"
+    y = "y"
+    z = "z"
+    minus_y = "-y"
+
+
+class Lanes(str, Enum):
+    """Lanes of roads."""
+
+    drive = "drive"
+    walk = "walk"
+    all = "all"
+
+
+def import_(
+    file: Annotated[
+        str,
+        typer.Argument(
+            help="A mesh (.glb, .gltf, .obj, .ply, .stl), Gaussian splats (.ply), a navigation mesh of Habitat "
+            "(.navmesh), a USD stage (.usd, .usda, .usdc, .usdz), roads (.xodr), or the YAML file of a map of the "
+            "ROS map server.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--out",
+            metavar="FILE",
+            help="Scenario to write; its picture and where it is in the file's world are written next to it.",
+        ),
+    ] = None,
+    list_levels: Annotated[bool, typer.Option("--list-levels", help="Only say which levels the file has.")] = False,
+    level: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            help="Number of the level, 0 is the lowest. Default: the largest that is no roof.",
+            show_default=False,
+        ),
+    ] = None,
+    height: Annotated[
+        float | None, typer.Option(help="Height of the floor (m): the nearest level is taken.", show_default=False)
+    ] = None,
+    seed_point: Annotated[
+        str | None,
+        typer.Option(
+            metavar="X,Y",
+            help="A free place (m): what is connected to it is free. Default: the largest connected part.",
+            show_default=False,
+        ),
+    ] = None,
+    unknown: Annotated[
+        Unknown | None,
+        typer.Option(
+            help="How to treat cells of which nothing is known. Default: free for maps of ROS, else occupied.",
+            show_default=False,
+        ),
+    ] = None,
+    resolution: Annotated[float, typer.Option(help="Side of a cell (m).")] = 0.05,
+    headroom: Annotated[float, typer.Option(help="Free height above a floor (m).")] = 1.5,
+    slope: Annotated[float, typer.Option(help="Steepest floor (deg).")] = 45.0,
+    climb: Annotated[float, typer.Option(help="Highest step that is climbed (m).")] = 0.2,
+    radius: Annotated[
+        float, typer.Option(help="Distance from obstacles that becomes occupied (m); robots have their own shape.")
+    ] = 0.0,
+    up: Annotated[
+        Up,
+        typer.Option(
+            help="Axis that points up (-y: y points down); auto: y for glTF and OBJ, z for PLY and STL, what a "
+            "stage of USD says."
+        ),
+    ] = Up.auto,
+    meters_per_unit: Annotated[
+        float | None,
+        typer.Option(
+            help="Length of a unit of a mesh, a stage or splats (m), such as 0.001 for millimeters. Default: what a "
+            "stage of USD says, else 1.",
+            show_default=False,
+        ),
+    ] = None,
+    opacity: Annotated[float, typer.Option(help="Splats with less opacity are left out.")] = 0.05,
+    bounds: Annotated[
+        str | None,
+        typer.Option(
+            metavar="X,Y,X,Y",
+            help="Lower left and upper right corner of the part that becomes the map (m).",
+            show_default=False,
+        ),
+    ] = None,
+    lanes: Annotated[Lanes, typer.Option(help="Lanes of roads that are free.")] = Lanes.drive,
+    robot: Annotated[
+        bool, typer.Option("--robot", help="Add a robot that drives from one end of the map to the other.")
+    ] = False,
+    ros_map: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Also write a map for the ROS map server: YAML file.", show_default=False),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files.")] = False,
+    json_output: Json = False,
+) -> None:
+    """Write a scenario with a map made from a mesh, a navigation mesh, a USD stage, roads, or a map of ROS."""
+    options: dict[str, Any] = {
+        "resolution": resolution,
+        "headroom": headroom,
+        "slope": slope,
+        "climb": climb,
+        "radius": radius,
+        "up": up.value,
+        "level": level,
+        "height": height,
+        "seed_point": None if seed_point is None else _numbers(seed_point, "seed point", 2, "--seed-point 1.5,2"),
+        "unknown": None if unknown is None else unknown.value,
+        "meters_per_unit": meters_per_unit,
+        "opacity": opacity,
+        "bounds": None if bounds is None else _numbers(bounds, "bounds", 4, "--bounds 0,0,8,6"),
+        "lanes": lanes.value,
+    }
+    if list_levels:
+        result = only_list(file, **options)
+    elif out is None:
+        raise InputError("the scenario to write is not named", "add -o scene.yaml, or --list-levels to only look")
+    else:
+        result = import_map(file, out, ros_map=ros_map, robot=robot, overwrite=force, **options)
+    if json_output:
+        print_json(result)
+    else:
+        _show_import(result, out, robot)
+
+
+def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...]:
+
+    try:
+        found = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        found = ()
+    if len(found) != count:
+        raise InputError(f"the {what} '{text}' is not {count} numbers", f"write {example}")
+    return found
+
+
+def _show_import(result: MapImportResult, out: Path | None, robot: bool) -> None:
+
+    shown = console()
+
+    def line(*parts: Any) -> None:
+        shown.print(Text.assemble(*parts), soft_wrap=True)
+
+    cells = f"{result.columns} x {result.rows} cells of {result.resolution:g} m, {result.occupied:,} occupied"
+    if result.files:
+        line("wrote ", (", ".join(result.files), "bold"), f": {cells}")
+    else:
+        line(cells)
+    for one in result.levels:
+        kind = ", a roof or a top floor without a ceiling" if one.roof else ""
+        taken = "  <- this one" if one.level == result.level else ""
+        line(f"level {one.level}: floor at {one.height:.2f} m, {one.area:.1f} m² connected{kind}", (taken, "bold"))
+    free = f"free: {result.free_area:.1f} m²"
+    others = [area for k, area in enumerate(result.components) if k != (result.kept or 0)]
+    if others:
+        free += f"; other parts of this level [m²]: {', '.join(f'{area:.1f}' for area in others[:5])}"
+    line(free)
+    if result.unknown:
+        line(f"unknown: {result.unknown:,} cells, which count as {result.unknown_as}")
+    if result.trip is not None:
+        start, goal = ([round(x, 2) for x in place] for place in (result.trip.start, result.trip.goal))
+        line(f"for a robot: state {start}, goal {goal}, {result.trip.clearance:g} m from obstacles all the way")
+    for note in result.notes:
+        shown.print(f"note: {note}", style="yellow", soft_wrap=True)
+    if result.files:
+        command = ["irsim", "run" if robot else "render", str(out)]
+        line("next: ", (shlex.join(command), "cyan"))
 
 
 map_app.command("import")(handle_errors(import_))

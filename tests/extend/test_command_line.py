@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim.api.run_scenario import import_modules
+from irsim.scenario.open import import_modules
 from tests.warm import warm
 
 MODULE = '''

@@ -1,0 +1,184 @@
+"""``irsim.render``: draw a scenario as a picture or an animation, for the CLI, Python and MCP alike."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from irsim.api.read_input import opened_policy, read_scenario
+from irsim.api.take_snapshot import ended_before, extent_of, moved_view, snapshot_of
+from irsim.common.arguments import check_whole_number
+from irsim.common.files import check_suffix, replacing
+from irsim.env import Env
+from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
+from irsim.episodes.opening import (
+    findings_under_policy,
+    unopened_findings,
+)
+from irsim.episodes.reproduce import region_options, reproduce_command, seed_to_repeat
+from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
+from irsim.results.picture import RenderResult, SnapshotResult
+from irsim.runs.recorder import Recorder
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.open import import_modules
+from irsim.validation.scene_table import scene_table
+
+if TYPE_CHECKING:
+    from irsim.policies.catalog import PolicySource
+    from irsim.results.picture import SceneTable
+
+__all__ = ["animate", "render"]
+
+
+def render(
+    path: str | Path,
+    out: str | Path,
+    *,
+    policy: PolicySource | None = None,
+    seed: int | None = None,
+    steps: int | None = None,
+    size: int | None = None,
+    region: Sequence[float] | None = None,
+    strip: int | None = None,
+    overlays: Iterable[str] | None = None,
+    strict: bool = False,
+    imports: Sequence[str] = (),
+    limits: Limits | None = None,
+    progress: Progress | None = None,
+) -> RenderResult:
+    """Draw a scenario: a picture (png, svg, pdf, jpg) after ``steps``, or an animation (gif, mp4, apng) of an episode.
+
+    Args:
+        path: Scenario file.
+        out: File to write; its suffix determines the format.
+        policy: What drives every robot, see :func:`irsim.open_policy`; default: the behaviors of the scenario.
+        seed: Overrides the file's seed.
+        steps: Number of steps before the picture (default 0: the start), or greatest number of steps of an animation.
+        size: Longer side of the picture [px]; default from ``world.plot``.
+        region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
+        strip: Number of moments on one sheet (png), labelled like snapshots, evenly spaced from the start to ``steps``
+            (default: of a whole episode).
+        overlays: What to show besides bodies, in a picture (png) labelled like snapshots: see
+            :data:`irsim.api.overlays.OVERLAYS`.
+        strict: Refuse what IR-SIM would ignore.
+        imports: Modules to import first.
+        limits: Limits of the loader.
+        progress: Callback ``(steps_done, steps_total)``.
+
+    Raises:
+        ScenarioError: The scenario has errors.
+        InputError: There is no such policy.
+        PolicyError: The policy cannot drive these robots, or failed.
+        ValueError: The suffix is unsupported, the region is invalid, or there are too few or too many moments.
+    """
+    target = Path(out)
+    steps = None if steps is None else check_whole_number("steps", steps)
+    import_modules(imports)
+    as_snapshot = strip is not None or overlays is not None
+    if as_snapshot:
+        check_suffix(target, ["png"])
+    driver, behavior = opened_policy(path, policy, None, limits)
+    scenario, warnings = read_scenario(path, strict=strict, limits=limits, behavior=behavior)
+    if driver is not None:
+        warnings = findings_under_policy(warnings, scenario)
+    animated = target.suffix.lower() in MOVING_SUFFIXES
+    if not as_snapshot and (steps or animated):
+        warnings = [*warnings, *unopened_findings(scenario, "a picture")]
+    driven = driver.text or driver.name if driver is not None else behavior
+    if as_snapshot:
+        sheet = snapshot_of(
+            scenario,
+            path,
+            warnings=warnings,
+            seed=seed,
+            steps=steps or 0 if strip is None else steps,
+            strip=strip,
+            overlays=overlays,
+            size=600 if size is None else size,
+            region=region,
+            strict=strict,
+            limits=limits,
+            progress=progress,
+            imports=imports,
+            out=out,
+            policy=driver,
+            driven=driven,
+        )
+        return _write_sheet(sheet, target, scene_table(scenario, sheet.seed, driven if driver is not None else None))
+    env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR", policy=driver)
+    if region is not None:
+        env._env_plot.set_region(region)
+    if size is not None:
+        env._env_plot.set_size(size)
+    if animated:
+        horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
+        files = animate(env, horizon, target, progress)
+        frames = env._env_plot.frames_written
+    else:
+        advance(env, steps or 0, progress, until_done=False)
+        files, frames = [str(env.save_figure(target.absolute()))], 1
+    sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
+    sized += [] if driven is None else ["--policy", driven]
+    result = RenderResult(
+        scenario=str(path),
+        seed=env.seed,
+        steps=int(env.simulation.count[0]),
+        frames=frames,
+        size=env._env_plot.size,
+        files=files,
+        warnings=warnings,
+        ended=None if animated else ended_before(env),
+        view=None if region is not None else moved_view(env),
+        extent=extent_of(env),
+        table=scene_table(scenario, env.seed, driven if driver is not None else None),
+        reproduce=reproduce_command(
+            "render", path, seed_to_repeat(scenario, env.seed), steps, strict, imports, extra=[*sized, "-o", str(out)]
+        ),
+    )
+    env.end(ending_time=0.0)
+    return result
+
+
+def _write_sheet(sheet: SnapshotResult, target: Path, table: SceneTable) -> RenderResult:
+    """Write a picture of several moments."""
+    with replacing(target) as temporary:
+        temporary.write_bytes(sheet.png)
+    return RenderResult(
+        scenario=sheet.scenario,
+        seed=sheet.seed,
+        steps=sheet.steps,
+        frames=len(sheet.moments),
+        size=sheet.size,
+        files=[str(target.absolute())],
+        warnings=sheet.warnings,
+        ended=sheet.ended,
+        view=sheet.view,
+        extent=sheet.extent,
+        table=table,
+        labels={robot.name: robot.label for robot in sheet.robots if robot.label != robot.name},
+        reproduce=sheet.reproduce,
+    )
+
+
+def animate(
+    env: Env, steps: int, save: Path | None, progress: Progress | None, recorder: Recorder | None = None
+) -> list[str]:
+    """Run and show an environment, and write an animation of it; return the file that was written, if any."""
+    env.save_ani = save is not None
+    if save is not None:
+        env.ani_kwargs["suffix"] = save.suffix  # determines how many colours a frame keeps
+    env.render()
+    for step in range(steps):
+        if env.done():
+            break
+        env.step()
+        if recorder is not None:
+            recorder.write_if_due()
+        env.render(env.step_time)
+        if progress is not None:
+            progress(step + 1, steps)
+    if save is None:
+        return []
+    env.save_ani = False
+    return [str(env._env_plot.save_animation(path=save))]
