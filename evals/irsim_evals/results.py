@@ -7,21 +7,17 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict
 
 import irsim
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import case_ids, folder
-from irsim_evals.grader.outcome import Verdict
+from irsim_evals.grader.outcome import Record, Verdict
 
 __all__ = ["Results", "Trial", "cases_hash", "read_results", "results_of", "trial_of", "write_results"]
 
 
-class _Record(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
-
-class Trial(_Record):
+class Trial(Record):
     """One attempt at one case."""
 
     arm: str
@@ -53,7 +49,7 @@ class Trial(_Record):
         return self.verdict.case, self.verdict.instance
 
 
-class Results(_Record):
+class Results(Record):
     """Results of some arms on some cases; a report writes its aggregates beside them, which are not read back."""
 
     model_config = ConfigDict(extra="ignore")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Container, Iterable, Sequence
 from typing import NamedTuple
 
-__all__ = ["Document", "best", "has_all", "telling_words", "words_of"]
+__all__ = ["Document", "best", "bm25", "has_all", "telling_words", "words_of"]
 
 MAX_RESULTS = 5
 """Largest number of documents in a result."""
@@ -26,11 +26,14 @@ _LENGTH_WEIGHT = 0.75
 """Parameter b of Okapi BM25."""
 MIN_PLURAL_LETTERS = 4
 """Shorter words keep a final s."""
-_STOP_WORDS = re.compile(
-    "a|about|an|and|any|are|as|at|be|by|can|cannot|do|does|for|from|get|has|have|how|i|if|in|into|is|it|its|make|me|my|"
-    "no|not|of|on|or|should|so|something|than|that|the|their|them|there|this|to|use|using|want|what|when|where|which|"
-    "who|why|will|with|without"
-)
+_STOP_WORDS = frozenset(
+    {
+        "a", "about", "an", "and", "any", "are", "as", "at", "be", "by", "can", "cannot", "do", "does", "for", "from",
+        "get", "has", "have", "how", "i", "if", "in", "into", "is", "it", "its", "make", "me", "my", "no", "not", "of",
+        "on", "or", "should", "so", "something", "than", "that", "the", "their", "them", "there", "this", "to", "use",
+        "using", "want", "what", "when", "where", "which", "who", "why", "will", "with", "without",
+    }
+)  # fmt: skip
 """Words of a query that are ignored, because they do not identify a topic."""
 
 
@@ -44,7 +47,7 @@ class Document(NamedTuple):
 
 
 def best(documents: Sequence[Document], query: str) -> tuple[list[str], list[str]]:
-    """Find the documents that match a query best, ranked by Okapi BM25 (Robertson, Zaragoza 2009).
+    """Find the documents that match a query best.
 
     A word of the query also matches words that begin with it. Documents that match more words of the query come first.
 
@@ -53,24 +56,36 @@ def best(documents: Sequence[Document], query: str) -> tuple[list[str], list[str
     """
     wanted = telling_words(query)
     counts = [_counts(document) for document in documents]
-    mean = sum(count.total() for count in counts) / max(len(counts), 1)
-    scores, matched = [0.0] * len(counts), [0] * len(counts)
-    unknown = []
-    for word in wanted:
-        frequencies = [_frequency(word, count) for count in counts]
-        matching = sum(times > 0 for times in frequencies)
-        if not matching:
-            unknown.append(word)
-        rarity = math.log(1 + (len(counts) - matching + 0.5) / (matching + 0.5))
-        for k, times in enumerate(frequencies):
-            if times:
-                size = 1 - _LENGTH_WEIGHT + _LENGTH_WEIGHT * counts[k].total() / mean
-                scores[k] += rarity * times * (_SATURATION + 1) / (times + _SATURATION * size)
-                matched[k] += 1
+    frequencies = {word: [_frequency(word, count) for count in counts] for word in wanted}
+    scores = bm25(frequencies.values(), [count.total() for count in counts])
+    matched = [sum(times[k] > 0 for times in frequencies.values()) for k in range(len(counts))]
+    unknown = [word for word, times in frequencies.items() if not any(times)]
     scores = [score * found / max(len(wanted), 1) for score, found in zip(scores, matched, strict=True)]
     order = sorted(range(len(scores)), key=lambda k: -scores[k])[:MAX_RESULTS]
     shown = [k for k in order if scores[k] > 0 and scores[k] >= MIN_SCORE_SHARE * scores[order[0]]]
     return [documents[k].name for k in shown], unknown
+
+
+def bm25(frequencies: Iterable[Sequence[float]], sizes: Sequence[int]) -> list[float]:
+    """Score documents by Okapi BM25.
+
+    Args:
+        frequencies: For each word of a query, how often each document has it.
+        sizes: Number of words of each document.
+
+    References:
+        Robertson, Zaragoza: The Probabilistic Relevance Framework: BM25 and Beyond (2009).
+    """
+    mean = sum(sizes) / max(len(sizes), 1)
+    scores = [0.0] * len(sizes)
+    for times in frequencies:
+        matching = sum(value > 0 for value in times)
+        rarity = math.log(1 + (len(sizes) - matching + 0.5) / (matching + 0.5))
+        for k, value in enumerate(times):
+            if value:
+                size = 1 - _LENGTH_WEIGHT + _LENGTH_WEIGHT * sizes[k] / mean
+                scores[k] += rarity * value * (_SATURATION + 1) / (value + _SATURATION * size)
+    return scores
 
 
 def has_all(document: Document, query: str) -> bool:
@@ -81,7 +96,7 @@ def has_all(document: Document, query: str) -> bool:
 
 def telling_words(query: str) -> list[str]:
     """Return the words of a query that identify a topic, or all of them if none does."""
-    meaningful = list(dict.fromkeys(word for word in words_of(query) if not _STOP_WORDS.fullmatch(word)))
+    meaningful = list(dict.fromkeys(words_of(query, _STOP_WORDS)))
     return meaningful or words_of(query)
 
 
@@ -92,12 +107,18 @@ def _counts(document: Document) -> Counter[str]:
     return counts
 
 
-def words_of(text: str) -> list[str]:
-    """Split a text into words: lower case, without the s of a plural, names split at _ and -."""
-    return [
+def words_of(text: str, stop_words: Container[str] = ()) -> list[str]:
+    """Split a text into words: lower case, without the s of a plural, names split at _ and -.
+
+    Args:
+        text: The text.
+        stop_words: Words that are left out.
+    """
+    words = (
         word[:-1] if len(word) >= MIN_PLURAL_LETTERS and word.endswith("s") and not word.endswith("ss") else word
         for word in re.findall(r"[^\W_]+(?:'[^\W_]+)*", text.lower())
-    ]
+    )
+    return [word for word in words if word not in stop_words]
 
 
 def _frequency(word: str, count: Counter[str]) -> float:

@@ -7,6 +7,7 @@ import os
 import random
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,8 +16,8 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from irsim.lookup.full_text import bm25, words_of
 from irsim_evals.baselines.arms import BASELINES, answer
-from irsim_evals.baselines.bm25 import scores
 from irsim_evals.baselines.reading.language import language_of, plain, quantities
 from irsim_evals.baselines.reading.request import request_of
 from irsim_evals.baselines.retrieval import best_template, slots
@@ -193,9 +194,11 @@ def test_trials_are_fresh_instances_and_give_pass_hat_k(tmp_path):
 
 
 def test_bm25_prefers_documents_with_the_rarer_word():
-    ranked = scores("a robot on a circle", ["robot in a room", "robots on circles", "robot robot robot"])
+    counts = [Counter(words_of(text)) for text in ("robot in a room", "robots on circles", "robot robot robot")]
+    frequencies = [[count[word] for count in counts] for word in words_of("a robot on a circle", {"a", "on"})]
+    ranked = bm25(frequencies, [count.total() for count in counts])
     assert ranked.index(max(ranked)) == 1
-    assert scores("nothing", ["robot"]) == [0]
+    assert bm25([[0]], [1]) == [0]
 
 
 def test_retrieval_fills_parameters_by_their_words():

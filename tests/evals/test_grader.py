@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim_evals.cases.instance import instance_of, substitute
+from irsim_evals.cases.instance import substitute
 from irsim_evals.cases.store import case_ids, case_of, golds_of, raw_case
 from irsim_evals.cli.cases import schema_text
 from irsim_evals.grader.artefact import Answer
@@ -19,16 +19,7 @@ from irsim_evals.grader.limited import grade_answer, grade_folder, run_limited
 from irsim_evals.grader.matching import Match, matches, quantity
 from irsim_evals.grader.outcome import Verdict
 from tests.effort import some
-
-RIGHT = """
-world: {width: 14, height: 9}
-robot:
-  kinematics: {name: diff}
-  shape: {name: circle, radius: 0.35}
-  state: [2, 1.5, 1.5708]
-  goal: [12, 7.5, 0]
-  behavior: {name: dash}
-"""
+from tests.evals.conftest import RIGHT, made_up
 
 BOMB = """
 a: &a [x, x]
@@ -200,41 +191,28 @@ def test_a_map_beside_the_scenario_is_graded_with_it(tmp_path: Path) -> None:
 
 
 def test_an_episode_may_be_driven_by_another_behavior() -> None:
-    raw = {
-        "id": "made-up", "title": "x", "category": ["basic"], "level": 1, "prompt": "x",
-        "episodes": [
-            {"seconds": 30, "assert": [{"id": "as-written", "arrive": {"of": "robots"}}]},
-            {
-                "seconds": 30,
-                "behavior": "{name: dash}",
-                "assert": [{"id": "dash", "arrive": {"of": "robots", "share": 0}}],
-            },
-        ],
-    }  # fmt: skip
+    episodes = [
+        {"seconds": 30, "assert": [{"id": "as-written", "arrive": {"of": "robots"}}]},
+        {"seconds": 30, "behavior": "{name: dash}", "assert": [{"id": "dash", "arrive": {"of": "robots", "share": 0}}]},
+    ]
     wall = "obstacle: [{shape: {name: rectangle, length: 0.5, width: 5}, state: [7, 4.5, 0]}]\n"
     text = RIGHT.replace("dash", "follow") + wall
-    verdict = grade(instance_of(raw), Answer("answer", {"scenario.yaml": text}))
+    verdict = grade(made_up(episodes=episodes), Answer("answer", {"scenario.yaml": text}))
     assert [(o.assertion, o.observed) for o in verdict.failed()] == []
 
 
 def test_every_goal_of_an_empty_world_is_reachable() -> None:
-    raw = {
-        "id": "made-up", "title": "x", "category": ["basic"], "level": 1, "prompt": "x",
-        "assert": [{"id": "way", "reachable": {"of": "robots"}}],
-    }  # fmt: skip
-    assert grade(instance_of(raw), Answer("answer", {"scenario.yaml": RIGHT})).strict
+    case = made_up({"id": "way", "reachable": {"of": "robots"}})
+    assert grade(case, Answer("answer", {"scenario.yaml": RIGHT})).strict
 
 
 @pytest.mark.parametrize(
     ("behavior", "avoids"), [("{name: follow, local: orca}", True), ("{name: follow}", False), ("{name: sfm}", True)]
 )
 def test_a_planner_avoids_others_if_what_drives_it_does(behavior: str, avoids: bool) -> None:
-    raw = {
-        "id": "made-up", "title": "x", "category": ["basic"], "level": 1, "prompt": "x",
-        "assert": [{"id": "avoids", "each": {"of": "robots", "has": {"avoids": True}}}],
-    }  # fmt: skip
+    case = made_up({"id": "avoids", "each": {"of": "robots", "has": {"avoids": True}}})
     text = RIGHT.replace("{name: dash}", behavior)
-    assert grade(instance_of(raw), Answer("answer", {"scenario.yaml": text})).strict == avoids
+    assert grade(case, Answer("answer", {"scenario.yaml": text})).strict == avoids
 
 
 FENCED = f"Here it is:\n```yaml{RIGHT}```\n"
@@ -276,11 +254,8 @@ obstacle:
 
 @pytest.mark.parametrize(("behavior", "passes"), [("", False), (", behavior: {name: dash}", True)])
 def test_an_obstacle_that_nothing_drives_plugs_a_doorway(behavior: str, passes: bool) -> None:
-    raw = {
-        "id": "made-up", "title": "x", "category": ["basic"], "level": 1, "prompt": "x", "overlap": True,
-        "assert": [{"id": "way", "reachable": {"of": "robots"}}],
-    }  # fmt: skip
-    assert grade(instance_of(raw), Answer("answer", {"scenario.yaml": WALL % behavior})).strict == passes
+    case = made_up({"id": "way", "reachable": {"of": "robots"}}, overlap=True)
+    assert grade(case, Answer("answer", {"scenario.yaml": WALL % behavior})).strict == passes
 
 
 def test_a_compound_of_one_circle_is_a_disc() -> None:

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from irsim_evals.cases.instance import Instance, instance_of
+from irsim_evals.cases.instance import Instance
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.limited import grade_answer
 from irsim_evals.grader.outcome import Outcome, Verdict
 from irsim_evals.grader.programs import problems_of, run_program
+from tests.evals.conftest import made_up
 
 SCENE = """
 world: {width: 14, height: 9}
@@ -38,13 +39,7 @@ print("success rate 1.0, collision rate 0.0")
 
 def case(python: str, **program: object) -> Instance:
     one = {"id": "one", "count": {"of": "robots", "number": 1}}
-    return instance_of(
-        {
-            "id": "made-up", "title": "A runner", "category": ["bench"], "level": 1, "prompt": "Run it.",
-            "python": python,
-            "assert": [{"id": "runs", "program": program} if program else one],
-        }
-    )  # fmt: skip
+    return made_up({"id": "runs", "program": program} if program else one, python=python)
 
 
 def verdict_on(program: str, instance: Instance) -> Verdict:

@@ -127,7 +127,7 @@ def _edit_of(finding: dict[str, Any], data: Any) -> Edit | None:
 def _working(server: Server, text: str, request: Request) -> str:
     """The scenario after the first change with which every robot arrives; without one the best that was found."""
     data = yaml.safe_load(text)
-    if not _is_driven(data):
+    if not _driven(data):
         return text
     best, score = data, _score(server, data)
     if score is None or score[0] == 1:
@@ -139,11 +139,6 @@ def _working(server: Server, text: str, request: Request) -> str:
         if score[0] == 1:
             break
     return text if best is data else rules.dump(best)
-
-
-def _is_driven(data: Any) -> bool:
-    """Whether anything moves by itself."""
-    return bool(_driven(data))
 
 
 def _driven(data: Any) -> list[dict[str, Any]]:

@@ -6,14 +6,24 @@ stands around the number, if unit and range allow it. Nothing else of the reques
 
 from __future__ import annotations
 
+from collections import Counter
+
 from irsim.bundled.templates import Parameter, Template, TemplateError, fill, load_all
-from irsim_evals.baselines import bm25
+from irsim.lookup.full_text import bm25, words_of
 from irsim_evals.baselines.reading.language import Kind, Quantity, plain, quantities
 from irsim_evals.baselines.task import Task
 from irsim_evals.grader.artefact import Answer
 
 __all__ = ["answer", "best_template", "slots"]
 
+_SILENT = frozenset(
+    {
+        "a", "an", "and", "are", "as", "at", "be", "by", "each", "every", "for", "from", "has", "have", "in", "into",
+        "is", "it", "its", "not", "of", "on", "one", "or", "so", "than", "that", "the", "their", "them", "then", "they",
+        "this", "to", "up", "use", "want", "which", "who", "with", "without", "you", "i", "me", "my", "make",
+    }
+)  # fmt: skip
+"""Words of a request that say nothing of a template."""
 _WINDOW = 24
 """Number of characters before and after a number in which its words are looked for."""
 _UNITS: dict[str, tuple[Kind, ...]] = {
@@ -40,7 +50,9 @@ def answer(task: Task) -> Answer:
 def best_template(request: str) -> Template:
     """The template that fits a request best."""
     templates = load_all()
-    ranked = bm25.scores(plain(request), [_description(template) for template in templates])
+    counts = [Counter(words_of(_description(template), _SILENT)) for template in templates]
+    wanted = dict.fromkeys(words_of(plain(request), _SILENT))
+    ranked = bm25([[count[word] for count in counts] for word in wanted], [count.total() for count in counts])
     return templates[max(range(len(templates)), key=lambda i: (ranked[i], -i))]
 
 
@@ -73,7 +85,7 @@ def _fit(name: str, parameter: Parameter, text: str, quantity: Quantity) -> int:
         return 0
     around = text[max(0, quantity.start - _WINDOW) : quantity.start] + " " + text[quantity.end : quantity.end + _WINDOW]
     described = f"{name} {parameter.description}".replace("_", " ")
-    return len(set(bm25.words(around)) & set(bm25.words(described)))
+    return len(set(words_of(around, _SILENT)) & set(words_of(described, _SILENT)))
 
 
 def _description(template: Template) -> str:

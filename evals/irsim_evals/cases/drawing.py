@@ -8,18 +8,20 @@ from typing import Literal
 from PIL import Image, ImageDraw, ImageFont
 from pydantic import BaseModel, ConfigDict
 
-__all__ = ["Drawing", "Item", "draw"]
+__all__ = ["Drawing", "Item", "Record", "draw"]
 
 _MARGIN = 40
 """Width of the white margin round the plan, which holds the labels of the axes [px]."""
 _GRID = (222, 222, 222)
 
 
-class _Record(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+class Record(BaseModel):
+    """A part of a case file."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
 
-class Item(_Record):
+class Item(Record):
     """One thing in a drawing (m; x to the right, y up)."""
 
     kind: Literal["box", "disc", "line", "text", "arrow"]
@@ -33,7 +35,7 @@ class Item(_Record):
     """Width of a line [px]."""
 
 
-class Drawing(_Record):
+class Drawing(Record):
     """A plan drawn to scale."""
 
     size: tuple[float, float]

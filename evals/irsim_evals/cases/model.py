@@ -10,9 +10,9 @@ import keyword
 from inspect import cleandoc
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, model_validator
+from pydantic import BeforeValidator, Field, create_model, model_validator
 
-from irsim_evals.cases.drawing import Drawing
+from irsim_evals.cases.drawing import Drawing, Record
 from irsim_evals.grader.matching import Quantity
 from irsim_evals.grader.predicates._base import Predicate, registered
 from irsim_evals.grader.selection import Selector
@@ -25,11 +25,7 @@ Disposition = Literal["build", "ask", "flag"]
 _NAMED = ("number", "integer", "boolean")
 
 
-class _Record(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
-
-
-class Parameter(_Record):
+class Parameter(Record):
     """A value that differs from instance to instance."""
 
     default: bool | int | float | str
@@ -48,7 +44,7 @@ class Parameter(_Record):
         return self
 
 
-class _AssertionBase(_Record):
+class _AssertionBase(Record):
     id: str
     """Name of the assertion, unique in the case."""
     soft: bool = False
@@ -88,7 +84,7 @@ _predicates: dict[str, Any] = {
 Assertion: Any = create_model("Assertion", __base__=_AssertionBase, **_predicates)
 
 
-class EpisodePlan(_Record):
+class EpisodePlan(Record):
     """Episodes that are simulated, and what must happen in each."""
 
     seeds: list[int] = [0]
@@ -109,7 +105,7 @@ def _as_list(value: Any) -> Any:
     return [value] if isinstance(value, str) else value
 
 
-class Pin(_Record):
+class Pin(Record):
     """What a prompt pins or leaves free, for the proof of the grader."""
 
     of: str = "all"
@@ -123,7 +119,7 @@ class Pin(_Record):
     """Reason, where it is not plain from the prompt."""
 
 
-class Waiver(_Record):
+class Waiver(Record):
     """Mutants that change a pinned fact and are right all the same."""
 
     operator: str
@@ -134,7 +130,7 @@ class Waiver(_Record):
     """Reason."""
 
 
-class Case(_Record):
+class Case(Record):
     """One case."""
 
     id: str

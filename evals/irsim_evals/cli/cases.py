@@ -16,6 +16,7 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.model import schema_text
 from irsim_evals.cases.store import all_case_ids, case_ids, case_of, raw_case, write_given
+from irsim_evals.grader.outcome import name_of
 
 __all__ = ["PROMPT_FILE", "cases", "chosen", "export", "schema", "write_case"]
 
@@ -92,16 +93,12 @@ def export(
     ``reply-1.md``.
     """
     instances = [case_of(name, fresh) for name in chosen(wanted)]
-    taken = [i.case.id for i in instances if (folder / _name(i)).exists()]
+    taken = [i.case.id for i in instances if (folder / name_of(i.case.id, i.name)).exists()]
     if taken:
         raise ArgumentError(f"{folder} holds {', '.join(taken[:3])} already", "choose another folder")
     for instance in instances:
-        write_case(folder / _name(instance), instance)
+        write_case(folder / name_of(instance.case.id, instance.name), instance)
     sys.stdout.write(f"{len(instances)} {'case' if len(instances) == 1 else 'cases'} in {folder}\n")
-
-
-def _name(instance: Instance) -> str:
-    return instance.case.id + (f"@{instance.name}" if instance.name else "")
 
 
 def write_case(folder: Path, instance: Instance) -> None:

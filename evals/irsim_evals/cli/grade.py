@@ -147,14 +147,10 @@ class _Grader(NamedTuple):
         verdict = grade_folder(instance, work.folder, calls=self.calls, run_programs=self.run_programs)
         if _has_other_prompt(work.folder, instance):
             verdict.cost.notes.append(
-                f"{PROMPT_FILE} is not the prompt of {_name(work)}; if this is the renamed folder of a fresh instance, "
-                "say which with --case ID@SEED"
+                f"{PROMPT_FILE} is not the prompt of {verdict.name}; if this is the renamed folder of a fresh "
+                "instance, say which with --case ID@SEED"
             )
         return verdict
-
-
-def _name(work: _Work) -> str:
-    return work.case if work.seed is None else f"{work.case}@{work.seed}"
 
 
 def _has_other_prompt(folder: Path, instance: Instance) -> bool:

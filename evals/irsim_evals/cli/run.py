@@ -146,9 +146,7 @@ def verdicts_text(trials: Sequence[Trial]) -> str:
     """Arm → case → whether it passed, as JSON with a line for each case; fresh instances are ``case@seed``."""
     table: dict[str, dict[str, bool]] = {}
     for trial in trials:
-        verdict = trial.verdict
-        name = verdict.case + (f"@{verdict.instance}" if verdict.instance else "")
-        table.setdefault(trial.arm, {})[name] = verdict.strict
+        table.setdefault(trial.arm, {})[trial.verdict.name] = trial.verdict.strict
     return json.dumps(table, indent=1) + "\n"
 
 

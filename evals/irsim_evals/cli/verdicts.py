@@ -35,7 +35,7 @@ def show_verdicts(verdicts: Sequence[Verdict], json_output: bool) -> None:
     for verdict in verdicts:
         failed = verdict.failed()
         if failed or verdict.cost.notes:
-            out.print(f"\n{_name(verdict)}")
+            out.print(f"\n{verdict.name}")
         for outcome in failed:
             if outcome.observed != NOT_REACHED:
                 out.print(f"  {_in_words(outcome)}", soft_wrap=True)
@@ -69,7 +69,7 @@ def _print_table(verdicts: Sequence[Verdict], out: Console) -> None:
         held = len(verdict.outcomes) - len(verdict.failed())
         cost = verdict.cost
         table.add_row(
-            _name(verdict),
+            verdict.name,
             Text("PASS", style="bold green") if verdict.strict else Text("FAIL", style="bold red"),
             *((f"{held} of {len(verdict.outcomes)}",) if wide else ()),
             f"{verdict.rate:.0%}",
@@ -77,10 +77,6 @@ def _print_table(verdicts: Sequence[Verdict], out: Console) -> None:
             *((_number(cost.calls), _number(cost.errors), _number(cost.tokens)) if with_cost else ()),
         )
     out.print(table)
-
-
-def _name(verdict: Verdict) -> str:
-    return verdict.case + (f"@{verdict.instance}" if verdict.instance else "")
 
 
 def _number(value: int | None) -> str:

@@ -13,7 +13,7 @@ from irsim.diagnostics.diagnostic import format_path
 
 if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
-    from irsim.scenario.resolve.resolved import ResolvedScenario
+    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 __all__ = ["Body", "Box", "body_of"]
 
@@ -47,15 +47,11 @@ class Body:
 
     Attributes:
         index: Its row in the simulation.
-        name: Its name.
-        entry: Path of its entry in the file.
-        role: ``robot`` or ``obstacle``.
+        record: What the scenario says of it, once resolved.
         static: Whether it never moves.
-        passable: Whether others pass through it (``unobstructed``).
         kinematics: Name of its drive; None for a static object.
         behavior: Name of the behavior that moves it, its own or that of its group.
         options: Options of that behavior.
-        grouped: Whether the behavior is that of its group.
         pose: x, y, heading.
         goals: Its goals in order; those of objects that were given none are left out.
         footprint: Outline, a shapely geometry.
@@ -64,27 +60,17 @@ class Body:
         extent: Length and width in the body frame, along and across its heading.
         forward, backward, sideways, turn, steer: Greatest speeds [m/s], turn rate [rad/s] and steering angle [rad]
             that its limits allow; None where its drive has no such control.
-        wheelbase: Distance between the axles.
         sensors: Options of each sensor as the simulator holds them.
         color: As ``#rrggbb`` where it is a color; None for the color of its role.
-        wander, loop: Whether goals are drawn for ever, or visited again and again.
-        wander_box: x0, y0, x1, y1 of the range of random goals; None if it does not wander.
-        fov, fov_radius: Field of view.
-        threshold, arrive_mode: When a goal counts as reached.
-        tags: Its tags.
-        group: Number of its group.
+        limits: ``vel_min``, ``vel_max`` and ``acce`` of each control.
     """
 
     index: int
-    name: str
-    entry: str
-    role: str
+    record: ObjectRecord
     static: bool
-    passable: bool
     kinematics: str | None
     behavior: str | None
     options: dict[str, Any]
-    grouped: bool
     pose: tuple[float, float, float]
     goals: list[list[float]]
     footprint: Any
@@ -96,19 +82,29 @@ class Body:
     sideways: float | None
     turn: float | None
     steer: float | None
-    wheelbase: float | None
     sensors: list[dict[str, Any]]
     color: str | None
-    wander: bool
-    loop: bool
-    wander_box: tuple[float, float, float, float] | None
-    fov: float | None
-    fov_radius: float | None
-    threshold: float
-    arrive_mode: str
-    tags: tuple[str, ...]
-    group: int
     limits: dict[str, list[float]] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self.record.name
+
+    @property
+    def entry(self) -> str:
+        """Path of its entry in the file."""
+        return format_path(self.record.path)
+
+    @property
+    def role(self) -> str:
+        """``robot`` or ``obstacle``."""
+        return self.record.role
+
+    @property
+    def passable(self) -> bool:
+        """Whether others pass through it (``unobstructed``)."""
+        return self.record.unobstructed
 
     @property
     def position(self) -> tuple[float, float]:
@@ -153,23 +149,19 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
     """What is true of an object."""
     record: Any = view.record
     kinematics = None if record.static or record.kinematics is None else str(record.kinematics.name)
-    grouped = record.behavior is None and record.group_behavior is not None and kinematics is not None
-    options = record.group_behavior if grouped else record.behavior
+    of_group = record.behavior is None and kinematics is not None
+    options = record.group_behavior if of_group else record.behavior
     given = not scenario.is_parked(record) and scenario.has_written_goal(record)
     low, high = view.vel_min[:, 0].tolist(), view.vel_max[:, 0].tolist()
     footprint = view.geometry
     radius = view.radius if _is_disc(view) else None
     return Body(
         index=view.index,
-        name=view.name,
-        entry=format_path(record.path),
-        role=record.role,
+        record=record,
         static=record.static or kinematics is None,
-        passable=record.unobstructed,
         kinematics=kinematics,
         behavior=None if options is None or kinematics is None else str(options.name),
         options={} if options is None else options.model_dump(mode="json"),
-        grouped=grouped,
         pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
         goals=[goal[:, 0].tolist() for goal in view.goals] if given and kinematics else [],
         footprint=footprint,
@@ -177,18 +169,8 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
         box=None if radius is not None else _box(footprint),
         extent=(view.length, view.width),
         **_limits(record.kinematics if kinematics else None, low, high),
-        wheelbase=record.wheelbase,
         sensors=[{**sensor.model_dump(mode="json"), "name": sensor.name} for sensor in record.sensors],
         color=_color(record.color),
-        wander=record.wander,
-        loop=record.loop,
-        wander_box=_corners(record.range_low, record.range_high) if record.wander else None,
-        fov=record.fov,
-        fov_radius=record.fov_radius,
-        threshold=record.goal_threshold,
-        arrive_mode=record.arrive_mode,
-        tags=record.tags,
-        group=record.group,
         limits={"vel_min": low, "vel_max": high, "acce": view.acce[:, 0].tolist()},
     )
 
@@ -217,10 +199,6 @@ def _limits(drive: Any, low: list[float], high: list[float]) -> dict[str, float 
     elif kinematics == "omni_angular" and len(high) > 2:
         found["turn"] = max(high[2], -low[2])
     return found
-
-
-def _corners(low: list[float], high: list[float]) -> tuple[float, float, float, float]:
-    return low[0], low[1], high[0], high[1]
 
 
 def _color(color: Any) -> str | None:

@@ -9,15 +9,10 @@ from __future__ import annotations
 import tempfile
 import time
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from irsim.diagnostics.errors import IrsimError
-from irsim.scenario.checks import KEY_CODES
-from irsim.scenario.limits import Limits
-from irsim.scenario.read import Reading, read
-from irsim.scenario.yaml.document import Document, load_text
 from irsim_evals.cases.instance import Instance
 from irsim_evals.grader.artefact import Answer, find_scenario, rivals, scenarios_in
 from irsim_evals.grader.episode import Episode, run_episode
@@ -27,13 +22,8 @@ from irsim_evals.grader.predicates._base import Observation
 from irsim_evals.grader.programs import problems_in
 from irsim_evals.grader.sanity import check_goals, check_moves, check_scene
 
-__all__ = ["LIMITS", "failed_verdict", "grade"]
+__all__ = ["failed_verdict", "grade"]
 
-LIMITS = Limits(
-    bytes=2_000_000, events=200_000, expansion=50_000, aliases=10_000, objects=5_000, robots=2_000, cells=4_000_000,
-    map_bytes=16_000_000, problems=20, root=str(Path(__file__).parent / "predicates"),
-)  # fmt: skip
-"""What a scenario may ask for. Files are read only below ``root``, where there is no map."""
 _FIRST_STEPS = 3
 """Steps that every scenario must survive."""
 _MAX_STEPS = 30_000
@@ -122,23 +112,21 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace
         )  # fmt: skip
     material.main, text = found
     material.texts = {**answer.files, material.main: text}
-    document, limits = _load(material, material.main)
+    opened = material.open(material.main)
+    document, errors = opened.document, opened.errors
     _add(
         outcomes, "parses", "parse", not document.fatal, "a file that a safe YAML loader reads",
         "; ".join(item.message for item in document.problems[:2]) or material.main,
     )  # fmt: skip
     if document.fatal:
         raise _Stop
-    reading = read(document, limits=limits)
-    errors = _errors(reading)
     _add(
         outcomes, "valid", "schema", not errors, "a scenario without errors and unknown keys",
         "; ".join(f"{'.'.join(map(str, item.path))}: {item.message}" for item in errors[:3]) or "valid",
     )  # fmt: skip
-    if reading.scenario is None or errors:
+    if opened.scenario is None:
         raise _Stop
-    material.scenario, material.document = reading.scenario, document
-    material.findings = list(reading.diagnostics)
+    material.scenario, material.document, material.findings = opened.scenario, document, opened.findings
     try:
         scene = material.scene(case.seeds[0])
         probe = run_episode(material.scenario, case.seeds[0], _FIRST_STEPS * float(scene.world.step_time))
@@ -162,19 +150,6 @@ def _has_several(case: Any) -> bool:
     return any(item.file or item.predicate.name in ("every_scenario", "comparison") for item in case.check)
 
 
-def _load(material: Material, file: str) -> tuple[Document, Limits]:
-    """Read a file of the answer, and say what it may ask for. Maps beside it are read from a copy of the answer."""
-    limits, path = LIMITS, None
-    if material.blobs:
-        limits, path = replace(LIMITS, root=str(material.workplace)), str(material.folder() / file)
-    return load_text(material.texts[file], path=path, limits=limits), limits
-
-
-def _errors(reading: Reading) -> list[Any]:
-    """What makes a scenario invalid for a case."""
-    return [item for item in reading.diagnostics if item.severity == "error" or item.code in KEY_CODES]
-
-
 def _sanity(instance: Instance, material: Material, outcomes: list[Outcome]) -> None:
     case = instance.case
     for seed in case.seeds:
@@ -195,36 +170,15 @@ def _assertions(instance: Instance, material: Material, built: bool, outcomes: l
         if predicate.subject == "scene":
             _observe(outcomes, item, (_in_scene(material, item, seed) for seed in case.seeds))
         else:
-            _observe(outcomes, item, [lambda item=item: item.predicate.observe(_about(material, item.file))])
+            _observe(outcomes, item, [lambda item=item: item.predicate.observe(material.other(item.file))])
     if built:
         for plan in case.episodes:
             _episodes(plan, material, outcomes)
 
 
-def _about(material: Material, file: str) -> Material:
-    """The material for assertions about another scenario of the answer.
-
-    Raises:
-        LookupError: There is no such file, or it is no valid scenario.
-    """
-    if not file or file == material.main:
-        return material
-    if file not in material.beside:
-        if file not in material.texts:
-            raise LookupError(f"there is no file {file}")
-        document, limits = _load(material, file)
-        reading = None if document.fatal else read(document, limits=limits)
-        if reading is None or reading.scenario is None or _errors(reading):
-            raise LookupError(f"{file} is no valid scenario; irsim validate says why")
-        material.beside[file] = replace(
-            material, scenario=reading.scenario, document=document, main=file, beside={}, _scenes={}
-        )
-    return material.beside[file]
-
-
 def _in_scene(material: Material, item: Any, seed: int) -> Any:
     def look() -> Observation:
-        about = _about(material, item.file)
+        about = material.other(item.file)
         found: Observation = item.predicate.observe(about, about.scene(seed))
         found.seed = seed if found.seed is None else found.seed
         return found

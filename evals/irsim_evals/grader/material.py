@@ -2,21 +2,73 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from irsim.diagnostics.errors import IrsimError
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
+from irsim.scenario.checks import KEY_CODES
+from irsim.scenario.limits import Limits
+from irsim.scenario.read import read
+from irsim.scenario.yaml.document import Document, load_text
 from irsim_evals.grader.body import Body
 from irsim_evals.grader.scene import Scene, open_scene
 from irsim_evals.grader.selection import Selector, select
 
 if TYPE_CHECKING:
+    from irsim.diagnostics.diagnostic import Diagnostic
     from irsim.scenario.resolve.resolved import ResolvedScenario
-    from irsim.scenario.yaml.document import Document
 
-__all__ = ["Material", "with_speeds", "write_files"]
+__all__ = ["LIMITS", "Material", "Opened", "open_text", "with_speeds", "write_files"]
+
+LIMITS = Limits(
+    bytes=2_000_000, events=200_000, expansion=50_000, aliases=10_000, objects=5_000, robots=2_000, cells=4_000_000,
+    map_bytes=16_000_000, problems=20, root=str(Path(__file__).parent / "predicates"),
+)  # fmt: skip
+"""What a scenario may ask for. Files are read only below ``root``, where there is no map."""
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A scenario as the grader has read it.
+
+    Attributes:
+        document: The scenario as written.
+        scenario: The scenario; None if it is not valid for a case.
+        findings: What the checker said about it.
+        errors: What makes it invalid for a case: errors, and keys that mean nothing.
+    """
+
+    document: Document
+    scenario: ResolvedScenario | None
+    findings: Sequence[Diagnostic]
+    errors: Sequence[Diagnostic]
+
+    @property
+    def why(self) -> str:
+        """The first of the errors, in words."""
+        return "; ".join(item.message for item in self.errors[:2])
+
+
+def open_text(text: str, folder: Path | None = None, name: str = "scenario.yaml") -> Opened:
+    """Read a scenario within the limits of a grading.
+
+    Args:
+        text: The scenario.
+        folder: Folder with the maps that it may read; default: it may read none.
+        name: Path of its file in that folder.
+    """
+    limits, path = LIMITS, None
+    if folder is not None:
+        limits, path = replace(LIMITS, root=str(folder)), str(folder / name)
+    document = load_text(text, path=path, limits=limits)
+    if document.fatal:
+        return Opened(document, None, (), document.problems)
+    reading = read(document, limits=limits)
+    errors = [item for item in reading.diagnostics if item.severity == "error" or item.code in KEY_CODES]
+    return Opened(document, None if errors else reading.scenario, reading.diagnostics, errors)
 
 
 @dataclass
@@ -47,7 +99,7 @@ class Material:
     reply: str = ""
     replies: list[str] = field(default_factory=list)
     document: Document | None = None
-    findings: list[Any] = field(default_factory=list)
+    findings: Sequence[Diagnostic] = ()
     blobs: Mapping[str, bytes] = field(default_factory=dict)
     workplace: Path | None = None
     trusted_folder: Path | None = None
@@ -86,6 +138,32 @@ class Material:
             raise LookupError("there is no folder to work in")
         write_files(self.workplace, self.texts, self.blobs)
         return self.workplace
+
+    def open(self, file: str) -> Opened:
+        """Read a scenario of the answer. Maps beside it are read from a copy of the answer."""
+        return open_text(self.texts[file], self.folder() if self.blobs else None, file)
+
+    def other(self, file: str) -> Material:
+        """The material for assertions about another scenario of the answer, opened once; itself for its own file.
+
+        Raises:
+            LookupError: There is no such file, it is not a valid scenario, or its world cannot be built.
+        """
+        if not file or (file == self.main and self.scenario is not None):
+            return self
+        if file not in self.beside:
+            if file not in self.texts:
+                raise LookupError(f"there is no file {file}")
+            found = self.open(file)
+            if found.scenario is None:
+                raise LookupError(f"{file}: {found.why}")
+            made = replace(self, scenario=found.scenario, document=found.document, main=file, beside={}, _scenes={})
+            try:
+                made.scene(0)
+            except IrsimError as error:
+                raise LookupError(f"{file}: {str(error).splitlines()[0]}") from None
+            self.beside[file] = made
+        return self.beside[file]
 
     def bodies(self, scene: Scene, name: str) -> list[Body]:
         """The bodies of a selection."""

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-__all__ = ["NOT_REACHED", "STAGES", "Cost", "Mark", "Outcome", "Stage", "Verdict"]
+__all__ = ["NOT_REACHED", "STAGES", "Cost", "Mark", "Outcome", "Record", "Stage", "Verdict", "name_of"]
 
 Stage = Literal["parse", "schema", "load", "sane", "facts", "relations", "behavior", "edits", "reply"]
 STAGES: tuple[Stage, ...] = ("parse", "schema", "load", "sane", "facts", "relations", "behavior", "edits", "reply")
@@ -15,11 +15,18 @@ NOT_REACHED = "not reached"
 """What is observed of an assertion after the grading has ended."""
 
 
-class _Record(BaseModel):
+def name_of(case: str, instance: str) -> str:
+    """Name of an instance, as folders of an export have it: ``pub-01`` or ``pub-01@7``."""
+    return f"{case}@{instance}" if instance else case
+
+
+class Record(BaseModel):
+    """A record that has no other keys than these."""
+
     model_config = ConfigDict(extra="forbid")
 
 
-class Mark(_Record):
+class Mark(Record):
     """A place in the world that a failed assertion is about, for the picture in the report (world frame, m)."""
 
     points: list[list[float]]
@@ -27,7 +34,7 @@ class Mark(_Record):
     text: str = ""
 
 
-class Outcome(_Record):
+class Outcome(Record):
     """One assertion about one artefact."""
 
     assertion: str
@@ -46,7 +53,7 @@ class Outcome(_Record):
     marks: list[Mark] = []
 
 
-class Cost(_Record):
+class Cost(Record):
     """What an answer cost, as far as it is known."""
 
     calls: int | None = None
@@ -68,7 +75,7 @@ class Cost(_Record):
     """What could not be counted, and why."""
 
 
-class Verdict(_Record):
+class Verdict(Record):
     """The verdict on what an agent made of a case."""
 
     case: str
@@ -88,6 +95,11 @@ class Verdict(_Record):
     """How long the grading took."""
     files: dict[str, str] = {}
     """The files that were graded."""
+
+    @property
+    def name(self) -> str:
+        """Name of the instance."""
+        return name_of(self.case, self.instance)
 
     def failed(self) -> list[Outcome]:
         """The assertions that do not hold."""

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from irsim.scenario.resolve.body_size import top_speed
 from irsim_evals.grader.body import Body
 from irsim_evals.grader.hues import hue_of
 from irsim_evals.grader.matching import Kind
@@ -94,12 +95,6 @@ def _to_goal(_: Scene, body: Body) -> float | None:
     return None if goal is None else math.atan2(goal[1] - body.pose[1], goal[0] - body.pose[0])
 
 
-def _top_speed(_: Scene, body: Body) -> float | None:
-    from irsim.scenario.resolve.body_size import top_speed
-
-    return float(top_speed(_.env.scenario.objects[body.index]))
-
-
 def _of_world(component: int) -> Callable[[Scene, Body], Any]:
     """Position as a share of the extent of the world."""
 
@@ -152,7 +147,7 @@ PROPERTIES: dict[str, Property] = {
     "static": Property("flag", "static", lambda _, body: body.static),
     "passable": Property("flag", "unobstructed", lambda _, body: body.passable),
     "kinematics": Property("name", "kinematics", lambda _, body: body.kinematics),
-    "wheelbase": Property("size", "kinematics", lambda _, body: body.wheelbase),
+    "wheelbase": Property("size", "kinematics", lambda _, body: body.record.wheelbase),
     "shape": Property("name", "shape", lambda _, body: body.shape),
     "radius": Property("size", "shape", lambda _, body: body.radius),
     "long_side": Property("size", "shape", _side(0)),
@@ -181,14 +176,14 @@ PROPERTIES: dict[str, Property] = {
     "goal_direction": Property("heading", "goal", _to_goal),
     "goal_distance": Property("length", "goal", _straight),
     "way": Property("length", "goal", _way),
-    "threshold": Property("length", "goal_threshold", lambda _, body: body.threshold),
-    "arrive_mode": Property("name", "arrive_mode", lambda _, body: body.arrive_mode),
+    "threshold": Property("length", "goal_threshold", lambda _, body: body.record.goal_threshold),
+    "arrive_mode": Property("name", "arrive_mode", lambda _, body: body.record.arrive_mode),
     "behavior": Property("name", "behavior", lambda _, body: body.behavior),
     "options": Property("name", "behavior", lambda _, body: sorted(body.options.items(), key=str)),
     "local": Property("name", "behavior.local", _local),
     "avoids": Property("flag", "behavior", lambda _, body: body.avoids),
-    "wander": Property("flag", "behavior.wander", lambda _, body: body.wander),
-    "loop": Property("flag", "behavior.loop", lambda _, body: body.loop),
+    "wander": Property("flag", "behavior.wander", lambda _, body: body.record.wander),
+    "loop": Property("flag", "behavior.loop", lambda _, body: body.record.loop),
     "forward": Property("speed", "vel_max", lambda _, body: body.forward),
     "backward": Property("speed", "vel_min", lambda _, body: body.backward),
     "sideways": Property("speed", "vel_max", lambda _, body: body.sideways),
@@ -200,14 +195,14 @@ PROPERTIES: dict[str, Property] = {
     "turn_right": Property("rate", "vel_min", lambda s, b: _turn(s, b, -1)),
     "steer_left": Property("angle", "vel_max", _limit(("acker",), 1, 1)),
     "steer_right": Property("angle", "vel_min", _limit(("acker",), 1, -1)),
-    "top_speed": Property("speed", "vel_max", _top_speed),
+    "top_speed": Property("speed", "vel_max", lambda _, body: float(top_speed(body.record))),
     "sensors": Property("count", "sensors", lambda _, body: len(body.sensors)),
-    "fov": Property("angle", "fov", lambda _, body: body.fov),
-    "fov_radius": Property("length", "fov_radius", lambda _, body: body.fov_radius),
+    "fov": Property("angle", "fov", lambda _, body: body.record.fov),
+    "fov_radius": Property("length", "fov_radius", lambda _, body: body.record.fov_radius),
     "color": Property("name", "color", lambda _, body: body.color),
     "hue": Property("name", "color", lambda _, body: hue_of(body.color)),
-    "tags": Property("name", "tags", lambda _, body: list(body.tags)),
-    "group": Property("count", "group", lambda _, body: body.group),
+    "tags": Property("name", "tags", lambda _, body: list(body.record.tags)),
+    "group": Property("count", "group", lambda _, body: body.record.group),
 }
 """Name → property."""
 

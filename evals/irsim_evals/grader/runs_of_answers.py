@@ -177,9 +177,8 @@ def _name(behavior: str) -> str:
 
 def _written(material: Material, file: str) -> tuple[str, ...]:
     """Names of the behaviors of the robots of a scenario."""
-    from irsim_evals.grader.predicates.scenarios import opened
-
-    one = opened(material, file) if file in material.texts else ""
-    if isinstance(one, str):
+    try:
+        one = material.other(file)
+    except LookupError:
         return ()
     return tuple(sorted({body.behavior for body in one.scene(0).robots if body.behavior is not None}))

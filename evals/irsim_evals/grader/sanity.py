@@ -110,15 +110,17 @@ def check_scene(scene: Scene, *, overlap: bool = True) -> list[Outcome]:
 def check_goals(scene: Scene) -> Outcome:
     """Goals mean something: they count as reached only near them, and some robot has time enough for its way."""
     limit = scene.world.time_limit
-    bodies = [b for b in scene.bodies if not b.static and b.behavior is not None and b.goals and not b.wander]
+    bodies = [b for b in scene.bodies if not b.static and b.behavior is not None and b.goals and not b.record.wander]
     ways = [(body, math.dist(body.pose[:2], body.goals[-1][:2])) for body in bodies]
     odd = [
-        (body, f"has arrived {body.threshold:g} m away", f"{body.entry}.goal_threshold")
+        (body, f"has arrived {body.record.goal_threshold:g} m away", f"{body.entry}.goal_threshold")
         for body, way in ways
-        if body.threshold > max(_NEAR, _NEAR_SHARE * way)
+        if body.record.goal_threshold > max(_NEAR, _NEAR_SHARE * way)
     ]
     robots = [(body, way) for body, way in ways if body.role == "robot"]
-    reach = [math.inf if limit is None else limit * _speed(scene, body) + body.threshold for body, _ in robots]
+    reach = [
+        math.inf if limit is None else limit * top_speed(body.record) + body.record.goal_threshold for body, _ in robots
+    ]
     late = [(body, way) for (body, way), far in zip(robots, reach, strict=True) if way > far]
     if late and len(late) == len(robots):
         odd += [(body, f"has {limit:g} s for {way:.1f} m", "world.time_limit") for body, way in late]
@@ -133,17 +135,13 @@ def check_goals(scene: Scene) -> Outcome:
     )
 
 
-def _speed(scene: Scene, body: Body) -> float:
-    return float(top_speed(scene.env.scenario.objects[body.index]))
-
-
 def check_moves(episode: Episode) -> Outcome:
     """Every body with a goal and a behavior moves, unless it is already there."""
     still = []
     for body in episode.scene.bodies:
-        if body.static or body.behavior is None or not (body.goals or body.wander):
+        if body.static or body.behavior is None or not (body.goals or body.record.wander):
             continue
-        near = body.goal is not None and math.dist(body.pose[:2], body.goal[:2]) <= body.threshold + _MOVED
+        near = body.goal is not None and math.dist(body.pose[:2], body.goal[:2]) <= body.record.goal_threshold + _MOVED
         path = episode.positions(body.index)
         if not near and np.hypot(*(path - path[0]).T).max() < _MOVED:
             still.append((body, "stays where it is"))

@@ -85,7 +85,7 @@ def _meets(scene: Scene, body: Body, selector: Selector, selectors: dict[str, Se
     shapes = {body.shape, *(("rectangle",) if body.shape == "square" else ())}
     if selector.shape is not None and not shapes & set(selector.shape):
         return False
-    if selector.named is not None and not _is_named(scene, body, selector.named):
+    if selector.named is not None and not _is_named(body, selector.named):
         return False
     if selector.inside is not None and not _is_inside(body, selector.inside):
         return False
@@ -99,9 +99,9 @@ def _meets(scene: Scene, body: Body, selector: Selector, selectors: dict[str, Se
     return not selector.any_of or any(_meets(scene, body, item, selectors) for item in selector.any_of)
 
 
-def _is_named(scene: Scene, body: Body, pattern: str) -> bool:
-    group = scene.env.scenario.objects[body.index].group_name
-    return any(re.search(pattern, text, re.IGNORECASE) for text in (body.name, group, *body.tags))
+def _is_named(body: Body, pattern: str) -> bool:
+    texts = (body.name, body.record.group_name, *body.record.tags)
+    return any(re.search(pattern, text, re.IGNORECASE) for text in texts)
 
 
 def _is_inside(body: Body, region: tuple[float, float, float, float]) -> bool:

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 
 import irsim
 from irsim.diagnostics.errors import ArgumentError
@@ -23,12 +23,12 @@ from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import case_of, given_pictures
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.limited import grade_answer
-from irsim_evals.grader.outcome import Cost
+from irsim_evals.grader.outcome import Cost, Record, name_of
 from irsim_evals.results import Trial, trial_of
 
 __all__ = [
     "Attempt", "Call", "Header", "Names", "Recording", "RecordingEnds", "Turn", "check_task", "digest",
-    "find_recording", "grade_recording", "name_of", "read_recording", "scrubbed", "task_hash", "write_recording",
+    "find_recording", "grade_recording", "read_recording", "scrubbed", "task_hash", "write_recording",
 ]  # fmt: skip
 
 _SECRET_NAMES = re.compile(r"KEY|TOKEN|SECRET|PASSWORD|CREDENTIAL", re.IGNORECASE)
@@ -51,11 +51,7 @@ class RecordingEnds(RuntimeError):
         self.failed = failed
 
 
-class _Record(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
-
-class Header(_Record):
+class Header(Record):
     """What was recorded with what."""
 
     kind: Literal["header"] = "header"
@@ -75,7 +71,7 @@ class Header(_Record):
     """Limits, and parameters of the model that were set."""
 
 
-class Call(_Record):
+class Call(Record):
     """One call of a tool."""
 
     id: str
@@ -88,7 +84,7 @@ class Call(_Record):
     failed: bool = False
 
 
-class Turn(_Record):
+class Turn(Record):
     """One message."""
 
     role: Literal["system", "user", "assistant"]
@@ -101,7 +97,7 @@ class Turn(_Record):
     """Tokens of this answer of the model."""
 
 
-class Attempt(_Record):
+class Attempt(Record):
     """One attempt at one case."""
 
     kind: Literal["trial"] = "trial"
@@ -128,7 +124,7 @@ class Attempt(_Record):
         return self.case, self.instance, self.trial
 
 
-class Recording(_Record):
+class Recording(Record):
     """A header and its attempts."""
 
     header: Header
@@ -143,11 +139,6 @@ class Recording(_Record):
 def digest(text: str) -> str:
     """Short digest of a text."""
     return hashlib.sha256(text.encode("utf-8", errors="replace")).hexdigest()[:16]
-
-
-def name_of(case: str, instance: str) -> str:
-    """Name of an instance, as folders of an export have it: ``pub-01`` or ``pub-01@7``."""
-    return f"{case}@{instance}" if instance else case
 
 
 def task_hash(instance: Instance) -> str:

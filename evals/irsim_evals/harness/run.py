@@ -16,6 +16,7 @@ from typing import Any, Literal
 
 from irsim.diagnostics.errors import ArgumentError, IrsimError
 from irsim_evals.cases.instance import Instance
+from irsim_evals.grader.outcome import name_of
 from irsim_evals.harness.arms import MODEL_ARMS
 from irsim_evals.harness.prices import Price, set_price
 from irsim_evals.harness.recording import (
@@ -25,7 +26,6 @@ from irsim_evals.harness.recording import (
     check_task,
     find_recording,
     grade_recording,
-    name_of,
     write_recording,
 )
 from irsim_evals.results import Trial, cases_hash

@@ -25,10 +25,10 @@ from inspect_ai.tool import ToolDef, ToolError, mcp_connection, mcp_server_stdio
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import given_pictures, write_given
 from irsim_evals.grader.limited import grade_folder
-from irsim_evals.grader.outcome import Verdict
+from irsim_evals.grader.outcome import Verdict, name_of
 from irsim_evals.harness.arms import briefing, skill_folders
 from irsim_evals.harness.folder import Folder, FolderError
-from irsim_evals.harness.recording import RecordingEnds, name_of
+from irsim_evals.harness.recording import RecordingEnds
 
 __all__ = ["SCORER", "Session", "Work", "build_task", "by_name", "file_tools", "picture_url", "server_tools"]
 

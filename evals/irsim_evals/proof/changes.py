@@ -140,7 +140,7 @@ def _of_body(body: Body, kind: str) -> Any:
     if kind == "shape":
         return [body.shape, round(float(shapely.area(body.footprint)) > 0)]
     if kind == "behavior":
-        return [body.behavior, body.wander, body.loop]
+        return [body.behavior, body.record.wander, body.record.loop]
     if kind == "driven":
         return body.behavior is not None
     if kind == "options":
@@ -152,9 +152,13 @@ def _of_body(body: Body, kind: str) -> Any:
     if kind == "acce":
         return body.limits["acce"]
     if kind == "fov":
-        return [None if body.fov is None else min(body.fov, _FULL_TURN), body.fov_radius]
+        return [None if body.record.fov is None else min(body.record.fov, _FULL_TURN), body.record.fov_radius]
+    if kind == "threshold":
+        return body.record.goal_threshold
+    if kind == "wheelbase":
+        return body.record.wheelbase
     if kind == "tags":
-        return list(body.tags)
+        return list(body.record.tags)
     return getattr(body, kind)
 
 

@@ -28,7 +28,7 @@ def one_entry_each(text: str, data: Data, scene: Scene) -> str | None:
             ):
                 return None
             one["state"] = [round(value, 9) for value in body.pose]
-            one["group"] = body.group
+            one["group"] = body.record.group
             if body.goals and "waypoints" not in one:
                 one["goal"] = [round(value, 9) for value in body.goals[-1]]
             if one.get("color") == "cycle" or isinstance(one.get("color"), list):

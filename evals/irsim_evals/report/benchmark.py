@@ -30,7 +30,7 @@ def as_benchmark(content: Content) -> str:
         "metadata": {
             "skill_name": content.title,
             "executor_model": ", ".join(dict.fromkeys(t.model for t in trials if t.model)) or None,
-            "evals_run": sorted({_eval_id(trial) for trial in trials}),
+            "evals_run": sorted({trial.verdict.name for trial in trials}),
             "runs_per_configuration": max(trial.number for trial in trials),
         },
         "runs": [_run(trial) for trial in trials],
@@ -112,16 +112,12 @@ def _table(table: Table, arms: Sequence[str]) -> dict[str, dict[str, dict[str, i
     }
 
 
-def _eval_id(trial: Trial) -> str:
-    return "@".join(part for part in trial.key if part)
-
-
 def _run(trial: Trial) -> dict[str, Any]:
     """One attempt, as skill-creator writes it."""
     verdict = trial.verdict
     passed = sum(one.passed for one in verdict.outcomes)
     return {
-        "eval_id": _eval_id(trial),
+        "eval_id": trial.verdict.name,
         "eval_name": trial.title,
         "configuration": trial.arm,
         "run_number": trial.number,

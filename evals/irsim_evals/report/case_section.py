@@ -31,7 +31,7 @@ def case_sections(content: Content) -> str:
 def _case(content: Content, places: Sequence[int]) -> str:
     trials = [content.results.trials[place] for place in places]
     first = trials[0]
-    name = "@".join(part for part in first.key if part)
+    name = first.verdict.name
     several = {arm for arm in (trial.arm for trial in trials) if sum(trial.arm == arm for trial in trials) > 1}
     chips = "".join(_chip(trial, _label(trial, several)) for trial in trials)
     facts = [f"level {first.level}", ", ".join(first.category)]

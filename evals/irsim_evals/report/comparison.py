@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from irsim_evals.grader.outcome import name_of
 from irsim_evals.report.summary import attempts
 from irsim_evals.results import Trial
 from irsim_evals.statistics import Interval, mcnemar, paired_bootstrap
@@ -41,7 +42,7 @@ class Change:
     @property
     def name(self) -> str:
         """Case and instance as one name."""
-        return f"{self.case}@{self.instance}" if self.instance else self.case
+        return name_of(self.case, self.instance)
 
 
 @dataclass(frozen=True)
@@ -139,8 +140,8 @@ def compare(before: Sequence[Trial], after: Sequence[Trial], first: str, second:
         passed=(passed[0], passed[1]),
         fixed=fixed,
         broken=broken,
-        missing=sorted(_name(key) for key in set(one) - set(two)),
-        new=sorted(_name(key) for key in set(two) - set(one)),
+        missing=sorted(name_of(*key) for key in set(one) - set(two)),
+        new=sorted(name_of(*key) for key in set(two) - set(one)),
         p=mcnemar(len(broken), len(fixed)),
         difference=paired_bootstrap(differences),
         smallest=smallest_difference(len(common), changed / len(common) if common else 0.0),
@@ -181,7 +182,3 @@ def _share(trials: Sequence[Trial]) -> float:
 def _reason(trials: Sequence[Trial]) -> str:
     failed = next((one for trial in trials for one in trial.verdict.failed() if not one.soft), None)
     return "" if failed is None else f"{failed.assertion}: expected {failed.expected}; observed {failed.observed}"
-
-
-def _name(key: tuple[str, str]) -> str:
-    return f"{key[0]}@{key[1]}" if key[1] else key[0]

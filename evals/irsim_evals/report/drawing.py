@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,11 +12,8 @@ from irsim.graphics.figure.figure import SceneFigure
 from irsim.graphics.figure.layers import opaque_colors
 from irsim.rendering.snapshot import legible_scene, png_of
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
-from irsim.scenario.read import read
-from irsim.scenario.yaml.document import load_text
 from irsim_evals.grader.episode import run_episode
-from irsim_evals.grader.grade import LIMITS
-from irsim_evals.grader.material import write_files
+from irsim_evals.grader.material import open_text, write_files
 from irsim_evals.grader.scene import open_scene
 from irsim_evals.report.pictures import Drawn, Job
 
@@ -51,21 +47,17 @@ def draw_answer(job: Job) -> list[Drawn] | str:
 
 def _both(job: Job, folder: Path) -> list[Drawn] | str:
     """Both pictures, with maps in a temporary folder."""
-    limits, path = LIMITS, None
     if job.pictures:
         write_files(folder, {job.name: job.text}, job.pictures)
-        limits, path = replace(LIMITS, root=str(folder)), str(folder / job.name)
-    document = load_text(job.text, path=path, limits=limits)
-    reading = read(document, limits=limits)
-    if reading.scenario is None:
-        why = next((item.message for item in reading.diagnostics if item.severity == "error"), "it is not valid")
-        return f"The simulator cannot read the scenario: {why}"[:300]
-    scenario = reading.scenario
+    found = open_text(job.text, folder if job.pictures else None, job.name)
+    scenario = found.scenario
+    if scenario is None:
+        return f"The simulator cannot read the scenario: {found.why}"[:300]
     start = open_scene(scenario, job.start_seed)
     first = _draw(start.env.simulation, job.start_seed)
     seconds = min(job.seconds, _MAX_STEPS * float(start.world.step_time))
     if job.behavior is not None:
-        scenario = with_behavior(document, parse_behavior(job.behavior), strict=False)
+        scenario = with_behavior(found.document, parse_behavior(job.behavior), strict=False)
     episode = run_episode(scenario, job.end_seed, seconds)
     return [first, _draw(episode.scene.env.simulation, job.end_seed)]
 

@@ -82,11 +82,10 @@ def _table(table: Table, arms: Sequence[ArmSummary], name: str) -> str:
 def _failed(trials: Sequence[Trial]) -> str:
     lines = []
     for trial in trials[:_MAX_FAILED]:
-        name = "@".join(part for part in trial.key if part)
         one = next((o for o in trial.verdict.failed() if not o.soft), None)
         why = f": {_safe(one.assertion)}: expected {_safe(one.expected)}; observed {_safe(one.observed)}" if one else ""
         attempt = f" (attempt {trial.number})" if trial.number > 1 else ""
-        lines.append(f"- {_safe(name)}{attempt}{why}")
+        lines.append(f"- {_safe(trial.verdict.name)}{attempt}{why}")
     if len(trials) > _MAX_FAILED:
         lines.append(f"- and {len(trials) - _MAX_FAILED} more")
     return "\n".join(lines)

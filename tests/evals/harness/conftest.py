@@ -6,12 +6,16 @@ import gc
 import sys
 import warnings
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from irsim_evals.cases.instance import Instance, instance_of
+from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import case_of, golds_of
+from irsim_evals.harness.run import run_arm
+from irsim_evals.results import Trial
+from tests.evals.conftest import made_up
 from tests.evals.harness.messages_api import MessagesApi, Reply, messages_api, turn_of
 
 KEY = "sk-ant-test-0123456789"
@@ -84,6 +88,11 @@ def connections_of_others() -> Iterator[None]:
         gc.collect()
 
 
+def run(instances: list[Instance], api: MessagesApi, folder: Path, arm: str = "no-skill", **more: Any) -> list[Trial]:
+    """Let the stand-in answer in an arm."""
+    return run_arm(arm, instances, log_dir=folder, base_url=api.url, **{"model": MODEL, **more})
+
+
 @pytest.fixture
 def empty_world() -> Instance:
     """A case that is quickly graded."""
@@ -119,19 +128,13 @@ def service(writes: Callable[[dict[str, Any]], Reply]) -> Iterator[MessagesApi]:
 @pytest.fixture
 def sketched() -> Instance:
     """A case with a picture, a file and a second turn."""
-    return instance_of(
-        {
-            "id": "sketch", "title": "a sketch", "category": ["edit"], "level": 1, "prompt": "Build the sketch.",
-            "turns": ["Now call the robot Rosa."],
-            "files": {"base.yaml": "world: {width: 12, height: 8}\nrobot: {state: [1, 1, 0], goal: [9, 6]}\n"},
-            "drawings": {
-                "sketch.png": {"size": [12, 8], "items": [{"kind": "box", "at": [2, 2, 4, 5]}]},
-            },
-            "select": {"robots": {"role": "robot"}},
-            "assert": [
-                {"id": "robots", "count": {"of": "robots", "number": 1}},
-                {"id": "built", "says": {"any_of": ["sketch"], "turn": 1}},
-                {"id": "named", "says": {"any_of": ["Rosa"], "turn": 2}},
-            ],
-        }
-    )  # fmt: skip
+    return made_up(
+        {"id": "robots", "count": {"of": "robots", "number": 1}},
+        {"id": "built", "says": {"any_of": ["sketch"], "turn": 1}},
+        {"id": "named", "says": {"any_of": ["Rosa"], "turn": 2}},
+        prompt="Build the sketch.",
+        turns=["Now call the robot Rosa."],
+        files={"base.yaml": "world: {width: 12, height: 8}\nrobot: {state: [1, 1, 0], goal: [9, 6]}\n"},
+        drawings={"sketch.png": {"size": [12, 8], "items": [{"kind": "box", "at": [2, 2, 4, 5]}]}},
+        select={"robots": {"role": "robot"}},
+    )

@@ -11,7 +11,7 @@ import pytest
 
 from irsim_evals.cases.instance import Instance
 from irsim_evals.harness.arms import MODEL_ARMS
-from tests.evals.harness.conftest import KEY, MODEL
+from tests.evals.harness.conftest import KEY, MODEL, run
 from tests.evals.harness.messages_api import MessagesApi, Reply, messages_api, results_in, turn_of
 
 # Warnings of inspect_ai and its libraries are theirs.
@@ -36,17 +36,11 @@ def said(body: dict[str, Any]) -> str:
     return "\n".join(part.get("text", "") for part in parts)
 
 
-def run(arm: str, instances: list[Instance], api: MessagesApi, folder: Path, **more: Any) -> list[Any]:
-    from irsim_evals.harness.run import run_arm
-
-    return run_arm(arm, instances, model=MODEL, log_dir=folder, base_url=api.url, **more)
-
-
 @pytest.mark.parametrize("arm", ["no-skill", "skill"])
 def test_arms_without_servers_have_files_and_skills(
     arm: str, empty_world: Instance, service: MessagesApi, tmp_path: Path
 ) -> None:
-    (trial,) = run(arm, [empty_world], service, tmp_path)
+    (trial,) = run([empty_world], service, tmp_path, arm)
     assert trial.verdict.strict, trial.verdict.failed()
     assert (trial.arm, trial.model, trial.ended) == (arm, MODEL, "")
     assert trial.reply == "The world is in scenario.yaml."
@@ -84,7 +78,7 @@ def test_an_agent_with_servers_reads_a_skill_checks_runs_and_inspects(
         return Reply("Done: scenario.yaml.")
 
     with messages_api(script) as api:
-        (trial,) = run(arm, [empty_world], api, tmp_path)
+        (trial,) = run([empty_world], api, tmp_path, arm)
         assert trial.verdict.strict, (trial.ended, trial.verdict.failed())
         names = offered(api.requests[0])
         assert names > FILES | SERVER
@@ -114,7 +108,7 @@ def test_later_turns_come_after_the_replies_and_pictures_are_seen(sketched: Inst
         return Reply("It is called Rosa.")
 
     with messages_api(script) as api:
-        (trial,) = run("no-skill", [sketched], api, tmp_path)
+        (trial,) = run([sketched], api, tmp_path)
     assert trial.verdict.strict, trial.verdict.failed()
     assert trial.reply == "It is called Rosa."
     prompt = api.requests[0]["messages"][0]["content"]
@@ -146,7 +140,7 @@ def test_an_agent_cannot_leave_its_folder(empty_world: Instance, scenario: str, 
         return Reply("Done.")
 
     with messages_api(script) as api:
-        (trial,) = run("skill", [empty_world], api, tmp_path / "logs")
+        (trial,) = run([empty_world], api, tmp_path / "logs", "skill")
     assert heard[1].count("outside the folder") == 2
     assert "begin with a dot" in heard[1]
     assert "can be read only" in heard[1]
@@ -164,7 +158,7 @@ def test_a_server_that_does_not_start_fails_the_attempt_with_a_reason(
 
     start = task._server
     monkeypatch.setattr(task, "_server", lambda name, folder, *_: start(name, folder, "no_such_module"))
-    (trial,) = run("skill+mcp", [empty_world], service, tmp_path)
+    (trial,) = run([empty_world], service, tmp_path, "skill+mcp")
     assert trial.ended.startswith("the attempt failed: ")
     assert (trial.verdict.strict, service.requests) == (False, [])
 
@@ -181,7 +175,7 @@ def test_epochs_are_attempts_of_their_own_and_progress_is_reported(
 
     told: list[tuple[int, int]] = []
     with messages_api(script) as api:
-        trials = run("no-skill", [empty_world], api, tmp_path, epochs=3, progress=lambda *at: told.append(at))
+        trials = run([empty_world], api, tmp_path, epochs=3, progress=lambda *at: told.append(at))
     assert [trial.number for trial in trials] == [1, 2, 3]
     assert sum(trial.verdict.strict for trial in trials) == 2
     assert sorted(told) == [(1, 3), (2, 3), (3, 3)]

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import socket
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import anyio
 import pytest
 
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import case_of
-from tests.evals.harness.conftest import MODEL, Guard
+from irsim_evals.harness.run import RunError
+from tests.evals.harness.conftest import MODEL, Guard, run
 from tests.evals.harness.messages_api import Fault, MessagesApi, Reply, messages_api, turn_of
 
 pytestmark = [pytest.mark.evals, pytest.mark.filterwarnings("default")]
@@ -23,7 +27,6 @@ OVERLOADED = Fault(529, "overloaded_error", "Overloaded")
 @pytest.fixture(autouse=True)
 def quick_retries(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """Waits of inspect_ai between requests are noted and not made; those of Anthropic's library are."""
-    import anyio
     from inspect_ai.model import _retry
 
     waited: list[float] = []
@@ -36,15 +39,7 @@ def quick_retries(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     return waited
 
 
-def run(instances: list[Instance], api: MessagesApi, folder: Path, **more: Any) -> list[Any]:
-    from irsim_evals.harness.run import run_arm
-
-    return run_arm("no-skill", instances, log_dir=folder, base_url=api.url, **{"model": MODEL, **more})
-
-
 def test_the_guard_of_these_tests_refuses_other_addresses(offline: Guard) -> None:
-    import socket
-
     for look in (lambda: socket.create_connection(("192.0.2.1", 443), 1), lambda: socket.getaddrinfo("example.org", 1)):
         with pytest.raises(OSError, match="nothing but the loopback address"):
             look()
@@ -69,8 +64,6 @@ def test_answers_come_streamed_and_whole(
 def test_a_busy_service_is_asked_again_when_it_says(
     empty_world: Instance, service: MessagesApi, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import time
-
     begin = time.monotonic()
     (trial,) = run([empty_world], service.first(BUSY), tmp_path)
     assert time.monotonic() - begin >= 1, "retry-after says a second"
@@ -140,8 +133,6 @@ def test_a_limit_ends_an_attempt_and_what_is_there_is_graded(
 
 
 def test_a_time_limit_ends_an_attempt(empty_world: Instance, tmp_path: Path) -> None:
-    import time
-
     def slow(body: dict[str, Any]) -> Reply:
         time.sleep(1.5 if turn_of(body) else 0)
         return Reply("I look.", [("list_files", {})])
@@ -175,8 +166,6 @@ def test_what_is_missing_is_said_before_anything_is_asked(
 def test_a_provider_that_is_not_installed_is_one_clear_error(
     empty_world: Instance, service: MessagesApi, tmp_path: Path
 ) -> None:
-    from irsim_evals.harness.run import RunError
-
     with pytest.raises(RunError, match=r"nonsense/model could not be run: "):
         run([empty_world], service, tmp_path, model="nonsense/model")
 

@@ -41,24 +41,23 @@ def recording() -> Recording:
     return Recording(header=Header(arm="skill", model="anthropic/x", date="2026-01-01"), attempts=[right, broken])
 
 
-def test_the_arms_of_models_are_known() -> None:
-    assert MODEL_ARMS == ("no-skill", "skill", "skill+mcp", "skill+mcp+distractors")
-
-
 def test_without_the_extra_the_error_names_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "inspect_ai", None)
     with pytest.raises(ArgumentError, match=r"inspect_ai is not installed.*pip install 'irsim-mcp\[evals\]'"):
         run_arm("skill", [case_of("pub-01")], model="anthropic/x", log_dir=tmp_path)
 
 
-def test_wrong_arguments_are_refused(tmp_path: Path) -> None:
-    case = case_of("pub-01")
-    with pytest.raises(ArgumentError, match="no model answers in the arm 'rules'"):
-        run_arm("rules", [case], model="anthropic/x", log_dir=tmp_path)
-    with pytest.raises(ArgumentError, match="there is no case to answer"):
-        run_arm("skill", [], model="anthropic/x", log_dir=tmp_path)
-    with pytest.raises(ArgumentError, match="at least one attempt"):
-        run_arm("skill", [case], model="anthropic/x", log_dir=tmp_path, epochs=0)
+@pytest.mark.parametrize(
+    ("arm", "cases", "epochs", "message"),
+    [
+        ("rules", ["pub-01"], 1, "no model answers in the arm 'rules'"),
+        ("skill", [], 1, "there is no case to answer"),
+        ("skill", ["pub-01"], 0, "at least one attempt"),
+    ],
+)
+def test_wrong_arguments_are_refused(arm: str, cases: list[str], epochs: int, message: str, tmp_path: Path) -> None:
+    with pytest.raises(ArgumentError, match=message):
+        run_arm(arm, [case_of(name) for name in cases], model="anthropic/x", log_dir=tmp_path, epochs=epochs)
 
 
 def test_a_recording_is_graded_without_the_extra(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,8 @@ import pytest
 
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_of
+from irsim_evals.cases.store import case_of, golds_of
+from irsim_evals.harness.run import run_arm
 from irsim_evals.results import Trial
 from tests.evals.harness.conftest import KEY, MODEL, Guard
 from tests.evals.harness.messages_api import Fault, Reply, messages_api, turn_of
@@ -48,9 +50,6 @@ def agent(scenario: str) -> Any:
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Trial], Path]:
     """A live run of two cases, of which the second fails at once."""
-    from irsim_evals.cases.store import golds_of
-    from irsim_evals.harness.run import run_arm
-
     first = case_of("pub-01")
     scenario = next(text for name, text in golds_of(first)[0].files.items() if name.endswith(".yaml"))
     folder = tmp_path_factory.mktemp("logs")
@@ -63,8 +62,6 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Trial], Pat
 
 
 def replay(path: Path, folder: Path, instances: list[Instance], **more: Any) -> list[Trial]:
-    from irsim_evals.harness.run import run_arm
-
     return run_arm(ARM, instances, model=None, log_dir=folder, replay=path, **more)
 
 
@@ -96,8 +93,6 @@ def test_a_recording_says_what_it_is_and_holds_no_secret_and_no_path(recorded: t
 
 
 def test_the_log_of_inspect_holds_no_key(recorded: tuple[list[Trial], Path]) -> None:
-    import zipfile
-
     (log,) = recorded[1].parent.glob("*.eval")
     with zipfile.ZipFile(log) as archive:
         said = b"".join(archive.read(name) for name in archive.namelist() if name.startswith("header"))
@@ -145,8 +140,6 @@ def test_files_are_graded_again_without_tools(recorded: tuple[list[Trial], Path]
 def test_a_limit_that_was_reached_is_reached_in_the_replay(
     empty_world: Instance, scenario: str, tmp_path: Path
 ) -> None:
-    from irsim_evals.harness.run import run_arm
-
     def endless(body: dict[str, Any]) -> Reply:
         return Reply("Once more.", [("write_file", {"path": "scenario.yaml", "content": scenario})])
 
@@ -161,8 +154,6 @@ def test_a_limit_that_was_reached_is_reached_in_the_replay(
 
 
 def test_what_cannot_be_replayed_is_refused(recorded: tuple[list[Trial], Path], tmp_path: Path) -> None:
-    from irsim_evals.harness.run import run_arm
-
     _, path = recorded
     with pytest.raises(ArgumentError, match=r"records the arm skill\+mcp, not skill"):
         run_arm("skill", [case_of("pub-01")], model=None, log_dir=tmp_path, replay=path)

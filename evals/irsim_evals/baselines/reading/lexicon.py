@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import re
 
 __all__ = [
-    "BEHAVIORS", "DIRECTIONS", "DRIVES", "LAYOUTS", "NOT_FLAT", "NOUNS", "NO_BEHAVIOR", "UNKNOWN_REFERENCE", "angle_of",
+    "BEHAVIORS", "DIRECTIONS", "DRIVES", "LAYOUTS", "NOT_FLAT", "NOUNS", "NO_BEHAVIOR", "UNKNOWN_REFERENCE",
     "first", "has",
 ]  # fmt: skip
 
@@ -146,8 +145,3 @@ def first(text: str, table: dict[str, str]) -> str | None:
         (match.start(), i, name) for i, (name, words) in enumerate(table.items()) if (match := re.search(words, text))
     ]
     return min(found)[2] if found else None
-
-
-def angle_of(signs: tuple[float, float]) -> float:
-    """The heading of a direction [rad]."""
-    return round(math.atan2(signs[1], signs[0]), 6)

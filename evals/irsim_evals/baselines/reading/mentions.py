@@ -9,7 +9,7 @@ from typing import Any, Literal
 from irsim_evals.baselines.reading.language import NUMBER
 from irsim_evals.baselines.reading.lexicon import DIRECTIONS, DRIVES, NOUNS, first
 
-__all__ = ["Mention", "Place", "Role", "clause_start", "mentions_of", "owner", "places_of", "sentence_of"]
+__all__ = ["Mention", "Place", "Role", "mentions_of", "owner", "places_of", "sentence_of"]
 
 _REACH = 60
 """Number of characters before a noun in which its number and its adjectives are looked for."""
@@ -108,12 +108,6 @@ def sentence_of(text: str, position: int) -> tuple[int, int]:
     begin = max((match.end() for match in re.finditer(r"[.;!?](?=\s|$)", text[:position])), default=0)
     after = re.search(r"[.;!?](?=\s|$)", text[position:])
     return begin, position + after.start() if after else len(text)
-
-
-def clause_start(text: str, position: int) -> int:
-    """Start of the part of a sentence around a position, between commas."""
-    begin, _ = sentence_of(text, position)
-    return max(begin, text.rfind(",", 0, position) + 1)
 
 
 def owner(text: str, mentions: list[Mention], start: int, end: int, kinds: tuple[str, ...]) -> Mention | None:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from irsim_evals.grader.scene import Scene
 
 __all__ = [
-    "AnswerPredicate", "EpisodePredicate", "Observation", "Predicate", "ScenePredicate", "SeedsPredicate", "register",
-    "registered", "summary",
+    "AnswerPredicate", "EpisodePredicate", "Observation", "OfBodies", "Predicate", "ScenePredicate", "SeedsPredicate",
+    "judged", "register", "registered", "summary",
 ]  # fmt: skip
 
 _MAX_NAMED = 4
@@ -70,6 +70,13 @@ class ScenePredicate(Predicate):
         raise NotImplementedError
 
 
+class OfBodies(Predicate):
+    """About the bodies of a selection, of which there must be some unless a predicate says otherwise."""
+
+    of: str
+    """Name of the selection."""
+
+
 class SeedsPredicate(Predicate):
     """About how worlds differ from seed to seed."""
 
@@ -104,6 +111,29 @@ class AnswerPredicate(Predicate):
     def observe(self, material: Material) -> Observation:
         """Look at files and words."""
         raise NotImplementedError
+
+
+def judged(
+    expected: str,
+    wrong: Sequence[tuple[Body, Any]],
+    right: str,
+    key: str,
+    *,
+    said: str = "",
+    marks: Sequence[Mark] = (),
+) -> Observation:
+    """What was seen of bodies each of which must be as expected.
+
+    Args:
+        expected: What each must be, for people.
+        wrong: The bodies that are not, with what they are.
+        right: What was seen if there are none.
+        key: Key of an entry that decides it.
+        said: What stands before either.
+        marks: Places that wrong bodies are about.
+    """
+    where = f"{wrong[0][0].entry}.{key}" if wrong else None
+    return Observation(not wrong, expected, said + (summary(wrong) if wrong else right), where, marks=list(marks))
 
 
 _REGISTERED: dict[str, type[Predicate]] = {}

@@ -10,7 +10,7 @@ from pydantic import field_validator, model_validator
 from irsim_evals.grader.hues import discernible
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register, summary
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register, summary
 from irsim_evals.grader.properties import PROPERTIES, value_of, yaml_path
 
 if TYPE_CHECKING:
@@ -38,11 +38,9 @@ SENSOR_KINDS: dict[str, Kind] = {
 
 
 @register("count")
-class Count(ScenePredicate):
+class Count(OfBodies, ScenePredicate):
     """How many bodies a selection holds."""
 
-    of: str
-    """Name of the selection."""
     number: Match
     """Accepted numbers."""
 
@@ -54,11 +52,9 @@ class Count(ScenePredicate):
 
 
 @register("each")
-class Each(ScenePredicate):
+class Each(OfBodies, ScenePredicate):
     """Every body of a selection has some properties. An empty selection fails."""
 
-    of: str
-    """Name of the selection."""
     has: dict[str, Match]
     """Property → accepted values."""
     share: Quantity = 1.0
@@ -94,11 +90,9 @@ class Each(ScenePredicate):
 
 
 @register("distinct")
-class Distinct(ScenePredicate):
+class Distinct(OfBodies, ScenePredicate):
     """How many different values a property has among the bodies of a selection; colors must look different."""
 
-    of: str
-    """Name of the selection."""
     property: str
     """Name of the property."""
     number: Match
@@ -120,13 +114,11 @@ class Distinct(ScenePredicate):
 
 
 @register("placed")
-class Placed(ScenePredicate):
+class Placed(OfBodies, ScenePredicate):
     """Each row of a table describes exactly one body of a selection, and each of its bodies has a row."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     rows: list[dict[str, Match]]
     """For each row: property → accepted values."""
 
@@ -180,11 +172,9 @@ def _assign(row: int, fits: list[list[int]], row_of: dict[int, int], tried: set[
 
 
 @register("sensor")
-class Sensor(ScenePredicate):
+class Sensor(OfBodies, ScenePredicate):
     """Every body of a selection has sensors with some parameters. An empty selection fails."""
 
-    of: str
-    """Name of the selection."""
     has: dict[str, Match] = {}
     """Parameter of the sensor as the simulator holds it → accepted values. ``direction`` is where its middle beam
     points relative to the body, ``mounted`` how far it sits from the origin of the body, ``spacing`` the angle between

@@ -10,7 +10,7 @@ import shapely
 
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, register, summary
+from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, judged, register, summary
 
 if TYPE_CHECKING:
     from irsim_evals.grader.episode import Episode
@@ -18,11 +18,9 @@ if TYPE_CHECKING:
 
 
 @register("visits")
-class Visits(EpisodePredicate):
+class Visits(OfBodies, EpisodePredicate):
     """Every body of a selection comes to some places in the order given. An empty selection fails."""
 
-    of: str
-    """Name of the selection."""
     places: list[tuple[Quantity, Quantity]]
     """Places in the order in which they are visited [m]."""
     tol: Quantity = 0.3
@@ -44,13 +42,8 @@ class Visits(EpisodePredicate):
             return Observation(False, expected, f"{self.of}: no body")
         found = [(body, self._problem(episode.positions(body.index))) for body in bodies]
         wrong = [(body, text) for body, text in found if text]
-        return Observation(
-            not wrong,
-            expected,
-            summary(wrong) or "so it is",
-            f"{wrong[0][0].entry}.waypoints" if wrong else None,
-            marks=[Mark(points=[list(place)], text="visit") for place in self.places] if wrong else [],
-        )
+        marks = [Mark(points=[list(place)], text="visit") for place in self.places] if wrong else []
+        return judged(expected, wrong, "so it is", "waypoints", marks=marks)
 
     def _problem(self, way: np.ndarray) -> str:
         """What is wrong with a path; empty if nothing is."""
@@ -71,11 +64,9 @@ class Visits(EpisodePredicate):
 
 
 @register("enters")
-class Enters(EpisodePredicate):
+class Enters(OfBodies, EpisodePredicate):
     """Every body of a selection comes into each region in this order. An empty selection fails."""
 
-    of: str
-    """Name of the selection."""
     regions: list[tuple[Quantity, Quantity, Quantity, Quantity]]
     """x0, y0, x1, y1 of each region [m]."""
     avoids: list[tuple[Quantity, Quantity, Quantity, Quantity]] = []
@@ -89,13 +80,8 @@ class Enters(EpisodePredicate):
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body")
         wrong = [(body, why) for body in bodies if (why := self._why_not(episode.positions(body.index)))]
-        return Observation(
-            not wrong,
-            expected,
-            summary(wrong) if wrong else f"all {len(bodies)}",
-            f"{wrong[0][0].entry}.goal" if wrong else None,
-            marks=[Mark(points=episode.positions(body.index)[::20].tolist(), text=body.name) for body, _ in wrong],
-        )
+        marks = [Mark(points=episode.positions(body.index)[::20].tolist(), text=body.name) for body, _ in wrong]
+        return judged(expected, wrong, f"all {len(bodies)}", "goal", marks=marks)
 
     def _why_not(self, way: np.ndarray) -> str:
         row = 0
@@ -114,11 +100,9 @@ def _within(way: np.ndarray, region: tuple[float, float, float, float]) -> np.nd
 
 
 @register("one_way")
-class OneWay(EpisodePredicate):
+class OneWay(OfBodies, EpisodePredicate):
     """How many bodies of a selection pass through a region in one direction; none may go against it."""
 
-    of: str
-    """Name of the selection."""
     region: tuple[Quantity, Quantity, Quantity, Quantity]
     """x0, y0, x1, y1 of the region [m]."""
     direction: Quantity
@@ -163,11 +147,9 @@ class OneWay(EpisodePredicate):
 
 
 @register("timetable")
-class Timetable(EpisodePredicate):
+class Timetable(OfBodies, EpisodePredicate):
     """The bodies of a selection cross a line at given times, each of them once."""
 
-    of: str
-    """Name of the selection."""
     start: tuple[Quantity, Quantity]
     """One end of the line [m]."""
     end: tuple[Quantity, Quantity]
@@ -206,11 +188,9 @@ class Timetable(EpisodePredicate):
 
 
 @register("crosses")
-class Crosses(EpisodePredicate):
+class Crosses(OfBodies, EpisodePredicate):
     """Bodies of a selection cross the line of another body's way from one side to the other."""
 
-    of: str
-    """Name of the selection."""
     way_of: str
     """Selection of one body, whose way leads from its start to its goal."""
     number: Match

@@ -10,7 +10,7 @@ import shapely.affinity
 
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, register, summary
+from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, register, summary
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import Body
@@ -19,11 +19,9 @@ if TYPE_CHECKING:
 
 
 @register("collisions")
-class Collisions(EpisodePredicate):
+class Collisions(OfBodies, EpisodePredicate):
     """How many bodies of a selection collide with something. An empty selection fails."""
 
-    of: str
-    """Name of the selection."""
     number: Match = Match(eq=0)
     """Accepted numbers of bodies that collide."""
 
@@ -89,11 +87,9 @@ def _moved(body: Body, pose: Any) -> Any:
 
 
 @register("range_trend")
-class RangeTrend(EpisodePredicate):
+class RangeTrend(OfBodies, EpisodePredicate):
     """How many bodies of a selection come nearer to a body, and how many go away from it."""
 
-    of: str
-    """Name of the selection."""
     to: str
     """Selection of the one body."""
     within: Quantity

@@ -9,7 +9,7 @@ import numpy as np
 
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, register, summary
+from irsim_evals.grader.predicates._base import EpisodePredicate, Observation, OfBodies, judged, register, summary
 
 if TYPE_CHECKING:
     from irsim_evals.grader.episode import Episode
@@ -17,11 +17,9 @@ if TYPE_CHECKING:
 
 
 @register("arrive")
-class Arrive(EpisodePredicate):
+class Arrive(OfBodies, EpisodePredicate):
     """A share of the bodies of a selection arrives. An empty selection fails."""
 
-    of: str
-    """Name of the selection."""
     share: Match = Match(eq=1.0)
     """Accepted shares of bodies that arrive; 0 for a body that must not."""
     within: Quantity | None = None
@@ -55,12 +53,10 @@ class Arrive(EpisodePredicate):
 
 
 @register("ends_at")
-class EndsAt(EpisodePredicate):
+class EndsAt(OfBodies, EpisodePredicate):
     """Every body of a selection ends at a share of the straight way from its start to its last goal: 0 is the start, 1
     the goal. An empty selection fails."""
 
-    of: str
-    """Name of the selection."""
     share: Match
     """Accepted shares."""
 
@@ -79,21 +75,14 @@ class EndsAt(EpisodePredicate):
             along = ((end_x - x) * (goal[0] - x) + (end_y - y) * (goal[1] - y)) / way
             found.append((body, along / way))
         wrong = [(body, value) for body, value in found if not matches(self.share, value, "share")]
-        return Observation(
-            not wrong,
-            expected,
-            summary([(body, show(value)) for body, value in wrong or found]),
-            f"{wrong[0][0].entry}.behavior" if wrong else None,
-            marks=[Mark(points=[episode.positions(body.index)[-1].tolist()], text=body.name) for body, _ in wrong],
-        )
+        marks = [Mark(points=[episode.positions(body.index)[-1].tolist()], text=body.name) for body, _ in wrong]
+        return judged(expected, wrong, summary(found), "behavior", marks=marks)
 
 
 @register("travel")
-class Travel(EpisodePredicate):
+class Travel(OfBodies, EpisodePredicate):
     """How far every body of a selection gets. An empty selection fails."""
 
-    of: str
-    """Name of the selection."""
     farthest: Match | None = None
     """Accepted values of the greatest distance from the start [m]; 0 for a body that stays."""
     path: Match | None = None
@@ -124,15 +113,13 @@ class Travel(EpisodePredicate):
             found.append((body, text))
             if any(match is not None and not matches(match, seen[key], "length") for key, match in wanted.items()):
                 wrong.append((body, text))
-        return Observation(not wrong, expected, summary(wrong or found), f"{bodies[0].entry}.behavior")
+        return judged(expected, wrong, summary(found), "behavior")
 
 
 @register("speed")
-class Speed(EpisodePredicate):
+class Speed(OfBodies, EpisodePredicate):
     """Measured speeds of every body of a selection. An empty selection fails."""
 
-    of: str
-    """Name of the selection."""
     highest: Match | None = None
     """Accepted values of the greatest speed along the heading [m/s]; of omnidirectional drives, in any direction."""
     lowest: Match | None = None
@@ -165,20 +152,13 @@ class Speed(EpisodePredicate):
             found.append((body, text))
             if off:
                 wrong.append((body, text))
-        return Observation(
-            not wrong,
-            f"{self.of}: {expected}",
-            summary(wrong or found),
-            f"{bodies[0].entry}.vel_max" if wrong else None,
-        )
+        return judged(f"{self.of}: {expected}", wrong, summary(found), "vel_max")
 
 
 @register("roams")
-class Roams(EpisodePredicate):
+class Roams(OfBodies, EpisodePredicate):
     """In the second half of the episode each quadrant of the world holds a share of the positions."""
 
-    of: str
-    """Name of the selection."""
     share: Quantity
     """Least share of the positions in each quadrant."""
     endless: bool = True

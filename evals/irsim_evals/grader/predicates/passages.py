@@ -10,7 +10,7 @@ import shapely.affinity
 
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import Body
@@ -78,13 +78,11 @@ def free_parts(solid: Any, start: Point, end: Point, depth: float) -> list[tuple
 
 
 @register("corridor")
-class Corridor(ScenePredicate):
+class Corridor(OfBodies, ScenePredicate):
     """Each body of a selection goes along a corridor: solid on both sides of the line from its start to its goal."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     width: Match
     """Accepted free widths [m], measured across the line at each section."""
     sections: int = 12
@@ -186,13 +184,11 @@ class Doorway(ScenePredicate):
 
 
 @register("pocket")
-class Pocket(ScenePredicate):
+class Pocket(OfBodies, ScenePredicate):
     """The straight line from start to goal leads into a pocket and hits its back."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     width: Match
     """Accepted free widths inside [m]."""
     depth: Match

@@ -12,7 +12,7 @@ from pydantic import model_validator
 from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register, summary
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, register, summary
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import Body
@@ -23,13 +23,11 @@ _DIRECTIONS = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": -mat
 
 
 @register("inside")
-class Inside(ScenePredicate):
+class Inside(OfBodies, ScenePredicate):
     """Every body of a selection lies in a region. An empty selection fails."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     what: Literal["position", "footprint", "goal"] = "position"
     """What lies in the region: its position, its whole footprint, or each of its goals."""
     region: tuple[Quantity, Quantity, Quantity, Quantity] | None = None
@@ -49,13 +47,8 @@ class Inside(ScenePredicate):
         if not bodies or missing:
             return Observation(False, expected, f"{missing[0].name}: no goal" if missing else f"{self.of}: no body")
         key = "goal" if self.what == "goal" else "state"
-        return Observation(
-            not wrong,
-            expected,
-            summary(wrong) if wrong else f"all {len(bodies)}",
-            f"{wrong[0][0].entry}.{key}" if wrong else None,
-            marks=[Mark(points=[list(point)], text=body.name) for body, point in wrong],
-        )
+        marks = [Mark(points=[list(point)], text=body.name) for body, point in wrong]
+        return judged(expected, wrong, f"all {len(bodies)}", key, marks=marks)
 
     def _box(self, scene: Scene) -> tuple[float, float, float, float]:
         if self.region is not None:
@@ -77,13 +70,11 @@ def _holds(box: tuple[float, float, float, float], point: tuple[float, float]) -
 
 
 @register("near")
-class Near(ScenePredicate):
+class Near(OfBodies, ScenePredicate):
     """Every body of a selection is at some distance from the nearest body of another, or from a place."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     to: str | None = None
     """Name of the other selection."""
     place: tuple[Quantity, Quantity] | None = None
@@ -111,13 +102,8 @@ class Near(ScenePredicate):
             return Observation(False, expected, "no body")
         found = [(body, self._measure(body, others)) for body in bodies]
         wrong = [(body, value) for body, value in found if not matches(self.distance, value, "length")]
-        return Observation(
-            not wrong,
-            expected,
-            summary(wrong or found),
-            f"{wrong[0][0].entry}.{'goal' if self.what == 'goal' else 'state'}" if wrong else None,
-            marks=[Mark(points=[list(body.position)], text=body.name) for body, _ in wrong],
-        )
+        marks = [Mark(points=[list(body.position)], text=body.name) for body, _ in wrong]
+        return judged(expected, wrong, summary(found), "goal" if self.what == "goal" else "state", marks=marks)
 
     def _measure(self, body: Body, others: list[Body]) -> float | None:
         if self.what == "goal":
@@ -139,13 +125,11 @@ class Near(ScenePredicate):
 
 
 @register("spacing")
-class Spacing(ScenePredicate):
+class Spacing(OfBodies, ScenePredicate):
     """The smallest distance between any two bodies of a selection, of which there must be two."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     what: Literal["position", "footprint", "goal"] = "position"
     """What is measured: between positions, between the edges of footprints, or between last goals."""
     distance: Match
@@ -172,13 +156,11 @@ class Spacing(ScenePredicate):
 
 
 @register("beside")
-class Beside(ScenePredicate):
+class Beside(OfBodies, ScenePredicate):
     """Every body of a selection starts, or has its goal, on one side of another body's way."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     way_of: str
     """Selection of one body, whose way leads from its start to its goal."""
     what: Literal["start", "goal"] = "start"
@@ -207,22 +189,15 @@ class Beside(ScenePredicate):
             ahead, left = px * dx + py * dy, dx * py - dy * px
             found.append((body, {"left": left, "right": -left, "ahead": ahead, "behind": -ahead}[self.side]))
         wrong = [(body, value) for body, value in found if value < self.by - 1e-9 or value <= 0]
-        return Observation(
-            not wrong,
-            expected,
-            summary(wrong or found),
-            f"{wrong[0][0].entry}.{'state' if self.what == 'start' else 'goal'}" if wrong else None,
-        )
+        return judged(expected, wrong, summary(found), "state" if self.what == "start" else "goal")
 
 
 @register("on_circle")
-class OnCircle(ScenePredicate):
+class OnCircle(OfBodies, ScenePredicate):
     """Every body of a selection stands on a circle."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     center: tuple[Quantity, Quantity] | None = None
     """Middle of the circle [m]; default: the mean of the positions."""
     center_near: tuple[Quantity, Quantity, Quantity] | None = None
@@ -277,13 +252,11 @@ class OnCircle(ScenePredicate):
 
 
 @register("facing")
-class Facing(ScenePredicate):
+class Facing(OfBodies, ScenePredicate):
     """Every body of a selection looks somewhere. An empty selection fails."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     toward: str | tuple[Quantity, Quantity] | Literal["goal"]
     """``goal``, ``north``, ``east``, ``south``, ``west``, a place [m], or the name of a selection: its middle."""
     tol: Quantity = math.radians(20)

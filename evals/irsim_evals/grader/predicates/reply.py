@@ -123,7 +123,7 @@ def _measures(scene: Scene, what: str) -> list[float]:
     if what == "range":
         return [float(s["range_max"]) for body in bodies for s in body.sensors if "range_max" in s]
     if what == "threshold":
-        return [body.threshold for body in bodies]
+        return [body.record.goal_threshold for body in bodies]
     lengths = [value for body in bodies for value in body.extent]
     return [*lengths, float(scene.world.width), float(scene.world.height)]
 

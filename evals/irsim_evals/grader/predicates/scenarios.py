@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import itertools
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pydantic import field_validator
 
-from irsim.diagnostics.errors import IrsimError
-from irsim.scenario.read import read
-from irsim.scenario.yaml.document import load_text
+from irsim_evals.grader.artefact import scenarios_in
 from irsim_evals.grader.matching import Match, Quantity, matches
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, Predicate, register, registered
 from irsim_evals.grader.runs_of_answers import Runs, runs_of
@@ -52,9 +49,10 @@ class EveryScenario(AnswerPredicate):
         if not matches(self.number, len(names), "count"):
             return Observation(False, expected, f"{len(names)}: {', '.join(names[:6])}")
         for name in names:
-            one = opened(material, name)
-            if isinstance(one, str):
-                return Observation(False, expected, f"{name}: {one}", name)
+            try:
+                one = material.other(name)
+            except LookupError as error:
+                return Observation(False, expected, str(error), name)
             for item in self.that:
                 predicate: Any = _predicate(item)
                 scene = predicate.subject == "scene"
@@ -67,28 +65,7 @@ class EveryScenario(AnswerPredicate):
 
 def scenario_names(material: Material) -> list[str]:
     """Names of the scenario files that the agent left."""
-    from irsim_evals.grader.artefact import scenarios_in  # it imports the cases, which import the predicates
-
     return sorted(name for name in scenarios_in(material.texts) if name not in material.given)
-
-
-def opened(material: Material, name: str) -> Material | str:
-    """Another scenario of the same answer; what is wrong with it, if it cannot be opened."""
-    from irsim_evals.grader.grade import LIMITS
-
-    document = load_text(material.texts[name], limits=LIMITS)
-    if document.fatal:
-        return "; ".join(item.message for item in document.problems[:2])
-    reading = read(document, limits=LIMITS)
-    bad = [item for item in reading.diagnostics if item.severity == "error" or item.code == "unknown-key"]
-    if reading.scenario is None or bad:
-        return "; ".join(item.message for item in bad[:2])
-    made = replace(material, main=name, scenario=reading.scenario, document=document, _scenes={})
-    try:
-        made.scene(_SEED)
-    except IrsimError as error:
-        return str(error).splitlines()[0]
-    return made
 
 
 def _predicate(item: dict[str, Any]) -> Predicate:
@@ -134,9 +111,10 @@ class Comparison(AnswerPredicate):
     def _files(self, material: Material, groups: dict[int, dict[str, Material]]) -> str:
         """What is wrong with the scenarios, which are sorted by their numbers of robots; empty if nothing is."""
         for name in scenario_names(material):
-            one = opened(material, name)
-            if isinstance(one, str):
-                return f"{name}: {one}"
+            try:
+                one = material.other(name)
+            except LookupError as error:
+                return str(error)
             groups.setdefault(len(one.scene(0).robots), {})[name] = one
         for number in self.robots:
             files = groups.get(number, {})
@@ -220,7 +198,15 @@ def _facts(one: Material, *, layout: bool = False) -> dict[str, Any]:
     scene = one.scene(_SEEDS[0])
     world = scene.world
     robots = [
-        [body.kinematics, body.shape, body.extent, body.limits, body.threshold, body.arrive_mode, body.sensors]
+        [
+            body.kinematics,
+            body.shape,
+            body.extent,
+            body.limits,
+            body.sensors,
+            body.record.goal_threshold,
+            body.record.arrive_mode,
+        ]
         for body in scene.robots
     ]
     found: dict[str, Any] = {

@@ -9,7 +9,7 @@ import numpy as np
 
 from irsim.diagnostics.errors import PlacementError
 from irsim_evals.grader.matching import Quantity, show
-from irsim_evals.grader.predicates._base import Observation, SeedsPredicate, register
+from irsim_evals.grader.predicates._base import Observation, OfBodies, SeedsPredicate, register
 from irsim_evals.grader.sanity import overlaps
 from irsim_evals.grader.scene import open_scene
 
@@ -22,13 +22,11 @@ _SAME = 1e-9
 
 
 @register("varies")
-class Varies(SeedsPredicate):
+class Varies(OfBodies, SeedsPredicate):
     """The bodies of a selection start elsewhere with each seed, and with the same seed where they did before."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     seeds: list[int] = [0, 1, 2, 3, 4]
     """Seeds that are compared."""
     spread: Quantity = 0.0

@@ -11,7 +11,7 @@ import shapely
 from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register, summary
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, register, summary
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import Body
@@ -20,13 +20,11 @@ if TYPE_CHECKING:
 
 
 @register("ways")
-class Ways(ScenePredicate):
+class Ways(OfBodies, ScenePredicate):
     """The straight lines from start to last goal of any two bodies of a selection, of which there must be two."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     angle: Match | None = None
     """Accepted angles between the directions of two ways [rad]: 0 for the same direction, π for opposite ones."""
     distance: Match | None = None
@@ -65,13 +63,11 @@ def _line(body: Body) -> shapely.LineString:
 
 
 @register("line_of_sight")
-class LineOfSight(ScenePredicate):
+class LineOfSight(OfBodies, ScenePredicate):
     """Whether the straight line from each start to the goal is free. An empty selection fails."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     clear: bool
     """Whether the line is free of everything solid, or not."""
 
@@ -84,23 +80,16 @@ class LineOfSight(ScenePredicate):
         lines = {body.name: shapely.LineString([body.pose[:2], (body.goal or [])[:2]]) for body in bodies}
         clear = [(body, not shapely.intersects(scene.solid, lines[body.name])) for body in bodies]
         wrong = [(body, value) for body, value in clear if value != self.clear]
-        return Observation(
-            not wrong,
-            expected,
-            "clear for " + summary(wrong or clear),
-            f"{wrong[0][0].entry}.goal" if wrong else None,
-            marks=[Mark(points=[list(p) for p in lines[body.name].coords], text=body.name) for body, _ in wrong],
-        )
+        marks = [Mark(points=[list(p) for p in lines[body.name].coords], text=body.name) for body, _ in wrong]
+        return judged(expected, wrong, summary(clear), "goal", said="clear for ", marks=marks)
 
 
 @register("line_passes")
-class LinePasses(ScenePredicate):
+class LinePasses(OfBodies, ScenePredicate):
     """The straight line from start to goal of every body of a selection comes near the middle of another selection."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     by: str
     """Name of the other selection: its middle is the mean of its positions."""
     distance: Match
@@ -119,17 +108,15 @@ class LinePasses(ScenePredicate):
             for body in bodies
         ]
         wrong = [(body, value) for body, value in found if not matches(self.distance, value, "length")]
-        return Observation(not wrong, expected, summary(wrong or found), f"{wrong[0][0].entry}.goal" if wrong else None)
+        return judged(expected, wrong, summary(found), "goal")
 
 
 @register("reachable")
-class Reachable(ScenePredicate):
+class Reachable(OfBodies, ScenePredicate):
     """Every body of a selection can get from its start to each of its goals, on a grid of inflated obstacles."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     size: Literal["inner", "outer"] = "inner"
     """Disc that stands for the body: the largest one inside of it, or the smallest one round it."""
     possible: bool = True
@@ -150,13 +137,8 @@ class Reachable(ScenePredicate):
         plugs = () if self.plug is None else (self.plug,)
         found = [(body, self._gets_there(scene, body, plugs)) for body in bodies]
         wrong = [(body, value) for body, value in found if value != self.possible]
-        return Observation(
-            not wrong,
-            expected,
-            "a path for " + summary(wrong or found),
-            f"{wrong[0][0].entry}.goal" if wrong else None,
-            marks=[Mark(points=[list(place)], text=body.name) for body, _ in wrong for place in self._targets(body)],
-        )
+        marks = [Mark(points=[list(place)], text=body.name) for body, _ in wrong for place in self._targets(body)]
+        return judged(expected, wrong, summary(found), "goal", said="a path for ", marks=marks)
 
     def _gets_there(self, scene: Scene, body: Body, plugs: tuple[tuple[float, float, float], ...]) -> bool:
         radius = disc_radius(body, self.size)

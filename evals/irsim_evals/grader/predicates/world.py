@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
@@ -190,13 +190,11 @@ def _words(what: str, parts: list[Any]) -> str:
 
 
 @register("crowding")
-class Crowding(ScenePredicate):
+class Crowding(OfBodies, ScenePredicate):
     """The bodies of a selection cover a share of the world, or there are so many for each 10 m²; one is enough."""
 
     stage = "relations"
 
-    of: str
-    """Name of the selection."""
     cover: Match | None = None
     """Accepted shares of the area."""
     per_10_m2: Match | None = None

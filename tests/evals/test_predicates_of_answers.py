@@ -1,26 +1,27 @@
-"""Predicates of the public cases, their replies in other words, and the facts that a mutant changes."""
+"""Predicates about answers: files and values in them, several scenarios, comparisons, and words of the reply."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from irsim.scenario.read import read
-from irsim.scenario.yaml.document import load_text
-from irsim_evals.cases.model import Pin
 from irsim_evals.cases.store import case_of, golds_of
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.material import Material
-from irsim_evals.grader.predicates.passages import Pocket
+from irsim_evals.grader.predicates.files import Command, Edits
 from irsim_evals.grader.predicates.scenarios import Comparison, EveryScenario
-from irsim_evals.grader.predicates.ways import Ways
-from irsim_evals.grader.properties import value_of
-from irsim_evals.proof.changes import changed_facts, touches
 from tests.effort import some
+from tests.evals.conftest import seen, world
 
+RESULT = '{"rows": [{"n": 20, "name": "orca"}, {"n": 20, "name": "dash"}], "ok": true, "none": null}'
+GUARD = """
+world: {width: 10, height: 10}
+obstacle: {name: guard, kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [2, 2, 0]}
+"""
 RANDOM = """
 world: {{width: {size}, height: 10, time_limit: 40}}
 robot:
@@ -56,49 +57,81 @@ COMMAND = """
 OTHER_SEEDS = 'irsim.benchmark(["a.yaml", "b.yaml"], "rvo", seeds=range(5, 10), steps=40)'
 
 
-def world(text: str) -> Material:
-    return Material(scenario=read(load_text(text)).scenario, selectors={}, texts={"scenario.yaml": text})
+def left(files: dict[str, str], given: dict[str, str] | None = None, reply: str = "", **more: Path) -> Material:
+    return Material(scenario=None, selectors={}, texts=files, given=given or {}, reply=reply, **more)
 
 
 def scene_text(number: int, behavior: str = "dash", size: int = 10, speed: int = 1) -> str:
     return RANDOM.format(number=number, behavior=behavior, size=size, speed=speed)
 
 
-def left(tmp_path: Path, files: dict[str, str], reply: str = "") -> Material:
-    return Material(scenario=None, selectors={}, texts=files, reply=reply, workplace=tmp_path)
+@pytest.mark.parametrize(
+    ("has", "passes"),
+    [
+        ({"rows[*].n": 20}, True),
+        ({"rows[1].name": "dash", "ok": True}, True),
+        ({"rows": {"given": True}}, True),
+        ({"rows[*].n": 21}, False),
+        ({"rows[*].name": "orca"}, False),  # every value counts
+        ({"rows[2].n": 20}, False),
+        ({"rows.n": 20}, False),
+        ({"columns[*].n": {"le": 100}}, False),  # nothing there is nothing right
+        ({"ok": 1}, False),
+    ],
+)
+def test_values_of_a_file(has: dict[str, Any], passes: bool) -> None:
+    found = seen(left({"result.json": RESULT}), "data", {"file": "result.json", "has": has})
+    assert found.passed == passes
+    assert found.expected.startswith("result.json: ")
+    assert all(path in found.observed for path in has)
 
 
 @pytest.mark.parametrize(
-    ("second", "passes"),
+    ("files", "observed"),
     [
-        ("state: [9, 5.5, 0], goal: [1, 5.5, 0]", True),
-        ("state: [9, 7, 0], goal: [1, 7, 0]", False),  # too far beside the first way
-        ("state: [1, 5.5, 0], goal: [9, 5.5, 0]", False),  # the same direction
-        ("state: [9, 5.5, 0]", False),  # no goal
+        ({}, "there is no such file"),
+        ({"result.json": "rows:\n- 20"}, "it is no JSON"),
+        ({"result.json": "[" * 200_000}, "it is no JSON"),
+        ({"result.json": "9" * 10_000}, "it is no JSON"),
     ],
 )
-def test_ways_of_two_robots_lead_past_each_other(second: str, passes: bool) -> None:
-    material = world(
-        "world: {width: 10, height: 10}\nrobot:\n"
-        "  - {kinematics: {name: diff}, state: [1, 5, 0], goal: [9, 5, 0], shape: {name: circle, radius: 0.2}}\n"
-        f"  - {{kinematics: {{name: diff}}, {second}, shape: {{name: circle, radius: 0.2}}}}\n"
-    )
-    ways = Ways.model_validate({"of": "robots", "angle": {"ge": "160deg"}, "distance": {"le": 1}})
-    assert ways.observe(material, material.scene(0)).passed == passes
+def test_a_file_that_holds_no_values(files: dict[str, str], observed: str) -> None:
+    found = seen(left(files), "data", {"file": "result.json", "has": {"rows": 20}})
+    assert (found.passed, found.observed) == (False, observed)
 
 
-@pytest.mark.parametrize(("x", "observed"), [(7.0, "so it is"), (8.0, "its walls leave a gap")])
-def test_the_walls_of_a_pocket_are_connected(x: float, observed: str) -> None:
-    material = world(
-        "world: {width: 14, height: 14}\n"
-        "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [7, 2, 0], goal: [7, 12, 0]}\n"
-        "obstacle:\n"
-        f"  - {{shape: {{name: rectangle, length: 3.4, width: 0.2}}, state: [{x}, 8.1, 0]}}\n"
-        "  - {shape: {name: rectangle, length: 0.2, width: 2}, state: [5.4, 7, 0]}\n"
-        "  - {shape: {name: rectangle, length: 0.2, width: 2}, state: [8.6, 7, 0]}\n"
-    )
-    pocket = Pocket.model_validate({"of": "robots", "width": {"eq": 3, "tol": 0.4}, "depth": {"eq": 2, "tol": 0.4}})
-    assert pocket.observe(material, material.scene(0)).observed == observed
+@pytest.mark.parametrize(
+    ("run", "prints", "passes"),
+    [
+        ('python -c "print(6 * 7)"', "^42$", True),
+        ('python -c "print(6 * 7)"', None, True),
+        ('python -c "print(6 * 7)"', "43", False),
+        ("python -c \"raise SystemExit('42')\"", "42", False),
+        ("python here.py", "here", True),
+        ("python missing.py", None, False),
+        ("irsim --version", "irsim", True),
+    ],
+)
+def test_commands_run_in_the_folder(run: str, prints: str | None, passes: bool, tmp_path: Path) -> None:
+    (tmp_path / "here.py").write_text("print(__file__)", encoding="utf-8")
+    found = Command(run=run, prints=prints).observe(left({}, trusted_folder=tmp_path))
+    assert found.passed == passes, found.observed
+    assert "exit code" in found.observed
+    assert not Command(run=run, prints=prints).observe(left({})).passed
+
+
+def test_a_command_that_does_not_end_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("irsim_evals.grader.predicates.files._SECONDS", 0.5)
+    found = Command(run='python -c "while True: pass"').observe(left({}, trusted_folder=tmp_path))
+    assert (found.passed, found.observed) == (False, "it takes more than 0.5 s")
+
+
+def test_a_file_beside_the_scenario_is_compared_by_its_name() -> None:
+    given = {"yard.yaml": "world: {width: 9}\n"}
+    same = Edits(base="yard.yaml", file="yard.yaml", same=True)
+    assert same.observe(left({**given, "mine.yaml": "world: {width: 4}\n"}, given)).passed
+    assert not same.observe(left({"yard.yaml": "world: {width: 8}\n"}, given)).passed
+    assert not same.observe(left({"mine.yaml": "world: {width: 9}\n"}, given)).passed
 
 
 def test_every_scenario_of_an_answer_counts(tmp_path: Path) -> None:
@@ -106,15 +139,17 @@ def test_every_scenario_of_an_answer_counts(tmp_path: Path) -> None:
         {"number": {"ge": 2}, "that": [{"world": {"width": 10}}, {"varies": {"of": "robots", "seeds": [0, 1]}}]}
     )
     good = {"a.yaml": scene_text(3), "b.yaml": scene_text(5)}
-    assert wanted.observe(left(tmp_path, good)).passed
-    assert not wanted.observe(left(tmp_path, {"a.yaml": scene_text(3)})).passed
-    wide = wanted.observe(left(tmp_path, {**good, "c.yaml": scene_text(5, size=12)}))
+    assert wanted.observe(left(good, workplace=tmp_path)).passed
+    assert not wanted.observe(left({"a.yaml": scene_text(3)}, workplace=tmp_path)).passed
+    wide = wanted.observe(left({**good, "c.yaml": scene_text(5, size=12)}, workplace=tmp_path))
     assert (wide.passed, wide.observed) == (False, "c.yaml: width 12")
-    broken = wanted.observe(left(tmp_path, {**good, "c.yaml": "world: {width: 10}\nrobot: {kinematics: {name: dif}}"}))
+    broken = wanted.observe(
+        left({**good, "c.yaml": "world: {width: 10}\nrobot: {kinematics: {name: dif}}"}, workplace=tmp_path)
+    )
     assert not broken.passed
     assert broken.observed.startswith("c.yaml: ")
     fixed = "world: {width: 10, height: 10}\nrobot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [9, 9, 0]}"
-    assert not wanted.observe(left(tmp_path, {**good, "c.yaml": fixed})).passed
+    assert not wanted.observe(left({**good, "c.yaml": fixed}, workplace=tmp_path)).passed
 
 
 @pytest.mark.parametrize("item", [{"worlds": {}}, {"says": {"any_of": ["x"]}}, {"world": {"wide": 10}}, {}])
@@ -187,24 +222,35 @@ def test_a_comparison_is_fair(files: dict[str, str], observed: str, tmp_path: Pa
     )  # fmt: skip
     given = {"a.yaml": scene_text(3), "b.yaml": scene_text(5), "run.py": PLAN}
     kept = {name: text for name, text in {**given, **files}.items() if text and name != "reply.md"}
-    assert wanted.observe(left(tmp_path, kept, files.get("reply.md", ""))).observed == observed
+    assert wanted.observe(left(kept, reply=files.get("reply.md", ""), workplace=tmp_path)).observed == observed
 
 
 def test_a_program_of_a_comparison_must_end_without_an_error(tmp_path: Path) -> None:
     wanted = Comparison(robots=[3], behaviors=["orca"], episodes=50, steps=40, metrics={}, seconds=3)
     files = {"a-orca.yaml": scene_text(3, "orca")}
-    endless = wanted.observe(left(tmp_path, {**files, "run.py": "while True:\n    pass\n"}))
+    endless = wanted.observe(left({**files, "run.py": "while True:\n    pass\n"}, workplace=tmp_path))
     assert (endless.passed, endless.observed) == (False, "run.py did not end within 3 s")
-    failing = wanted.observe(left(tmp_path, {**files, "run.py": "episodes = 50\nprint(1 / 0)\n"}))
+    failing = wanted.observe(left({**files, "run.py": "episodes = 50\nprint(1 / 0)\n"}, workplace=tmp_path))
     assert not failing.passed
     assert "ZeroDivisionError" in failing.observed
 
 
-def test_the_steering_angle_is_the_smaller_of_two_limits() -> None:
-    entry = "robot: {kinematics: {name: acker, wheelbase: 1, psi_max: 0.4}, vel_max: [1, %s], vel_min: [-1, -%s]}"
-    for limit, angle in ((0.3, 0.3), (1.0, 0.4)):
-        scene = world(f"world: {{width: 9, height: 9}}\n{entry % (limit, limit)}").scene(0)
-        assert value_of(scene, scene.bodies[0], "steer") == pytest.approx(angle)
+@pytest.mark.parametrize(
+    ("reply", "passes"),
+    [
+        ("I gave the guard a radius of 0.3 m.", True),
+        ("Der Wächter (guard) hat 0,6 m Durchmesser.", True),
+        ("The guard measures 60 cm.", True),
+        ("The guard has a radius of 0.4 m.", False),
+        ("The room is large. " + "x" * 200 + " It has 0.3 m of plaster.", False),  # far from any mention of the guard
+        ("", False),
+    ],
+)
+def test_a_reply_states_a_number_that_the_world_has(reply: str, passes: bool) -> None:
+    stated = {"of": "guard", "property": "radius", "about": "guard", "factors": [1, 2]}
+    found = seen(world(GUARD, reply, guard={"named": "guard"}), "states", stated)
+    assert found.passed == passes
+    assert "0.3" in found.expected
 
 
 @pytest.mark.parametrize(
@@ -261,21 +307,3 @@ def test_the_first_of_two_replies_asks_or_says_what_it_took_to_be_meant() -> Non
         ("OK, it is 30 % bigger now.", False),
     ):
         assert grade(instance, replace(answer, replies=(reply, answer.reply))).strict == passes
-
-
-def test_a_body_that_a_mutant_adds_belongs_to_the_pin_whose_selection_holds_it() -> None:
-    text = (
-        "world: {width: 9, height: 9}\n"
-        "robot: {kinematics: {name: diff}, sensors: [{name: lidar2d, angle_range: 6.28}]}\n"
-    )
-    before = world(text).scene(0)
-    after = world(f"{text}obstacle: {{shape: {{name: circle, radius: 0.5}}, state: [5, 5, 0]}}\n").scene(0)
-    changed = changed_facts(before, after)
-    assert [kind for _, kind in changed] == ["count"]
-    case = case_of("pub-01").case
-    assert not touches(case, (before, after), changed, [Pin(of="robots", facts=["count"])])
-    assert touches(case, (before, after), changed, [Pin(of="obstacles", facts=["count"])]) == changed
-    assert not changed_facts(before, world(text.replace("6.28", "360")).scene(0))  # both see all round
-    one = changed_facts(before, world(text.replace("angle_range", "number: 50, angle_range")).scene(0))
-    assert {kind for _, kind in one} == {"beams"}
-    assert touches(case, (before, before), one, [Pin(of="robots", facts=["sensors"])]) == one

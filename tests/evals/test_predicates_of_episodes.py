@@ -1,0 +1,115 @@
+"""Predicates about episodes: where bodies come, in which order, when, and how fast."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from irsim_evals.grader.episode import run_episode
+from irsim_evals.grader.material import Material, with_speeds
+from tests.evals.conftest import episode, seen, world
+
+DRIVE = "kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: dash}"
+EAST = f"{{{DRIVE}, state: [1, 5, 0], goal: [9, 5, 0]}}"
+WEST = f"{{{DRIVE}, state: [9, 5, 0], goal: [1, 5, 0]}}"
+NORTH = f"{{{DRIVE}, state: [5, 1, 0], goal: [5, 9, 0]}}"
+ROUND = """
+world: {width: 10, height: 10}
+obstacle:
+  - name: guard
+    kinematics: {name: omni}
+    shape: {name: circle, radius: 0.3}
+    state: [2, 2, 0]
+    waypoints: [[6, 2], [6, 6], [2, 2]]
+    behavior: {name: dash, loop: true}
+"""
+
+
+def hall(*robots: str, obstacle: str = "") -> Material:
+    text = f"world: {{width: 10, height: 10}}\nrobot: [{', '.join(robots)}]\n"
+    return world(text + (f"obstacle: [{obstacle}]\n" if obstacle else ""))
+
+
+@pytest.mark.parametrize(
+    ("robot", "direction", "number", "passes"),
+    [
+        (EAST, 0, 1, True),
+        (WEST, "180deg", 1, True),
+        (EAST, 0, 2, False),  # only one passes
+        (WEST, 0, 0, False),  # against the direction
+        (NORTH, 0, 0, True),  # crosses the aisle and does not pass through it
+        (f"{{{DRIVE}, state: [1, 5, 0], waypoints: [[9, 5], [4, 5]]}}", 0, 1, False),  # comes back
+    ],
+)
+def test_an_aisle_is_one_way(robot: str, direction: Any, number: int, passes: bool) -> None:
+    aisle = {"of": "robots", "region": [2, 4, 8, 6], "direction": direction, "number": number}
+    found = seen(hall(robot), "one_way", aisle, 16)
+    assert found.passed == passes
+    assert "toward" in found.expected
+
+
+@pytest.mark.parametrize(
+    ("regions", "avoids", "observed"),
+    [
+        ([[4, 4, 6, 6], [8, 4, 10, 6]], [], "all 1"),
+        ([[8, 4, 10, 6], [4, 4, 6, 6]], [], "does not come to [4, 4, 6, 6] after the others"),
+        ([[4, 7, 6, 9]], [], "does not come to [4, 7, 6, 9]"),
+        ([[8, 4, 10, 6]], [[4, 4, 6, 6]], "comes into [4, 4, 6, 6]"),
+    ],
+)
+def test_rooms_are_entered_in_their_order(regions: Any, avoids: Any, observed: str) -> None:
+    found = seen(hall(EAST), "enters", {"of": "robots", "regions": regions, "avoids": avoids}, 12)
+    assert observed in found.observed
+    assert found.passed == (observed == "all 1")
+
+
+@pytest.mark.parametrize(
+    ("robots", "times", "passes"),
+    [
+        ([EAST], [4], True),
+        ([EAST], [5], False),
+        ([EAST], [4, 8], False),  # there is only one
+        ([EAST, WEST], [4, 4], True),
+        ([NORTH], [4], False),  # drives along the line
+    ],
+)
+def test_a_line_is_crossed_on_time(robots: list[str], times: list[float], passes: bool) -> None:
+    material = hall(*(robot.replace("radius: 0.2}", "radius: 0.2}, unobstructed: true") for robot in robots))
+    table = {"of": "robots", "start": [5, 0], "end": [5, 10], "times": times, "tol": 0.2}
+    assert seen(material, "timetable", table, 12).passed == passes
+
+
+@pytest.mark.parametrize(("share", "passes"), [({"ge": 0.3, "le": 0.5}, True), ({"ge": 0.9}, False)])
+def test_a_body_ends_on_a_part_of_its_way(share: Any, passes: bool) -> None:
+    material = hall(EAST, obstacle="{shape: {name: rectangle, length: 0.2, width: 4}, state: [5, 5, 0]}")
+    assert seen(material, "ends_at", {"of": "robots", "share": share}, 12).passed == passes
+
+
+@pytest.mark.parametrize(
+    ("keys", "observed"),
+    [
+        ({}, ""),
+        ({"laps": 2, "stray": 0.2}, ""),
+        ({"places": [(6, 6), (6, 2), (2, 2)]}, "does not come to (6, 2) after 1 visits"),
+        ({"places": [(6, 2), (2, 6)]}, "does not come to (2, 6)"),
+        ({"laps": 9}, "does not come to"),
+        ({"places": [(6, 2), (2, 2)], "stray": 0.5}, "off the lines"),
+        ({"of": "nobody"}, "no body"),
+    ],
+)
+def test_a_round_is_followed_in_its_order(keys: dict[str, Any], observed: str) -> None:
+    material = world(ROUND, guard={"named": "guard"}, nobody={"named": "nobody"})
+    seconds = 15 if "places" in keys and "stray" not in keys else 32
+    found = seen(material, "visits", {"of": "guard", "places": [(6, 2), (6, 6), (2, 2)], **keys}, seconds)
+    assert found.passed == (observed == "")
+    assert observed in found.observed
+
+
+def test_an_episode_may_have_other_speed_limits() -> None:
+    material = hall(EAST, NORTH)
+    assert material.scenario is not None
+    slow = run_episode(with_speeds(material.scenario, material, 0, {"robots": 0.5}), 0, 2)
+    fast = episode(material, 2)
+    assert slow.positions(0)[-1][0] - 1 == pytest.approx((fast.positions(0)[-1][0] - 1) / 2, abs=0.05)
+    assert material.scenario.objects[0].vel_max[0] == 1
