@@ -80,8 +80,8 @@ def requested_plans(env: Env, overlays: Collection[Overlay] | None) -> list[Plan
 
 def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[PlannedPath]) -> Extra:
     """A function that draws the overlays that no plot key switches, and contacts within a step, which always show."""
-    from irsim.graphics.scene.palette import Palette
     from irsim.graphics.scene.scene import Scene
+    from irsim.graphics.scene.style import Palette
     from irsim.graphics.scene.zones import draw_zones
     from irsim.rendering.between_steps import draw_between_steps
     from irsim.rendering.clearance_map import draw_clearance

@@ -41,10 +41,10 @@ NAMES: dict[str, dict[str, str]] = {
     },
     "irsim.env.env_plot": {
         "EnvPlot": "irsim.rendering.env_plot",
-        "draw_patch": "irsim.graphics.figure.patches",
-        "geometry_to_path": "irsim.graphics.figure.patches",
-        "linewidth_from_data_units": "irsim.graphics.figure.patches",
-        "set_patch_property": "irsim.graphics.figure.patches",
+        "draw_patch": "irsim.graphics.figure.artists",
+        "geometry_to_path": "irsim.graphics.figure.artists",
+        "linewidth_from_data_units": "irsim.graphics.figure.artists",
+        "set_patch_property": "irsim.graphics.figure.artists",
     },
     "irsim.env.env_plot3d": {
         "EnvPlot3D": "irsim.rendering.env_plot3d",

@@ -24,7 +24,7 @@ from irsim.env import (
 from irsim.env.old import random_obstacles
 from irsim.env.parameters import PathParam
 from irsim.env.state import EnvState
-from irsim.graphics.scene.palette import Palette
+from irsim.graphics.scene.style import Palette
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.active_env import use
 

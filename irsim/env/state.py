@@ -11,7 +11,7 @@ from irsim.env.parameters import EnvParam, PathParam, WorldParam, WorldView
 if TYPE_CHECKING:
     from irsim.common.log import Logger
     from irsim.compat.objects.view import ScriptObject
-    from irsim.graphics.scene.palette import Palette
+    from irsim.graphics.scene.style import Palette
     from irsim.gui import KeyboardControl, MouseControl
     from irsim.policies.policy import Policy
     from irsim.rendering.env_plot import EnvPlot

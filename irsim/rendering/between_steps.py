@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import Mark, Region, Scene, Stroke
+from irsim.graphics.scene.style import Palette
 from irsim.simulation.events import BETWEEN_STEPS, passable_names
 
 if TYPE_CHECKING:

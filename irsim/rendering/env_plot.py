@@ -15,13 +15,12 @@ from PIL import Image
 from irsim.diagnostics.diagnostic import nearest
 from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.figure.figure import SceneFigure, fitting_size, inches
-from irsim.graphics.figure.live_figure import LiveCanvas, LiveFigure
 from irsim.graphics.figure.overlay import Overlay
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.figure.pyplot_entry import PyplotEntry, activate, active
-from irsim.graphics.scene.palette import Palette
+from irsim.graphics.figure.window import LiveCanvas, LiveFigure
 from irsim.graphics.scene.scene import Scene, region_extent
-from irsim.graphics.scene.style import STYLE_KEYS
+from irsim.graphics.scene.style import STYLE_KEYS, Palette
 from irsim.objects.drawing.scene_builder import MODES, SceneBuilder
 from irsim.objects.views import views
 from irsim.rendering.live_window import LiveWindow

@@ -12,8 +12,8 @@ import numpy as np
 from shapely.affinity import affine_transform
 
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.palette import Color
 from irsim.graphics.scene.scene import Label, Line, Mark, Scene, Stroke
+from irsim.graphics.scene.style import Color
 from irsim.navigation.geodesic import Geodesics, inscribed_radius
 from irsim.objects.views import views
 from irsim.rendering.clearance_map import FreeSpace

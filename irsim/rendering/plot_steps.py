@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from irsim.graphics.figure.grids import GridLayer
-from irsim.graphics.figure.layers import FogLayer
+from irsim.graphics.figure.layers import FogLayer, GridLayer
 from irsim.graphics.scene.scene import Fog, GridImage, Scene
 from irsim.objects.drawing.scene_builder import MODES
 from irsim.objects.views import views

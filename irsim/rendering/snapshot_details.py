@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.graphics.scene.bodies import arrow, place
-from irsim.graphics.scene.palette import Color
 from irsim.graphics.scene.scene import Fog, Mark, Scene, Stroke
+from irsim.graphics.scene.style import Color
 from irsim.objects.views import views
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from PIL import Image, ImageDraw, ImageFont
 from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.figure.figure import SceneFigure
 from irsim.graphics.figure.layers import opaque_colors
-from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import Region, Scene
+from irsim.graphics.scene.style import Palette
 from irsim.objects.views import views
 from irsim.rendering.readability import can_move
 from irsim.rendering.snapshot import Extra, legible_scene, png_of

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.graphics.scene.palette import Palette
-from irsim.graphics.scene.style import STYLE_KEYS
+from irsim.graphics.scene.style import STYLE_KEYS, Palette
 from irsim.scenario.model.plot import ObjectPlot
 
 EVERYTHING = """

@@ -1,17 +1,23 @@
-"""The canvas of a frame: its pixels, its view of the world, and what was painted into it."""
+"""The canvas of a frame, and the brush that paints marks straight into its pixels, as Agg draws them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.colors import to_rgba
+from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from irsim import _core as core
+from irsim.common.arrays import Floats
+from irsim.graphics.scene.scene import Circle, Geometry, Line, Mark, Region, Sector
+from irsim.graphics.scene.style import Color
 
-__all__ = ["Box", "Canvas"]
+__all__ = ["Box", "Canvas", "geometry_path", "paint", "rgba"]
 
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom of a part of a canvas [px], top row first."""
@@ -70,3 +76,98 @@ class Canvas:
         if self._scratch is None:
             self._scratch = self.new_renderer()
         return self._scratch
+
+
+_UNIT_CIRCLE = Path.unit_circle()
+_TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
+
+
+def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
+    """Convert a colour to red, green, blue and opacity (0..1); ``alpha`` multiplies the colour's own opacity.
+
+    Raises:
+        ValueError: The colour is not valid.
+    """
+    given: Any = color
+    red, green, blue, opacity = to_rgba(given)
+    return red, green, blue, opacity * float(alpha)
+
+
+def paint(
+    canvas: Canvas,
+    target: tuple[NDArray[np.uint8], Any],
+    ax: Any,
+    marks: Sequence[Mark],
+    points_per_metre: float,
+    ends: tuple[str, str],
+) -> None:
+    """Paint marks with solid strokes.
+
+    Args:
+        canvas: The canvas, which tells the view and notes what was painted.
+        target: Pixels to paint into, of the size of the canvas, and the Agg renderer that they belong to.
+        ax: Axes in world coordinates, which cut the marks.
+        marks: The marks.
+        points_per_metre: Scale of the view, for line widths given in metres.
+        ends: Styles of caps and joins of strokes.
+    """
+    pixels, renderer = target
+    painter, per_point = canvas.painter, canvas.px_per_point
+    per_metre = points_per_metre * per_point
+    for mark in marks:
+        stroke, fill, shape = mark.stroke, mark.fill, mark.geometry
+        edge = _TRANSPARENT if stroke.color is None else rgba(stroke.color, mark.alpha)
+        width = stroke.width * (per_metre if stroke.metric else per_point)
+        face = _TRANSPARENT if fill is None else rgba(fill, mark.alpha)
+        if isinstance(shape, Circle):
+            painter.circle(pixels, shape.x, shape.y, shape.radius, face, edge, width)
+        elif isinstance(shape, Region) and len(shape.rings) == 1:
+            painter.polygon(pixels, shape.rings[0], face, edge, width, ends[1])
+        elif isinstance(shape, Line) and fill is None:
+            painter.line(pixels, shape.points, edge, width, ends[1], ends[0] == "round")
+        else:
+            canvas.unknown = True
+            _draw(renderer, ax, mark, face, (edge, width / per_point), ends)
+
+
+def _draw(renderer: Any, ax: Any, mark: Mark, face: Any, stroke: tuple[Any, float], ends: tuple[str, str]) -> None:
+    """Let Agg draw a mark, given its colour of fill, colour and width [points] of stroke."""
+    context = renderer.new_gc()
+    context.set_clip_rectangle(ax.bbox)
+    context.set_capstyle(ends[0])
+    context.set_joinstyle(ends[1])
+    context.set_foreground(stroke[0], isRGBA=True)
+    context.set_linewidth(stroke[1] if mark.stroke.color is not None else 0.0)
+    renderer.draw_path(
+        context, geometry_path(mark.geometry), ax.transData.frozen(), None if mark.fill is None else face
+    )
+    context.restore()
+
+
+def geometry_path(geometry: Geometry) -> Path:
+    """Return the outline of a mark as a Matplotlib path."""
+    if isinstance(geometry, Circle):
+        return _scale_and_move(_UNIT_CIRCLE, geometry)
+    if isinstance(geometry, Line):
+        return Path(geometry.points)
+    if isinstance(geometry, Sector):
+        return _sector(geometry)
+    if len(geometry.rings) == 1:
+        return _ring(geometry.rings[0])
+    return Path.make_compound_path(*[_ring(ring) for ring in geometry.rings])
+
+
+def _ring(points: Floats) -> Path:
+    closed = np.concatenate([points, points[:1]])
+    codes = np.full(len(closed), Path.LINETO, dtype=Path.code_type)
+    codes[0], codes[-1] = Path.MOVETO, Path.CLOSEPOLY
+    return Path(closed, codes)
+
+
+def _sector(sector: Sector) -> Path:
+    return _scale_and_move(Path.wedge(math.degrees(sector.start), math.degrees(sector.end)), sector)
+
+
+def _scale_and_move(unit: Path, target: Circle | Sector) -> Path:
+    """Scale and move a path of radius 1 about the origin to the radius and centre of ``target``."""
+    return Path(np.asarray(unit.vertices) * target.radius + (target.x, target.y), unit.codes)

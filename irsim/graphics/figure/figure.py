@@ -16,9 +16,8 @@ from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.background import TrackLayer
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.glyphs import Glyphs, QuickText
-from irsim.graphics.figure.grids import GridLayer
 from irsim.graphics.figure.labels import LabelLayer, printable
-from irsim.graphics.figure.layers import BeamLayer, FogLayer, MarkLayer, layer_key
+from irsim.graphics.figure.layers import BeamLayer, FogLayer, GridLayer, MarkLayer, layer_key
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.figure.tracks import track_layers
 from irsim.graphics.scene.scene import GridImage, Picture, Scene

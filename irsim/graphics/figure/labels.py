@@ -14,7 +14,7 @@ from matplotlib.transforms import IdentityTransform, Transform
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
-from irsim.graphics.figure.brush import rgba
+from irsim.graphics.figure.canvas import rgba
 from irsim.graphics.figure.glyphs import Glyphs, QuickText
 from irsim.graphics.scene.labels import bodies_by_size, free_places, leader
 from irsim.graphics.scene.scene import Bounds, Label, Scene

@@ -14,12 +14,54 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from irsim.common.arrays import Floats
-from irsim.graphics.figure.brush import geometry_path, paint, rgba
-from irsim.graphics.figure.canvas import Canvas
-from irsim.graphics.scene.palette import Color
-from irsim.graphics.scene.scene import Beams, Dots, Fog, Mark, Scene
+from irsim.graphics.figure.canvas import Canvas, geometry_path, paint, rgba
+from irsim.graphics.scene.scene import Beams, Dots, Fog, GridImage, Mark, Scene
+from irsim.graphics.scene.style import Color
 
-__all__ = ["PARTS", "BeamLayer", "FogLayer", "MarkArtist", "MarkLayer", "Spokes", "layer_key", "opaque_colors"]
+__all__ = [
+    "PARTS",
+    "BeamLayer",
+    "FogLayer",
+    "GridLayer",
+    "MarkArtist",
+    "MarkLayer",
+    "Spokes",
+    "layer_key",
+    "opaque_colors",
+]
+
+_ALWAYS_RESTING = 1_000_000
+"""Number of resting scenes given for a map, which never changes."""
+
+
+class GridLayer:
+    """One map.
+
+    Attributes:
+        artist: The image that shows it.
+        version: Number of changes of the content.
+        resting_scenes: Number of consecutive scenes without a change; a map counts as resting from the beginning.
+    """
+
+    def __init__(self, ax: Axes, zorder: float) -> None:
+        self.artist = AxesImage(ax, cmap="gray", norm=None, interpolation="antialiased", origin="lower")
+        self.artist.set_clim(0, 255)
+        self.artist.set_zorder(zorder)
+        ax.add_image(self.artist)
+        self.artist.set_clip_path(ax.patch)
+        self.version, self.resting_scenes = 0, _ALWAYS_RESTING
+        self._shown: GridImage | None = None
+
+    def show(self, grid: GridImage | None) -> None:
+        """Show a map, or nothing for None."""
+        self.artist.set_visible(grid is not None)
+        if grid is self._shown or grid is None:
+            return
+        self._shown = grid
+        self.version += 1
+        self.artist.set_data(255 - np.minimum(grid.levels, 100).T * np.float32(2.55))
+        self.artist.set_extent(grid.extent)
+
 
 PARTS = ("field", "zone", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
 """Drawing order of the parts that have the same zorder."""

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import is_color_like
 from numpy.typing import NDArray
 
-from irsim.graphics.scene.palette import Palette
+from irsim.graphics.scene.style import Palette
 
 __all__ = ["Overlay", "coordinates"]
 

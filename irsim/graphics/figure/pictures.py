@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from irsim.graphics.scene.palette import Color
+from irsim.graphics.scene.style import Color
 from irsim.scenario.path_confinement import BUNDLED, image_places
 
 __all__ = ["BUNDLED", "Pictures"]

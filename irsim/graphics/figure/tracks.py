@@ -14,8 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from irsim.graphics.figure.brush import paint, rgba
-from irsim.graphics.figure.canvas import Box, Canvas
+from irsim.graphics.figure.canvas import Box, Canvas, paint, rgba
 from irsim.graphics.figure.layers import PARTS, MarkLayer
 from irsim.graphics.scene.scene import Mark
 from irsim.graphics.scene.tracks import GrowingLine, GrowingTrail, Track

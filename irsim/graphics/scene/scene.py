@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from irsim.common.arrays import Floats
 from irsim.components.maps._site import OCCUPIED
 from irsim.diagnostics.errors import ArgumentError
-from irsim.graphics.scene.palette import Color
+from irsim.graphics.scene.style import Color
 
 __all__ = [
     "Beams",

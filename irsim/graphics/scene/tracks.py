@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.palette import Color
 from irsim.graphics.scene.scene import Line, Mark, Stroke
+from irsim.graphics.scene.style import Color
 
 __all__ = ["GrowingLine", "GrowingTrail", "Track"]
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.palette import Color
 from irsim.graphics.scene.scene import Circle, Geometry, Label, Line, Mark, Region, Stroke
+from irsim.graphics.scene.style import Color
 
 if TYPE_CHECKING:
     from irsim.graphics.scene.scene import Scene

@@ -11,7 +11,6 @@ import numpy as np
 
 from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import Body, Pose, arrow, place, read_body
-from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import (
     Fog,
     GridImage,
@@ -21,7 +20,7 @@ from irsim.graphics.scene.scene import (
     Scene,
     Stroke,
 )
-from irsim.graphics.scene.style import ObjectStyle, resolve_style, tint_of
+from irsim.graphics.scene.style import ObjectStyle, Palette, resolve_style, tint_of
 from irsim.graphics.scene.tracks import Track
 from irsim.graphics.scene.zones import DrawnZones, draw_zones
 from irsim.objects.drawing.object_marks import (

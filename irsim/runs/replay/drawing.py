@@ -11,8 +11,8 @@ import numpy as np
 
 from irsim.common.text import clean
 from irsim.graphics.scene.bodies import geometry_of
-from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Region
+from irsim.graphics.scene.style import Palette
 from irsim.simulation.scene import Lidar, SceneDescription
 
 if TYPE_CHECKING:

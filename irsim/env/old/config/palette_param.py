@@ -1,7 +1,7 @@
-"""Default colours of the environment used last; see :class:`irsim.graphics.scene.palette.Palette`."""
+"""Default colours of the environment used last; see :class:`irsim.graphics.scene.style.Palette`."""
 
 from irsim.env.old.config._follow import follow
-from irsim.graphics.scene.palette import Palette
+from irsim.graphics.scene.style import Palette
 from irsim.options.colors import CYCLE
 
 __all__ = ["DEFAULT_CYCLE", "PaletteParam"]
