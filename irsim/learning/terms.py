@@ -15,7 +15,7 @@ from irsim.learning.features import REWARDS
 from irsim.learning.rewards._options import RewardOptions
 from irsim.learning.step import Moment, Result
 from irsim.policies.networks.layout import Layout
-from irsim.policies.networks.parts.rvo_cones import RvoCones
+from irsim.policies.networks.parts.rvo import RvoCones
 from irsim.policies.observe import Observer
 from irsim.simulation.build import kernel_options
 

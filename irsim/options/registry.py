@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -73,10 +73,13 @@ class Registry:
         kind: Singular word for messages: ``behavior``.
         package: Package whose modules are the built-in features, one module per name.
         group: Entry-point group of third-party features.
+        families: Names of modules with several features each, if the package has such modules; they are imported
+            together.
     """
 
-    def __init__(self, kind: str, package: str, group: str) -> None:
+    def __init__(self, kind: str, package: str, group: str, *, families: Sequence[str] = ()) -> None:
         self.kind, self.package, self.group = kind, package, group
+        self._families = tuple(families)
         self._features: dict[str, Feature] = {}
         self._plugins: dict[str, Any] | None = None
 
@@ -126,18 +129,25 @@ class Registry:
 
     def installed(self) -> list[str]:
         """Names that exist in every process, sorted: built-in, and offered by installed plug-ins."""
-        builtin = (
-            info.name
-            for info in pkgutil.iter_modules(importlib.import_module(self.package).__path__)
-            if not info.name.startswith("_")
-        )
+        if self._families:
+            self._import_families()
+            builtin = [feature.name for feature in self._features.values() if feature.origin == "built-in"]
+        else:
+            modules = pkgutil.iter_modules(importlib.import_module(self.package).__path__)
+            builtin = [info.name for info in modules if not info.name.startswith("_")]
         return sorted({*builtin, *self._plugin_entries()})
+
+    def _import_families(self) -> None:
+        for name in self._families:
+            importlib.import_module(f"{self.package}.{name}")
 
     def get(self, name: str) -> Feature | None:
         """The feature, imported on first use; None if no feature has that name."""
         if name in self._features:
             return self._features[name]
-        if name.isidentifier() and not name.startswith("_"):
+        if self._families:
+            self._import_families()
+        elif name.isidentifier() and not name.startswith("_"):
             module = f"{self.package}.{name}"
             try:
                 importlib.import_module(module)

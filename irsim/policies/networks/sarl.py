@@ -22,7 +22,7 @@ from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.policies.networks.document import PolicyDocument
 from irsim.policies.networks.errors import PolicyFileError, flaw
 from irsim.policies.networks.network import Network, check_network, read_document
-from irsim.policies.networks.parts.self_state import Heading
+from irsim.policies.networks.parts.robot import Heading
 from irsim.policies.networks.values import Array
 
 __all__ = ["ORDER", "PERCEPTRONS", "joint_state_parts", "sarl_network"]

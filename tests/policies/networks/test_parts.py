@@ -14,14 +14,14 @@ from irsim.options.registry import Feature
 from irsim.policies import Neighbors, Observations, Scan
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.layout import Layout, layout_bounds, layout_needs, layout_shapes, observe
-from irsim.policies.networks.parts import goal, neighbors, own
+from irsim.policies.networks.parts import neighbors, robot
 from irsim.policies.networks.parts._options import PARTS
 from irsim.testing import conformance
 from tests.policies.networks.observed import Grid, moved, observations, rows, same_bits
 
 ALL: dict[str, dict[str, Any]] = {
-    "goal": {"features": list(get_args(goal.Feature))},
-    "own": {"features": list(get_args(own.Feature)), "controls": 3},
+    "goal": {"features": list(get_args(robot.GoalFeature))},
+    "own": {"features": list(get_args(robot.OwnFeature)), "controls": 3},
     "scan": {"sectors": 7},
     "neighbors": {"features": list(get_args(neighbors.Feature)), "count": 4, "range": 3.0},
     "map": {"cells": 5, "size": 2.0},

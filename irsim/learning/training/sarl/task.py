@@ -18,7 +18,7 @@ from irsim.learning.training.settings import SarlSettings
 from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.lookahead import Lookahead
 from irsim.policies.networks.parts.neighbors import NeighborsPart
-from irsim.policies.networks.parts.self_state import Heading
+from irsim.policies.networks.parts.robot import Heading
 from irsim.policies.networks.sarl import joint_state_parts
 
 __all__ = ["Plan", "plan_of"]

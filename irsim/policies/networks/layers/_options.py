@@ -15,7 +15,9 @@ from irsim.policies.networks.values import Array, Shape
 
 __all__ = ["LAYERS", "Arrays", "LayerOptions", "Plan", "ShapeError", "Units", "only", "same_set", "vector"]
 
-LAYERS = Registry("layer", "irsim.policies.networks.layers", "irsim.network_layers")
+LAYERS = Registry(
+    "layer", "irsim.policies.networks.layers", "irsim.network_layers", families=("recurrent", "sets", "vectors")
+)
 """Layers of networks."""
 Arrays = Mapping[str, Array]
 """Arrays of a layer, by their names in :class:`Plan`."""

@@ -1,4 +1,4 @@
-"""Parts of observations, one module each: options, shapes and the function of arrays.
+"""Parts of observations: options, shapes and the function of arrays.
 
 Tests try each part alone and in batches: a row must have the same bits in any company. NumPy's sums and exponential
 functions do not; ``irsim/policies/networks/values.py`` and ``layers/_linear.py`` have others. A part that gives other

@@ -14,7 +14,12 @@ from irsim.policies.policy import Needs
 
 __all__ = ["PARTS", "Label", "PartOptions", "unique"]
 
-PARTS = Registry("part", "irsim.policies.networks.parts", "irsim.observation_parts")
+PARTS = Registry(
+    "part",
+    "irsim.policies.networks.parts",
+    "irsim.observation_parts",
+    families=("neighbors", "robot", "rvo", "surroundings"),
+)
 """Parts of observations: each is a function of :class:`irsim.policies.Observations`."""
 Label = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
 """Name of a value in a network."""
