@@ -36,7 +36,6 @@ __all__ = [
     "rotation_of",
     "to_frame",
     "to_irsim",
-    "yaw_in",
     "yaw_of",
 ]
 
@@ -126,12 +125,6 @@ def inverse(matrix: Floats) -> Floats:
     """(..., 4, 4) inverse of transforms."""
     found: Floats = np.linalg.inv(np.asarray(matrix, dtype=np.float64))
     return found
-
-
-def yaw_in(yaw: Floats | float, frame: str) -> Floats:
-    """The yaw of irsim about the axis that points up in another frame [rad]: negative in a left-handed frame."""
-    handed = round(float(np.linalg.det(axes_of(frame))))
-    return handed * np.asarray(yaw, dtype=np.float64)
 
 
 def yaw_of(matrix: Floats) -> Floats:

@@ -49,9 +49,7 @@ def test_a_left_turn_worked_by_hand() -> None:
     """2 m ahead and 1 m to the left, turned left by 90 degrees."""
     pose = frames.pose_matrix(np.array([2.0, 1.0, math.pi / 2]))
     assert frames.to_frame(pose, "carla")[:3, 3].tolist() == [2, -1, 0]
-    assert float(frames.yaw_in(math.pi / 2, "carla")) == pytest.approx(-math.pi / 2)
     assert frames.to_frame(pose, "habitat_yup")[:3, 3].tolist() == [2, 0, -1]
-    assert float(frames.yaw_in(math.pi / 2, "habitat_yup")) == pytest.approx(math.pi / 2)
     turned = frames.to_frame(pose, "habitat_yup")[:3, :3]
     assert turned @ [1, 0, 0] == pytest.approx([0, 0, -1]), "it heads along -z"
 

@@ -20,7 +20,7 @@ import time
 from typing import Any
 
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
-from irsim.bridges.scene_files import feedback_of, motion_as_json, scene_as_json, state_as_json
+from irsim.bridges.json_lines.messages import feedback_of, motion_as_json, scene_as_json, state_as_json
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.components.bridges.json_lines import JsonLines
 from irsim.simulation.scene import SceneDescription

@@ -18,9 +18,12 @@ from irsim.common.arrays import Floats
 from irsim.common.extras import require
 from irsim.common.files import TargetError, check_suffix
 from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import ArgumentError
 from irsim.results.map_import import MapImportResult, MapLevel, MapTrip
+from irsim.scenario.file_kind import explained
 from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.yaml.document import Document
 
 __all__ = ["import_map", "list_levels", "read_occupancy"]
 
@@ -170,10 +173,9 @@ def _options(given: dict[str, Any]) -> ImportOptions:
     try:
         chosen = ImportOptions(**given)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        names = ", ".join(ImportOptions.model_fields)
-        raise ArgumentError(f"the option {key} is wrong: {first['msg']}", f"options of imports are {names}") from None
+        first = explained(error, Document(given), ImportOptions)[0]
+        what = f"the option {format_path(first.path)} is wrong: {first.message}"
+        raise ArgumentError(what, f"options of imports are {', '.join(ImportOptions.model_fields)}") from None
     if chosen.bounds is not None and not (chosen.bounds[0] < chosen.bounds[2] and chosen.bounds[1] < chosen.bounds[3]):
         shown = ", ".join(f"{value:g}" for value in chosen.bounds)
         raise ArgumentError(

@@ -25,7 +25,7 @@ from irsim.bridges.frames import FRAMES, axes_of, inverse, pose_matrix, rotation
 from irsim.common.arrays import Floats
 from irsim.common.version import version
 
-__all__ = ["FORMAT", "VERSION", "MapSidecar", "find_sidecar", "read_sidecar", "scene_transform", "sidecar_path"]
+__all__ = ["FORMAT", "VERSION", "MapSidecar", "read_sidecar", "scene_transform", "sidecar_path"]
 
 FORMAT = "irsim-map"
 """What the key ``format`` of such a file says."""
@@ -165,15 +165,6 @@ def scene_transform(frame: str, floor_height: float = 0.0, meters_per_unit: floa
 def sidecar_path(scenario: str | Path) -> Path:
     """The file beside a scenario: ``flat.bridge.json`` for ``flat.yaml``."""
     return Path(scenario).with_suffix(SUFFIX)
-
-
-def find_sidecar(scenario: str | Path) -> MapSidecar | None:
-    """The sidecar beside a scenario; None if there is none.
-
-    Raises:
-        BridgeError: There is one, but it cannot be used.
-    """
-    return read_sidecar(scenario) if sidecar_path(scenario).is_file() else None
 
 
 def read_sidecar(file: str | Path) -> MapSidecar:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import FRAMES, axes_of, camera_pose, pose_matrix, to_frame
-from irsim.bridges.maps.sidecar import MapSidecar, find_sidecar, read_sidecar, scene_transform, sidecar_path
+from irsim.bridges.maps.sidecar import MapSidecar, read_sidecar, scene_transform, sidecar_path
 
 POSES = st.tuples(st.floats(-99, 99), st.floats(-99, 99), st.floats(-3.1, 3.1))
 
@@ -59,7 +59,6 @@ def test_it_agrees_with_frames(pose, frame) -> None:
 def test_written_and_read(tmp_path) -> None:
     one = sidecar()
     file = sidecar_path(tmp_path / "flat.yaml")
-    assert find_sidecar(tmp_path / "flat.yaml") is None
     file.write_text(one.as_json())
     back = read_sidecar(tmp_path / "flat.yaml")
     assert file.name == "flat.bridge.json"

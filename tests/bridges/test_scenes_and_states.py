@@ -1,0 +1,144 @@
+"""Scenes and states, live and of recorded runs, and the JSON that ``json_lines`` makes of them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.api import read_scenario
+from irsim.bridges.base import BridgeError
+from irsim.bridges.json_lines.messages import feedback_of, motion_as_json, scene_as_json, state_as_json
+from irsim.bridges.recorded import recorded_scene, recorded_states
+from irsim.bridges.state import Motion, world_state
+from irsim.common.outline import Circle, Line, Polygon
+from irsim.objects.describe import agent_rows, describe_scene
+from irsim.runs import open_run
+from irsim.simulation.scene import SceneDescription
+
+SCENE = """
+world: {width: 12, height: 8, offset: [-2, 1], boundary: walls, collision_mode: unobstructed,
+  obstacle_map: {name: perlin, resolution: 0.5, fill: 0.1}}
+robot:
+  - {kinematics: {name: acker, wheelbase: 1.2}, shape: {name: rectangle, length: 2, width: 1}, state: [0, 3, 0, 0],
+     goal: [8, 3], vel_max: [1, 0.5], behavior: {name: dash}, color: red, sensors: [{name: lidar2d, number: 7}]}
+  - {kinematics: {name: omni}, state: [0, 6, 1], goal: [8, 6], shape: {name: circle, radius: 0.3}}
+obstacle:
+  - {shape: {name: linestring, vertices: [[0, 0], [1, 1], [2, 0]]}, state: [3, 7, 0]}
+  - {state: [4, 7, 0], shape: {name: compound, parts: [{name: circle, radius: 0.2},
+      {name: rectangle, length: 1, width: 0.1}]}}
+"""
+
+
+def simulation() -> Any:
+    scenario, _ = read_scenario(text=SCENE, strict=True)
+    return irsim.Env(scenario, seed=3, headless=True, log_level="ERROR").simulation
+
+
+@pytest.fixture(scope="module")
+def scene() -> SceneDescription:
+    return describe_scene(simulation())
+
+
+def test_a_scene_has_bodies_map_and_walls(scene: SceneDescription) -> None:
+    assert [agent.name for agent in scene.agents] == ["robot_0", "robot_1", "obstacle_2", "obstacle_3", "boundary"]
+    car, disk, line, pair, walls = scene.agents
+    assert car.parts[0].corners.shape == (4, 2)  # type: ignore[union-attr]
+    assert car.wheelbase == 1.2
+    assert car.color == (1, 0, 0)
+    assert disk.parts == (Circle((0, 0), 0.3),)
+    assert isinstance(line.parts[0], Line)
+    assert [type(part) for part in pair.parts] == [Circle, Polygon]
+    assert isinstance(walls.parts[0], Line)
+    assert walls.parts[0].closed
+    assert scene.walls
+    assert (scene.low, scene.high) == ((-2, 1), (10, 9))
+    assert scene.grid is not None
+    assert scene.grid.occupied.shape == (24, 16)
+    assert 0 < scene.grid.occupied.sum() < 24 * 16
+
+
+def test_polygons_of_a_scene_run_counterclockwise() -> None:
+    corners = [[0, 0], [1, 2], [2, 0]]
+    for given in (corners, corners[::-1]):
+        text = f"obstacle: {{shape: {{name: polygon, vertices: {given}}}, state: [5, 5, 0]}}"
+        made = irsim.Env(read_scenario(text=text, strict=True)[0], seed=0, headless=True, log_level="ERROR")
+        [polygon] = describe_scene(made.simulation).agents[0].parts
+        assert sorted(polygon.corners.tolist()) == sorted(corners)  # type: ignore[union-attr]
+        x, y = polygon.corners.T  # type: ignore[union-attr]
+        assert x @ np.roll(y, -1) - y @ np.roll(x, -1) == pytest.approx(4)
+
+
+def test_a_scene_as_json_has_bodies_and_runs_of_cells(scene: SceneDescription) -> None:
+    data = json.loads(json.dumps(scene_as_json(scene), allow_nan=False))
+    assert data["version"] == 1
+    car, disk, line, pair, walls = data["agents"]
+    assert car["parts"] == [{"polygon": scene.agents[0].parts[0].corners.tolist()}]  # type: ignore[union-attr]
+    assert disk["parts"] == [{"circle": [0, 0, 0.3]}]
+    assert line["parts"] == [{"line": [[0, 0], [1, 1], [2, 0]], "closed": False}]
+    assert [list(part) for part in pair["parts"]] == [["circle"], ["polygon"]]
+    assert walls["parts"][0]["closed"]
+    assert (car["name"], car["wheelbase"], car["lidars"][0]["beams"]) == ("robot_0", 1.2, 7)
+    assert walls["mass"] is None, "infinite"
+    runs = np.array(data["grid"]["runs"])
+    solid = np.repeat(np.arange(len(runs)) % 2 == 1, runs).reshape(data["grid"]["size"])
+    assert np.array_equal(solid, scene.grid.occupied)  # type: ignore[union-attr]
+
+
+def test_states_and_motions_as_json() -> None:
+    running = simulation()
+    running.step()
+    state = world_state(running, agent_rows(running))
+    data = json.loads(json.dumps(state_as_json(state), allow_nan=False))
+    assert (data["version"], data["step"], data["time"]) == (1, 1, pytest.approx(0.1))
+    assert np.array_equal(data["pose"], state.pose)
+    assert np.array_equal(np.array(data["goal"], float), state.goal, equal_nan=True), "null without a goal"
+    ranges = np.array(data["ranges"]["robot_0/0"], np.float32)
+    assert np.array_equal(ranges, state.ranges["robot_0/0"])
+    motion = Motion(1, 0.1, state.control, state.pose, state.twist)
+    assert np.array_equal(json.loads(json.dumps(motion_as_json(motion)))["pose"], state.pose)
+
+
+def test_feedback_is_read_from_json() -> None:
+    heard = feedback_of({"commands": {"a": [1, 2, 3]}, "ranges": {"a/0": [1, None]}, "end": "over"})
+    assert (heard.commands, heard.end) == ({"a": (1, 2, 3)}, "over")
+    assert heard.ranges["a/0"].tolist() == [1, np.inf]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        [],
+        {"poses": {"a": [1, 2]}},
+        {"poses": {"a": [1, 2, float("inf")]}},
+        {"goals": 3},
+        {"jump": {}},
+        {"ranges": {"a": ["x"]}},
+    ],
+)
+def test_wrong_feedback(data: Any) -> None:
+    with pytest.raises(BridgeError, match="bridge-failed"):
+        feedback_of(data)
+
+
+def test_a_recorded_run_is_the_live_one(tmp_path: Path) -> None:
+    file = tmp_path / "scene.yaml"
+    file.write_text(SCENE)
+    irsim.run(file, seed=3, steps=20, record=tmp_path / "run")
+    run = open_run(tmp_path / "run")
+    live = simulation()
+    plain = scene_as_json(describe_scene(live))
+    recorded = scene_as_json(recorded_scene(run))
+    for one in (plain, recorded):
+        one.pop("about")
+        one.pop("name")
+    assert json.dumps(recorded) == json.dumps(plain)
+    rows = agent_rows(live)
+    for state in recorded_states(run):
+        assert np.array_equal(state.pose, world_state(live, rows).pose)
+        live.step()
+    assert [state.step for state in recorded_states(run, every=8)] == [0, 8, 16, 20]
