@@ -254,7 +254,7 @@ def onnx(session: nox.Session) -> None:
 def cluster(session: nox.Session) -> None:
     """Benchmarks on local Ray clusters of several processes: the files are those of a local run."""
     install(session, "-e", ".[test,cluster]")
-    timed(session, "tests on clusters", "pytest", "-m", "cluster", "tests/cluster", *session.posargs)
+    timed(session, "tests on clusters", "pytest", "-m", "cluster", "tests/benchmarks/cluster", *session.posargs)
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))

@@ -1,6 +1,6 @@
 """Record what IR-SIM 2.12.0 makes of pictures and noise: run with an interpreter that has it, from this folder.
 
-    /tmp/reference/bin/python tests/maps/record.py
+    /tmp/reference/bin/python tests/components/record.py
 
 Writes `recorded/*.png` (drawn by this script) and `recorded/grids.npz` (what the reference reads).
 """

@@ -17,8 +17,8 @@ from irsim.bundled import templates
 from irsim.bundled.templates import Template
 from irsim.bundled.templates.fill import names_in
 from irsim.common import data_files as resources
+from tests.bundled.draw import draw
 from tests.effort import some
-from tests.templates.draw import draw
 
 ALL = templates.names()
 MODELINE = "# yaml-language-server: $schema=../../schema/scenario.schema.json"
@@ -151,7 +151,7 @@ def test_has_a_picture_of_its_start(name: str, tmp_path: Path) -> None:
     with Image.open(stored) as known, Image.open(tmp_path / "now.png") as now:
         assert known.size == now.size
         pixels = [np.asarray(picture.convert("L").resize((100, 80)), dtype=float) for picture in (known, now)]
-    assert np.abs(pixels[0] - pixels[1]).mean() < 2.0, "python -m tests.templates.draw"  # Matplotlib's letters vary
+    assert np.abs(pixels[0] - pixels[1]).mean() < 2.0, "python -m tests.bundled.draw"  # Matplotlib's letters vary
 
 
 def test_the_car_finds_whichever_bay_is_free(tmp_path: Path) -> None:

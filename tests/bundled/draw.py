@@ -1,4 +1,4 @@
-"""Draw the picture of each template: ``python -m tests.templates.draw [NAME ...]``."""
+"""Draw the picture of each template: ``python -m tests.bundled.draw [NAME ...]``."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from irsim.benchmarks.cluster import ClusterError
 from irsim.benchmarks.plan import file_plan
 from irsim.benchmarks.pool import WorkerError
 from irsim.benchmarks.stored import run_plan
-from tests.cluster.conftest import LocalCluster
+from tests.benchmarks.cluster.conftest import LocalCluster
 from tests.skills.conftest import ROOT, fences
 
 pytestmark = [

@@ -13,7 +13,7 @@ import irsim
 from irsim.env import Env
 from irsim.scenario.read import read
 from irsim.validation.feasibility.check import feasibility_findings
-from tests.feasibility.test_findings import DISC, ROBOT, ROOT, codes, door, found, one, scenario
+from tests.validation.test_findings import DISC, ROBOT, ROOT, codes, door, found, one, scenario
 
 
 def test_too_little_time() -> None:
