@@ -240,7 +240,18 @@ def evals(session: nox.Session) -> None:
 def records(session: nox.Session) -> None:
     """Exports of recorded runs, opened by the tools they are for; heavy libraries that other tests do without."""
     install(session, "-e", ".[test,records]", *TOOLS)
-    timed(session, "tests of exports", "pytest", "-m", "records", "-n", "2", "tests/records", *session.posargs)
+    timed(
+        session,
+        "tests of exports",
+        "pytest",
+        "-m",
+        "records",
+        "-n",
+        "2",
+        "tests/bridges",
+        "tests/benchmarks",
+        *session.posargs,
+    )
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))

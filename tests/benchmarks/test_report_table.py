@@ -1,4 +1,4 @@
-"""The table of episodes where the library that writes it is missing; with it, see tests/records."""
+"""The table of episodes where the library that writes it is missing; with it, see test_table_files.py."""
 
 from __future__ import annotations
 

@@ -1,9 +1,12 @@
-"""A run whose program at the other end, or whose policy in another process, is lost says so, and has failed."""
+"""Bridges that are lost, and runs that a signal ends."""
 
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -156,3 +159,29 @@ def test_two_bridges_are_told_in_one_line() -> None:
         irsim.run(text=text, steps=2, bridges=others, connected=told.append)
     [said] = told
     assert f"{one.address} (mode: sim) and the program at {two.address} (mode: sim)" in said
+
+
+ENDLESS = """
+world: {width: 10, height: 10}
+robot: [{kinematics: {name: diff}, state: [1, 5, 0], goal: [1000, 5], vel_max: [0, 0]}]
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_the_other_program_is_told_the_end(tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(ENDLESS)
+    with Peer(lambda message: None) as peer:
+        bridge = f"{{name: json_lines, clock: wall, address: '{peer.address}'}}"
+        command = [sys.executable, "-m", "irsim", "run", "scene.yaml", "--steps", "100000", "--bridge", bridge]
+        with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+            try:
+                until = time.monotonic() + 60
+                while len(peer.kinds()) < 5 and time.monotonic() < until:
+                    time.sleep(0.05)
+                process.send_signal(signal.SIGTERM)
+                _, error = process.communicate(timeout=20)
+            finally:
+                process.kill()
+        assert process.returncode == 128 + signal.SIGTERM
+        assert "Traceback" not in error
+        assert peer.kinds()[-1] == "end"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,9 +11,9 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.bridges.solids import Box, convex_pieces, is_convex, merged_cells, solids_of, triangles
+from irsim.bridges.solids import BoundingBox, Box, box_of, convex_pieces, is_convex, merged_cells, solids_of, triangles
 from irsim.common.outline import Circle, Line, Polygon
-from irsim.simulation.scene import Grid
+from irsim.simulation.scene import Grid, SceneObject
 from tests.effort import examples
 
 U_SHAPE = np.array([[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]], dtype=float)
@@ -106,3 +107,21 @@ def _area(box: object) -> shapely.Polygon:
     from shapely.affinity import affine_transform
 
     return affine_transform(square, [cosine, -sine, sine, cosine, *box.center])
+
+
+def _agent(*parts: Any) -> SceneObject:
+    return SceneObject(0, "a", "robot", None, True, (0, 0, 0), (), parts, 0.5, (), (), (), None, 1.0, (0, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("parts", "box"),
+    [
+        ((Circle((0.0, 0.0), 0.2),), BoundingBox(0, 0, 0.4, 0.4)),
+        ((Polygon(np.array([[-1.0, -1], [3, -1], [3, 1], [-1, 1]])),), BoundingBox(1, 0, 4, 2)),
+        ((Circle((0.0, 1.0), 0.5), Circle((2.0, 0.0), 0.5)), BoundingBox(1, 0.5, 3, 2)),
+        ((Line(np.array([[0.0, 0], [4, 0]])),), BoundingBox(2, 0, 4, 0.01)),
+        ((), BoundingBox(0, 0, 1, 1)),
+    ],
+)
+def test_box(parts: Any, box: BoundingBox) -> None:
+    assert vars(box_of(_agent(*parts))) == pytest.approx(vars(box))

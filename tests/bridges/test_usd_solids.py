@@ -1,17 +1,24 @@
-"""Solids of footprints, walls and maps: closed, oriented outwards, of the right volume."""
+"""Stages of OpenUSD: their solids, and what is said without the library."""
 
 from __future__ import annotations
 
 import itertools
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import irsim
+from irsim.bridges.export.export import export_run
+from irsim.bridges.export.registry import find_format
+from irsim.bridges.usd.files import export_scene
 from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
 from irsim.bridges.usd.stage import prim_names
+from irsim.common.extras import ExtraError
+from irsim.common.files import TargetError
 from irsim.common.outline import Circle, Line, Polygon
 from irsim.simulation.scene import Grid
 from tests.effort import examples
@@ -129,3 +136,39 @@ def test_names_of_prims() -> None:
     assert found[:5] == ["robot_1", "robot_1_2", "Robot_1_3", "_7up", "object"]
     assert len({name.lower() for name in found}) == len(names)
     assert all(name.isascii() and name.isidentifier() for name in found)
+
+
+TEXT = """
+world: {width: 5, height: 5, time_limit: 0.5}
+robot:
+  - {state: [1, 1, 0], goal: [4, 4], kinematics: {name: diff}, behavior: {name: dash},
+     shape: {name: circle, radius: 0.2}}
+"""
+
+
+@pytest.fixture
+def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "scene.yaml").write_text(TEXT)
+    irsim.run(str(tmp_path / "scene.yaml"), record=tmp_path / "run")
+    monkeypatch.setattr("irsim.common.extras.find_spec", lambda module: None)
+    return tmp_path
+
+
+@pytest.mark.parametrize(("name", "extra"), [("x.usda", "usd"), ("x.usdz", "usd"), ("x.xml", "scenarios")])
+def test_a_run(scene: Path, name: str, extra: str) -> None:
+    to = "commonroad" if name.endswith("xml") else None
+    with pytest.raises(ExtraError, match=rf"pip install 'irsim-mcp\[{extra}\]'"):
+        export_run(scene / "run", scene / name, to=to)
+    assert not (scene / name).exists()
+
+
+def test_a_scenario(scene: Path) -> None:
+    with pytest.raises(ExtraError, match=r"irsim-mcp\[usd\]"):
+        export_scene(scene / "scene.yaml", scene / "x.usda")
+
+
+def test_suffixes(scene: Path) -> None:
+    for suffix in (".usda", ".usdc", ".usdz", ".USDA"):
+        assert find_format(None, Path(f"run{suffix}")).name == "usd"
+    with pytest.raises((TargetError, ExtraError)):
+        export_run(scene / "run", scene / "x.glb", to="usd")

@@ -1,4 +1,4 @@
-"""Navigation meshes: what is read, and that damaged files are refused wherever they are damaged."""
+"""Navigation meshes, and the grid that scenes are laid on."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from irsim import api
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, read_sidecar
+from irsim.bridges.maps.grid import Grid, grid_over, rows_of
 from irsim.bridges.maps.kinds.navmesh import read_tiles
+from irsim.bridges.maps.voxels import floors_of, spans_of, walkable_of
 from tests.bridges.maps.navmesh_files import TWO_ROOMS, UPSTAIRS, mesh_set, tile
 
 
@@ -110,3 +113,98 @@ def test_a_set_without_polygons(tmp_path) -> None:
     for content in (mesh_set(), mesh_set(tile(()))):
         with pytest.raises(BridgeError, match="no polygons"):
             import_map(write(tmp_path, content), tmp_path / "scene.yaml")
+
+
+NUMBER = st.integers(-40, 140).map(lambda n: n / 17)
+CORNERS = st.tuples(*[st.tuples(NUMBER, NUMBER, NUMBER)] * 3)
+
+
+def cells(corners, at_centers: bool) -> set[tuple[int, int]]:
+    found = [np.column_stack([i, j]) for _, i, j, _ in rows_of(np.array([corners], float), at_centers=at_centers)]
+    return {tuple(cell) for cell in np.concatenate([np.zeros((0, 2), int), *found]).tolist()}
+
+
+@given(corners=CORNERS)
+@settings(max_examples=150)
+def test_every_touched_cell_is_found(corners) -> None:
+    flat = np.array(corners)[:, :2]
+    shape = shapely.MultiPoint(flat).convex_hull
+    i, j = (x.ravel() for x in np.meshgrid(np.arange(-5, 12), np.arange(-5, 12)))
+    boxes = shapely.box(i, j, i + 1, j + 1)
+    found = cells(flat, at_centers=False)
+    inside = set(
+        zip(*(x[shapely.area(shapely.intersection(boxes, shape)) > 1e-9].tolist() for x in (i, j)), strict=True)
+    )
+    touching = set(zip(*(x[shapely.dwithin(boxes, shape, 1e-9)].tolist() for x in (i, j)), strict=True))
+    assert inside <= found <= touching
+
+
+@given(corners=CORNERS)
+@settings(max_examples=60, deadline=None)
+def test_heights_are_those_of_the_part_within_the_cell(corners) -> None:
+    grid = Grid(-5.0, -5.0, 1.0, 20, 20)
+    triangle = np.array([corners])
+    spans = spans_of(triangle, grid, 0.7, 0.0)
+    t = np.stack(np.meshgrid(*[np.linspace(0, 1, 90)] * 2), -1).reshape(-1, 2)
+    t = t[t.sum(axis=1) <= 1]
+    points = triangle[0, 0] + t @ (triangle[0, 1:] - triangle[0, 0])
+    points = points[(np.abs(points[:, :2] - np.round(points[:, :2])) > 1e-6).all(axis=1)]  # not on lines of the grid
+    column = ((np.floor(points[:, 0]) + 5) * 20 + np.floor(points[:, 1]) + 5).astype(int)
+    for one in np.unique(column):
+        own = points[column == one, 2]
+        low, high = spans.low[spans.column == one], spans.high[spans.column == one]
+        assert len(low) == 1
+        assert low[0] <= own.min() + 0.006
+        assert high[0] >= own.max() - 0.006
+        rise = np.ptp(triangle[0], axis=0)
+        if (column == one).sum() > 2000:  # sampled densely enough to know the ends
+            assert low[0] >= own.min() - 0.05 * rise.max() - 0.01
+            assert high[0] <= own.max() + 0.05 * rise.max() + 0.01
+
+
+def test_triangles_with_a_common_edge_share_no_center() -> None:
+    rng = np.random.default_rng(5)
+    points = np.column_stack([rng.uniform(0, 9, (40, 2)), np.zeros(40)])
+    triangulation = shapely.delaunay_triangles(shapely.MultiPoint(points[:, :2]))
+    triangles = np.array([list(part.exterior.coords)[:3] for part in triangulation.geoms])
+    seen = [tuple(cell) for _, i, j, _ in rows_of(triangles * 7, at_centers=True) for cell in zip(i, j, strict=True)]
+    assert len(seen) == len(set(seen))
+    area = shapely.convex_hull(shapely.MultiPoint(points[:, :2])).area
+    assert len(seen) / 49 == pytest.approx(area, rel=0.02)
+
+
+def test_floors_have_the_heights_of_their_planes() -> None:
+    ramp = np.array([[[0, 0, 0], [4, 0, 2], [4, 2, 2]], [[0, 0, 0], [4, 2, 2], [0, 2, 0]]], float)
+    grid = Grid(-1.0, -1.0, 0.5, 14, 8)
+    floors = floors_of(ramp, grid, 1.0)
+    assert len(floors.column) == 8 * 4
+    assert floors.floor == pytest.approx(grid.centers(floors.column)[:, 0] / 2)
+
+
+def test_a_wall_over_a_door_leaves_the_door_open() -> None:
+    """A long triangle of a wall reaches from the floor beside the door to the lintel above it."""
+    wall = np.array(
+        [[[0.52, 0, 0], [0.52, 0, 2.5], [0.52, 5, 2.5]], [[0.52, 5, 2.1], [0.52, 0, 0], [0.52, 5, 2.5]]], float
+    )
+    ground = np.array([[[0, 0, 0], [1, 0, 0], [1, 5, 0]], [[0, 0, 0], [1, 5, 0], [0, 5, 0]]], float)
+    grid = Grid(-0.1, -0.1, 0.1, 13, 53)
+    spans = spans_of(np.concatenate([wall, ground]), grid, 0.7, 0.2)
+    floors = walkable_of(spans, 1.5, 0.2)
+    _, y = grid.centers(floors.column[np.isclose(grid.centers(floors.column)[:, 0], 0.55)]).T
+    below = 2.1 / 5 * y  # the lower edge of the wall
+    assert (below[y > 0] >= 1.45).all()
+    assert y.max() > 4.9
+
+
+@pytest.mark.parametrize("size", [(5000.0, 4000.0), (1e7, 0.1), (1e9, 1e9)])
+def test_too_many_cells_name_the_resolution_that_fits(size) -> None:
+    with pytest.raises(BridgeError, match="--resolution") as caught:
+        grid_over(np.zeros(2), np.array(size), 0.05, 1_000_000)
+    advised = float(str(caught.value.fix).split()[-1])
+    grid = grid_over(np.zeros(2), np.array(size), advised, 1_000_000)
+    assert grid.columns <= 1_000_000
+    assert grid.columns > 100_000
+
+
+def test_no_triangle_no_span() -> None:
+    assert not len(walkable_of(spans_of(np.zeros((1, 3, 3)), Grid(-1, -1, 1.0, 3, 3), 0.7, 0.1), 1.0, 0.1).column)

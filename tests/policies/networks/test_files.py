@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import io
 import json
 import os
@@ -17,6 +18,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from irsim.common import extras
 from irsim.diagnostics.diagnostic import format_path
 from irsim.policies.networks import Limits, Network, PolicyFileError, mlp, open_network, save_network
 from irsim.policies.networks.document import policy_schema_text
@@ -361,3 +363,17 @@ def test_plain_weights_in_three_ways() -> None:
         mlp([(np.zeros((3, 2)), np.zeros(3))], [{"name": "goal"}], drives=["diff"])
     with pytest.raises(PolicyFileError, match=r"dense_0.w: .* given: 3 x 5, allowed: 2 x 5"):
         mlp(pairs, [{"name": "goal", "features": ["x", "y"]}], drives=["diff"])
+
+
+def test_without_the_extra_the_command_that_installs_it_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def find(name: str, *rest: Any) -> Any:
+        return None if name in ("onnx", "onnxruntime") else importlib.util.find_spec(name, *rest)
+
+    monkeypatch.setattr(extras, "find_spec", find)
+    (tmp_path / "net.onnx").write_bytes(b"anything")
+    with pytest.raises(
+        extras.ExtraError, match=r"onnx and onnxruntime are not installed.*pip install 'irsim-mcp\[onnx\]'"
+    ):
+        open_network(tmp_path / "net.onnx")

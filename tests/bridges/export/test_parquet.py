@@ -10,7 +10,7 @@ import pytest
 
 import irsim
 from irsim.runs import Run, open_run
-from tests.records.conftest import HALL
+from tests.bridges.export.conftest import HALL
 
 pytestmark = pytest.mark.records
 
