@@ -83,9 +83,9 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
     from irsim.graphics.scene.scene import Scene
     from irsim.graphics.scene.style import Palette
     from irsim.graphics.scene.zones import draw_zones
-    from irsim.rendering.between_steps import draw_between_steps
     from irsim.rendering.clearance_map import draw_clearance
     from irsim.rendering.planned_paths import draw_plans
+    from irsim.rendering.snapshot_details import draw_between_steps
 
     def add(scene: Scene) -> None:
         if overlays and "clearance" in overlays:
@@ -102,8 +102,7 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
 def footprint_of(env: Env, ways: list[PlannedPath]) -> Footprint | None:
     """The smallest robot along its path, for the overlay ``clearance``; None if it is round or has no path."""
     from irsim.rendering.clearance_map import Footprint, smallest_robot
-    from irsim.rendering.path_margin import poses_along
-    from irsim.rendering.planned_paths import plan_paths
+    from irsim.rendering.planned_paths import plan_paths, poses_along
 
     row = smallest_robot(env.simulation)
     view = next((view for view in env.robot_list if view.row == row), None)

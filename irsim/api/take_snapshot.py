@@ -21,8 +21,7 @@ from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.build import steps_until
 from irsim.simulation.events import first_collisions, first_events
-from irsim.simulation.explored import explored_share
-from irsim.simulation.outcome import robot_outcomes
+from irsim.simulation.outcome import explored_share, robot_outcomes
 from irsim.simulation.random_streams import fresh_seed
 
 if TYPE_CHECKING:

@@ -29,7 +29,7 @@ from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
 from irsim.simulation.events import Event, first_collisions, first_events, partner_of, read_events
-from irsim.simulation.explored import explored_share
+from irsim.simulation.outcome import explored_share
 from irsim.simulation.roles import travelling_humans
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import Trace, cut_trace, join_traces, next_rows, present_row, record

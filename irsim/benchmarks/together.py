@@ -13,7 +13,7 @@ from irsim.navigation.geodesic import Geodesics
 from irsim.policies.driver import PolicyDriver, attach_policy, driver_of
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import read_events
-from irsim.simulation.explored import explored_share
+from irsim.simulation.outcome import explored_share
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import Trace, record_worlds
 

@@ -243,7 +243,7 @@ NAMES: dict[str, dict[str, str]] = {
         "RobotAcker": "irsim.env.old.construct",
         "RobotDiff": "irsim.env.old.construct",
         "RobotOmni": "irsim.env.old.construct",
-        "SensorFactory": "irsim.compat.sensor_factory",
+        "SensorFactory": "irsim.env.old.factory",
         "World": "irsim.env.old.construct",
     },
     "irsim.world.map": {
@@ -321,7 +321,7 @@ NAMES: dict[str, dict[str, str]] = {
         "Contact2D": "irsim.objects.sensors.contact",
         "FMCWLidar2D": "irsim.objects.sensors.lidar",
         "Lidar2D": "irsim.objects.sensors.lidar",
-        "SensorFactory": "irsim.compat.sensor_factory",
+        "SensorFactory": "irsim.env.old.factory",
     },
     "irsim.world.sensors.contact2d": {
         "Contact2D": "irsim.objects.sensors.contact",
@@ -333,7 +333,7 @@ NAMES: dict[str, dict[str, str]] = {
         "Lidar2D": "irsim.objects.sensors.lidar",
     },
     "irsim.world.sensors.sensor_factory": {
-        "SensorFactory": "irsim.compat.sensor_factory",
+        "SensorFactory": "irsim.env.old.factory",
     },
     "irsim.world.world": {
         "World": "irsim.env.old.construct",

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 from irsim.compat.objects.view import make_view
-from irsim.objects.extensions.attach import attach_python
+from irsim.objects.lifecycle import attach_python
 from irsim.policies.behavior import with_policy
 from irsim.policies.catalog import PolicySource, open_policy
 from irsim.policies.driver import attach_policy

@@ -13,9 +13,7 @@ from irsim.env import (
     drawing,
     lifetime,
     live,
-    load_behavior,
     loop,
-    maps,
     messages,
     object_list,
     policies,
@@ -156,10 +154,10 @@ class Env(EnvState):
     random_obstacle_position = random_obstacles.random_obstacle_position
     random_polygon_shape = random_obstacles.random_polygon_shape
 
-    # behaviors of scripts, policies, maps, messages: load_behavior.py, policies.py, maps.py, messages.py
+    # behaviors of scripts, policies, maps, messages: policies.py, queries.py, messages.py
     set_policy = policies.set_policy
-    load_behavior = load_behavior.load_behavior
-    get_map = maps.get_map
+    load_behavior = policies.load_behavior
+    get_map = queries.get_map
     get_msg = messages.get_msg
     receive_msg = messages.receive_msg
 

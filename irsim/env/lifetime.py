@@ -16,7 +16,7 @@ from irsim.env.parameters import EnvParam, WorldParam, checked_step_mode
 from irsim.env.policies import attach, driven, remember_written
 from irsim.env.queries import objects
 from irsim.env.state import EnvState
-from irsim.objects.extensions.attach import attach_python
+from irsim.objects.lifecycle import attach_python
 from irsim.scenario.open import open_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.active_env import next_seed, use

@@ -11,8 +11,8 @@ from irsim.env.queries import get_object_by_name
 from irsim.env.state import EnvState
 from irsim.objects.actions import assign_actions
 from irsim.simulation.active_env import use
-from irsim.simulation.episode_recorder import EpisodeRecorder
 from irsim.simulation.events import BETWEEN_STEPS, Event, read_events
+from irsim.simulation.protocols import EpisodeRecorder
 from irsim.simulation.trace import Rollout, record_rollout
 
 __all__ = ["advance", "done", "log_collisions", "pause", "refresh", "resume", "rollout", "step"]

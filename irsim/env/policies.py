@@ -1,11 +1,15 @@
-"""The method of an environment that lets a policy drive its robots."""
+"""Methods of an environment that decide for its robots: a policy, and modules of user behaviors."""
 
 from __future__ import annotations
 
+import importlib
+import sys
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.env.state import EnvState
+from irsim.objects.extensions.behaviors import attach_python_behaviors
 from irsim.objects.lifecycle import amend_all
 
 if TYPE_CHECKING:
@@ -14,7 +18,7 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["attach", "drive_again", "driven", "opened", "remember_written", "set_policy"]
+__all__ = ["attach", "drive_again", "driven", "load_behavior", "opened", "remember_written", "set_policy"]
 
 
 def opened(policy: PolicySource | None) -> Policy | None:
@@ -100,3 +104,22 @@ def _as_written(record: ObjectRecord, written: dict[int, ObjectRecord]) -> Objec
 
     own: dict[str, Any] = {key: getattr(before, key) for key in TASK_AND_BEHAVIOR}
     return replace(record, **own)
+
+
+def load_behavior(env: EnvState, behaviors: str = "behavior_methods") -> None:
+    """Import a module that registers behaviors, and construct behaviors that are classes again.
+
+    Python executes a module once per process, however often it is loaded. If the import fails, an error is logged.
+
+    Args:
+        behaviors: Name of a module beside the running script, or anywhere on the path of Python.
+    """
+    folder = str(Path(sys.argv[0]).resolve().parent) if sys.argv and sys.argv[0] else str(Path.cwd())
+    if folder not in sys.path:
+        sys.path.append(folder)
+    try:
+        importlib.import_module(behaviors)
+    except ImportError as error:
+        env.logger.error(f"module {behaviors!r} could not be loaded: {error}")
+        return
+    attach_python_behaviors(env._simulation, anew=True)

@@ -17,7 +17,7 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.build import steps_until
 
 if TYPE_CHECKING:
-    from irsim.simulation.episode_recorder import EpisodeRecorder
+    from irsim.simulation.protocols import EpisodeRecorder
 
 __all__ = [
     "HORIZON_FACTOR",

@@ -15,7 +15,7 @@ from irsim.episodes.incidents import Incidents, find_incidents
 from irsim.episodes.obstructions import find_jammed
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.simulation.events import Event, passable_names
-from irsim.simulation.explored import explored_share
+from irsim.simulation.outcome import explored_share
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario

@@ -26,8 +26,8 @@ from irsim.results.episode import EventRecord, Left, RobotResult
 from irsim.results.findings import Finding
 from irsim.results.run import LOST_THINGS, HorizonSource, RunResult
 from irsim.simulation.events import BETWEEN_STEPS, SIGHTS, Event, first_events
-from irsim.simulation.history import all_poses
 from irsim.simulation.outcome import robot_outcomes
+from irsim.simulation.trace import all_poses
 
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats

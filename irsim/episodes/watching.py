@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from irsim.common.text import listed, quoted, seconds
 from irsim.metrics.watching import Rows, Watching, goal_visible_ratio, watching_metrics, zone_metrics
 from irsim.results.episode import ZoneResult
-from irsim.simulation.history import past_goals, past_poses
+from irsim.simulation.trace import past_goals, past_poses
 
 if TYPE_CHECKING:
     from irsim.episodes.facts import EpisodeFacts

@@ -12,7 +12,7 @@ import numpy as np
 
 import irsim._core as core
 from irsim.components.maps._site import OCCUPIED
-from irsim.navigation.outlines import body_parts, parts_of
+from irsim.objects.shapely_geometry import body_parts, parts_of
 from irsim.objects.view import ObjectView
 from irsim.simulation.occupancy import grid_occupied
 

@@ -12,9 +12,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from irsim.objects.base import SimObject
-from irsim.objects.extensions.attach import attach_python
-from irsim.objects.extensions.behaviors import forget_behavior
+from irsim.objects.extensions.behaviors import attach_python_behaviors, forget_behavior
 from irsim.objects.extensions.drives import attach_python_drives
+from irsim.objects.sensors.sensors import attach_python_sensors
 from irsim.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ __all__ = [
     "amend",
     "amend_all",
     "amend_world",
+    "attach_python",
     "dismiss",
     "draw_as",
     "renumber",
@@ -190,3 +191,15 @@ def _with_leaders(before: Sequence[ObjectRecord], after: Sequence[ObjectRecord])
                 record = replace(record, group_behavior=behavior)
         kept.append(record)
     return kept
+
+
+def attach_python(simulation: Simulation, *, anew: bool = False) -> None:
+    """Attach drives, behaviors and sensors of user code; call it again after the objects have changed.
+
+    Args:
+        simulation: The simulation.
+        anew: Construct drives, and behaviors that are classes, again.
+    """
+    attach_python_drives(simulation, anew=anew)
+    attach_python_behaviors(simulation, anew=anew)
+    attach_python_sensors(simulation)

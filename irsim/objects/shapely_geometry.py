@@ -1,28 +1,33 @@
-"""Whether bodies touch, on the exact shapes; and shapely geometries as parts of the core, for scripts."""
+"""Whether bodies touch, on the exact shapes; and shapely geometries and objects as parts of the core."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.common.outline import outline
+from irsim.objects.view import ObjectView
 
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
 
-__all__ = ["from_shapely", "touching", "touching_circle"]
+__all__ = ["body_parts", "from_shapely", "parts_of", "touching", "touching_circle"]
 
 
 def touching(a: SimObject, b: SimObject) -> bool:
     """Return whether two bodies intersect or touch at their present poses, computed on the exact shapes."""
-    first, second = _parts(a), _parts(b)
+    first, second = body_parts(a), body_parts(b)
     return core.intersects(first, a.state[:3, 0].tolist(), second, b.state[:3, 0].tolist())
 
 
 def touching_circle(a: SimObject, x: float, y: float, radius: float) -> bool:
     """Return whether a body at its present pose intersects or touches a circle, in the world frame [m]."""
     circle = core.Circle(radius=radius, center=[x, y])
-    return core.intersects(_parts(a), a.state[:3, 0].tolist(), [circle], [0.0, 0.0, 0.0])
+    return core.intersects(body_parts(a), a.state[:3, 0].tolist(), [circle], [0.0, 0.0, 0.0])
 
 
 def from_shapely(geometry: Any) -> list[core.Part]:
@@ -48,5 +53,72 @@ def from_shapely(geometry: Any) -> list[core.Part]:
     return parts
 
 
-def _parts(thing: SimObject) -> list[core.Part]:
-    return outline(thing._simulation.state, thing.row).core()
+def parts_of(thing: Any) -> list[Any]:
+    """Return the area that a thing occupies in the world, as parts of the core.
+
+    Args:
+        thing: An object of an environment, a shapely geometry, or anything with an attribute ``geometry``.
+
+    Raises:
+        TypeError: The thing has no geometry.
+    """
+    if isinstance(thing, ObjectView):
+        return outline(thing._simulation.state, thing.row, world_frame=True).core()
+    return list(_parts(_geometry(thing, "geometry")))
+
+
+def body_parts(thing: Any) -> list[Any]:
+    """Return the body of a thing in the body frame, as parts of the core.
+
+    Args:
+        thing: An object of an environment, a shapely geometry in the body frame, or anything with an attribute
+            ``original_geometry``.
+
+    Raises:
+        TypeError: The thing has no geometry.
+    """
+    if isinstance(thing, ObjectView):
+        return outline(thing._simulation.state, thing.row).core()
+    return list(_parts(_geometry(thing, "original_geometry")))
+
+
+def _geometry(thing: Any, attribute: str) -> Any:
+    geometry = getattr(thing, attribute, thing)
+    if not hasattr(geometry, "geom_type"):
+        raise TypeError(f"an obstacle must be an object or a shapely geometry, got {thing!r}")
+    return geometry
+
+
+def _parts(geometry: Any) -> Iterator[Any]:
+    if geometry.is_empty:
+        return
+    kind = geometry.geom_type
+    if kind == "Polygon":
+        yield core.Polygon(vertices=_ring(geometry))
+    elif kind in ("LineString", "LinearRing"):
+        yield core.Linestring(vertices=_xy(geometry).tolist())
+    elif kind == "Point":
+        yield core.Circle(radius=0.0, center=(geometry.x, geometry.y))
+    elif hasattr(geometry, "geoms"):
+        for one in geometry.geoms:
+            yield from _parts(one)
+    else:
+        raise TypeError(f"planners do not support geometries of type {kind!r}")
+
+
+def _xy(line: Any) -> Floats:
+    return np.asarray(line.coords, dtype=np.float64)[:, :2]
+
+
+def _ring(polygon: Any) -> list[list[float]]:
+    """Return the (N, 2) corners of a polygon; a seam, passed in both directions, connects each hole to the outline."""
+    ring = _xy(polygon.exterior)[:-1]
+    holes = [_xy(hole)[:-1] for hole in polygon.interiors]
+    while holes:
+        gaps = [((ring[:, None] - hole[None]) ** 2).sum(axis=2) for hole in holes]
+        k = int(np.argmin([gap.min() for gap in gaps]))
+        hole, gap = holes.pop(k), gaps[k]
+        i, j = np.unravel_index(int(gap.argmin()), gap.shape)
+        rolled = np.roll(hole, -int(j), axis=0)
+        ring = np.vstack([ring[: i + 1], rolled, rolled[:1], ring[i:]])
+    return [[float(x), float(y)] for x, y in ring]

@@ -27,8 +27,7 @@ from irsim.rendering.live_window import LiveWindow
 from irsim.rendering.plot_steps import PlotSteps
 from irsim.rendering.recording import Pictured
 from irsim.rendering.saving import Saving, saved_figure_options
-from irsim.rendering.script_drawings import ScriptDrawings
-from irsim.rendering.user_sensors import UserSensors
+from irsim.rendering.script_drawings import ScriptDrawings, UserSensors
 
 if TYPE_CHECKING:
     from irsim.graphics.figure.window import Window

@@ -1,13 +1,19 @@
-"""What scripts draw into the picture of an environment."""
+"""What user code draws into the picture of an environment: scripts, and sensors of their own."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
+
+from matplotlib.axes import Axes
+
+from irsim.objects.sensors.sensors import PythonSensor
 
 if TYPE_CHECKING:
     from irsim.graphics.figure.overlay import Overlay
+    from irsim.objects.view import ObjectView
 
-__all__ = ["ScriptDrawings"]
+__all__ = ["ScriptDrawings", "UserSensors"]
 
 
 class ScriptDrawings:
@@ -46,3 +52,35 @@ class ScriptDrawings:
     def draw_quivers(self, points: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
         """Draw arrows (x, y, u, v)."""
         self._overlay.quivers(self.made_figure().ax, points, refresh, color, **kwargs)
+
+
+class UserSensors:
+    """Lets the user-defined sensors of an environment draw into the axes of one figure."""
+
+    def __init__(self) -> None:
+        self._drawn: dict[int, PythonSensor] = {}
+
+    def show(self, ax: Axes, objects: Sequence[ObjectView]) -> None:
+        """Bring the drawings of the sensors up to date.
+
+        Args:
+            ax: Axes in world coordinates.
+            objects: Objects whose sensors are shown.
+        """
+        sensors = [sensor for view in objects for sensor in view.sensors if isinstance(sensor, PythonSensor)]
+        for sensor in [*self._drawn.values()]:
+            if sensor not in sensors:
+                del self._drawn[id(sensor)]
+                if hasattr(sensor.instance, "plot_clear"):
+                    sensor.instance.plot_clear()
+        for sensor in sensors:
+            if id(sensor) in self._drawn:
+                if hasattr(sensor.instance, "step_plot"):
+                    sensor.instance.step_plot()
+            elif hasattr(sensor.instance, "plot"):
+                self._drawn[id(sensor)] = sensor
+                sensor.instance.plot(ax, sensor.parent.state)
+
+    def forget(self) -> None:
+        """Forget which sensors have drawn, because the axes are empty again."""
+        self._drawn.clear()

@@ -8,14 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.graphics.scene.bodies import arrow, place
-from irsim.graphics.scene.scene import Fog, Mark, Scene, Stroke
-from irsim.graphics.scene.style import Color
+from irsim.graphics.scene.scene import Fog, Mark, Region, Scene, Stroke
+from irsim.graphics.scene.style import Color, Palette
 from irsim.objects.views import views
+from irsim.simulation.events import BETWEEN_STEPS, passable_names
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from irsim.simulation.events import Event
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["add_details"]
+__all__ = ["add_details", "draw_between_steps"]
+
 
 _GOAL_ARROW_SHARE = 0.05
 """Length of the arrow on a goal, as a share of the longer side of the picture."""
@@ -75,3 +80,33 @@ def _is_hidden(fog: Fog, point: tuple[float, float]) -> bool:
     column, row = int((point[0] - x0) / (x1 - x0) * columns), int((point[1] - y0) / (y1 - y0) * rows)
     inside = 0 <= column < columns and 0 <= row < rows
     return bool(inside and not np.asarray(fog.explored)[column, row])
+
+
+_SIZE_SHARE = 0.018
+"""Half the width of a mark as a share of the longer side of the picture."""
+_HOLE_SHARE = 0.45
+"""Size of the hole of a mark as a share of that of the mark."""
+_HALO_PT = 0.6
+_ZORDER = 9.0
+_MAX_MARKS = 500
+"""Number of the latest contacts that are marked."""
+
+
+def draw_between_steps(scene: Scene, simulation: Simulation, events: Sequence[Event]) -> None:
+    """Mark where objects touched, or passed through, each other between two steps, up to the present moment.
+
+    Args:
+        scene: Scene to add to.
+        simulation: The simulation that it shows.
+        events: Events of the episode so far.
+    """
+    passable = passable_names(simulation)
+    x0, x1, y0, y1 = scene.extent
+    half = _SIZE_SHARE * max(x1 - x0, y1 - y0)
+    corners = half * np.array([[0.0, -1.2], [1.0, 0.0], [0.0, 1.2], [-1.0, 0.0]])
+    hole = _HOLE_SHARE * corners[::-1]
+    shown = [event for event in events if event.kind in BETWEEN_STEPS and not {event.object, event.partner} <= passable]
+    for event in shown[-_MAX_MARKS:]:
+        place = np.array([event.x, event.y])
+        shape = Region([place + corners, place + hole])
+        scene.marks.append(Mark(-1, "contact", shape, Palette().contact, Stroke("white", _HALO_PT), 1.0, _ZORDER))

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.behaviors.follow import Follow
@@ -23,7 +25,6 @@ from irsim.options.registry import (
     Registry,
 )
 from irsim.scenario.resolve.body_size import parts_of
-from irsim.simulation.compound import compound_body
 from irsim.simulation.fog import build_fog
 from irsim.simulation.watching import build_targets, build_views, build_zones
 
@@ -36,6 +37,7 @@ __all__ = [
     "COLLISION_MODES",
     "PLACEMENT_ATTEMPTS",
     "build_world",
+    "compound_body",
     "group_behaviors",
     "padded",
     "speed_controls",
@@ -43,6 +45,7 @@ __all__ = [
     "steps_until",
     "steps_within",
 ]
+
 
 AFTER_ARRIVAL = {None: 0, "freeze": 1, "yield": 2}
 CONTACTS = {"step_end": 0, "swept": 1}
@@ -343,3 +346,40 @@ def static_shapes_are_random(scenario: ResolvedScenario) -> bool:
 def _is_drawn(record: ObjectRecord) -> bool:
     parts = parts_of(record.shape)
     return any(isinstance(part, (core.RandomCircle, core.RandomPolygon, core.PerlinCells)) for part in parts)
+
+
+_SEGMENTS_PER_QUARTER = 16
+"""Number of segments that stand for a quarter circle."""
+
+
+def compound_body(parts: Sequence[Any]) -> list[float]:
+    """Return centroid and squared radius of gyration of the area that the parts of a compound cover together.
+
+    Returns:
+        x, y of the centroid [m, body frame]; if the area is in one piece, also the square of its radius of gyration
+        [m^2], where holes count as filled. An empty list if a part is random, because its shape changes with each
+        scene.
+    """
+    import shapely
+
+    shapes: list[Any] = []
+    for part in parts:
+        if isinstance(part, core.Circle):
+            shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=_SEGMENTS_PER_QUARTER))
+        elif isinstance(part, core.Polygon):
+            shapes.append(shapely.Polygon(part.vertices))
+        elif isinstance(part, core.Linestring):
+            shapes.append(shapely.LineString(part.vertices))
+        else:
+            return []
+    area: Any = shapely.union_all(shapes)
+    centre = [area.centroid.x, area.centroid.y]
+    return [*centre, _gyration2(area.exterior.coords, centre)] if area.geom_type == "Polygon" else centre
+
+
+def _gyration2(ring: Any, centre: Sequence[float]) -> float:
+    """Return the second moment of the area inside a closed ring about ``centre``, divided by the area [m^2]."""
+    a = np.asarray(ring, dtype=np.float64)[:-1] - centre
+    b = np.roll(a, -1, axis=0)
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return float(np.sum(cross * np.sum(a * a + a * b + b * b, axis=1)) / (6.0 * np.sum(cross)))

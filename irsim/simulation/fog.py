@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["DEFAULT_RESOLUTION", "FOG_COLOR", "FogMap", "build_fog", "fog_resolution", "fog_shape"]
 
+
 DEFAULT_RESOLUTION = 0.1
 """Cell size [m] if neither the scenario nor a map gives one."""
 FOG_COLOR = (0.78, 0.78, 0.8)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
 from irsim.simulation.events import Event, first_collisions, first_events, read_events
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Outcome", "outcome_of", "robot_outcomes"]
+__all__ = ["Outcome", "explored_share", "outcome_of", "robot_outcomes"]
 
 Outcome = Literal["running", "success", "collision", "timeout"]
 
@@ -61,3 +63,12 @@ def outcome_of(simulation: Simulation, world: int = 0, *, time_limit: float | No
     if outcomes and all(outcome == "success" for outcome in outcomes):
         return "success"
     return "collision" if "collision" in outcomes else "timeout"
+
+
+def explored_share(simulation: Simulation, world: int = 0) -> float | None:
+    """Share of the cells of the fog that the robots have seen, from 0 to 1; None without ``fog_map``.
+
+    The fog covers the whole world, so the insides of obstacles, which no robot sees, count in full.
+    """
+    cells = simulation.state.explored[world]
+    return float(np.count_nonzero(cells)) / cells.size if cells.size else None

@@ -1,4 +1,4 @@
-"""What a simulation asks of the drives and hooks that users write in Python; ``irsim.objects.extensions`` has them."""
+"""What a simulation asks of drives and hooks written in Python, and an environment of the recorder of an episode."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["ExternalDrives", "PythonDecision", "PythonMeasurement", "StepHooks", "WideControls"]
+__all__ = ["EpisodeRecorder", "ExternalDrives", "PythonDecision", "PythonMeasurement", "StepHooks", "WideControls"]
+
 
 PythonDecision = Callable[[Any], None]
 """Is called with the simulation between the native decisions and the motion, and fills ``command`` of the rows that it
@@ -106,3 +107,23 @@ class StepHooks(Protocol):
 
     def after_motion(self) -> None:
         """Call ``step``, ``mid_process`` and ``post_process`` where they are overridden."""
+
+
+class EpisodeRecorder(Protocol):
+    """Advances a simulation and records its steps; :class:`irsim.runs.recorder.Recorder` is one."""
+
+    def advance(self, steps: int, *, until_done: bool = False) -> int:
+        """Advance the simulation and record what happens.
+
+        Args:
+            steps: Greatest number of steps.
+            until_done: End as soon as every robot has arrived or stopped.
+
+        Returns:
+            Number of steps executed.
+        """
+        ...
+
+    def write_if_due(self) -> None:
+        """Write what has been recorded so far if enough of it, or enough time, has accumulated."""
+        ...

@@ -67,7 +67,7 @@ def test_it_appears_is_seen_and_vanishes(scene) -> None:
         else:
             assert np.isnan(position).all()
     assert seen == [4 <= step <= 40 for step in range(1, 61)]
-    past = irsim.simulation.history.past_poses(env.simulation, 1)
+    past = irsim.simulation.trace.past_poses(env.simulation, 1)
     assert np.isnan(past[:4, 0]).all()
     assert np.isnan(past[41:, 0]).all()
     np.testing.assert_allclose(past[[4, 12, 40], 1], [1, 3, 9])

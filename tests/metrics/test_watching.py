@@ -14,7 +14,7 @@ from irsim.env import Env
 from irsim.metrics import episode_metrics
 from irsim.metrics.watching import goal_visible_ratio
 from irsim.scenario.open import read_scenario
-from irsim.simulation.history import past_goals, past_poses
+from irsim.simulation.trace import past_goals, past_poses
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import record
 

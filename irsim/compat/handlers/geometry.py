@@ -8,8 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.compat.functions.inequalities import polygon_inequality
-from irsim.compat.functions.polygons import random_generate_polygon
+from irsim.compat.functions.polygons import polygon_inequality, random_generate_polygon
 from irsim.simulation.active_env import current_rng
 
 __all__ = [

@@ -11,7 +11,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Polygon, outline
-from irsim.compat.functions.inequalities import polygon_inequality
+from irsim.compat.functions.polygons import polygon_inequality
 from irsim.objects.base import column
 from irsim.objects.neighbors import AVOIDANCE_MARGIN, discs
 from irsim.objects.view import ObjectView

@@ -1,4 +1,4 @@
-"""A factory of objects from scenario entries, and the configuration of an environment, with the names of IR-SIM."""
+"""Factories of objects and sensors, and the configuration of an environment, with the names of IR-SIM 2.12."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ from irsim.components.maps._site import OCCUPIED
 from irsim.env import queries
 from irsim.env.old.construct import ObjectBase, ObjectGroup
 from irsim.objects.lifecycle import alone, renumber
+from irsim.options.registry import SENSORS
 from irsim.scenario.open import open_scenario
 from irsim.scenario.read import or_raise, read
+from irsim.scenario.single_object import read_object
 from irsim.simulation.active_env import last_used
 from irsim.simulation.simulation import Simulation
 
-__all__ = ["EnvConfig", "ObjectFactory"]
+__all__ = ["EnvConfig", "ObjectFactory", "SensorFactory"]
+
 
 Role = Literal["robot", "obstacle"]
 
@@ -202,3 +205,28 @@ class EnvConfig:
         """Read the scenario again, or another one, start it, and return its objects."""
         self._env.reload(world_name)
         return queries.objects(self._env)
+
+
+class SensorFactory:
+    """Makes sensors that do not belong to an object of an environment."""
+
+    def create_sensor(self, state: Any, obj_id: int, **kwargs: Any) -> Any:
+        """Make a sensor whose carrier is the only object of an empty world.
+
+        Args:
+            state: Pose of the carrier, x, y [m] and heading [rad], in any shape.
+            obj_id: Id of the carrier.
+            **kwargs: Keys of a sensor in a scenario; without ``name`` and ``type`` the sensor is a ``lidar2d``.
+
+        Raises:
+            NotImplementedError: No sensor has that name.
+            ScenarioError: A key or value is not valid.
+        """
+        name = str(kwargs.get("name", kwargs.get("type", "lidar2d")))
+        if SENSORS.get(name) is None:
+            raise NotImplementedError(f"there is no sensor {name!r}: choose one of {', '.join(SENSORS.names())}")
+        scenario, _ = or_raise(read({"world": {}}))
+        pose = np.asarray(state, dtype=np.float64).reshape(-1)[:3].tolist()
+        keys = {"state": pose, "shape": {"name": "circle"}, "sensors": [kwargs]}
+        record, _ = read_object("obstacle", keys, scenario.world, obj_id)
+        return views(alone(scenario, record, 0))[0].sensors[0]

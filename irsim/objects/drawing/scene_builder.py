@@ -24,6 +24,7 @@ from irsim.graphics.scene.style import ObjectStyle, Palette, resolve_style, tint
 from irsim.graphics.scene.tracks import Track
 from irsim.graphics.scene.zones import DrawnZones, draw_zones
 from irsim.objects.drawing.object_marks import (
+    Tracks,
     name_label,
     shape_mark,
     text_label,
@@ -31,7 +32,6 @@ from irsim.objects.drawing.object_marks import (
     trajectory_line,
     view_sector,
 )
-from irsim.objects.drawing.tracks import Tracks
 from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.contact_drawing import draw_forces
 from irsim.objects.sensors.lidar import Lidar2D

@@ -1,8 +1,8 @@
 """``env_param`` of the environment used last; see :class:`irsim.env.parameters.EnvParam`."""
 
 from irsim.common.log import Logger
-from irsim.env.old.config._follow import follow
 from irsim.env.parameters import EnvParam
+from irsim.simulation.active_env import follow
 
 __all__ = ["EnvParam"]
 

@@ -1,8 +1,8 @@
 """Default colours of the environment used last; see :class:`irsim.graphics.scene.style.Palette`."""
 
-from irsim.env.old.config._follow import follow
 from irsim.graphics.scene.style import Palette
 from irsim.options.colors import CYCLE
+from irsim.simulation.active_env import follow
 
 __all__ = ["DEFAULT_CYCLE", "PaletteParam"]
 

@@ -1,7 +1,7 @@
 """``path_param`` of the environment used last; see :class:`irsim.env.parameters.PathParam`."""
 
-from irsim.env.old.config._follow import follow
 from irsim.env.parameters import PathParam
+from irsim.simulation.active_env import follow
 
 __all__ = ["PathManager", "PathParam"]
 

@@ -5,9 +5,9 @@ Before the first environment is made, it has the defaults of a scenario.
 
 from types import SimpleNamespace
 
-from irsim.env.old.config._follow import follow
 from irsim.env.parameters import WorldParam
 from irsim.scenario.model.scenario import WorldModel
+from irsim.simulation.active_env import follow
 
 __all__ = ["WorldParam"]
 
