@@ -11,8 +11,8 @@ from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
+    from irsim.common.outline import Polygon
     from irsim.env import Env
-    from irsim.rendering.clearance_map import Footprint
     from irsim.rendering.planned_paths import PlannedPath
     from irsim.rendering.snapshot import Extra
     from irsim.results.picture import RobotPlan
@@ -89,7 +89,7 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
 
     def add(scene: Scene) -> None:
         if overlays and "clearance" in overlays:
-            draw_clearance(scene, env.simulation, footprint=footprint_of(env, ways))
+            draw_clearance(scene, env.simulation, path=footprint_of(env, ways))
         if overlays is None or "zones" in overlays:
             draw_zones(env.scenario.world.zones, Palette().zone, scene.extent).add_to(scene)
         draw_plans(scene, ways)
@@ -99,9 +99,9 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
     return add
 
 
-def footprint_of(env: Env, ways: list[PlannedPath]) -> Footprint | None:
-    """The smallest robot along its path, for the overlay ``clearance``; None if it is round or has no path."""
-    from irsim.rendering.clearance_map import Footprint, smallest_robot
+def footprint_of(env: Env, ways: list[PlannedPath]) -> tuple[Polygon, Floats] | None:
+    """Body of the smallest robot and its poses along its path, for `clearance`; None if it is round or has no path."""
+    from irsim.rendering.clearance_map import smallest_robot
     from irsim.rendering.planned_paths import plan_paths, poses_along
 
     row = smallest_robot(env.simulation)
@@ -116,7 +116,7 @@ def footprint_of(env: Env, ways: list[PlannedPath]) -> Footprint | None:
 
     length = float(np.hypot(*np.diff(line, axis=0).T).sum())
     poses = poses_along(view, line, max(length / _MAX_POSES, _POSE_STEP_M))
-    return Footprint(np.asarray(view.original_geometry.exterior.coords)[:, :2], poses)
+    return Polygon(np.asarray(view.original_geometry.exterior.coords)[:-1, :2]), poses
 
 
 def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:

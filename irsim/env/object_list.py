@@ -10,7 +10,7 @@ from typing import Any, Literal, NoReturn
 from irsim.compat.objects.view import ScriptObject, views
 from irsim.env.policies import drive_again
 from irsim.env.state import EnvState
-from irsim.objects.lifecycle import admit, alone, dismiss, renumber, restore
+from irsim.objects.lifecycle import lone_simulation, move_in, move_out, renumber, restore
 from irsim.objects.view import ObjectView
 from irsim.scenario.single_object import read_object
 
@@ -39,7 +39,7 @@ def _create(env: EnvState, role: Literal["robot", "obstacle"], kinematics: Any, 
     record, found = read_object(role, {"kinematics": kinematics, **keys}, env.scenario.world, number)
     for item in found:
         env.logger.warning(f"{record.name}: {item.message} [{item.code}]")
-    simulation = alone(env._simulation.scenario, record, env._simulation.key()[0])
+    simulation = lone_simulation(env._simulation.scenario, record, env._simulation.key()[0])
     (view,) = views(simulation)
     view._made_beside = env._objects
     return view
@@ -72,7 +72,7 @@ def add_objects(env: EnvState, objs: Iterable[ScriptObject]) -> None:
             renumber(view, next(number for number in env.env_param.id_iter if number not in taken))
         taken.add(view.id)
     if newcomers:
-        admit(env._simulation, newcomers)
+        move_in(env._simulation, newcomers)
         _note_exchange(env)
         drive_again(env)
 
@@ -87,7 +87,7 @@ def delete_objects(env: EnvState, target_ids: Iterable[int | str]) -> None:
     targets = set(target_ids)
     leaving = [view for view in env._objects if view.id in targets or view.name in targets]
     if leaving:
-        dismiss(env._simulation, leaving)
+        move_out(env._simulation, leaving)
         _note_exchange(env)
 
 

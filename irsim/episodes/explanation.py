@@ -145,7 +145,7 @@ def _waiting_message(facts: EpisodeFacts) -> str | None:
     late = [
         record
         for row, record in enumerate(facts.scenario.objects)
-        if record.start_time and simulation.waits(row) and not is_absent(simulation, row)
+        if record.start_time and simulation.is_waiting(row) and not is_absent(simulation, row)
     ]
     if not late:
         return None
@@ -199,7 +199,7 @@ def _others_standing_message(facts: EpisodeFacts) -> str | None:
     for row in moving:
         record, goals = records[row], simulation.state.goals(row)
         at_its_end = record.name in arrived and has_one_end(record)
-        if not record.goals or not goals or at_its_end or simulation.stands(row):
+        if not record.goals or not goals or at_its_end or simulation.cannot_move(row):
             continue
         track = simulation.state.trajectory(row)[:, :2]
         since = no_progress_since(track, facts.step_time, simulation.views()[row].max_speed)
@@ -284,7 +284,7 @@ def _state(facts: EpisodeFacts, row: int, robot: RobotResult) -> str:
         return f"stands still {place}: {no_way.replace('to its goal', 'to it')}"
     if is_absent(simulation, row):
         return f"is not in the world yet, {place} ({absence(simulation, row)})"
-    if simulation.waits(row):
+    if simulation.is_waiting(row):
         start = float(simulation.start_step[row]) * facts.step_time
         when = "it starts at" if record.start_time else "its start is delayed to"
         return f"still waits {place} ({when} {seconds(start)})"

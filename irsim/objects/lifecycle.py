@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 __all__ = [
-    "admit",
-    "alone",
     "amend",
     "amend_all",
     "amend_world",
     "attach_python",
-    "dismiss",
-    "draw_as",
+    "lone_simulation",
+    "move_in",
+    "move_out",
     "renumber",
+    "replace_plot",
     "restore",
     "set_views",
 ]
@@ -54,7 +54,7 @@ def renumber(view: SimObject, number: int) -> None:
     set_views(simulation, [view])
 
 
-def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simulation:
+def lone_simulation(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simulation:
     """Return a simulation of one object in an otherwise empty world with the settings of ``scenario``."""
     world = scenario.world.model_copy(update={"obstacle_map": None, "fog_map": False, "boundary": "none", "zones": []})
     simulation = Simulation(
@@ -65,20 +65,20 @@ def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simula
     return simulation
 
 
-def admit(simulation: Simulation, newcomers: Sequence[SimObject]) -> None:
+def move_in(simulation: Simulation, newcomers: Sequence[SimObject]) -> None:
     """Move objects from simulations of their own into a simulation of one world; they become its last rows."""
     present = simulation.views()
     records = [_as_it_starts(view) for view in newcomers]
     _exchange(simulation, [*present, *newcomers], [*simulation.scenario.objects, *records])
 
 
-def dismiss(simulation: Simulation, leaving: Iterable[SimObject]) -> None:
+def move_out(simulation: Simulation, leaving: Iterable[SimObject]) -> None:
     """Move objects from a simulation of one world into simulations of their own."""
     gone = set(leaving)
     staying = [view for view in simulation.views() if view not in gone]
     seed = simulation.key()[0]
     for view in gone:
-        own = alone(simulation.scenario, view.record, seed)
+        own = lone_simulation(simulation.scenario, view.record, seed)
         own.exchange(own.scenario, [(simulation, view.row)])
         _keep(view, own)
     _exchange(simulation, staying, _with_leaders(simulation.scenario.objects, [view.record for view in staying]))
@@ -100,7 +100,7 @@ def amend(view: SimObject, record: ObjectRecord) -> None:
     _exchange(simulation, shown, [record if other is view else other.record for other in shown])
 
 
-def draw_as(view: SimObject, record: ObjectRecord) -> None:
+def replace_plot(view: SimObject, record: ObjectRecord) -> None:
     """Replace the record of an object by one that differs in ``plot`` only, which the engine does not read.
 
     Raises:
@@ -146,7 +146,7 @@ def restore(simulation: Simulation, scenario: ResolvedScenario, originals: Seque
     seed = simulation.key()[0]
     for view in simulation.views():
         if view not in originals:
-            own = alone(simulation.scenario, view.record, seed)
+            own = lone_simulation(simulation.scenario, view.record, seed)
             own.exchange(own.scenario, [(simulation, view.row)])
             _keep(view, own)
     simulation.restore(scenario)

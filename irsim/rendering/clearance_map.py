@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from contourpy import FillType, LineType, contour_generator
 
 import irsim._core as core
 from irsim.common.arrays import Floats
-from irsim.common.outline import outline
+from irsim.common.outline import Polygon, outline
 from irsim.common.text import metres
 from irsim.graphics.scene.scene import Bounds, Label, Line, Mark, Region, Scene, Stroke
 from irsim.navigation.geodesic import inscribed_radius
@@ -20,7 +20,7 @@ from irsim.simulation.roles import HUMAN, STATIC, kinds_of
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Footprint", "FreeSpace", "draw_clearance", "smallest_robot"]
+__all__ = ["FreeSpace", "draw_clearance", "smallest_robot"]
 
 MAX_CELLS = 120_000
 """Largest number of cells."""
@@ -131,18 +131,6 @@ class FreeSpace:
         return np.concatenate([[first], found[1:-1], [last]]) if len(found) else None
 
 
-class Footprint(NamedTuple):
-    """A robot that is not round, and where it points.
-
-    Attributes:
-        outline: (K, 2) outline of its body, body frame [m].
-        poses: (P, 3) x, y [m] and heading [rad] along its path.
-    """
-
-    outline: Floats
-    poses: Floats
-
-
 def smallest_robot(simulation: Simulation, world: int = 0) -> int | None:
     """Return the row of the robot with the smallest inscribed disc, which the map is about; None without robots."""
     rows = (world * simulation.objects + np.flatnonzero(simulation.robots)).tolist()
@@ -150,17 +138,20 @@ def smallest_robot(simulation: Simulation, world: int = 0) -> int | None:
     return min((row for row in rows if sizes[row] > 0), key=lambda row: sizes[row], default=None)
 
 
-def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0, *, footprint: Footprint | None = None) -> None:
+def draw_clearance(
+    scene: Scene, simulation: Simulation, world: int = 0, *, path: tuple[Polygon, Floats] | None = None
+) -> None:
     """Add the clearance map to a scene: where the middle of the smallest robot cannot be, and lines of equal distance.
 
-    The lines have the distance of the middle of the robot to obstacles. With a footprint everything is about that body,
-    which points everywhere as it does on the nearest part of its path; lines then have the distance of the body.
+    The lines have the distance of the middle of the robot to obstacles. With a path they have the distance of its body,
+    oriented as on the nearest point of the path.
 
     Args:
         scene: The scene; its extent is the area that the picture shows.
         simulation: The simulation that the scene shows.
         world: Index of the world.
-        footprint: The smallest robot, if it is not round and has a path.
+        path: Body of the smallest robot, and its (P, 3) poses x, y [m] and heading [rad] along its path, if it is not
+            round and has one.
     """
     x0, x1, y0, y1 = scene.extent
     row = smallest_robot(simulation, world)
@@ -172,8 +163,8 @@ def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0, *, foot
     if not math.isfinite(float(distance.min())):
         return
     x, y = space.cell_centers
-    if footprint is not None:
-        distance, radius = _body_distance(space, footprint), space.half_diagonal
+    if path is not None:
+        distance, radius = _body_distance(space, *path), space.half_diagonal
     inside = (x[:, None] > x0) & (x[:, None] < x1) & (y > y0) & (y < y1)
     max_distance = float(distance[inside].max())
     levels: Any = contour_generator(x, y, distance.T, fill_type=FillType.OuterOffset, line_type=LineType.Separate)
@@ -183,7 +174,7 @@ def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0, *, foot
             rings = [np.asarray(corners[a:b]) for a, b in itertools.pairwise(starts)]
             stroke, region = Stroke(_UNREACHABLE_COLOR, 0.8), Region(rings)
             scene.marks.append(Mark(_NO_OBJECT, "field", region, _UNREACHABLE_COLOR, stroke, _FILL_ALPHA, _ZORDER))
-        text = metres(radius) if footprint is None else _TOUCHES
+        text = metres(radius) if path is None else _TOUCHES
         _label_line(scene, text, levels.lines(radius), _UNREACHABLE_COLOR)
     shown, last = 0, radius
     for level in _LINE_DISTANCES_M:
@@ -196,17 +187,17 @@ def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0, *, foot
             shown, last = shown + 1, level
 
 
-def _body_distance(space: FreeSpace, footprint: Footprint) -> Floats:
+def _body_distance(space: FreeSpace, body: Polygon, poses: Floats) -> Floats:
     """(nx, ny) distance of a body at each cell to obstacles [m], pointing as on the nearest part of its path."""
     import shapely
 
     x, y = space.cell_centers
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
-    places = np.asarray(shapely.points(footprint.poses[:, :2]), dtype=object)
+    places = np.asarray(shapely.points(poses[:, :2]), dtype=object)
     nearest = shapely.STRtree(places).nearest(shapely.points(points))
-    cos, sin = np.cos(footprint.poses[nearest, 2]), np.sin(footprint.poses[nearest, 2])
+    cos, sin = np.cos(poses[nearest, 2]), np.sin(poses[nearest, 2])
     least = np.full(len(points), math.inf)
-    for bx, by in _samples(footprint.outline, 2 * space.half_diagonal):
+    for bx, by in _samples(body.corners, 2 * space.half_diagonal):
         least = np.minimum(least, space.distance_at(points + np.stack([cos * bx - sin * by, sin * bx + cos * by], 1)))
     return least.reshape(len(x), len(y))
 

@@ -81,7 +81,7 @@ class ExternalDrives(Protocol):
     def control_for(self, row: int, velocity: Floats) -> Floats | None:
         """Return the control (n,) that follows a world-frame velocity (2,) [m/s]; None where the core moves the row."""
 
-    def feeling(self) -> AbstractContextManager[None]:
+    def resolving_contacts(self) -> AbstractContextManager[None]:
         """Return a context in which velocity changes by contacts are applied to the controls of these drives, too."""
 
 

@@ -199,7 +199,7 @@ class Simulation:
         if hooks is not None:
             hooks.after_motion()
         if world.collision_mode == CONTACT:
-            with self.feeling():
+            with self.resolving_contacts():
                 core.push_apart(world, state)
         core.finish(world, state)
         core.collide(world, state)
@@ -267,17 +267,17 @@ class Simulation:
         wide = self.drives.wide(row) if self.drives is not None and size > 3 else None
         return self.state.drive[row, :size] if wide is None else wide.drive
 
-    def feeling(self) -> AbstractContextManager[None]:
+    def resolving_contacts(self) -> AbstractContextManager[None]:
         """Return a context for resolving contacts, in which drives written in Python follow the changed velocities."""
-        return nullcontext() if self.drives is None else self.drives.feeling()
+        return nullcontext() if self.drives is None else self.drives.resolving_contacts()
 
-    def waits(self, row: int) -> bool:
+    def is_waiting(self, row: int) -> bool:
         """Return whether a row stands still because its start is delayed, or is not in the world yet."""
         return bool(self.count[row // self.objects] < self.start_step[row] or self.appeared[row] < 0)
 
-    def stands(self, row: int) -> bool:
+    def cannot_move(self, row: int) -> bool:
         """Return whether a row cannot move now: a collision has stopped it, or its start is delayed."""
-        return bool(self.stopped[row]) or self.waits(row)
+        return bool(self.stopped[row]) or self.is_waiting(row)
 
     def limits(self, row: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the lower and upper limits of the controls of a row in the present scene, (vel_dim,) each."""

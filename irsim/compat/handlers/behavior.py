@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
+from functools import partial
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
+from irsim.compat.handlers.behavior_maps import behaviors_map
+from irsim.objects.extensions.behaviors import call, construct
 from irsim.options.registry import CUSTOM_BEHAVIORS
 
-__all__ = ["Behavior"]
+__all__ = ["Behavior", "print_error"]
+
+
+def print_error(text: str) -> None:
+    """Print a message to standard error, as handlers without an environment do."""
+    print(text, file=sys.stderr)
 
 
 class Behavior:
@@ -48,12 +57,8 @@ class Behavior:
         name = self.behavior_dict.get("name")
         maker = CUSTOM_BEHAVIORS.classes.get((getattr(self.object_info, "kinematics", None) or "", name or ""))
         self._made = None
-        if maker is None:
-            return
-        try:
-            self._made = maker(self.object_info, **self.behavior_dict)
-        except Exception as error:  # what user code raises; functions take over, as in IR-SIM
-            print(f"behavior class {name!r} could not be constructed: {error!r}", file=sys.stderr)
+        if maker is not None:
+            self._made = construct(maker, self.object_info, self.behavior_dict, "behavior class", print_error)
 
     def gen_vel(self, ego_object: Any, external_objects: Any = None) -> Any:
         """Return the control that the behavior chooses.
@@ -70,24 +75,12 @@ class Behavior:
         """
         if not self.behavior_dict:
             return np.zeros((ego_object.vel_dim, 1))
-        others = [] if external_objects is None else list(external_objects)
-        roles = self.behavior_dict.get("target_roles", "all")
-        if roles in ("robot", "obstacle"):
-            others = [other for other in others if other.role == roles]
-        if self._made is not None:
-            return self._made(ego_object=ego_object, external_objects=others, **self.behavior_dict)
-        return self.invoke_behavior(
-            ego_object.kinematics,
-            self.behavior_dict["name"],
-            ego_object=ego_object,
-            external_objects=others,
-            **self.behavior_dict,
-        )
+        keys = self.behavior_dict
+        act = self._made or partial(self.invoke_behavior, ego_object.kinematics, keys["name"])
+        return call(act, ego_object, external_objects or (), keys.get("target_roles", "all"), keys)
 
     def load_behavior(self, behaviors: str = ".behavior_methods") -> None:
         """Import a module, which registers its behaviors; a leading dot means this package."""
-        from importlib import import_module
-
         import_module(behaviors, package="irsim.lib.behavior")
         self._construct()
 
@@ -97,8 +90,6 @@ class Behavior:
         Raises:
             ValueError: No function is registered for them.
         """
-        from irsim.compat.handlers.behavior_maps import behaviors_map
-
         function = behaviors_map.get((kinematics, action))
         if function is None:
             known = sorted(name for drive, name in behaviors_map if drive == kinematics)

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.compat.functions._decide import behavior_options, dash, decide
 from irsim.compat.functions.frames import WrapToPi, relative_position, vel_world2diff, vel_world2omni
 from irsim.compat.functions.rvo import reciprocal_vel_obs
 from irsim.compat.functions.social_force import social_force_model
 from irsim.compat.handlers.decide import decide_among
+from irsim.objects.extensions.drives import diff_control
 from irsim.objects.extensions.registration import register_behavior
 from irsim.options.registry import CUSTOM_BEHAVIORS
 
@@ -43,7 +43,6 @@ __all__ = [
     "vel_world2omni",
 ]
 
-_DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
 _SLOW = 0.02
 """Speed [m/s] below which a desired velocity counts as a stop."""
 
@@ -156,10 +155,10 @@ def DiffRVO(
     keys = {"vxmax": vxmax, "vymax": vymax, "acce": acce, "factor": factor, "mode": mode}
     world = _rvo_velocity(state_tuple, neighbor_list, line_segments, {**keys, "neighbor_threshold": neighbor_threshold})
     pose = [state_tuple[0], state_tuple[1], state_tuple[7]]
-    control = core.drive_follow(_DIFF, pose, world.tolist())[:2]
+    control = diff_control(pose, world.tolist())
     near = any(math.hypot(other[0] - pose[0], other[1] - pose[1]) < neighbor_threshold for other in neighbor_list or ())
     if not any(control) and not near and not line_segments:
-        control = [0.0, core.drive_follow(_DIFF, pose, list(state_tuple[5:7]))[1]]
+        control = [0.0, diff_control(pose, list(state_tuple[5:7]))[1]]
     return np.array(control)[:, None]
 
 

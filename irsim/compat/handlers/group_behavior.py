@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any
 
+from irsim.compat.handlers.behavior import print_error
 from irsim.compat.handlers.behavior_maps import group_behaviors_class_map, group_behaviors_map
+from irsim.objects.extensions.behaviors import construct
 
 __all__ = ["GroupBehavior"]
 
@@ -34,12 +35,9 @@ class GroupBehavior:
         self._made = None
         if maker is None:
             if self.name is not None and key not in group_behaviors_map:
-                print(f"group behavior {self.name!r} is not registered for {self.kinematics!r}", file=sys.stderr)
+                print_error(f"group behavior {self.name!r} is not registered for {self.kinematics!r}")
             return
-        try:
-            self._made = maker(self.members, **self.behavior_dict)
-        except Exception as error:  # what user code raises; members follow their own, as in IR-SIM
-            print(f"group behavior {self.name!r} could not be constructed: {error!r}", file=sys.stderr)
+        self._made = construct(maker, self.members, self.behavior_dict, "group behavior", print_error)
 
     def update_members(self, members: Sequence[Any]) -> None:
         """Replace the members of the group."""

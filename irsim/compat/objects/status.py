@@ -211,11 +211,11 @@ class OldStatus(ObjectView):
             dtheta: Rotation about the centroid [rad].
         """
         dx, dy = np.asarray(dxy, dtype=np.float64).reshape(-1)[:2].tolist()
-        with self._simulation.feeling():
+        with self._simulation.resolving_contacts():
             core.shift(self._simulation.world, self._simulation.state, self.row, (dx, dy), float(dtheta))
 
     def apply_contact_velocity(self, dv: Any) -> None:
         """Add ``dv``, 2 numbers in the world frame [m/s], to the velocity."""
         dx, dy = np.asarray(dv, dtype=np.float64).reshape(-1)[:2].tolist()
-        with self._simulation.feeling():
+        with self._simulation.resolving_contacts():
             core.push(self._simulation.world, self._simulation.state, self.row, (dx, dy))

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from irsim.compat.objects.view import ScriptObject
 from irsim.env.parameters import WorldView
-from irsim.objects.lifecycle import alone, set_views
+from irsim.objects.lifecycle import lone_simulation, set_views
 from irsim.objects.view import ObjectView
 from irsim.scenario.model.scenario import Scenario, WorldModel
 from irsim.scenario.read import or_raise, read
@@ -113,7 +113,7 @@ class ObjectBase(ScriptObject, metaclass=_AnyObject):
         for item in found:
             if env is not None:
                 env.logger.warning(f"{record.name}: {item.message} [{item.code}]")
-        simulation = alone(scenario, record, 0 if env is None else env.simulation.key()[0])
+        simulation = lone_simulation(scenario, record, 0 if env is None else env.simulation.key()[0])
         super().__init__(simulation, 0)
         set_views(simulation, [self])
         if env is not None:

@@ -12,7 +12,7 @@ from irsim.compat.objects.view import ScriptObject, views
 from irsim.components.maps._site import OCCUPIED
 from irsim.env import queries
 from irsim.env.old.construct import ObjectBase, ObjectGroup
-from irsim.objects.lifecycle import alone, renumber
+from irsim.objects.lifecycle import lone_simulation, renumber
 from irsim.options.registry import SENSORS
 from irsim.scenario.open import open_scenario
 from irsim.scenario.read import or_raise, read
@@ -73,7 +73,7 @@ class ObjectFactory:
         numbers = count() if env is None else env.env_param.id_iter
         made = []
         for view in views(together):
-            own = alone(scenario, view.record, seed)
+            own = lone_simulation(scenario, view.record, seed)
             own.exchange(own.scenario, [(together, view.row)])
             single = views(own)[0]
             single.group += group_start_index
@@ -229,4 +229,4 @@ class SensorFactory:
         pose = np.asarray(state, dtype=np.float64).reshape(-1)[:3].tolist()
         keys = {"state": pose, "shape": {"name": "circle"}, "sensors": [kwargs]}
         record, _ = read_object("obstacle", keys, scenario.world, obj_id)
-        return views(alone(scenario, record, 0))[0].sensors[0]
+        return views(lone_simulation(scenario, record, 0))[0].sensors[0]

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from irsim.common.text import clean
 from irsim.objects.base import SimObject
-from irsim.objects.lifecycle import draw_as
+from irsim.objects.lifecycle import replace_plot
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
@@ -40,7 +40,7 @@ class Drawing:
     def __setattr__(self, name: str, value: Any) -> None:
         view: SimObject = self.__dict__["_view"]
         if name in PLOT_KEYS:
-            draw_as(view, _with_plot_key(view.record, name, value))
+            replace_plot(view, _with_plot_key(view.record, name, value))
         else:
             object.__setattr__(self, name, value)
 

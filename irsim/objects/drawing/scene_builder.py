@@ -231,7 +231,7 @@ class SceneBuilder:
         if absent:
             x, y, heading = self.simulation.state.initial_state(view.row)[:3].tolist()
             pose = (x, y, heading)
-        if self.simulation.waits(view.row):
+        if self.simulation.is_waiting(view.row):
             pale = GHOST_ALPHA if absent else WAITING_ALPHA
             style = replace(style, obj_alpha=pale * style.obj_alpha)
         heading = self._heading(view, pose) if style.show_arrow else pose[2]

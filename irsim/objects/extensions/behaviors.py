@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["PythonBehaviors", "attach_python_behaviors", "forget_behavior"]
+__all__ = ["PythonBehaviors", "attach_python_behaviors", "call", "construct", "forget_behavior"]
 
 
 class PythonBehaviors:
@@ -96,11 +96,11 @@ class PythonBehaviors:
         self._instances.pop((view.world, view.id, "behavior"), None)
 
     def _construct(self, key: tuple[int, int, str], maker: Any, given: Any, options: dict[str, Any]) -> None:
-        try:
-            self._instances[key] = maker(given, **options)
-        except Exception as error:  # what user code raises; the object goes on without it, as in IR-SIM
+        made = construct(maker, given, options, "behavior class", self._simulation.report)
+        if made is None:
             self._instances.pop(key, None)
-            self._simulation.report(f"behavior class {options.get('name')!r} could not be constructed: {error!r}")
+        else:
+            self._instances[key] = made
 
     def __call__(self, simulation: Simulation) -> None:
         """Set the commands of all objects with user behaviors; groups decide before single objects."""
@@ -110,7 +110,7 @@ class PythonBehaviors:
                 self._decide_group(world, [objects[index] for index in group])
             for index in self.objects:
                 view = objects[index]
-                if simulation.given[view.row] or view.static or simulation.stands(view.row):
+                if simulation.given[view.row] or view.static or simulation.cannot_move(view.row):
                     continue
                 name = _name(view.record.behavior)
                 _impose(simulation, view, name, self.control(view))
@@ -126,9 +126,7 @@ class PythonBehaviors:
         act = self._instances.get((view.world, view.id, "behavior")) or CUSTOM_BEHAVIORS.function(view.kinematics, name)
         if act is None:
             raise _unknown(self._simulation, view, name)
-        roles = view.record.target_roles
-        others = [other for other in Surroundings(view).others if roles in ("all", other.role)]
-        return act(ego_object=view, external_objects=others, **_keys_as_given(options))
+        return call(act, view, Surroundings(view).others, view.record.target_roles, _keys_as_given(options))
 
     def _decide_group(self, world: int, members: list[SimObject]) -> None:
         leader, simulation = members[0], self._simulation
@@ -143,9 +141,24 @@ class PythonBehaviors:
             return
         controls = act(members, **_keys_as_given(options))
         for view, control in zip(members, () if controls is None else controls, strict=False):
-            if control is None or simulation.given[view.row] or view.static or simulation.stands(view.row):
+            if control is None or simulation.given[view.row] or view.static or simulation.cannot_move(view.row):
                 continue
             _impose(simulation, view, name, control)
+
+
+def construct(maker: Any, given: Any, keys: Mapping[str, Any], what: str, report: Callable[[str], None]) -> Any:
+    """Make the behavior of a class of user code; what the class raises is reported, and None is returned."""
+    try:
+        return maker(given, **keys)
+    except Exception as error:  # the object goes on without it, as in IR-SIM
+        report(f"{what} {keys.get('name')!r} could not be constructed: {error!r}")
+        return None
+
+
+def call(act: Any, ego_object: Any, others: Iterable[Any], roles: str, keys: Mapping[str, Any]) -> Any:
+    """Return the control that a behavior chooses for an object that sees the others with a role, or ``all``."""
+    seen = [other for other in others if roles in ("all", other.role)]
+    return act(ego_object=ego_object, external_objects=seen, **keys)
 
 
 def _name(options: Any) -> str:

@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["PythonDrives", "attach_python_drives", "handler_of", "heading", "max_speed", "velocity_xy"]
+__all__ = ["PythonDrives", "attach_python_drives", "diff_control", "handler_of", "heading", "max_speed", "velocity_xy"]
 
 _CONTACT = COLLISION_MODES["contact"]
 _ROUNDING = 1e-9
 _DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
 
 
-class Wide:
+class ManyControls:
     """The controls of a drive that has more than three; the core stores only the first three.
 
     Attributes:
@@ -73,8 +73,8 @@ class PythonDrives:
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self._handlers: dict[tuple[int, int], KinematicsHandler] = {}
-        self._wide: dict[tuple[int, int], Wide] = {}
-        self._led: set[int] = set()
+        self._wide: dict[tuple[int, int], ManyControls] = {}
+        self._decided_by_core: set[int] = set()
         self.objects: list[int] = []
 
     def find(self) -> bool:
@@ -83,7 +83,7 @@ class PythonDrives:
         drives = [getattr(record.kinematics, "name", None) for record in records]
         self.objects = [index for index, name in enumerate(drives) if handler_class(name) is not None]
         grouped = group_behaviors(records)
-        self._led = {index for index in self.objects if _is_led(records[index], grouped)}
+        self._decided_by_core = {index for index in self.objects if _is_decided_by_core(records[index], grouped)}
         return bool(self.objects)
 
     def prepare(self, worlds: Sequence[int], *, anew: bool = False) -> None:
@@ -101,13 +101,13 @@ class PythonDrives:
                         records[index].kinematics, self._simulation.scenario.world.integration
                     )
                 if records[index].vel_dim > CORE_CONTROLS and (anew or key not in self._wide):
-                    self._wide[key] = Wide(records[index])
+                    self._wide[key] = ManyControls(records[index])
 
     def handler(self, row: int) -> KinematicsHandler | None:
         """Return the handler of a row; None if the core moves the row."""
         return self._handlers.get(self._key(row))
 
-    def wide(self, row: int) -> Wide | None:
+    def wide(self, row: int) -> ManyControls | None:
         """Return the controls of a row with more than three controls; None for other rows."""
         return self._wide.get(self._key(row)) if self._wide else None
 
@@ -134,8 +134,8 @@ class PythonDrives:
         simulation = self._simulation
         for row in self._rows():
             record, _ = self._of(row)
-            stands = record.static or simulation.stands(row)
-            if row % simulation.objects in self._led and not simulation.given[row] and not stands:
+            stands = record.static or simulation.cannot_move(row)
+            if row % simulation.objects in self._decided_by_core and not simulation.given[row] and not stands:
                 simulation.impose(row, self.control_alone(row, simulation.command[row].copy()))
 
     def control_alone(self, row: int, wanted: Floats) -> Floats:
@@ -143,7 +143,7 @@ class PythonDrives:
         if self._key(row) not in self._handlers:
             return wanted
         record, handler = self._of(row)
-        if row % self._simulation.objects not in self._led:
+        if row % self._simulation.objects not in self._decided_by_core:
             return np.zeros(record.vel_dim)
         control: Floats = control_from(handler, self.state(row, record), wanted[:2, None].copy())
         return control
@@ -168,14 +168,14 @@ class PythonDrives:
             self.move_row(row)
 
     @contextmanager
-    def feeling(self) -> Iterator[None]:
+    def resolving_contacts(self) -> Iterator[None]:
         """Apply velocity changes by contacts within the ``with`` block to the controls of these drives, too."""
         before = self._simulation.twist.copy()
         yield
         for row in self._rows():
-            self._feel(row, self._simulation.twist[row] - before[row])
+            self._follow_contact(row, self._simulation.twist[row] - before[row])
 
-    def _feel(self, row: int, change: Floats) -> None:
+    def _follow_contact(self, row: int, change: Floats) -> None:
         """Adapt the control of a row to a change (3,) of its velocity: world frame [m/s] and yaw rate [rad/s]."""
         if not change.any():
             return
@@ -196,7 +196,7 @@ class PythonDrives:
         record, handler = self._of(row)
         simulation = self._simulation
         dt = simulation.scenario.world.step_time
-        stands = record.static or simulation.stands(row)
+        stands = record.static or simulation.cannot_move(row)
         wide = self.wide(row)
         if wide is not None:
             wide.limit(simulation.limits(row), dt, moves=not stands and bool(simulation.given[row]))
@@ -259,7 +259,12 @@ def control_from(handler: KinematicsHandler, state: Floats, velocity_xy: Floats,
         raise BehaviorError(
             f"behavior-failed: kinematics {handler.name!r} has no velocity_from_xy, which built-in behaviors need"
         )
-    return np.array(core.drive_follow(_DIFF, state[:3, 0].tolist(), velocity_xy[:, 0].tolist())[:2])
+    return np.array(diff_control(state[:3, 0].tolist(), velocity_xy[:, 0].tolist()))
+
+
+def diff_control(pose: Sequence[float], velocity_xy: Sequence[float]) -> list[float]:
+    """Return forward speed [m/s] and yaw rate [rad/s] with which a differential drive follows a velocity [m/s]."""
+    return list(core.drive_follow(_DIFF, pose, velocity_xy)[:2])
 
 
 def _twist(handler: KinematicsHandler, before: Floats, after: Floats, velocity: Floats, dt: float) -> Floats:
@@ -291,7 +296,7 @@ def _into(angle: float, low: float, high: float) -> float:
     return angle
 
 
-def _is_led(record: ObjectRecord, grouped: dict[int, BehaviorOptions]) -> bool:
+def _is_decided_by_core(record: ObjectRecord, grouped: dict[int, BehaviorOptions]) -> bool:
     """Return whether a behavior of the core decides for an object."""
     if record.group in grouped:
         return True

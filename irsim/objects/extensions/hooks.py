@@ -139,7 +139,7 @@ def step_alone(view: Any, velocity: Any, sensor_step: bool) -> Floats:
     """Advance one object by one period, and return its new state, (state_dim, 1)."""
     simulation, row = view._simulation, view.row
     within = simulation.hooks is not None and row in simulation.hooks.stepping
-    if view.static or simulation.stands(row):
+    if view.static or simulation.cannot_move(row):
         simulation.control[row] = 0.0
         return simulation.row_state(row, view.state_dim)[:, None]  # type: ignore[no-any-return]
     if not within:
@@ -194,7 +194,7 @@ class Hooks:
         renewed = []
         for view in self._present():
             row = view.row
-            if "pre_process" in overridden(view) and not (view.static or simulation.stands(row)):
+            if "pre_process" in overridden(view) and not (view.static or simulation.cannot_move(row)):
                 view.pre_process()
                 renewed.append((row, int(simulation.arrived[row])))
             if not self._views_own_step(view):
@@ -217,7 +217,7 @@ class Hooks:
         self._before.clear()
         for view in self._present():
             row, own = view.row, overridden(view)
-            if view.static or simulation.stands(row):
+            if view.static or simulation.cannot_move(row):
                 continue
             if own & {"step", "gen_behavior_vel"}:
                 self.decided[row] = simulation.command_of(row, view.vel_dim).copy()
@@ -232,7 +232,7 @@ class Hooks:
         simulation = self._simulation
         for view in self._present():
             row, own = view.row, overridden(view)
-            if simulation.waits(row):
+            if simulation.is_waiting(row):
                 continue
             if "step" in own:
                 if row in self._before:

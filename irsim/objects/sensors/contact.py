@@ -206,6 +206,6 @@ def contact_step(
         raise ValueError("contact_step takes objects of one environment")
     numbers = [(a.row % simulation.objects, b.row % simulation.objects) for a, b in pairs]
     dt = simulation.world.step_time if step_time is None else float(step_time)
-    with simulation.feeling():
+    with simulation.resolving_contacts():
         core.contact_step(simulation.world, simulation.state, world, numbers, int(iterations), float(slop), dt)
     return contacts_of(simulation, world)
