@@ -101,6 +101,7 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
 
 def footprint_of(env: Env, ways: list[PlannedPath]) -> tuple[Polygon, Floats] | None:
     """Body of the smallest robot and its poses along its path, for `clearance`; None if it is round or has no path."""
+    from irsim.common.outline import Polygon
     from irsim.rendering.clearance_map import smallest_robot
     from irsim.rendering.planned_paths import plan_paths, poses_along
 

@@ -14,9 +14,8 @@ from irsim.env import Env
 from irsim.metrics import episode_metrics
 from irsim.metrics.watching import goal_visible_ratio
 from irsim.scenario.open import read_scenario
-from irsim.simulation.trace import past_goals, past_poses
 from irsim.simulation.simulation import Simulation
-from irsim.simulation.trace import record
+from irsim.simulation.trace import past_goals, past_poses, record
 
 KEYS = ("time_in_zone", "zone_crossings", "seen_ratio", "goal_visible_ratio")
 # 0.25 m per step of 0.25 s: no rounding errors. It arrives in step 29, at x = 8.25, when the goal is nearer than 0.3 m.
