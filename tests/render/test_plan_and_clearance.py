@@ -206,7 +206,7 @@ def test_the_room_of_a_car_is_that_of_its_footprint_along_its_path() -> None:
     shaded = {}
     for name, given in (("disc", None), ("body", footprint)):
         scene = SceneBuilder(env.simulation).build()
-        draw_clearance(scene, env.simulation, footprint=given)
+        draw_clearance(scene, env.simulation, path=given)
         shaded[name] = union_all(
             [Polygon(m.geometry.rings[0], m.geometry.rings[1:]) for m in scene.marks if isinstance(m.geometry, Region)
              and m.part == "field"]
