@@ -203,6 +203,7 @@ def test_the_room_of_a_car_is_that_of_its_footprint_along_its_path() -> None:
     ways = requested_plans(env, ["plan"])
     footprint = footprint_of(env, ways)
     assert footprint is not None
+    shape, poses = footprint
     shaded = {}
     for name, given in (("disc", None), ("body", footprint)):
         scene = SceneBuilder(env.simulation).build()
@@ -214,13 +215,13 @@ def test_the_room_of_a_car_is_that_of_its_footprint_along_its_path() -> None:
         touching = [label.text for label in scene.labels if label.part == "field" and label.text == "touches"]
         assert bool(touching) == (given is not None)
     for point in ((13.5, 11.2), (8.0, 11.9), (17.0, 9.8), (13.0, 9.0)):
-        nearest = footprint.poses[np.hypot(*(footprint.poses[:, :2] - point).T).argmin(), 2]
-        body = translate(rotate(Polygon(footprint.outline), nearest, (0, 0), use_radians=True), *point)
+        nearest = poses[np.hypot(*(poses[:, :2] - point).T).argmin(), 2]
+        body = translate(rotate(Polygon(shape.corners), nearest, (0, 0), use_radians=True), *point)
         hit = any(body.intersects(other.geometry) for other in env.obstacle_list)
         assert shaded["body"].contains(Point(point)) == hit, point
     assert shaded["body"].contains(Point(13.5, 11.2)), "the disc fits there and the car does not"
     assert not shaded["disc"].contains(Point(13.5, 11.2))
-    on_the_way = footprint.poses[[0, len(footprint.poses) // 3, len(footprint.poses) // 2]]
+    on_the_way = poses[[0, len(poses) // 3, len(poses) // 2]]
     assert not any(shaded["body"].contains(Point(x, y)) for x, y, _ in on_the_way)
     env.end(ending_time=0.0)
 
