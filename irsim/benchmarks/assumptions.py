@@ -70,7 +70,7 @@ _FIXES = {
 
 
 class Limit(NamedTuple):
-    """What a robot can do under a policy.
+    """Limits of a robot under a policy.
 
     Attributes:
         speed: Largest speed straight ahead [m/s].
@@ -125,7 +125,7 @@ def unequal_note(limits: Mapping[str, Mapping[str, Limit]]) -> str | None:
 
 
 def _by_policy(values: Mapping[str, float], unit: str) -> str:
-    """Values by policy in words, those of equal ones once: ``2 m/s under dash, 1.5 m/s under rvo and sfm``."""
+    """Values by policy in words: ``2 m/s under dash, 1.5 m/s under rvo and sfm``."""
     policies: dict[str, list[str]] = {}
     for policy, value in values.items():
         policies.setdefault(f"{value:.3g} {unit}", []).append(policy)

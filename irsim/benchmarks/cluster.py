@@ -111,7 +111,7 @@ def run_on_cluster(
 def _take_in(
     ray: Any, ref: Any, chunk: list[int], tasks: Sequence[Task], queue: _Queue, keep: Callable[[int, Any], None]
 ) -> None:
-    """Keep the results of a chunk, and have run again what has none."""
+    """Store a chunk's results and requeue its tasks without a result."""
     try:
         answer = ray.get(ref)
     except ray.exceptions.RayError as error:
@@ -202,7 +202,7 @@ class _Size:
 
 
 def _shared(ray: Any, jobs: Sequence[Job]) -> dict[str, Any]:
-    """What all chunks need: the jobs as data, and the contents of their maps and networks, each sent once."""
+    """Data that all chunks share: the jobs as data, and the contents of their maps and networks, each sent once."""
     files: dict[str, Any] = {}
     found = []
 

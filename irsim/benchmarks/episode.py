@@ -84,7 +84,7 @@ class Job:
         path: Its file, relative to which it names other files; None for a text.
         behavior: Behavior of all robots, see :func:`irsim.scenario.behavior_override.parse_behavior`; ``as-written``
             under a policy in Python.
-        steps: Horizon in steps; None: that of the scenario.
+        steps: Horizon in steps; None takes the scenario's.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules of the user that register behaviors.
         limits: Limits of the loader and of the run, as (name, value) pairs.
@@ -184,7 +184,7 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
 
     Returns:
         See :func:`measure`, and for a policy in Python ``decisions``: (wall-clock time [s], number of robots) of each
-        of its decisions, which no result repeats; :func:`crowded` if the seed leaves no room for an object.
+        of its decisions (times are never part of a result); :func:`crowded` if the seed leaves no room for an object.
     """
     job = task.job
     try:

@@ -90,7 +90,7 @@ def label_of(policy: Policy) -> str:
 def chances_that_count(chances: Sequence[str], policies: Iterable[Policy], scenario: ResolvedScenario) -> list[str]:
     """The random parts of a scenario that can change an episode under these policies.
 
-    Noise of sensors does so only if somebody reads them: a policy that observes scans or may do anything, or the fog.
+    Noise of sensors does so only if they are read: a policy that observes scans or may do anything, or the fog.
     """
     readers = any(policy.needs.scan or policy.stochastic for policy in policies)
     if list(chances) == ["sensor noise"] and not readers and not scenario.world.fog_map:
@@ -104,14 +104,14 @@ def digests_of(policies: Iterable[Policy]) -> dict[str, str]:
 
 
 def files_of(policies: Mapping[str, str], folders: Mapping[str, Path]) -> tuple[dict[str, str], dict[str, str]]:
-    """What a plan stores of policies that are files.
+    """Texts and hashes that a plan stores of policies that are files.
 
     Args:
         policies: Name in the results → text.
         folders: Name → folder that the path of its file is relative to; default: the current one.
 
     Returns:
-        Name → text that opens it from any folder, and name → SHA-256 of its file; none of a policy that is no file.
+        Name → text that opens it from any folder, and name → SHA-256 of its file (only for policies that are files).
     """
     found = {name: open_policy(text, folder=folders.get(name)) for name, text in policies.items() if is_network(text)}
     return {name: str(one.source) for name, one in found.items()}, {

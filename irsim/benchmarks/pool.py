@@ -133,7 +133,7 @@ class _Shared:
         self._changed = threading.Condition()
 
     def take(self, *, elsewhere: bool = False) -> list[int]:
-        """Take the next tasks, all with the same job; empty if there are none at present.
+        """Take the next tasks, all with the same job; empty if all are taken at present.
 
         Args:
             elsewhere: The tasks are for another process.

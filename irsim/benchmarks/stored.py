@@ -76,7 +76,7 @@ def run_plan(
     """Run a plan, and write its episodes and its result into a folder.
 
     Args:
-        plan: What is run.
+        plan: The plan.
         folder: The folder, which is made.
         resume: Go on with what an interrupted run of the same plan has left there.
         workers: Greatest number of processes; the files do not depend on it.
@@ -120,7 +120,7 @@ def measure_plan(plan: Plan, **options: Any) -> BenchmarkResult:
     """Run a plan; it is written nowhere.
 
     Args:
-        plan: What is run.
+        plan: The plan.
         **options: ``workers``, ``cluster``, ``limits``, ``progress``, ``log``, ``resume`` and ``timing`` of
             :func:`irsim.benchmark`.
 

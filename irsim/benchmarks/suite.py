@@ -82,7 +82,7 @@ class SuiteScenario(_Part):
     Or a list of mappings of keys to one value each, such as ``[{"robot[0].number": 2, "robot[1].number": 4}]``; each
     mapping is a scenario, so that values change together."""
     steps: Annotated[int, Field(ge=1)] | None = None
-    """Horizon of these scenarios in steps; null is that of the suite."""
+    """Horizon of these scenarios in steps; null takes the suite's."""
 
     def variants(self) -> Iterator[dict[str, Any]]:
         """The values of each scenario of the family, by key, in order."""
@@ -131,7 +131,7 @@ class Suite(_Part):
     version: Annotated[int, Field(ge=1)]
     """Version of the suite: results of different versions are not comparable."""
     title: Annotated[str, Field(min_length=1, max_length=100)]
-    """What it is about, in one line."""
+    """Its subject, in one line."""
     about: str = ""
     """What it measures, where it comes from, and how to read its results."""
     sources: list[str] = []
@@ -265,7 +265,7 @@ def _is_guess(fix: str) -> bool:
 
 
 def _explain(failure: ValidationError, document: Document, model: type[BaseModel]) -> list[Diagnostic]:
-    """The problems of a validation, one for each key; those of keys with several forms say what the forms are."""
+    """The problems of a validation, one for each key; a key with several forms is explained with these forms."""
     found: dict[Path_, Diagnostic] = {}
     for item in failure.errors(include_url=False):
         if (special := _special(tuple(item["loc"]), document.data)) is not None:

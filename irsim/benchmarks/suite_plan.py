@@ -35,10 +35,10 @@ def suite_plan(
         suite: Name of a bundled suite, path of a file, or a suite.
         policies: Names of policies of the suite, or other policies, instead of all policies of the suite.
         protocols: Some of its protocols; default: all.
-        seeds: Number of seeds, instead of that of the suite, or the seeds, instead of those of the suite.
+        seeds: Number of seeds, or the seeds, instead of the suite's.
         full: Run the number of seeds that the suite calls full.
         scenarios: Names of scenarios, with or without their protocol, or of their families; default: all.
-        perturb: Perturbations instead of those of the suite, as on the command line.
+        perturb: Perturbations instead of the suite's, as on the command line.
 
     Raises:
         SuiteError: There is no such suite, or it is not valid; or a protocol or scenario is not in it.
@@ -82,7 +82,7 @@ def suite_plan(
 
 
 def _seeds(suite: Suite, wanted: int | Sequence[int] | None, full: bool) -> list[int]:
-    """The seeds of a run: those of the suite, some more or fewer from its first one on, or others."""
+    """The seeds of a run: the suite's, some more or fewer from its first one on, or others."""
     if wanted is not None and full:
         raise SuiteError("full and a number of seeds contradict each other", "give one of them")
     if isinstance(wanted, Sequence):
@@ -107,7 +107,7 @@ def _hash(suite: Suite, every: Sequence[PlannedScenario]) -> str:
 
 
 def _names(one: Expanded) -> set[str]:
-    """What a scenario may be called: its name, its name under any protocol, the name of its family."""
+    """Names that select a scenario: its name, its name under any protocol, the name of its family."""
     return {one.name, one.name.rsplit("/", 1)[0], one.family}
 
 
@@ -150,7 +150,7 @@ def _with_limit(one: Expanded) -> str:
 
 
 def suite_scene(name: str | Path) -> PlannedScenario | None:
-    """The scenario of a suite that a name means; None if the name does not begin with that of a suite.
+    """The scenario of a suite that a name means; None if the name does not begin with a suite.
 
     Args:
         name: ``SUITE/SCENARIO``, where the suite is bundled or a file.

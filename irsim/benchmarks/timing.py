@@ -1,4 +1,4 @@
-"""How long policies take to decide: wall-clock times, which are no part of results and have a file of their own."""
+"""How long policies take to decide: wall-clock times, which are not part of results and have a file of their own."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def timing_report(policies: Mapping[str, Mapping[str, Decisions]], episodes: Map
         episodes: Policy → number of its episodes.
 
     Returns:
-        For each policy ``mean_ms`` and ``p95_ms`` per decision and per robot, or the reason why there are none.
+        For each policy ``mean_ms`` and ``p95_ms`` per decision and per robot, or the reason why they are missing.
     """
     return {"policies": {name: _summary(found, episodes[name]) for name, found in policies.items()}}
 

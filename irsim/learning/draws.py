@@ -1,4 +1,4 @@
-"""What was drawn for the present episodes of worlds, as arrays."""
+"""The draws of the present episodes of worlds, as arrays."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def observed_names(task: Task) -> list[str]:
 
 
 def check_observed(task: Task, scene: Scene) -> None:
-    """Refuse names of draws that do not exist, or that are no numbers.
+    """Refuse names of draws that do not exist, or that are not numbers.
 
     Raises:
         TaskError: There is one.

@@ -40,7 +40,7 @@ class Ladder:
         self._came, self._hit = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
 
     def facts(self) -> dict[str, Any]:
-        """What :meth:`restore` needs to go on."""
+        """Facts from which :meth:`restore` goes on."""
         return {"level": self.level, "recent": "".join("1" if one else "0" for one in self._recent.tolist())}
 
     def restore(self, facts: Mapping[str, Any]) -> None:

@@ -23,7 +23,7 @@ __all__ = ["Eyes"]
 class Eyes:
     """Writes the parts of a layout one after the other into rows of single precision.
 
-    The numbers are those that a network with the same layout observes. Sets are written member by member; absent
+    The numbers are the ones that a network with the same layout observes. Sets are written member by member; absent
     members are zeros.
 
     Args:
@@ -95,7 +95,7 @@ class Eyes:
 
     @property
     def looking(self) -> core.Looking:
-        """What the core observes of others."""
+        """The core's observation of other objects."""
         return self._observer.looking
 
     def complete(self, rows: NDArray[np.int64], seen: NDArray[np.float32]) -> None:

@@ -41,7 +41,7 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     Attributes:
         worlds: The worlds behind it.
         active: (num_envs,) whether the last step counted for a slot; it does not for those that waited.
-        ladder: What moves the worlds through the levels of the curriculum of the task; None without one.
+        ladder: Moves the worlds through the levels of the curriculum of the task; None without one.
 
     Raises:
         TaskError: The task is not valid, or does not fit its scenario.

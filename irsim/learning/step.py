@@ -85,7 +85,7 @@ def _distance(pose: Floats, goal: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Result:
-    """What a step of n worlds with A learners each has led to.
+    """Result of a step of n worlds with A learners each.
 
     Attributes:
         reward: (n, A) sum of the terms; 0 for learners whose episode was over before.
@@ -97,7 +97,7 @@ class Result:
         arrived, collided: (n, A) whether the learner arrived or began to collide in this step.
         terms: (T, n, A) terms of the reward times their weights, in the order of the task.
         contacts_between_steps: (n, A) number of contacts of the learner in its episode that began and ended within one
-            step; with ``world.contacts: step_end`` they are no collisions.
+            step; with ``world.contacts: step_end`` they do not count as collisions.
     """
 
     reward: Floats
@@ -113,10 +113,10 @@ class Result:
 
 @dataclass(frozen=True)
 class Step:
-    """What :meth:`irsim.learning.Worlds.advance` returns.
+    """Return value of :meth:`irsim.learning.Worlds.advance`.
 
     Attributes:
-        result: What the step has led to.
+        result: The result of the step.
         seen: (n * A, D) what the learners observe now: in worlds whose next episode has begun, of that one.
         last: (n * A, D) what learners observed last in episodes that ended in this step, in worlds whose next episode
             has begun; the other rows have no meaning.

@@ -26,7 +26,7 @@ __all__ = ["PythonTerms", "Threats", "weighted_terms"]
 
 
 def weighted_terms(terms: Sequence[RewardOptions]) -> list[tuple[Any, float]]:
-    """Options for the core and weight of each term; None for those that Python computes."""
+    """Options for the core and weight of each term; None for terms that Python computes."""
     return [(kernel_options(REWARDS, term), float(term.weight)) for term in terms]
 
 
@@ -107,7 +107,7 @@ class PythonTerms:
         )
 
     def _gaps(self) -> Callable[[float], Floats]:
-        """The distances to others now, measured once for each reach."""
+        """The distances to other objects now, measured once for each reach."""
         known: dict[float, Floats] = {}
 
         def gaps(reach: float) -> Floats:
@@ -127,7 +127,7 @@ def _same(a: Floats, b: Floats) -> NDArray[np.bool_]:
 
 
 _URGENCY = 7
-"""Number of the urgency among those of a cone."""
+"""Index of the urgency among the numbers of a cone."""
 
 
 class Threats:
@@ -146,7 +146,7 @@ class Threats:
         self._kernel = Layout(parts=[part]).kernels[0]
 
     def urgency(self, rows: NDArray[np.int64]) -> Floats:
-        """(B,) 1 / (t + 0.2 s), with the time t to the first touch; 0 if there is none within 5 s."""
+        """(B,) 1 / (t + 0.2 s), with the time t to the first touch; 0 without a touch within 5 s."""
         found = np.empty((len(rows), _URGENCY + 1), dtype=np.float32)
         world, state = self._simulation.world, self._simulation.state
         core.observe_rows(world, state, self._looking, [(self._kernel, 0)], rows, found, self._threads)

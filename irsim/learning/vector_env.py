@@ -111,7 +111,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
                 level of the curriculum, from now on.
 
         Raises:
-            ArgumentError: There is not one seed for each world, the mask is none, or there is no such level.
+            ArgumentError: The seeds are not num_envs, the mask has the wrong shape, or the level does not exist.
         """
         super().reset(seed=seed if isinstance(seed, int) else None)
         mask = self._mask((options or {}).get("reset_mask"))

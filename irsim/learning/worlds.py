@@ -241,7 +241,7 @@ class Worlds:
         Args:
             numbers: (n * A, F) what :meth:`read` made of actions; None leaves the learners to their behaviors.
             reset: Which worlds start their next episode: those that are ``over`` after the step, or those that were
-                over ``before`` it; None: none.
+                over ``before`` it; None starts none.
             out: (n * A, D) array for observations; None: a new one.
             last: (n * A, D) array for the last observations of episodes; None: one that the next call overwrites.
             watch: Called with the result before worlds that are over after the step start their next episode.
@@ -324,7 +324,9 @@ class Worlds:
         held = None
         if self._latency is not None:
             numbers, held = self._latency.pass_on(numbers, simulation.count)
-        pose = goal = velocity = control = self._low  # which are not read, but in these cases
+        pose = goal = velocity = control = (
+            self._low
+        )  # placeholders: decide() reads them only for velocity and increment actions
         if meaning.returns == "velocity":
             pose, goal = simulation.pose.take(rows, axis=0), simulation.goal.take(rows, axis=0)
         if meaning.increment:

@@ -141,7 +141,7 @@ def rgb(color: Any) -> tuple[float, float, float]:
         color: A name, ``#RRGGBB``, a grey level as text, or three or four numbers.
 
     Raises:
-        ValueError: It is no color.
+        ValueError: The text does not name a color.
     """
     if not isinstance(color, str):
         red, green, blue, *_ = (float(value) for value in color)

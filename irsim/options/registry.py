@@ -116,7 +116,7 @@ class Registry:
         """Register a feature of user code, replacing an earlier one of that name.
 
         Raises:
-            ValueError: The name is that of a built-in feature.
+            ValueError: A built-in feature has this name.
         """
         known = self.get(name)
         if known is not None and known.origin == "built-in":

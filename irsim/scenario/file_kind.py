@@ -1,4 +1,4 @@
-"""A kind of YAML file: its bundled examples, how it is told from others, read, checked and described by a schema."""
+"""A kind of YAML file: its bundled examples, how it is recognized, read, checked and described by a schema."""
 
 from __future__ import annotations
 

@@ -164,7 +164,7 @@ def perturbed(
 
 
 def perturbed_message(scenario: ResolvedScenario) -> list[str]:
-    """What is drawn for which objects of a perturbed scenario, in words; empty if nothing is."""
+    """The draws of a perturbed scenario, in words; empty if nothing is."""
     groups: dict[Spreads, list[str]] = {}
     for record in scenario.objects:
         if record.spreads is not None:
@@ -263,7 +263,7 @@ def _check_names(scenario: ResolvedScenario, perturbations: Sequence[Perturbatio
 
 
 def _with_spreads(record: ObjectRecord, perturbations: Sequence[Perturbation], placed: bool) -> ObjectRecord:
-    """The object with the spreads that it gets; those that mean nothing for it are left out."""
+    """The object with the spreads that it gets; spreads without effect on it are left out."""
     values: dict[str, float] = {}
     for item in perturbations:
         if _is_chosen(record, item):

@@ -64,7 +64,7 @@ def dry_run(
         budget: Greatest work, estimated from the scenario: the same budget gives the same steps on every machine.
         seconds: Computing time [s] after which the dry run ends even within its budget, counted from the end of the
             first step, in which routes are planned.
-        steps: Greatest number of steps; default: those of a whole episode.
+        steps: Greatest number of steps; default: a whole episode.
         limits: Limits of a run.
 
     Raises:
@@ -123,7 +123,7 @@ def _summarise(
     Args:
         env: The environment after the last step.
         scenario: The scenario.
-        trace: What happened.
+        trace: The recorded steps.
         seed: Seed of the dry run.
         horizon: Steps of a whole episode; None if only the limits bound it.
         cut: Computing time [s] that ended the dry run, None if it ended for another reason.

@@ -104,7 +104,7 @@ def passages_of_legs(
 ) -> dict[tuple[int, int], list[tuple[float, Point]]]:
     """Find the narrowest passages on each leg of the ways of robots.
 
-    The way of a robot under `follow` is the route that it plans and drives; that of any other is the shortest one. What
+    The way of a robot under `follow` is the route that it plans and drives; other robots take the shortest one. What
     a robot keeps out of (`avoid`) is as solid as an obstacle.
 
     Args:
@@ -215,7 +215,7 @@ class _Ground:
         return core.Clearance(terrain, self._cells)
 
     def shortest(self, start: Point, goal: Point, radius: float, reach: float) -> Floats | None:
-        """(K, 2) points of the shortest way of a disc to a goal; None if there is none or cells are too large."""
+        """(K, 2) points of the shortest way of a disc to a goal; None without a way, or if cells are too large."""
         x0, y0, x1, y1 = self._bounds
         inside = all(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (start, goal))
         half = self._size * math.sqrt(0.5)

@@ -1,4 +1,4 @@
-"""What a scenario becomes: one row for each entry, with what is random and its range over 20 seeds."""
+"""A scenario as it is built: one row for each entry, with what is random and its range over 20 seeds."""
 
 from __future__ import annotations
 

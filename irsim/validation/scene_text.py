@@ -1,4 +1,4 @@
-"""What a scenario becomes, as lines of text: one for each entry, and what is random."""
+"""A scenario as it is built, as lines of text: one for each entry, and what is random."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def scene_lines(table: Mapping[str, Any], labels: Mapping[str, str], seed: int) 
 
 
 def _row_text(row: Mapping[str, Any], labels: Mapping[str, str], seeds: int) -> str:
-    """What the objects of an entry have in common, then each of the first ones with its place."""
+    """Properties that the objects of an entry have in common, then each of the first ones with its place."""
     count, drive = row["count"], row["drive"] or "static"
     facts = [f"{'' if count == 1 else f'{count} x '}{drive}{'' if row['role'] == 'robot' else ' obstacle'}"]
     facts.append(row["footprint"])

@@ -142,8 +142,8 @@ def report(file: str, found: Sequence[Diagnostic], valid: str | None = None) -> 
 
     Args:
         file: The file.
-        found: What is wrong with it.
-        valid: What a file without errors holds, in words.
+        found: Its problems.
+        valid: Content of a file without errors, in words.
     """
     count = Counter(item.severity for item in found)
     summary = _counted(count["error"], count["warning"])

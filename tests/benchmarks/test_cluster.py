@@ -1,4 +1,4 @@
-"""Work is shared out to a cluster and taken in; a stand-in of Ray runs the chunks here. With Ray: tests/benchmarks/cluster."""
+"""Work is shared out to a cluster, whose stand-in runs the chunks here. With Ray: tests/benchmarks/cluster."""
 
 from __future__ import annotations
 

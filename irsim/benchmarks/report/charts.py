@@ -40,7 +40,7 @@ def charts(result: BenchmarkResult) -> list[tuple[str, str]]:
                 )  # fmt: skip
     if any(row.paired for row in result.rows):
         first = policy_labels(result)[result.behaviors[0]]
-        made.append((f"Success minus that of {first} with the same seeds", _drawn(lambda ax: _paired(ax, result))))
+        made.append((f"Success minus success of {first} with the same seeds", _drawn(lambda ax: _paired(ax, result))))
     return made
 
 

@@ -41,7 +41,7 @@ INTERVALS = (
     "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Times are those "
     "of robots that arrived."
 )
-"""What a reader must know of the numbers."""
+"""Notes that a reader needs to judge the numbers."""
 Table = tuple[list[str], list[list[str]]]
 """Headings and rows of cells."""
 
@@ -86,7 +86,7 @@ def title_of(result: BenchmarkResult) -> str:
 
 
 def facts_of(result: BenchmarkResult) -> list[str]:
-    """What was run, in a few lines."""
+    """The runs, in a few lines."""
     count = len(result.seeds)
     size = f"{len(result.scenarios)} scenarios, {len(result.behaviors)} policies, {count} seeds from {result.seeds[0]}"
     lines = [f"{size}; {len(result.episodes):,} episodes."]

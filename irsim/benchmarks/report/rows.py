@@ -91,7 +91,7 @@ _ORDER = {"collision": 0, "timeout": 1}
 def worst_episodes(result: BenchmarkResult) -> list[EpisodeRow]:
     """For each policy some failed episodes, each of another scenario.
 
-    Those of scenarios in which the policy fails least often come first, collisions before time-outs, low seeds first.
+    Scenarios in which the policy fails least often come first, collisions before time-outs, low seeds first.
     """
     rates = {(row.scenario, row.behavior): row.success.rate for row in result.rows}
     chosen: list[EpisodeRow] = []

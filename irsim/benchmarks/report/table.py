@@ -3,7 +3,7 @@
 Columns are ``scenario``, ``family`` and ``protocol`` (of a suite), a column ``values.KEY`` for each key that the suite
 varies, ``policy`` (name in the suite), ``behavior`` (as text), ``seed``, ``outcome``, ``steps``, ``sim_time``,
 ``time_limit``, ``unreachable``, ``human_contacts``, ``failures`` (JSON), ``left``, ``jumped``, every metric under its
-key, and ``zones.ZONE.KEY`` for the metrics of zones. What is undefined is null.
+key, and ``zones.ZONE.KEY`` for the metrics of zones. Undefined values are null.
 
 The metadata of each column are ``unit`` and ``description``; those of the file are ``irsim`` (version),
 ``irsim.hash`` (of everything that decides the numbers), ``irsim.reproduce`` (command), ``irsim.suite`` and
@@ -29,7 +29,7 @@ __all__ = ["MISSING", "TABLE", "has_tables", "write_table"]
 
 TABLE = "results.parquet"
 MISSING = f"{TABLE} was not written: pyarrow is not installed (pip install 'irsim-mcp[records]')"
-"""What a reader is told where the file cannot be written."""
+"""The message where the file cannot be written."""
 
 Kind = Literal["word", "text", "texts", "seed", "integer", "number", "flag"]
 

@@ -119,7 +119,7 @@ class Template(_Metadata):
     text: str = Field(repr=False)
 
     def prospect(self, given: Mapping[str, Any] | None = None) -> str:
-        """Say how a run with some parameters ends, as far as it is known: that of the default parameters.
+        """Say how a run with some parameters ends, as far as it is known: for the default parameters.
 
         Raises:
             TemplateError: A name is unknown or a value is not allowed.

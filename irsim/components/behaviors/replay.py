@@ -22,7 +22,7 @@ __all__ = ["Replay"]
 _MARGIN = 1 + 1e-6
 """Factor on the highest recorded speed, so that rounding does not make a limit cut it."""
 _SLOWEST = 0.01
-"""Least limit, of somebody who stands [m/s]."""
+"""Least limit, for an object that stands [m/s]."""
 
 
 class Replay(BehaviorOptions):

@@ -20,7 +20,7 @@ class BridgeOptions(Options):
     objects: ClassVar[tuple[str, ...]] = ()
     """Keys that name objects of the scenario."""
     robots_only: ClassVar[tuple[str, ...]] = ()
-    """Those of these keys that name robots."""
+    """The keys among these that name robots."""
 
     name: str
     """Name of the bridge."""

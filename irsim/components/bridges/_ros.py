@@ -72,7 +72,7 @@ class ShownOptions(BridgeOptions):
         for key, name in value.items():
             if key not in TOPIC_KEYS:
                 fix = suggestion(key, TOPIC_KEYS, f"they are {', '.join(TOPIC_KEYS)}")
-                raise problem("invalid-value", f"{key!r} is no topic of the table", fix=fix)
+                raise problem("invalid-value", f"{key!r} is not a topic of the table", fix=fix)
             if isinstance(name, str) and not TOPIC_NAME.fullmatch(name):
                 what = f"{name!r} cannot be the name of a topic: it begins with / and has letters, digits, _ and {{}}"
                 raise problem("invalid-value", what, fix=f"topics: {{{key}: /{{robot}}/{key}}}")

@@ -16,7 +16,7 @@ from irsim.options.vectors import Offset, Point
 
 
 class KeepClear(Options):
-    """What random places keep clear of: a point, or an object at its start and at its goals.
+    """Something that random places keep clear of: a point, or an object at its start and at its goals.
 
     Give either `point` or `object`.
     """

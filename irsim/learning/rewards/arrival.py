@@ -17,7 +17,7 @@ class Arrival(RewardOptions):
 
     name: Literal["arrival"] = "arrival"
     each: Bool = False
-    """Whether every goal of several counts, also those of objects that wander."""
+    """Whether every goal of several counts, also for objects that wander."""
 
 
 REWARDS.register(Arrival, kernel=core.ArrivalOptions)

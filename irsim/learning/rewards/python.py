@@ -16,7 +16,7 @@ from irsim.learning.step import Moment
 
 
 class Python(RewardOptions):
-    """What a function of yours returns for all learners of all worlds at once.
+    """The value that your function returns for all learners of all worlds at once.
 
     It gets an `irsim.learning.Moment` and returns an (n, A) array.
     """

@@ -25,7 +25,7 @@ class Rvo(RewardOptions):
     """The reward of RL-RVO for the velocity that a learner commands, which must be one of velocities.
 
     With the time t until it would touch another one (see the observation part `rvo_cones`) and the difference d between
-    this velocity and that of full speed toward the goal: `base` - `deviation` d / (3 m/s) if there is no such time
+    this velocity and the one of full speed toward the goal: `base` - `deviation` d / (3 m/s) if there is no such time
     within 5 s, else `base` - `threat` 0.2 s / (t + 0.2 s), `sudden` times that much below 0.1 s.
 
     Source: Han et al.: Reinforcement Learned Distributed Multi-Robot Navigation With Reciprocal Velocity Obstacle
@@ -36,7 +36,7 @@ class Rvo(RewardOptions):
 
     name: Literal["rvo"] = "rvo"
     base: Number = 0.3
-    """What every step is worth."""
+    """Reward of every step."""
     deviation: Annotated[Number, Field(ge=0)] = 3.0
     """Cost of a velocity away from the goal."""
     threat: Annotated[Number, Field(ge=0)] = 6.0

@@ -24,7 +24,7 @@ class Smoothness(RewardOptions):
     weight: Number = -0.1
     """Factor of the term; negative for a cost."""
     of: Literal["change", "turning"] = "change"
-    """What should be small."""
+    """The quantity that should be small."""
 
 
 REWARDS.register(Smoothness, kernel=core.SmoothnessOptions)

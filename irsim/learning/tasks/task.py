@@ -110,7 +110,7 @@ class Randomize(Options):
     same: list[Literal["size", "speed", "acceleration", "sensor_noise", "latency"]] = []
     """Quantities of which all objects of a word share one draw."""
     parameters: dict[str, Annotated[list[Value], Field(min_length=1, max_length=64)]] = {}
-    """Parameters of the template: [low, high] for numbers, a list of values for others. They change the geometry, so
+    """Parameters of the template: [low, high] for numbers, a list of values otherwise. They change the geometry, so
     they are drawn as `variants`."""
     variants: Annotated[Integer, Field(ge=1, le=256)] = 8
     """Number of variants of the scenario that are made with drawn parameters; each episode draws one of them. Values of
@@ -122,7 +122,7 @@ class Randomize(Options):
 
 
 def merged(base: Randomize, change: Randomize) -> Randomize:
-    """The draws of a level: words and parameters that it names replace those of the task, others stay."""
+    """The draws of a level: words and parameters that it names replace the task's, others stay."""
     given = {}
     for key in change.model_fields_set:
         value = getattr(change, key)
@@ -131,17 +131,17 @@ def merged(base: Randomize, change: Randomize) -> Randomize:
 
 
 class CurriculumLevel(Options):
-    """What a level changes in the task; an empty one is the task as it is."""
+    """Changes of the task at a level; an empty one is the task as it is."""
 
     randomize: Randomize = Randomize()
-    """Ranges that replace those of the task with the same word or name; others stay."""
+    """Ranges that replace the task's with the same word or name; others stay."""
     parameters: dict[str, Value] = {}
     """Values of parameters of the template."""
     values: dict[str, Any] = {}
     """Values of the scenario by their paths, such as `robot[0].distribution.goal_distance: 2`: places, goals, shapes
     and ranges. The paths must exist."""
     horizon: Annotated[Seconds, Field(gt=0)] | None = None
-    """Time after which an episode is cut off; null: that of the task."""
+    """Time after which an episode is cut off; null keeps the task's."""
 
 
 class Curriculum(Options):
@@ -179,7 +179,7 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_.-]{0,63}$")]
 
 
 class Action(Meaning):
-    """What the numbers of an action mean.
+    """Meaning of the numbers of an action.
 
     Without `choices`, an action is a vector of numbers from -1 to 1. They lie between the limits of each robot's
     controls, or between `low` and `high`. With `choices` it is the number of one of them.
@@ -226,7 +226,7 @@ class Task(Options):
     version: Annotated[Integer, Field(ge=1)] = 1
     """Version of the task: results of different versions are not comparable."""
     title: Annotated[str, Field(max_length=100)] = ""
-    """What it is about, in one line."""
+    """Its subject, in one line."""
     about: str = ""
     """What it is for, where it comes from, and how to read its results."""
     template: str | None = None
@@ -245,7 +245,7 @@ class Task(Options):
     observation: Annotated[list[Annotated[PartOptions, Select(PARTS)]], Field(min_length=1, max_length=32)]
     """Parts of what a learner observes, in this order; `irsim describe task.observation` lists them."""
     action: Action = Action()
-    """What the numbers of an action mean."""
+    """Meaning of the numbers of an action."""
     reward: Annotated[list[Annotated[RewardOptions, Select(REWARDS)]], Field(min_length=1, max_length=32)]
     """Terms of the reward; it is the sum of their values times their weights."""
     ends: Ends = Ends()

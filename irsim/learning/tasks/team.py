@@ -40,7 +40,7 @@ def team_of(task: Task, scenario: ResolvedScenario) -> Team:
     """Find the learners of a task.
 
     Raises:
-        TaskError: There are none, they differ in their drive, or the action does not fit it.
+        TaskError: There is no learner, they differ in their drive, or the action does not fit it.
     """
     records = scenario.objects
     able = [i for i, one in enumerate(records) if one.role == "robot" and one.kinematics is not None and not one.static]

@@ -29,7 +29,7 @@ Where = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class LevelDraws:
-    """What a level draws.
+    """The draws of a level.
 
     Attributes:
         drawn: Quantities of objects.
@@ -43,7 +43,7 @@ class LevelDraws:
 
 
 def level_draws(task: Task, scenario: ResolvedScenario) -> tuple[LevelDraws, ...]:
-    """What each level of a task draws; a task without a curriculum has one level.
+    """The draws of each level of a task; a task without a curriculum has one level.
 
     Raises:
         TaskError: A word names no object, or what is drawn would have no effect.
@@ -66,7 +66,7 @@ def level_draws(task: Task, scenario: ResolvedScenario) -> tuple[LevelDraws, ...
 
 
 def randomize_path(task: Task, level: int) -> Where:
-    """Path of the key `randomize` that holds for a level: that of the level, or that of a task without a curriculum."""
+    """Path of the key `randomize` that holds for a level: the level's, or the task's without a curriculum."""
     return ("randomize",) if task.curriculum is None else ("curriculum", "levels", level, "randomize")
 
 
@@ -125,7 +125,7 @@ class _Selection:
 
 
 def _quantities(whole: Randomize, changed: Randomize, where: Where, selection: _Selection) -> tuple[DrawnQuantity, ...]:
-    """What a level draws for objects, checked."""
+    """The draws of a level for objects, checked."""
     found = []
     for quantity in QUANTITIES:
         taken: dict[int, str] = {}

@@ -24,7 +24,7 @@ Rate = Annotated[Number, Field(gt=0)]
 
 
 class SarlSettings(Options):
-    """What decides about a training of a value network, besides its task.
+    """Everything that decides about a training of a value network, besides its task.
 
     The behaviors of the learners in the scenario of the task drive them in the first round, of whose returns the
     network learns values. In the other rounds the network drives them by lookahead.
@@ -88,7 +88,7 @@ class SarlSettings(Options):
 
 
 class TrainingSettings(Options):
-    """What decides about a training, besides its task."""
+    """Everything that decides about a training, besides its task."""
 
     algo: Literal["ppo"] = "ppo"
     """Algorithm: proximal policy optimization (Schulman et al. 2017)."""
@@ -158,7 +158,7 @@ def read_settings(given: Mapping[str, Any], texts: Sequence[str]) -> AnySettings
         texts: More of them as ``KEY=VALUE``, with values in YAML.
 
     Raises:
-        ArgumentError: A text is none, or a value is not allowed.
+        ArgumentError: A text is not KEY=VALUE, or a value is not allowed.
     """
     values = {key: value for key, value in given.items() if value is not None}
     model = settings_class(str(values.get("algo", "ppo")))

@@ -78,7 +78,7 @@ class Round:
 
     Attributes:
         number: Its number, from 1.
-        steps: Decisions of all learners so far, without those of learners that waited.
+        steps: Decisions of all learners so far, without decisions of learners that waited.
         seconds: Wall-clock time of all rounds so far [s].
         success: What the policy reaches on the validation seeds.
         best: Whether it is better than every earlier round: in success or, with equal success, in reward.

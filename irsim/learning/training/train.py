@@ -1,6 +1,6 @@
 """Trains a policy for a task with Stable-Baselines3, in rounds that can be resumed.
 
-What a round does depends on the model before it and on its number alone, of which all seeds are made. A resumed
+A round depends only on the previous model and on its own number, from which every seed is derived. A resumed
 training therefore equals one that was never interrupted.
 """
 
@@ -77,7 +77,7 @@ def train(
         folder: Where the training is kept.
         settings: Settings; a resumed training has its own.
         resume: Go on with the training in the folder.
-        steps: Decisions of all learners at most, instead of those of the settings: a finished training goes on with
+        steps: Decisions of all learners at most, instead of the settings': a finished training goes on with
             more. The learning rate then falls to its end over all of them.
         max_time: Wall-clock time after which no further round begins, over all parts of the training [s].
         threads: Number of threads of torch, and of the simulation. Rounds are the same with the same number.
@@ -89,8 +89,8 @@ def train(
         The best model.
 
     Raises:
-        ArgumentError: The folder holds a training that is not to be resumed, or none that is; or there is no such
-            number of workers.
+        ArgumentError: The folder holds a training that is not to be resumed, or no training to resume; or the number
+            of workers is not possible.
         TaskError: The task is not valid, or does not fit its scenario.
         ScenarioError: The scenario cannot be used.
     """

@@ -199,7 +199,7 @@ class DividedWorlds:
         """Have all processes carry out a command.
 
         Raises:
-            BaseException: What it raised, of several processes that of the first one.
+            BaseException: The worker's exception; if several failed, the one of the lowest worker.
         """
         if not self._finish.alive:
             raise ArgumentError("the environment is closed, and its worker processes have ended", "make a new one")

@@ -48,7 +48,7 @@ def layout_of(worlds: Worlds, n: int, parts: int) -> list[ArrayLayout]:
 
 
 def python_parts(worlds: Worlds) -> list[int]:
-    """Numbers of Python behaviors, sensors, drives and hooks, by which worlds are told from those of other code."""
+    """Counts of Python plug-ins in the worlds; the parent compares them to detect code that a worker lacks."""
     simulation = worlds.simulation
     drives, hooks = int(simulation.drives is not None), int(simulation.hooks is not None)
     return [len(simulation.decisions), len(simulation.measurements), drives, hooks]

@@ -25,7 +25,7 @@ def write_message(file: int, message: Any, first: bytes = b"") -> None:
     """Write a message to a pipe, after some bytes.
 
     Raises:
-        OSError: Nobody reads the pipe.
+        OSError: The pipe has no reader.
     """
     data = pickle.dumps(message, pickle.HIGHEST_PROTOCOL)
     rest = memoryview(first + _LENGTH.pack(len(data)) + data)
@@ -65,7 +65,7 @@ def packed_error(error: BaseException) -> Any:
     given = (type(error), error.args, error.__dict__)
     try:
         return (*given, text) if isinstance(_rebuilt(*pickle.loads(pickle.dumps(given))), type(error)) else (text,)
-    except Exception:  # anything may happen in classes of others
+    except Exception:  # classes of users may do anything here
         return (text,)
 
 

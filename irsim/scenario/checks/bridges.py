@@ -24,7 +24,7 @@ def check(context: Context) -> Iterator[Finding]:
 
 
 def driven_without_goal(scenario: ResolvedScenario, bridges: Sequence[Any]) -> Iterator[Finding]:
-    """Robots that a program may drive, and that arrive at a goal that nobody has written.
+    """Robots that a program may drive, and that arrive at a goal that the scenario does not name.
 
     Args:
         scenario: The scenario.

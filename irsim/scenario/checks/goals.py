@@ -94,7 +94,7 @@ def _goals_reached_at_start(context: Context, records: list[ObjectRecord]) -> It
         if record.static or record.wander or record.loop or not record.goals or record.kinematics is None:
             continue
         if record.recorded:
-            continue  # it stands because somebody stood
+            continue  # a replayed object may legitimately stay at its goal
         points = [record.state, *record.goals]
         for index, (a, b) in enumerate(itertools.pairwise(points)):
             if not _arrives(record, a, b):

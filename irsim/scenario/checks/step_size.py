@@ -71,7 +71,7 @@ def _coarse_steps(context: Context) -> Iterator[Finding]:
 
 
 def _only(world: WorldModel) -> str:
-    """What happens once in a step."""
+    """Features that act once in a step."""
     within = world.contacts == "swept" or world.collision_mode == "contact"
     return "it decides" if within else "it decides, and contacts are judged,"
 

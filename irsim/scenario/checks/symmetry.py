@@ -104,7 +104,7 @@ def _is_car(record: ObjectRecord) -> bool:
 
 
 def _cure(record: ObjectRecord, count: int) -> str:
-    """What lets so many objects pass: the default of ``sidestep``, or another behavior."""
+    """Advice that lets so many objects pass: the default of ``sidestep``, or another behavior."""
     return "footprint_orca" if _needs_other(record, count) else "default"
 
 

@@ -47,7 +47,7 @@ def check(context: Context) -> Iterator[Finding]:
 
 
 def _outline(path: Path, zone: Zone) -> Iterator[Finding]:
-    """Lines without length, and areas that are none."""
+    """Lines without length, and areas of size zero."""
     if zone.line is not None and zone.line[0] == zone.line[1]:
         message = "a line must have two different points"
         yield error("too-few-vertices", (*path, "line"), message, given=zone.line)

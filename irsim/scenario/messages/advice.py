@@ -25,7 +25,7 @@ _SIDES = ("size", "dimensions", "extent")
 
 
 def advice_on_key(path: Path, data: Any) -> tuple[str | None, str | None]:
-    """What to write instead of an unknown key, in words, and the key to rename it to if that may be what was meant.
+    """Advice in words on an unknown key, and the key to rename it to if that may be what was meant.
 
     Args:
         path: Path of the unknown key.

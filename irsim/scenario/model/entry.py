@@ -126,7 +126,7 @@ class Entry(Options):
     behavior: Annotated[Any, PerObject(BehaviorField)] = None
     """How the object decides where to move when no program commands it."""
     group_behavior: Annotated[Any, PerObject(GroupBehaviorField)] = None
-    """Behavior that decides for all members of a group together; that of the first member counts."""
+    """Behavior that decides for all members of a group together; the one of its first member counts."""
     sensors: Annotated[Any, PerObject(list[SensorField] | None, "list")] = None
     """Sensors of the object; programs find the first lidar as `lidar`."""
     plot: Annotated[Any, PerObject(ObjectPlot)] = ObjectPlot()
@@ -172,9 +172,9 @@ class Entry(Options):
     fov_occlusion: Bool = False
     """Objects hidden behind others are not in the field of view."""
     state_dim: Annotated[Integer, Field(ge=3, le=64)] | None = None
-    """Number of state rows; null is that of the kinematics. Additional rows keep their values."""
+    """Number of state rows; null takes the number from the kinematics. Additional rows keep their values."""
     vel_dim: Annotated[Integer, Field(ge=1, le=64)] | None = None
-    """Number of control components; null is that of the kinematics."""
+    """Number of control components; null takes the number from the kinematics."""
     mass: Annotated[Any, PerObject(Mass | None, "number")] = None
     """Mass for `collision_mode: contact`; null is 1 with kinematics and infinite without."""
     friction: Annotated[Any, PerObject(Grip | None, "number")] = None

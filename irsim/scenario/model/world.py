@@ -153,23 +153,23 @@ class WorldModel(Options):
     seed: Annotated[Integer, Field(ge=0, lt=2**64)] | None = None
     """Seed of everything random, unless the caller gives one; null draws a new seed."""
     step_mode: Annotated[Literal["internal", "external"], BeforeValidator(_normalize_word)] = "internal"
-    """What moves the objects: the simulator (`internal`), or the calling program (`external`), which sets their
+    """Who moves the objects: the simulator (`internal`), or the calling program (`external`), which sets their
     states."""
     control_mode: Annotated[Literal["auto", "keyboard"], OrNull("auto")] = "auto"
     """What drives the robot chosen in `gui.keyboard`: its behavior (`auto`) or the `keyboard`."""
     collision_mode: Literal["stop", "unobstructed", "unobstructed_obstacles", "reactive", "contact"] = "stop"
-    """What a collision does: it stops both objects (`stop`), has no effect (`unobstructed`, `reactive`), stops robots
+    """Effect of a collision: it stops both objects (`stop`), has no effect (`unobstructed`, `reactive`), stops robots
     only (`unobstructed_obstacles`), or lets bodies push and slide (`contact`)."""
     contacts: Annotated[Literal["step_end", "swept"], BeforeValidator(_normalize_word)] = "step_end"
     """Which contacts are collisions: those at the ends of steps, as in IR-SIM 2.12 (`step_end`), or those within steps,
     too, where objects that stop at a collision stop where they first touch (`swept`). Contacts within a step are found
     and reported in any case."""
     after_arrival: Literal["freeze", "yield"] | None = None
-    """What a robot does that has reached its last goal: it stands still for good (`freeze`), or it stays controlled, so
-    that it can make room, and counts as arrived for good (`yield`); null is as `yield`, but the robot counts as arrived
+    """Behavior of a robot at its last goal: it stands still for good (`freeze`), or it stays controlled, so that it can
+    make room, and counts as arrived for good (`yield`); null is as `yield`, but the robot counts as arrived
     only while it is at its goal."""
     boundary: Literal["none", "walls"] = "none"
-    """What is at the edge of the world: nothing, or four walls that objects collide with, see and avoid."""
+    """Edge of the world: nothing, or four walls that objects collide with, see and avoid."""
     obstacle_map: Annotated[Any, _MapSelect(MAPS, null=True, short=("image", "path"))] = None
     """Occupancy grid over the world: an image file name, or a mapping with a generator's name and options."""
     mdownsample: Annotated[int, Field(strict=True, ge=1), OrNull(1)] = 1

@@ -153,7 +153,7 @@ def top_speed(record: Any) -> float:
 
 
 def _own_limit(options: Any) -> float:
-    """Speed limit among the options of a behavior [m/s]; infinity if it has none."""
+    """Speed limit among the options of a behavior [m/s]; infinity without a limit."""
     name = getattr(options, "name", "")
     if name == "rvo":
         return math.hypot(options.vxmax, options.vymax)

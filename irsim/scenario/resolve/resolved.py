@@ -194,7 +194,7 @@ class DrawnQuantity:
 
 @dataclass(frozen=True, slots=True)
 class VariedLevel:
-    """What is drawn at one level of a curriculum: quantities, and one of some variants of the scenario."""
+    """The draws of one level of a curriculum: quantities, and one of some variants of the scenario."""
 
     drawn: Sequence[DrawnQuantity] = ()
     first_variant: int = 0
@@ -203,7 +203,7 @@ class VariedLevel:
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """What is drawn at each level, and the variants of all levels: the same objects elsewhere, of other shapes."""
+    """The draws of each level, and the variants of all levels: the same objects elsewhere, of other shapes."""
 
     levels: Sequence[VariedLevel]
     variants: Sequence[ResolvedScenario] = ()

@@ -200,7 +200,7 @@ def free_place(grid: ClearanceGrid, near: Point, radius: float, other: Point | N
 
 
 def reachable_place(grid: ClearanceGrid, near: Point, radius: float, other: Point, width: float) -> Point | None:
-    """The nearest place where a disc fits and from which a path leads to ``other``; None if there is none.
+    """The nearest place where a disc fits and from which a path leads to ``other``; None without a way.
 
     Args:
         grid: The grid.

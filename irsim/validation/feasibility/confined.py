@@ -41,7 +41,7 @@ def _is_confined(mover: Mover) -> bool:
 
 
 def _ends_fit(context: Context, scene: Scene, mover: Mover) -> bool:
-    """Whether start and goals are where the object may be; other checks report those that are not."""
+    """Whether start and goals are where the object may be; other checks report the rest."""
     record = mover.record
     options: Any = record.active_behavior
     zones = [zone for zone in context.scenario.world.zones if zone.name in options.avoid]

@@ -57,7 +57,7 @@ class Mover(SizedBody):
 
     @property
     def behavior(self) -> str:
-        """Name of its own behavior or that of its group, "" without any."""
+        """Name of its own or its group's behavior, "" without any."""
         return str(getattr(self.record.active_behavior, "name", ""))
 
 

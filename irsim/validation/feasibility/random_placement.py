@@ -42,7 +42,7 @@ def check(context: Context, drawn: Drawn) -> Iterator[Finding]:
 
 
 def _words(placement: Placement) -> tuple[str, str]:
-    """What the entry asks for, and what to change."""
+    """The request of the entry, and what to change."""
     count = len(placement.objects)
     if placement.distribution != "random":
         place = f"this entry puts {count} objects into {placement.room}, clear of all others"

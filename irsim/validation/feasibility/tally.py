@@ -62,7 +62,7 @@ class Tally:
             fix: What to write instead.
             seed: Seed of the scene.
             serious: Whether it is a warning, not a hint; a serious finding replaces one that is not.
-            entry: The entry of the scenario that it counts for; default: that of the object.
+            entry: The entry of the scenario that it counts for; default: the object's.
         """
         key = code, record.path if entry is None else entry
         found = self.entries.setdefault(key, _Entry(path, message, fix, serious, seed))

@@ -131,7 +131,7 @@ class Driver:
 
 @dataclass(frozen=True)
 class Played:
-    """What episodes have led to.
+    """Result of episodes.
 
     Attributes:
         experience: The decisions of all learners.

@@ -1,4 +1,4 @@
-"""What a task says to a training of a value network."""
+"""A task as a training of a value network reads it."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def plan_of(task: Task, settings: SarlSettings) -> Plan:
     """Find out what a task says.
 
     Raises:
-        TaskError: It does not observe joint states, or its action or reward is not that of a value network.
+        TaskError: It does not observe joint states, or its action or reward does not suit a value network.
     """
     seen = next((part for part in task.observation if isinstance(part, NeighborsPart)), None)
     people, reach = (5, None) if seen is None else (seen.count, seen.range)

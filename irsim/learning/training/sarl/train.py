@@ -1,7 +1,7 @@
 """Trains a value network for a task, in rounds that can be resumed.
 
-The first round imitates the behaviors of the scenario. What a round does depends on the model and the memory
-before it and on its number alone, of which all seeds are made. A resumed training therefore equals one that was never
+The first round imitates the behaviors of the scenario. A round depends only on the previous model and
+memory and on its own number, from which every seed is derived. A resumed training therefore equals one that was never
 interrupted.
 """
 
@@ -63,7 +63,7 @@ class _Model:
         self.copy()
 
     def copy(self) -> None:
-        """Let the targets be those of the present network."""
+        """Copy the present network into the target network."""
         self.target.load_state_dict(self.net.state_dict())
 
     def values(self, states: NDArray[np.float32]) -> Floats:
@@ -137,7 +137,7 @@ def train_sarl(
         folder: Where the training is kept.
         settings: Settings; a resumed training has its own.
         resume: Go on with the training in the folder.
-        steps: Decisions of all learners after the demonstrations at most, instead of those of the settings.
+        steps: Decisions of all learners after the demonstrations at most, instead of the settings'.
         max_time: Wall-clock time after which no further round begins, over all parts of the training [s].
         threads: Number of threads of the simulation and of torch. Rounds are the same with the same number.
         on_round: Called after each round.
@@ -146,8 +146,8 @@ def train_sarl(
         The best model.
 
     Raises:
-        ArgumentError: The folder holds a training that is not to be resumed, or none that is.
-        TaskError: The task is not valid, does not fit its scenario, or is none for a value network.
+        ArgumentError: The folder holds a training that is not to be resumed, or no training to resume.
+        TaskError: The task is invalid, does not fit its scenario, or cannot be learned with a value network.
         ScenarioError: The scenario cannot be used.
     """
     run = RunFolder(Path(folder))
