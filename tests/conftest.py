@@ -9,13 +9,15 @@ import signal
 import sys
 import zlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 import typer.testing
 from hypothesis import HealthCheck, settings
 
+import irsim
 from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES, is_built_in
 from irsim.scenario.model import json_schema
 from tests import warm
@@ -120,3 +122,15 @@ def interruptible() -> Iterator[None]:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
+def make(tmp_path: Path) -> Callable[..., Any]:
+    """``make(text, **kwargs)``: an environment without drawing from the text of a scenario, with seed 1."""
+
+    def open_text(text: str, **kwargs: Any) -> Any:
+        path = tmp_path / "scenario.yaml"
+        path.write_text(text, encoding="utf-8")
+        return irsim.make(path, **{"headless": True, "log_level": "ERROR", "seed": 1, **kwargs})
+
+    return open_text

@@ -8,8 +8,10 @@ import sys
 import numpy as np
 import pytest
 
-from tests.social.swap import LEAST_DISTANCE, starts, swap
+from tests.simulation.swap import LEAST_DISTANCE, starts, swap
 from tests.warm import warm
+
+pytestmark = pytest.mark.one_python  # numbers of crowds are the same on every Python
 
 
 def test_starts_are_apart_and_depend_on_the_seed() -> None:
@@ -35,6 +37,6 @@ def test_orca_cars_do_not_touch() -> None:
 
 def test_help() -> None:
     done = subprocess.run(
-        warm([sys.executable, "-m", "tests.social.swap", "--help"]), capture_output=True, text=True, check=True
+        warm([sys.executable, "-m", "tests.simulation.swap", "--help"]), capture_output=True, text=True, check=True
     )
     assert "--robots" in done.stdout

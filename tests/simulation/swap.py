@@ -1,6 +1,6 @@
 """Circle swap: robots on a ring change places with those opposite, many seeds at once; prints a table.
 
-    python -m tests.social.swap --robots 10 50 --behaviors orca --drives omni diff --seeds 100
+    python -m tests.simulation.swap --robots 10 50 --behaviors orca --drives omni diff --seeds 100
 
 Start distances from the middle and angles are jittered by seed, neighbours start at least four radii apart. Nothing
 limits acceleration. A robot that touches another stops for good.
