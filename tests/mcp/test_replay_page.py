@@ -13,7 +13,7 @@ from irsim.runs import open_run
 from irsim.runs.replay.page import page
 from irsim_mcp.resources import PAGE
 from tests.mcp.conftest import CRASH, ERAS, connected, data_of
-from tests.replay.reading import unpacked
+from tests.runs.replay.reading import unpacked
 
 pytestmark = pytest.mark.anyio
 

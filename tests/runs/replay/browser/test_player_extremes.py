@@ -12,8 +12,8 @@ import irsim
 import irsim.runs.replay.data as packing
 from irsim.runs import Run, open_run
 from tests.browser import Watched
-from tests.replay.browser.test_player import ALL, FRAMES, SHARE, scrub, settled
-from tests.replay.conftest import recorded, scene
+from tests.runs.replay.browser.test_player import ALL, FRAMES, SHARE, scrub, settled
+from tests.runs.replay.conftest import recorded, scene
 
 pytestmark = pytest.mark.browser
 

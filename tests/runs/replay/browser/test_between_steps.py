@@ -9,8 +9,8 @@ import pytest
 import irsim
 from tests.api.test_between_steps import scene as tunnel
 from tests.browser import Watched
-from tests.replay.browser.test_player import SHARE, pixel_of, settled, value
-from tests.replay.conftest import recorded
+from tests.runs.replay.browser.test_player import SHARE, pixel_of, settled, value
+from tests.runs.replay.conftest import recorded
 
 pytestmark = pytest.mark.browser
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 import irsim
@@ -39,13 +37,6 @@ obstacle:
 """
 
 
-@pytest.fixture
-def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The current directory."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def recorded(text: str, seed: int = 1, **options: int) -> Run:
     """A run of a scenario, below the current directory."""
     result = irsim.run(text=text, seed=seed, record=True, **options)
@@ -59,6 +50,6 @@ def scene(name: str = "lorry") -> str:
 
 
 @pytest.fixture
-def run(workspace: Path) -> Run:
+def run(workspace: object) -> Run:
     """Three robots: one arrives, one hits a crate, one slides."""
     return recorded(scene())

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from irsim.runs.replay.columns import Columns, changes, quantised
-from tests.replay.reading import unpacked
+from tests.runs.replay.reading import unpacked
 
 NUMBERS = st.integers(-(2**31), 2**31 - 1)
 

@@ -15,8 +15,8 @@ from irsim.cli.app import app
 from irsim.common.files import TargetError
 from irsim.runs import Run, RunError, replay
 from irsim.runs.replay.page import bundle, page
-from tests.replay.conftest import HOSTILE, recorded, scene
-from tests.replay.reading import data_in, unpacked
+from tests.runs.replay.conftest import HOSTILE, recorded, scene
+from tests.runs.replay.reading import data_in, unpacked
 
 SOURCES = Path(replay.__file__).with_name("web")
 

@@ -9,8 +9,8 @@ import irsim.runs.replay.data as packing
 from irsim.bundled.templates import names
 from irsim.runs import Run, RunError, open_run
 from tests.api.test_between_steps import scene as tunnel
-from tests.replay.conftest import HOSTILE, recorded, scene
-from tests.replay.reading import unpacked
+from tests.runs.replay.conftest import HOSTILE, recorded, scene
+from tests.runs.replay.reading import unpacked
 
 
 def poses_of(head: dict, columns: dict) -> np.ndarray:

@@ -15,7 +15,7 @@ from irsim.runs import open_run
 from irsim_mcp.resources import PAGE
 from tests.browser import Watched, until
 from tests.mcp.conftest import connected
-from tests.replay.conftest import scene
+from tests.runs.replay.conftest import scene
 
 pytestmark = pytest.mark.browser
 

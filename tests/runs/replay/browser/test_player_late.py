@@ -8,7 +8,7 @@ import pytest
 
 import irsim
 from tests.browser import Watched
-from tests.replay.browser.test_player import SHARE, pixel_of, scrub, settled
+from tests.runs.replay.browser.test_player import SHARE, pixel_of, scrub, settled
 
 pytestmark = pytest.mark.browser
 

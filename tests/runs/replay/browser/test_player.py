@@ -13,7 +13,7 @@ import irsim
 import irsim.runs.replay.data as packing
 from irsim.runs import Run
 from tests.browser import Watched, until
-from tests.replay.conftest import HOSTILE, scene
+from tests.runs.replay.conftest import HOSTILE, scene
 
 pytestmark = pytest.mark.browser
 
