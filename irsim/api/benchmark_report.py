@@ -38,11 +38,11 @@ MAX_NAME = 120
 
 @dataclass(frozen=True)
 class Report:
-    """What was written.
+    """The files that were written.
 
     Attributes:
         page: The page.
-        notes: What could not be written, and how that is changed.
+        notes: Files that could not be written, and how that is changed.
     """
 
     page: Path

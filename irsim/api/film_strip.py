@@ -54,7 +54,7 @@ def draw_strip(
         env: An environment at its start.
         moments: Steps of the moments, ascending.
         size: Greatest length of the longer side of the picture [px].
-        overlays: What to show besides bodies.
+        overlays: Names of the things to show besides bodies.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         progress: Callback ``(steps_done, steps_total)``.
         may_be_lost: Whether the strip ends early where the policy of another process is lost, instead of an error.

@@ -49,7 +49,7 @@ def overlays_from(words: Iterable[str]) -> list[Overlay]:
     """The overlays with some names.
 
     Raises:
-        InputError: A name is not that of an overlay.
+        InputError: A name does not belong to an overlay.
     """
     known: dict[str, Overlay] = {name: name for name in OVERLAYS}
     asked = [word.strip() for word in words if word.strip()]
@@ -62,7 +62,7 @@ def overlays_from(words: Iterable[str]) -> list[Overlay]:
 
 
 def plot_keys(overlays: Iterable[Overlay] | None) -> dict[str, bool]:
-    """Plot keys that override those of objects; none if no overlays are given."""
+    """Plot keys that override the keys of objects; empty if no overlays are given."""
     if overlays is None:
         return {}
     shown = set(overlays)

@@ -58,11 +58,11 @@ def read_scenario(
 
 
 def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
-    """The policy that a name means for a scenario of a suite: that of the suite, if it has one of that name.
+    """The policy that a name means for a scenario of a suite, which may have a policy of this name.
 
     Args:
         path: Path of the scenario, or ``SUITE/SCENARIO``.
-        policy: What :func:`irsim.run` takes as a policy.
+        policy: As :func:`irsim.run` takes it.
 
     Raises:
         SuiteError: The suite is not valid.
@@ -77,7 +77,7 @@ def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
 def opened_policy(
     path: str | Path | None, policy: Any, behavior: Any, limits: Limits | None
 ) -> tuple[Policy | None, str | None]:
-    """What drives the robots: a policy in Python, or the text of a behavior that runs in the engine, or neither.
+    """Open what drives the robots: a policy in Python, or the text of a behavior that runs in the engine, or neither.
 
     Raises:
         InputError: There is no such policy, or both names of the argument are used.

@@ -52,14 +52,14 @@ def render(
     Args:
         path: Scenario file.
         out: File to write; its suffix determines the format.
-        policy: What drives every robot, see :func:`irsim.open_policy`; default: the behaviors of the scenario.
+        policy: A policy that drives every robot, see :func:`irsim.open_policy`; default: the behaviors of the scenario.
         seed: Overrides the file's seed.
         steps: Number of steps before the picture (default 0: the start), or greatest number of steps of an animation.
         size: Longer side of the picture [px]; default from ``world.plot``.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         strip: Number of moments on one sheet (png), labelled like snapshots, evenly spaced from the start to ``steps``
             (default: of a whole episode).
-        overlays: What to show besides bodies, in a picture (png) labelled like snapshots: see
+        overlays: Names of the things to show besides bodies, in a picture (png) labelled like snapshots: see
             :data:`irsim.api.overlays.OVERLAYS`.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first.

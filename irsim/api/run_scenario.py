@@ -73,13 +73,13 @@ def run(
         seed: Overrides the file's seed. Without either, a random seed is drawn and reported (0 if nothing is random).
         steps: Horizon in steps, which overrides ``world.time_limit``.
         strict: Refuse what IR-SIM would ignore.
-        policy: What drives every robot instead of its own behavior, see :func:`irsim.open_policy`: the name of a
-            behavior or a plug-in, with options as a mapping (in Python or as YAML text, such as ``{name: orca,
+        policy: A policy that drives every robot instead of its own behavior, see :func:`irsim.open_policy`: the name
+            of a behavior or a plug-in, with options as a mapping (in Python or as YAML text, such as ``{name: orca,
             timeHorizon: 5}``), a file (``model.npz``), a function of observations, or a policy.
         behavior: Another name of ``policy``.
         perturb: Starts, speeds and delays that differ from the scenario, as the seed draws them: see
             :func:`irsim.benchmark`.
-        bridges: Connections to other programs, besides those of the scenario: mappings such as ``{"name":
+        bridges: Connections to other programs, which the scenario does not name: mappings such as ``{"name":
             "json_lines"}``, or their text. Each takes part in the steps.
         imports: Modules to import first, for behaviors that they register.
         save: Also write an animation to this file (gif, mp4, apng, …).

@@ -62,11 +62,11 @@ def snapshot(
         path: Scenario file.
         text: Text of the scenario, instead of ``path``.
         seed: Overrides the file's seed.
-        steps: Number of steps before the picture; None: those of a whole episode.
+        steps: Number of steps before the picture; None: the steps of a whole episode.
         strip: Number of moments in one picture, evenly spaced from the start to ``steps`` (0: of a whole episode).
         size: Longer side of the picture [px].
-        overlays: What to show besides bodies, see :data:`OVERLAYS`; default: names, goals and paths, and the sensors
-            that the scenario shows.
+        overlays: Names of the things to show besides bodies, see :data:`OVERLAYS`; default: names, goals and paths,
+            and the sensors that the scenario shows.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         draw: Whether to draw the picture, too.
         strict: Refuse what IR-SIM would ignore.
@@ -187,7 +187,7 @@ def snapshot_of_env(
         env: The environment.
         path: Scenario file, which is only used in the result.
         size: Longer side of the picture [px].
-        overlays: What to show besides bodies.
+        overlays: Names of the things to show besides bodies.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         moments: Steps of a strip, the first of which is the present one; the environment is advanced to the last.
         draw: Whether to draw the picture, too.

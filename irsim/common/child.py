@@ -156,7 +156,7 @@ class Child:
 
 
 def how_ended(code: int | None) -> str:
-    """What a return code says: ``exit code 3``, ``signal 9``, or ``no exit code`` of a process that still runs."""
+    """The meaning of a return code: ``exit code 3``, ``signal 9``, or ``no exit code`` of a process that still runs."""
     if code is None:
         return "no exit code"
     return f"exit code {code}" if code >= 0 else f"signal {-code}"
@@ -189,7 +189,7 @@ def write_all(pipe: Writer, data: bytes) -> None:
     """Write all of the data to a pipe without a buffer, which may take only the first bytes.
 
     Raises:
-        OSError: Nobody reads the pipe.
+        OSError: No process reads the pipe.
     """
     rest = memoryview(data)
     while rest:

@@ -1,4 +1,4 @@
-"""Names of the kinds of events, for those that read results without the engine."""
+"""Names of the kinds of events, for readers of results that have no engine."""
 
 from __future__ import annotations
 
@@ -49,4 +49,4 @@ EVENTS: dict[str, str] = {
     "world.step_time makes it rare. Before a run, irsim validate warns of it with jumps-through. The metric "
     "contacts_between_steps counts it, too; pictures and pages mark it with a red diamond.",
 }
-"""What each kind of event means."""
+"""Meaning of each kind of event."""

@@ -136,7 +136,7 @@ def replace_bytes(target: str | Path, *parts: Buffer, mode: int | None = 0o600) 
     Args:
         target: The file; its folder must exist.
         *parts: Its new content.
-        mode: Permissions; None for those that new files usually have.
+        mode: Permissions; None for the usual permissions of new files.
     """
     head, separator, _ = os.fspath(target).rpartition(os.sep)
     temporary = f"{head}{separator}{TEMPORARY}{os.urandom(4).hex()}"

@@ -46,7 +46,7 @@ Value = TypeVar("Value")
 class computed(property, Generic[Value]):
     """A read-only attribute whose value a function computes from the instance: ``robot = computed(queries.robot)``.
 
-    It is a :class:`property` whose type is that of the function, so that type checkers and editors know it.
+    It is a :class:`property` whose type is the return type of the function, so that type checkers and editors know it.
     """
 
     if TYPE_CHECKING:

@@ -25,7 +25,7 @@ class Metric:
         key: Name of the metric in results.
         unit: Unit of the value; ``0/1`` for a proportion.
         text: Meaning of the metric.
-        robots: How the values of all robots combine to that of the episode.
+        robots: How the values of all robots combine to the value of the episode.
         canonical: Whether it belongs to the canonical set; otherwise it is a widely used extra.
         better: Whether more or less is better, None if that depends.
     """

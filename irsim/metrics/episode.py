@@ -41,7 +41,7 @@ class EpisodeMetrics:
         robots: Metrics of each robot by key (:data:`irsim.metrics.definitions.METRICS`); NaN where undefined.
         flags: Flags of each robot: ``unreachable`` (no path to a goal was found), ``no_approach`` (never on a collision
             course with a human, so ``time_to_collision_min`` is undefined).
-        episode: The same keys for the episode, and those of :data:`irsim.metrics.definitions.EPISODE_METRICS`.
+        episode: The same keys for the episode, and the keys of :data:`irsim.metrics.definitions.EPISODE_METRICS`.
         names: Names of the robots.
         hits: Name of the first object that each robot touched before it arrived, None without a contact.
         clearance: Clearances of the robots.
@@ -118,7 +118,7 @@ def episode_metrics(
 
 
 def episode_value(key: str, values: Sequence[float]) -> float:
-    """Combine the values of the robots to that of the episode: whether all have it, the least, greatest or mean value.
+    """Combine the values of the robots to one of the episode: whether all have it, the least, greatest or mean.
 
     Robots for which the value is undefined are left out.
     """

@@ -32,8 +32,8 @@ def progress_metrics(track: Track, geodesics: Geodesics, radius: float) -> tuple
       L*, of robots that arrived. ``stl``: success x T*/max(T, T*), T* = L*/top speed, the greatest of its
       limits forward and sideways. ``barn_score``: success x
       T*/clip(T, 2 T*, 8 T*), T* = L*/2 (Perille et al. 2020; at most 0.5). All NaN without a path to a goal.
-    - ``path_irregularity`` [rad]: absolute heading changes minus those of the shortest path, of robots that arrived.
-      For a drive that must turn to move, those of the shortest path include the first turn towards it.
+    - ``path_irregularity`` [rad]: absolute heading changes minus the heading changes of the shortest path, of
+      robots that arrived. For a drive that must turn to move, the shortest path includes the first turn towards it.
     - ``min_distance_to_goal``, ``final_distance_to_goal`` [m]: straight-line distance to the present goal.
 
     Args:

@@ -1,4 +1,4 @@
-"""Metrics of proximity to others: Francis et al. (arXiv 2306.16740), CD, SC, DH, TTC; HuNavSim; CrowdNav; robot_sf."""
+"""Metrics of proximity: Francis et al. (arXiv 2306.16740), CD, SC, DH, TTC; HuNavSim; CrowdNav; robot_sf."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def social_metrics(track: Track) -> dict[str, float]:
       convex hull of the members' centres, grown by 0.45 m. ``group_collision_rate``: whether it ever was, 0 or 1.
     - ``social_force_robot`` [m/s]: norm of the sum of the social forces of all humans on it, summed times dt;
       ``social_force_agents``: norms of its forces on each human, summed times dt; ``social_work``: both together.
-      Forces are those of Moussaid et al. (2009) with the parameters and the weight that ``sfm`` has by default.
+      Forces follow Moussaid et al. (2009) with the parameters and the weight that ``sfm`` has by default.
     - ``obstacle_force_robot`` [m/s]: magnitude of :func:`obstacle_force` on it, summed times dt;
       ``obstacle_force_agents``: the same for each human. NaN without static objects.
     - ``pedestrian_velocity_avg`` [m/s]: path length of all humans / (their number x time).

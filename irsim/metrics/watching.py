@@ -28,7 +28,7 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Watching:
-    """What was watched in an episode.
+    """Zones, observers and their events in an episode.
 
     Attributes:
         zones: The zones.
@@ -95,11 +95,11 @@ def watching_metrics(watching: Watching, name: str, rows: Rows) -> dict[str, flo
     - ``zone_crossings``: entries into regions after the start, plus crossings of lines by its centre, signed: +1 from
       left to right of the line, -1 from right to left; NaN without zones.
     - ``seen_ratio``: share of rows in which it is in the field of view of at least one other object, with occlusion if
-      that object has ``fov_occlusion``. Fields of view are those that the scenario gives with ``fov``; a lidar alone
-      has none. NaN if no other object has one.
+      that object has ``fov_occlusion``. Only fields of view that the scenario gives with ``fov`` count, not the
+      range of a lidar. NaN if no other object has one.
 
     Args:
-        watching: What was watched.
+        watching: Zones and observers.
         name: Name of the robot.
         rows: Rows up to its arrival.
     """

@@ -66,7 +66,7 @@ class BenchmarkRow(Result):
     behavior: str
     """The robots' behavior, or ``as-written``."""
     episodes: int
-    """Number of episodes, without those that are ``placement-crowded``."""
+    """Number of episodes, without the ``placement-crowded`` ones."""
     success: Proportion
     """Every robot reached its goal without a collision before."""
     collision: Proportion
@@ -134,7 +134,7 @@ class EpisodeRow(Result):
 
 
 class BenchmarkResult(Result):
-    """What ``irsim benchmark`` found."""
+    """The result of ``irsim benchmark``."""
 
     scenarios: list[str]
     """The files."""
@@ -149,21 +149,21 @@ class BenchmarkResult(Result):
     perturb: list[str] = Field(default_factory=list)
     """Perturbations of starts, speeds and delays, as on the command line."""
     perturbed: dict[str, list[str]] = Field(default_factory=dict)
-    """What they change in each scenario, in words; empty without a perturbation."""
+    """The changes that they make in each scenario, in words; empty without a perturbation."""
     unequal: dict[str, str] = Field(default_factory=dict)
     """Which limits of robots differ between the policies, in words, by scenario; empty if all are equal."""
     assumptions: list[str] = Field(default_factory=list)
-    """What the numbers take for granted, in words: when contacts count, how fast robots change their speed, and what
+    """Assumptions behind the numbers, in words: when contacts count, how fast robots change their speed, and what
     behaviors know."""
     random: dict[str, list[str]]
-    """What the seed decides in each scenario; a scenario in which it decides nothing runs with the first seed only."""
+    """Parts that the seed decides in each scenario; a scenario without such parts runs with the first seed only."""
     rows: list[BenchmarkRow]
     """By scenario, then behavior; then all scenarios together, if there are several with equal numbers of episodes, and
     each protocol of a suite on its own."""
     episodes: list[EpisodeRow]
     """Every episode."""
     incidents: list[str] = Field(default_factory=list)
-    """What happened besides outcomes, in words: contacts between people, objects that left the world or jumped over
+    """Incidents besides outcomes, in words: contacts between people, objects that left the world or jumped over
     their goal, robots that were seen, seeds without room."""
     notes: list[str]
     """Remarks that matter for reading the numbers."""
@@ -176,29 +176,29 @@ class BenchmarkResult(Result):
 
 
 class SuiteScenarioFacts(Result):
-    """What a scenario of a suite is."""
+    """Facts about a scenario of a suite."""
 
     name: str
     """Its name in the rows."""
     family: str
     """Its name in the suite file."""
     protocol: str
-    """What robots do that have arrived: ``freeze``, ``yield``, or ``as-written``."""
+    """Behavior of robots that have arrived: ``freeze``, ``yield``, or ``as-written``."""
     values: dict[str, Any]
     """The values that vary in its family."""
 
 
 class SuiteResult(BenchmarkResult):
-    """What ``irsim benchmark SUITE`` found."""
+    """The result of ``irsim benchmark SUITE``."""
 
     suite: str
     """Name of the suite."""
     suite_version: int
     """Version of the suite."""
     title: str
-    """What it is about."""
+    """Its subject."""
     about: str = ""
-    """What it measures, and how to read its results."""
+    """The abilities that it measures, and how to read its results."""
     sources: list[str] = Field(default_factory=list)
     """Papers and pages that the suite follows."""
     steps: int | None = None

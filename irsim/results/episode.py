@@ -16,7 +16,7 @@ class EventRecord(Result):
     """Something that happened in an episode."""
 
     kind: EventKind
-    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, or none round
+    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, or no path round
     ``partner``, which stands for good, ``overshoot`` when an object passes its goal within ``goal_threshold``
     between two steps without arriving, ``zone_entry`` and ``zone_exit`` when a body begins and ceases to touch a
     region of ``world.zones``, ``line_crossing`` when a centre crosses a line, ``sight_start`` and ``sight_end`` when
@@ -87,7 +87,7 @@ class RobotResult(Result):
     nearest_at: tuple[float, float] | None = None
     """Where the robot was then, x and y [m]."""
     heading_error: float | None = None
-    """How far its heading at the end is off that of the goal [rad]; None where the heading does not count."""
+    """How far its heading at the end is off the heading of the goal [rad]; None where the heading does not count."""
     time_in_zone: float | None = None
     """Time in which its body touched a region of ``world.zones``, until it arrived [s]; None without regions."""
     zone_crossings: int | None = None

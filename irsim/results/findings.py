@@ -21,7 +21,7 @@ class Edit(Result):
 
     action: Literal["remove", "replace", "rename", "add"]
     path: str
-    """What to remove, replace or rename, or the key to add."""
+    """The key or value to remove, replace or rename, or the key to add."""
     value: Any = None
     """The new value, or the new name of a key."""
 
@@ -42,13 +42,13 @@ class Finding(Result):
     length: int = 1
     """Number of characters to underline, from that column on."""
     message: str
-    """What is wrong."""
+    """The problem, in a sentence."""
     given: Any = None
     """The value as written; a long one is cut and given as text."""
     allowed: list[str] | str | None = None
-    """What would be accepted."""
+    """Values that would be accepted."""
     fix: str | None = None
-    """What to write instead."""
+    """The text to write instead."""
     edit: Edit | None = None
     """The fix as an edit that a program can make without guessing, as ``irsim validate --fix`` does."""
     tolerated: bool = False

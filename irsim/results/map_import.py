@@ -53,7 +53,7 @@ class MapImportResult(Result):
     unknown: int
     """Cells of which nothing is known."""
     unknown_as: str
-    """What they count as in the scenario: free or occupied."""
+    """Their meaning in the scenario: free or occupied."""
     level: int
     """Level of the map."""
     height: float

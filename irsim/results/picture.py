@@ -24,7 +24,7 @@ __all__ = [
 
 
 class RenderResult(Result):
-    """What ``irsim render`` drew."""
+    """The result of ``irsim render``."""
 
     scenario: str
     """The file."""
@@ -48,7 +48,7 @@ class RenderResult(Result):
     extent: tuple[float, float, float, float]
     """Bounds of the world [m]: x_min, x_max, y_min, y_max."""
     table: SceneTable
-    """What the scenario becomes, one row for each entry."""
+    """The objects that the scenario makes, one row for each entry."""
     labels: dict[str, str] = {}
     """Label in the picture of each robot whose name is not drawn."""
     reproduce: str
@@ -104,14 +104,14 @@ class RobotPlan(Result):
 
 
 class SnapshotResult(Result):
-    """What ``irsim.api.snapshot`` drew."""
+    """The result of ``irsim.api.snapshot``."""
 
     scenario: str
     """The file, or ``(text)``."""
     seed: int
     """Seed that was used."""
     random: list[str]
-    """What the seed decides; empty if every seed gives the same run."""
+    """Parts that the seed decides; empty if every seed gives the same run."""
     steps: int
     """Number of executed steps."""
     sim_time: float
@@ -159,7 +159,7 @@ class SceneRow(Result):
     drive: str | None
     """Name of the drive; None if the objects never move."""
     behavior: str | None
-    """What decides for the objects; None if nothing does."""
+    """The behavior or policy that decides for the objects; None if nothing does."""
     footprint: str
     """Shape and size in words."""
     poses: list[tuple[float, float, float]]
@@ -217,13 +217,13 @@ class SceneTable(Result):
     rows: list[SceneRow]
     """One row for each entry, without the map and the walls around the world."""
     random: list[str]
-    """What the seed decides; empty if every seed gives the same run."""
+    """Parts that the seed decides; empty if every seed gives the same run."""
     seeds: int
     """Number of seeds, from 0 on, that were tried; 1 if places are not random."""
     crowded: list[int]
-    """Those that leave no room for an object."""
+    """Seeds that leave no room for an object."""
     overlapping_goals: int
-    """Number of those seeds in which the goals of two robots overlap, while those of some other seed do not."""
+    """Number of those seeds in which the goals of two robots overlap, while with some other seed they do not."""
     lidars: list[LidarHits]
     """Whom the beams of the first lidars hit; empty if the scenario has very many beams."""
     passages: list[ScenePassage] = []

@@ -26,7 +26,7 @@ class ExportResult(Result):
     steps: int
     """Number of steps in it, of all runs together."""
     notes: list[str]
-    """What the records or the file leave out."""
+    """Parts that the records or the file leave out."""
 
 
 class SetupChange(Result):
@@ -59,7 +59,7 @@ class Parting(Result):
 
 
 class RunsDiff(Result):
-    """What ``irsim diff-runs`` found."""
+    """The result of ``irsim diff-runs``."""
 
     before: str
     """Id of the first run."""
@@ -70,13 +70,13 @@ class RunsDiff(Result):
     summary: str
     """One sentence: whether the runs are equal, or where they part."""
     setup: list[SetupChange]
-    """What differed before the runs began, such as the seed."""
+    """Differences from before the runs began, such as the seed."""
     step: int | None
     """First step in which they differ; None if no step that both recorded does."""
     time: float | None
     """Simulated time of that step [s]."""
     parted: list[Parting]
-    """What differs in that step, object by object; of many differences the first 50."""
+    """Differences in that step, object by object; of many differences the first 50."""
     parted_count: int
     """Number of quantities that differ in that step."""
     last_steps: tuple[int, int]
@@ -90,4 +90,4 @@ class RunsDiff(Result):
     event_counts: tuple[int, int]
     """Number of events that only the first run has, and that only the second has."""
     notes: list[str]
-    """What the records leave out."""
+    """Parts that the records leave out."""

@@ -20,7 +20,7 @@ class Fix(Result):
     path: str
     line: int | None
     change: str
-    """What was done: ``renamed 'behaviour' to 'behavior'``."""
+    """The repair: ``renamed 'behaviour' to 'behavior'``."""
 
 
 class Stuck(Result):
@@ -36,11 +36,11 @@ class Stuck(Result):
 
 
 class DryRun(Result):
-    """What happened in a dry run: the first steps, of which no record is kept."""
+    """The result of a dry run: the first steps, of which no record is kept."""
 
     seed: int
     random: list[str]
-    """What the seed decides; empty if every seed gives the same run."""
+    """Parts that the seed decides; empty if every seed gives the same run."""
     steps: int
     sim_time: float
     """Simulated time [s]."""
@@ -65,7 +65,7 @@ class DryRun(Result):
 
 
 class ValidationReport(Result):
-    """What ``irsim validate`` found in one scenario."""
+    """The result of ``irsim validate`` for one scenario."""
 
     file: str
     """The file, or the name given to a text."""
@@ -89,7 +89,7 @@ class ValidationReport(Result):
     changes: ScenarioDiff | None = None
     """Differences from the scenario compared with."""
     dry_run: DryRun | None = None
-    """What happened in the dry run."""
+    """The result of the dry run."""
 
 
 class KeyChange(Result):
@@ -125,7 +125,7 @@ class CommentChange(Result):
 
 
 class ScenarioDiff(Result):
-    """What ``irsim diff`` found."""
+    """The result of ``irsim diff``."""
 
     before: str
     after: str

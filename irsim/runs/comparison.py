@@ -142,7 +142,7 @@ def diff_runs(
 
 
 def _setup(first: Run, second: Run) -> list[SetupChange]:
-    """What differed before the runs began."""
+    """Differences from before the runs began."""
     changes = []
     if first.scenario_text != second.scenario_text:
         files = [str(run.folder / SCENARIO_FILE) for run in (first, second)]
@@ -206,7 +206,7 @@ def _pairs(before: Trace, after: Trace, length: int) -> Iterator[_Pair]:
 
 
 def _partings(pair: _Pair, row: int, columns: NDArray[np.int64]) -> list[Parting]:
-    """What differs in a row; of a scan the first beam that does."""
+    """Differences in a row; of a scan the first beam that does."""
     if pair.is_scan:
         return [_parting(pair, row, int(columns[0]), len(columns))] if len(columns) else []
     return [_parting(pair, row, column) for column in columns.tolist()]

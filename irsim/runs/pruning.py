@@ -21,7 +21,7 @@ DAY = 24 * 3600.0
 _TRASH = ".gone-"
 """Prefix of the names of folders that are being deleted."""
 _TIDIED = ".tidied"
-"""File whose modification time is that of the last tidying."""
+"""File whose modification time is the time of the last tidying."""
 _TIDYING_PERIOD_S = 5.0
 """Time [s] between two tidyings: checking all runs before each short run would take longer than the run."""
 
@@ -29,7 +29,7 @@ _TIDYING_PERIOD_S = 5.0
 def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: str | None = None) -> list[str]:
     """Delete runs that have not been used for ``age`` seconds, and the least recently used ones beyond the quota.
 
-    Runs that are being written stay, and so does ``keep``. What killed processes left is deleted.
+    Runs that are being written stay, and so does ``keep``. Leftovers of killed processes are deleted.
 
     Args:
         runs: Folder of all runs.

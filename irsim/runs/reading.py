@@ -1,4 +1,4 @@
-"""Read recorded runs, including those that are still being written or were interrupted."""
+"""Read recorded runs, also while they are being written, or after they were interrupted."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class Run:
 
     @cached_property
     def events(self) -> list[Event]:
-        """The events in order; those of an interrupted run end with its trace."""
+        """The events in order; in an interrupted run they end with its trace."""
         try:
             events = [Event(**item) for name in self._pieces("trace", "events") for item in self._events_in(name)]
         except TypeError as error:
@@ -121,7 +121,7 @@ class Run:
 
     @property
     def notes(self) -> list[str]:
-        """Notes on what was too large to be recorded, and of a finished run those of its bridges."""
+        """Notes on what was too large to be recorded, and of a finished run the messages of its bridges."""
         result = self.result
         found = omission_notes(self.meta, None if result is None else result.steps)
         return [*found, *(note for note in ([] if result is None else result.notes) if note not in found)]
@@ -139,7 +139,7 @@ class Run:
         return int(self._piece(pieces[-1], [], scans=False).step[-1]) if pieces else -1
 
     def trace(self) -> Trace:
-        """The recorded trace; that of an interrupted run ends with its last piece.
+        """The recorded trace; in an interrupted run it ends with its last piece.
 
         Raises:
             RunError: No step has been recorded, or a file has been changed.

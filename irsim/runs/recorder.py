@@ -308,8 +308,8 @@ def recording(
         path: Scenario file, None for a text.
         record: Whether to record, or the folder to record to.
         horizon: Greatest number of steps.
-        options: Other options of the run: ``strict``, ``imports``, ``behavior`` if that of the robots was replaced, and
-            ``perturb`` if starts were perturbed.
+        options: Other options of the run: ``strict``, ``imports``, ``behavior`` if it replaces the behaviors of the
+            robots, and ``perturb`` if starts were perturbed.
     """
     if record is False:
         yield None

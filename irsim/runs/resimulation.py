@@ -116,7 +116,7 @@ def step_of(run: Run, step: int | None) -> int:
 
 
 def check_reproduced(run: Run, env: Env) -> None:
-    """Check that the poses of an environment are those of the run at the same step.
+    """Check that the poses of an environment are the recorded poses of the same step.
 
     Raises:
         RunError: They differ, because a map or irsim itself has changed since.

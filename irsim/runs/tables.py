@@ -26,7 +26,7 @@ class Question:
 
     Attributes:
         run, trace: The run and its trace.
-        objects: Indices of the chosen objects: those that were named, or all robots.
+        objects: Indices of the chosen objects: the named ones, or all robots.
         named: Names of the chosen objects, None for all.
         first, last: First and last row of the trace.
         every: Take every Nth row; None: as many rows as fit.
@@ -49,7 +49,7 @@ class Question:
     limits: Limits | None
 
     def concerns(self, *names: str | None) -> bool:
-        """Whether one of these objects was chosen, or none was named."""
+        """Whether one of these objects was chosen, or no name was given."""
         return self.named is None or any(name in self.named for name in names)
 
     @property
@@ -89,7 +89,7 @@ def chosen_objects(run: Run, asked: str | None) -> tuple[list[int], frozenset[st
 
     Args:
         run: The run.
-        asked: Name of an object, ``all`` (all that can move), ``robots``, ``obstacles`` (those that can move), a tag,
+        asked: Name of an object, ``all`` (all that can move), ``robots``, ``obstacles`` (moving ones), a tag,
             or several of these, separated by commas; None for all robots, and all objects in lists of events. The name
             of an object goes before its other meanings.
 

@@ -78,6 +78,12 @@ async def connected(workspace: Path, era: str = ERAS[0], **limits: Any) -> Async
         yield client
 
 
+async def call(workspace: Path, tool: str, arguments: dict[str, Any] | None = None, **limits: Any) -> CallToolResult:
+    """The result of one call, to a server in this process."""
+    async with connected(workspace, **limits) as client:
+        return await client.call_tool(tool, arguments)
+
+
 def as_process(workspace: Path) -> StdioServerParameters:
     """How a host starts the server."""
     command, *arguments = warm_mcp("--workspace", str(workspace))

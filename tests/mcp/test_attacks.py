@@ -14,7 +14,7 @@ import pytest
 
 from irsim_mcp import worker
 from irsim_mcp.limits import ServerLimits
-from tests.mcp.conftest import ROOM, connected, data_of, error_of, text_of
+from tests.mcp.conftest import ROOM, call, connected, data_of, error_of, text_of
 
 pytestmark = [
     pytest.mark.one_python,
@@ -144,8 +144,7 @@ async def test_paths(trap: Path, name: str) -> None:
 
 
 async def test_an_absolute_path_into_the_workspace_is_told_its_name(trap: Path) -> None:
-    async with connected(trap) as client:
-        told = error_of(await client.call_tool("run_episode", {"scenario_path": str(trap / "room.yaml")}))
+    told = error_of(await call(trap, "run_episode", {"scenario_path": str(trap / "room.yaml")}))
     assert told.endswith("Fix: scenario_path='room.yaml'.")
 
 
@@ -169,8 +168,7 @@ async def test_scenarios_in_files_have_the_same_limits(trap: Path) -> None:
 async def test_checking_that_takes_too_long_is_stopped(empty: Path) -> None:
     star = ", ".join(f"[{(i * 7919) % 1000}, {(i * 104_729) % 1000}]" for i in range(9000))
     scenario = f"obstacle:\n  - shape: {{name: polygon, vertices: [{star}]}}\n"
-    async with connected(empty, check_seconds=1) as client:
-        told = error_of(await client.call_tool("validate_scenario", {"scenario_yaml": scenario}))
+    told = error_of(await call(empty, "validate_scenario", {"scenario_yaml": scenario}, check_seconds=1))
     assert told.startswith("out-of-time: 1 s of computing time were used up")
 
 
@@ -189,8 +187,7 @@ async def test_the_environment_of_the_server_is_not_passed_on(workspace: Path, m
 
 
 async def test_files_outside_are_not_even_named(trap: Path) -> None:
-    async with connected(trap) as client:
-        told = error_of(await client.call_tool("run_episode", {"scenario_path": "secret.yml"}))
+    told = error_of(await call(trap, "run_episode", {"scenario_path": "secret.yml"}))
     assert "secret.yaml" not in told
 
 

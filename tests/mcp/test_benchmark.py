@@ -11,7 +11,7 @@ import pytest
 import irsim
 from irsim.lookup.topics import lookup
 from irsim_mcp.recent_texts import RecentTexts
-from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
+from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, call, connected, data_of, error_of, text_of
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
@@ -107,8 +107,7 @@ async def test_the_largest_seeds_can_be_run_again(workspace: Path) -> None:
 
 async def test_means_of_fewer_episodes_say_so_and_the_period_is_told(workspace: Path) -> None:
     arguments = {"scenarios": [RANDOM], "behaviors": ["dash", "rvo"], "seeds": 10}
-    async with connected(workspace) as client:
-        result = await client.call_tool("benchmark", arguments)
+    result = await call(workspace, "benchmark", arguments)
     found, told = data_of(result), text_of(result)
     kept = json.loads((workspace / found["artifact"]).read_text())["rows"]
     assert kept[0]["metrics"]["time_to_goal"]["n"] < 10
@@ -133,8 +132,7 @@ async def test_times_beside_failures_are_those_of_robots_that_arrived(workspace:
 
 
 async def test_what_is_not_random_has_no_interval(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        found = data_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))
+    found = data_of(await call(workspace, "benchmark", {"scenarios": [ROOM]}))
     assert [len(found["rows"][0][key]) for key in ("success", "collision", "timeout")] == [1, 1, 1]
 
 
@@ -265,8 +263,7 @@ async def test_what_inspect_run_cannot_tell_of_a_benchmark(workspace: Path) -> N
 
 
 async def test_a_note_tells_what_deciding_costs(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        result = await client.call_tool("benchmark", {"scenarios": [ROOM], "policies": ["orca", "random"], "seeds": 2})
+    result = await call(workspace, "benchmark", {"scenarios": [ROOM], "policies": ["orca", "random"], "seeds": 2})
     [note] = [
         note
         for note in data_of(result)["notes"]

@@ -11,7 +11,7 @@ from mcp import MCPError
 
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim_mcp.answers import failure
-from tests.mcp.conftest import ERAS, ROOM, connected, error_of, text_of
+from tests.mcp.conftest import ERAS, ROOM, call, connected, error_of, text_of
 
 pytestmark = pytest.mark.anyio
 
@@ -133,8 +133,7 @@ async def test_one_line_with_a_fix(
 @pytest.mark.parametrize(("tool", "step"), [("run_episode", None), ("render_snapshot", 5)])
 async def test_an_invalid_scenario_names_its_first_problems(empty: Path, tool: str, step: int | None) -> None:
     wrong = ROOM.replace("dash", "dahs").replace("world: {", "world: {foo: 1, ").replace("goal:", "gaol:")
-    async with connected(empty) as client:
-        told = error_of(await client.call_tool(tool, {"scenario_yaml": wrong} | ({"step": step} if step else {})))
+    told = error_of(await call(empty, tool, {"scenario_yaml": wrong} | ({"step": step} if step else {})))
     assert told.startswith("invalid-scenario: 3 errors: world.foo line 1 unknown-key: ")
     assert "robot[0].behavior.name line 8 unknown-behavior" in told
     assert told.endswith("Fix: validate_scenario lists every problem with its fix.")
@@ -154,8 +153,7 @@ async def test_a_scenario_may_be_written_as_json(empty: Path) -> None:
 
 async def test_no_room_for_random_objects(empty: Path) -> None:
     crowd = ROOM + "  - {number: 45, kinematics: {name: diff}, distribution: {name: random}, shape: {name: circle}}\n"
-    async with connected(empty) as client:
-        told = error_of(await client.call_tool("run_episode", {"scenario_yaml": crowd, "seed": 1}))
+    told = error_of(await call(empty, "run_episode", {"scenario_yaml": crowd, "seed": 1}))
     assert told.startswith("placement-crowded: no room for ")
     assert "with seed 1" in told
     assert "Fix: lower `number`" in told

@@ -15,7 +15,7 @@ import pytest
 from mcp import Client
 
 import irsim
-from tests.mcp.conftest import CRASH, LONG, ROOM, as_process, connected, data_of, error_of, text_of
+from tests.mcp.conftest import CRASH, LONG, ROOM, as_process, call, connected, data_of, error_of, text_of
 from tests.mcp.test_benchmark import MANY, RANDOM
 from tests.warm import SERVERS
 
@@ -152,8 +152,7 @@ async def test_links_are_not_followed(workspace: Path, tmp_path: Path, link: str
     (tmp_path / "elsewhere").mkdir()
     (workspace / link).parent.mkdir(exist_ok=True)
     (workspace / link).symlink_to(tmp_path / "elsewhere")
-    async with connected(workspace) as client:
-        told = error_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))
+    told = error_of(await call(workspace, "benchmark", {"scenarios": [ROOM]}))
     assert told.startswith("path-outside-workspace")
     assert not list((tmp_path / "elsewhere").iterdir())
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.mcp.conftest import connected, text_of
+from tests.mcp.conftest import call, text_of
 
 pytestmark = pytest.mark.anyio
 
@@ -42,8 +42,7 @@ obstacle:
 async def looked(empty: Path, text: str, **more: object) -> dict[str, str]:
     """The line of the picture, that of the finding about a path, and that of the table about passages."""
     given = {"scenario_yaml": text, "overlays": ["plan"], "return_image": False, **more}
-    async with connected(empty) as client:
-        lines = text_of(await client.call_tool("render_snapshot", given)).splitlines()
+    lines = text_of(await call(empty, "render_snapshot", given)).splitlines()
     kinds = {"finding": r"1\. .*(narrow-passage|goal-unreachable)", "table": "Narrowest passage"}
     found = {kind: line for kind, start in kinds.items() for line in lines if re.match(start, line)}
     return {"first": lines[0], **found}

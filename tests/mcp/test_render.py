@@ -10,14 +10,13 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from tests.mcp.conftest import CRASH, ROOM, connected, data_of, error_of, image_of, text_of
+from tests.mcp.conftest import CRASH, ROOM, call, connected, data_of, error_of, image_of, text_of
 
 pytestmark = pytest.mark.anyio
 
 
 async def test_line_and_picture(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        result = await client.call_tool("render_snapshot", {"scenario_yaml": CRASH, "seed": 1, "size_px": 300})
+    result = await call(workspace, "render_snapshot", {"scenario_yaml": CRASH, "seed": 1, "size_px": 300})
     text = text_of(result)
     line = text.splitlines()[0]
     assert "t=0 s (step 0, nothing is random); world x 0..8 m, y 0..6 m" in line
@@ -90,8 +89,7 @@ async def test_settings_of_the_workspace_have_no_effect(workspace: Path) -> None
     (workspace / "matplotlibrc").write_text("text.usetex: True\naxes.facecolor: 123456\n", encoding="utf-8")
     (workspace / "numpy.py").write_text("raise SystemExit('imported from the workspace')\n", encoding="utf-8")
     (workspace / "sitecustomize.py").write_text("raise SystemExit('imported from the workspace')\n", encoding="utf-8")
-    async with connected(workspace) as client:
-        result = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "size_px": 200})
+    result = await call(workspace, "render_snapshot", {"scenario_yaml": ROOM, "size_px": 200})
     with Image.open(io.BytesIO(base64.b64decode(image_of(result).data))) as image:
         assert (0x12, 0x34, 0x56) not in {color for _, color in image.convert("RGB").getcolors(10_000) or []}
 
@@ -112,8 +110,7 @@ async def test_pictures_of_the_workspace_are_found(workspace: Path) -> None:
 
 async def test_an_invalid_scenario_gives_all_its_errors_and_no_picture(empty: Path) -> None:
     wrong = ROOM.replace("goal:", "gaol:").replace("diff", "dif")
-    async with connected(empty) as client:
-        result = await client.call_tool("render_snapshot", {"scenario_yaml": wrong})
+    result = await call(empty, "render_snapshot", {"scenario_yaml": wrong})
     assert len(result.content) == 1
     assert "1." in text_of(result)
     assert "2." in text_of(result)
@@ -133,8 +130,7 @@ robot:
 
 
 async def test_ranges_over_seeds_and_seeds_without_room_are_named(empty: Path) -> None:
-    async with connected(empty) as client:
-        text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": RANDOM, "seed": 1}))
+    text = text_of(await call(empty, "render_snapshot", {"scenario_yaml": RANDOM, "seed": 1}))
     assert "Objects with seed 1 (random: placement)" in text
     assert "- 5 x diff, circle r 0.3, dash" in text
     assert text.count("'robot_4' (r4) at") == 1
@@ -190,8 +186,7 @@ async def test_robots_have_one_name_in_all_answers(workspace: Path) -> None:
 
 
 async def test_a_later_step_is_only_drawn(empty: Path) -> None:
-    async with connected(empty) as client:
-        text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "step": 5}))
+    text = text_of(await call(empty, "render_snapshot", {"scenario_yaml": ROOM, "step": 5}))
     assert "\n" not in text
     assert "at (" in text
 
@@ -199,8 +194,7 @@ async def test_a_later_step_is_only_drawn(empty: Path) -> None:
 async def test_a_step_beyond_the_end_and_a_moved_view_are_said(empty: Path) -> None:
     moved = ROOM.replace("world: {", "world: {plot: {viewpoint: [1, 1]}, ")
     assert moved != ROOM
-    async with connected(empty) as client:
-        text = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": moved, "step": 900}))
+    text = text_of(await call(empty, "render_snapshot", {"scenario_yaml": moved, "step": 900}))
     assert "beyond the end of the episode, which is step" in text
     assert "as plot.viewpoint centres the view" in text
 

@@ -15,14 +15,13 @@ from typer.testing import CliRunner
 from irsim.cli.app import app
 from irsim.results.run import RunResult
 from tests.api.test_between_steps import scene as tunnel
-from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
+from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, call, connected, data_of, error_of, text_of
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 
 async def test_success(empty: Path) -> None:
-    async with connected(empty) as client:
-        result = await client.call_tool("run_episode", {"scenario_yaml": ROOM, "seed": 3})
+    result = await call(empty, "run_episode", {"scenario_yaml": ROOM, "seed": 3})
     data = data_of(result)
     assert (data["outcome"], data["seed"], data["time_limit_from"]) == ("success", 3, "default")
     assert "reason" not in data
@@ -53,8 +52,7 @@ async def test_events_of_robots_are_told_first_but_in_order(empty: Path) -> None
     start = "kinematics: {name: omni}, shape: {name: circle, radius: 0.1}, behavior: {name: dash}"
     people = [f"  - {{{start}, state: [1, {y}, 0], goal: [{2 + y / 8}, {y}, 0]}}\n" for y in range(1, 12)]
     text = f"world: {{width: 10, height: 20}}\nrobot:\n  - {{{start}, name: r, state: [1, 15, 0], goal: [4, 15, 0]}}\n"
-    async with connected(empty) as client:
-        result = await client.call_tool("run_episode", {"scenario_yaml": text + "obstacle:\n" + "".join(people)})
+    result = await call(empty, "run_episode", {"scenario_yaml": text + "obstacle:\n" + "".join(people)})
     events = data_of(result)["events"]
     assert len(events) == 10
     assert "r" in [event["object"] for event in events]
@@ -64,8 +62,7 @@ async def test_events_of_robots_are_told_first_but_in_order(empty: Path) -> None
 
 async def test_timeout_says_what_the_robot_was_doing(empty: Path) -> None:
     still = ROOM.replace("    behavior: {name: dash}\n", "")
-    async with connected(empty) as client:
-        result = await client.call_tool("run_episode", {"scenario_yaml": still, "max_steps": 20})
+    result = await call(empty, "run_episode", {"scenario_yaml": still, "max_steps": 20})
     data = data_of(result)
     assert (data["outcome"], data["steps"], data["time_limit_from"]) == ("timeout", 20, "argument")
     assert "'rover' has no behavior, so it stands still 3.61 m from its goal" in data["reason"]
@@ -148,8 +145,7 @@ async def test_progress_increases_at_most_once_a_second(empty: Path, era: str) -
 
 
 async def test_time_is_limited_and_the_error_says_what_fits(empty: Path) -> None:
-    async with connected(empty) as client:
-        result = await client.call_tool("run_episode", {"scenario_yaml": LONG, "max_wall_s": 5})
+    result = await call(empty, "run_episode", {"scenario_yaml": LONG, "max_wall_s": 5})
     assert error_of(result).startswith("out-of-time: 5 s of computing time were used up after ")
     assert "fewer steps" in error_of(result)
 
@@ -164,16 +160,14 @@ async def test_work_is_limited(empty: Path) -> None:
 
 async def test_a_longer_horizon_is_cut_and_said(empty: Path) -> None:
     slow = ROOM.replace("height: 6", "height: 6, step_time: 0.001, time_limit: 60") + "    vel_max: [0.1, 1]\n"
-    async with connected(empty) as client:
-        data = data_of(await client.call_tool("run_episode", {"scenario_yaml": slow}))
+    data = data_of(await call(empty, "run_episode", {"scenario_yaml": slow}))
     assert (data["steps"], data["time_limit_from"]) == (5000, "limits")
     assert "the maximum number of steps of one run here" in data["reason"]
 
 
 async def test_memory_is_limited(empty: Path) -> None:
     huge = ROOM.replace("name: rover", "number: 100") + "    sensors: [{name: lidar2d, number: 1000000}]\n"
-    async with connected(empty, memory=512 * 1024**2) as client:
-        result = await client.call_tool("run_episode", {"scenario_yaml": huge, "max_steps": 1})
+    result = await call(empty, "run_episode", {"scenario_yaml": huge, "max_steps": 1}, memory=512 * 1024**2)
     assert error_of(result).startswith("out-of-memory: ")
     assert "fewer objects, lidar beams or steps" in error_of(result)
 
@@ -267,8 +261,7 @@ obstacle:
 async def test_steps_without_a_way_to_avoid_everybody_say_whether_that_mattered(
     empty: Path, goal: float, said: str
 ) -> None:
-    async with connected(empty) as client:
-        result = await client.call_tool("run_episode", {"scenario_yaml": POCKET.format(goal=goal), "seed": 0})
+    result = await call(empty, "run_episode", {"scenario_yaml": POCKET.format(goal=goal), "seed": 0})
     assert re.search(rf"\d+ steps? without a collision-free velocity, {said}", text_of(result))
 
 
@@ -301,8 +294,7 @@ async def test_of_many_events_contacts_between_steps_are_listed(workspace: Path)
         for x in range(1, 12)
     )
     text = tunnel().replace("obstacle:", "obstacle:" + others)
-    async with connected(workspace) as client:
-        data = data_of(await client.call_tool("run_episode", {"scenario_yaml": text}))
+    data = data_of(await call(workspace, "run_episode", {"scenario_yaml": text}))
     kinds = [event["kind"] for event in data["events"]]
     assert (len(kinds), data["event_count"]) == (10, 14)
     assert {"contact_between_steps", "passed_through"} <= set(kinds)

@@ -15,7 +15,19 @@ from mcp.shared.exceptions import MCPError
 from irsim.runs import list_runs, open_run
 from irsim.runs.inspection import inspect_run
 from irsim.runs.store import ARTIFACTS
-from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, as_process, connected, data_of, error_of, image_of, text_of
+from tests.mcp.conftest import (
+    CRASH,
+    ERAS,
+    LONG,
+    ROOM,
+    as_process,
+    call,
+    connected,
+    data_of,
+    error_of,
+    image_of,
+    text_of,
+)
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
@@ -211,8 +223,7 @@ async def test_links_out_of_the_workspace_are_not_followed(workspace: Path, tmp_
 
 
 async def test_what_cannot_be_recorded_runs_all_the_same(workspace: Path) -> None:
-    async with connected(workspace, written=1000) as client:
-        result = await client.call_tool("run_episode", {"scenario_yaml": CRASH, "seed": 3})
+    result = await call(workspace, "run_episode", {"scenario_yaml": CRASH, "seed": 3}, written=1000)
     data = data_of(result)
     assert data["outcome"] == "collision"
     assert "run_id" not in data

@@ -20,7 +20,7 @@ from mcp import Client
 from irsim_mcp import job, worker
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.server import build_server
-from tests.mcp.conftest import ROOM, connected, data_of, error_of, text_of
+from tests.mcp.conftest import ROOM, call, connected, data_of, error_of, text_of
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
 TESTS = Path(__file__).resolve().parents[1]
@@ -186,8 +186,7 @@ async def test_tools_write_nothing_but_records(workspace: Path) -> None:
     ],
 )
 async def test_odd_values_are_refused(empty: Path, text: str, code: str) -> None:
-    async with connected(empty) as client:
-        data = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": text}))
+    data = data_of(await call(empty, "validate_scenario", {"scenario_yaml": text}))
     assert not data["valid"]
     assert code in [issue["code"] for issue in data["issues"]]
 
@@ -286,8 +285,7 @@ def test_limits_are_those_documented() -> None:
 @QUIET
 @pytest.mark.parametrize("size", [0, -1, 199, 1025, 10**9])
 async def test_pictures_have_a_size(empty: Path, size: int) -> None:
-    async with connected(empty) as client:
-        told = error_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "size_px": size}))
+    told = error_of(await call(empty, "render_snapshot", {"scenario_yaml": ROOM, "size_px": size}))
     assert told.startswith("bad-argument: ")
     assert "200 to 1024" in told
 

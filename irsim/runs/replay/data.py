@@ -262,7 +262,7 @@ def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, 
 
 
 def _most_important(events: list[Event], robots: Container[str]) -> list[Event]:
-    """The events that are shown, by rank of their kind, and within a kind those of robots before those of others.
+    """The events that are shown, by rank of their kind, and within a kind robots before other objects.
 
     If the events of a rank do not all fit, they are thinned evenly.
     """
