@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
-from irsim.learning.features import REWARDS
-from irsim.learning.rewards._options import RewardOptions
+from irsim.learning.rewards._options import REWARDS, RewardOptions
 from irsim.learning.step import Moment, Result
 from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.parts.rvo import RvoCones

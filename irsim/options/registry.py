@@ -243,7 +243,7 @@ BRIDGES = Registry("bridge", "irsim.components.bridges", "irsim.bridges")
 DISTRIBUTIONS = Registry("distribution", "irsim.components.distributions", "irsim.distributions")
 KINEMATICS = Registry("kinematics", "irsim.components.kinematics", "irsim.kinematics")
 MAPS = Registry("map", "irsim.components.maps", "irsim.maps")
-PLANNERS = Registry("planner", "irsim.components.planners", "irsim.planners")
+PLANNERS = Registry("planner", "irsim.components.planners", "irsim.planners", families=("grid", "sampling"))
 SENSORS = Registry("sensor", "irsim.components.sensors", "irsim.sensors")
 SHAPES = Registry("shape", "irsim.components.shapes", "irsim.shapes")
 

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from irsim.learning import Worlds
-from irsim.learning.features import REWARDS
+from irsim.learning.rewards._options import REWARDS
 from irsim.learning.tasks.files import TASKS, TaskError, open_task
 from irsim.options.registry import Feature
 from irsim.testing import conformance

@@ -18,7 +18,7 @@ import yaml
 from irsim.bundled.templates.metadata import Template, TemplateError
 from irsim.diagnostics.diagnostic import Path
 
-__all__ = ["evaluate", "fill", "format_value", "names_in", "parse_path", "parse_settings", "replace_values"]
+__all__ = ["evaluate", "fill", "format_value", "parse_path", "parse_settings", "replace_values"]
 
 _BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -84,13 +84,6 @@ def evaluate(expression: str, values: Mapping[str, Any]) -> Any:
         raise ValueError(f"a template expression cannot contain {ast.unparse(node)}")
 
     return value(ast.parse(expression, mode="eval").body)
-
-
-def names_in(expression: str) -> set[str]:
-    """The parameters that an expression reads."""
-    known = {"pi", *_FUNCTIONS}
-    tree = ast.parse(expression, mode="eval")
-    return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - known
 
 
 def _index(value: Any) -> int:

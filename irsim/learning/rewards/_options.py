@@ -1,11 +1,15 @@
-"""Options that all reward terms have in common."""
+"""The registry of reward terms, and the options that all of them have in common."""
 
 from __future__ import annotations
 
 from irsim.options.base import Options
+from irsim.options.registry import Registry
 from irsim.options.units import Number
 
-__all__ = ["RewardOptions"]
+__all__ = ["REWARDS", "RewardOptions"]
+
+REWARDS = Registry("reward", "irsim.learning.rewards", "irsim.rewards", families=("own", "others", "python"))
+"""Terms of rewards: a kernel of the core, or a function of :class:`irsim.learning.step.Moment` over all learners."""
 
 
 class RewardOptions(Options):

@@ -10,8 +10,7 @@ from pydantic import Field
 
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError
-from irsim.learning.features import REWARDS
-from irsim.learning.rewards._options import RewardOptions
+from irsim.learning.rewards._options import REWARDS, RewardOptions
 from irsim.learning.step import Moment
 
 

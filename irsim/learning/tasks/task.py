@@ -23,8 +23,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from irsim.learning.features import REWARDS
-from irsim.learning.rewards._options import RewardOptions
+from irsim.learning.rewards._options import REWARDS, RewardOptions
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
 from irsim.options.units import Bool, Fraction, Integer, Number, Seconds

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from irsim.diagnostics.diagnostic import Diagnostic, Edit, Path, Severity
+from irsim.diagnostics.diagnostic import Diagnostic, Edit, Path
 
 __all__ = ["Finding", "error", "hint", "key_path", "warning"]
 
@@ -45,9 +45,11 @@ def error(
     carry_on: Edit | None = None,
 ) -> Finding:
     """An error. IR-SIM 2.12 tolerates it if ``carry_on`` (an edit with the same effect) or ``tolerated`` is given."""
-    return _finding(
-        "error", code, path, message, given, allowed, fix, edit, tolerated or carry_on is not None, carry_on
+    tolerated = tolerated or carry_on is not None
+    diagnostic = Diagnostic(
+        code, "error", path, message, given=given, allowed=allowed, fix=fix, edit=edit, tolerated=tolerated
     )
+    return Finding(diagnostic, carry_on)
 
 
 def warning(
@@ -61,7 +63,7 @@ def warning(
     edit: Edit | None = None,
 ) -> Finding:
     """A finding about a scenario that runs, but probably not as meant."""
-    return _finding("warning", code, path, message, given, allowed, fix, edit, False, None)
+    return Finding(Diagnostic(code, "warning", path, message, given=given, allowed=allowed, fix=fix, edit=edit))
 
 
 def hint(
@@ -74,24 +76,4 @@ def hint(
     edit: Edit | None = None,
 ) -> Finding:
     """A finding that is worth knowing and may need no change."""
-    return _finding("hint", code, path, message, given, None, fix, edit, False, None)
-
-
-def _finding(
-    severity: Severity,
-    code: str,
-    path: Path,
-    message: str,
-    given: Any,
-    allowed: Sequence[str] | str | None,
-    fix: str | None,
-    edit: Edit | None,
-    tolerated: bool,
-    carry_on: Edit | None,
-) -> Finding:
-    return Finding(
-        Diagnostic(
-            code, severity, path, message, given=given, allowed=allowed, fix=fix, edit=edit, tolerated=tolerated
-        ),
-        carry_on,
-    )
+    return Finding(Diagnostic(code, "hint", path, message, given=given, fix=fix, edit=edit))

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import irsim._core as core
 from irsim.common.text import metres
-from irsim.components.planners.astar import AStar
+from irsim.components.planners.grid import AStar
 from irsim.env import Env
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.clearance_grid import ClearanceGrid, Gap, Point, grid_of, reachable_place

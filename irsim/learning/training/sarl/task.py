@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.learning.rewards.arrival import Arrival
-from irsim.learning.rewards.clearance import Clearance
-from irsim.learning.rewards.collision import Collision
-from irsim.learning.rewards.social import Social
+from irsim.learning.rewards.others import Clearance, Social
+from irsim.learning.rewards.own import Arrival, Collision
 from irsim.learning.tasks.files import TaskError
 from irsim.learning.tasks.task import Task
 from irsim.learning.training.settings import SarlSettings

@@ -1,4 +1,4 @@
-"""``jps``: jump point search on a grid."""
+"""Planners on grids: A* and jump point search."""
 
 from __future__ import annotations
 
@@ -7,6 +7,17 @@ from typing import Any, ClassVar, Literal
 import irsim._core as core
 from irsim.components.planners._options import GridPlanner
 from irsim.options.registry import PLANNERS
+
+
+class AStar(GridPlanner):
+    """Shortest path over the eight neighbours of each cell (A*)."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "astar"}]}
+
+    name: Literal["astar"] = "astar"
+
+
+PLANNERS.register(AStar, kernel=core.AstarOptions)
 
 
 class Jps(GridPlanner):

@@ -1,4 +1,4 @@
-"""``rvo``: velocities that lead to the goal, and into no velocity obstacle."""
+"""Reward terms about what surrounds a learner: clearance, personal space, velocity obstacles."""
 
 from __future__ import annotations
 
@@ -7,11 +7,49 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
+import irsim._core as core
 from irsim.common.arrays import Floats
-from irsim.learning.features import REWARDS
-from irsim.learning.rewards._options import RewardOptions
+from irsim.learning.rewards._options import REWARDS, RewardOptions
 from irsim.learning.step import Moment
-from irsim.options.units import MetersPerSecond, Number
+from irsim.options.units import Meters, MetersPerSecond, Number
+
+
+class Clearance(RewardOptions):
+    """The share of `margin` that is missing between the footprints of a learner and of what is nearest, per second.
+
+    0 from a gap of `margin` on, 1 for a touch.
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "clearance", "weight": -1.5, "margin": 0.15}]}
+
+    name: Literal["clearance"] = "clearance"
+    weight: Number = -1.0
+    """Factor of the term; negative for a cost."""
+    margin: Annotated[Meters, Field(gt=0)] = 0.2
+    """Gap from which on nothing is missing."""
+    to: Literal["all", "robots", "obstacles"] = "all"
+    """What keeps the learner at a distance: other robots, obstacles (static and moving ones), or all of them."""
+
+
+REWARDS.register(Clearance, kernel=core.ClearanceOptions)
+
+
+class Social(RewardOptions):
+    """The share of `distance` that is missing to the nearest person, per second; people are obstacles that move.
+
+    0 from a gap of `distance` on, 1 for a touch (the discomfort of Chen, Liu, Kreiss and Alahi 2019, per second).
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "social", "weight": -1.0, "distance": 0.2}]}
+
+    name: Literal["social"] = "social"
+    weight: Number = -1.0
+    """Factor of the term; negative for a cost."""
+    distance: Annotated[Meters, Field(gt=0)] = 0.2
+    """Smallest gap that disturbs no person."""
+
+
+REWARDS.register(Social, kernel=core.SocialOptions)
 
 _OFFSET_S = 0.2
 """Added to times before their inverse is taken [s]."""
