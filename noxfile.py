@@ -240,18 +240,8 @@ def evals(session: nox.Session) -> None:
 def records(session: nox.Session) -> None:
     """Exports of recorded runs, opened by the tools they are for; heavy libraries that other tests do without."""
     install(session, "-e", ".[test,records]", *TOOLS)
-    timed(
-        session,
-        "tests of exports",
-        "pytest",
-        "-m",
-        "records",
-        "-n",
-        "2",
-        "tests/bridges",
-        "tests/benchmarks",
-        *session.posargs,
-    )
+    folders = ["tests/bridges/export", "tests/benchmarks/test_table_files.py"]
+    timed(session, "tests of exports", "pytest", "-m", "records", "-n", "2", *folders, *session.posargs)
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))

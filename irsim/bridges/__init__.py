@@ -1,1 +1,1 @@
-"""Formats and programs of others: exports of recorded runs, maps from other worlds, robots and simulators."""
+"""Other formats and programs: exports of recorded runs, maps from other worlds, robots and simulators."""

@@ -143,13 +143,13 @@ class Connection:
 
     def notes(self) -> list[str]:
         """What the bridges tell when the run is over."""
-        found = [note for bridge in self.bridges for note in bridge.notes()]
+        result = [note for bridge in self.bridges for note in bridge.notes()]
         if self.late > 0.5 * float(self.simulation.scenario.world.step_time):
-            found.append(f"steps came up to {self.late:.2g} s later than the time on the wall asks for")
-        return found
+            result.append(f"steps came up to {self.late:.2g} s later than the time on the wall asks for")
+        return result
 
     def close(self) -> None:
-        """Stop the robots of others and disconnect; a second call does nothing."""
+        """Stop the robots of the other program and disconnect; a second call does nothing."""
         if self._open:
             self._open = False
             simulation = self.simulation
@@ -194,7 +194,7 @@ class Connection:
                 self._guarded(bridge, self._take, bridge, feedback, False)
 
     def measure(self, simulation: Simulation, mask: Any = None) -> None:
-        """After the step: put in the scans of others, and show the world."""
+        """After the step: put in scans from outside, and show the world."""
         self._put_ranges(simulation)
         count, anew = int(simulation.count[0]), self._follow()
         if count == self._count and not anew:
@@ -299,7 +299,7 @@ class Connection:
 
     def _checked_ranges(self, bridge: Bridge, ranges: Mapping[str, Any]) -> dict[str, NDArray[np.float32]]:
         lidars = {lidar.key: lidar for agent in self.scene.agents for lidar in agent.lidars}
-        found = {}
+        result = {}
         for key, values in ranges.items():
             beams = np.asarray(values, dtype=np.float32).reshape(-1)
             if key not in lidars or len(beams) != lidars[key].beams or np.isnan(beams).any():
@@ -308,8 +308,8 @@ class Connection:
                 raise BridgeError(
                     "bridge-failed", what, f"the lidars are {listed}; infinite is a beam that hit nothing"
                 )
-            found[key] = beams
-        return found
+            result[key] = beams
+        return result
 
     def _put_ranges(self, simulation: Simulation) -> None:
         """Replace the scans that irsim has measured by those of others."""

@@ -56,7 +56,7 @@ class Health:
 
     Attributes:
         bridge: Name of the bridge.
-        part: Name of the library; empty for a bridge that needs none.
+        part: Name of the library; empty for a bridge that needs no library.
         state: ``ready`` (its test passed), ``there`` (it has no test), ``missing`` or ``broken``.
         version: Version of the library, or empty.
         text: What the test did, what failed, or the command that installs the library.
@@ -75,18 +75,18 @@ def examine(names: Sequence[str] = ()) -> list[Health]:
     Args:
         names: Names of bridges; default: all.
     """
-    found = []
+    result = []
     for name in names or BRIDGES.names():
         feature = BRIDGES.get(name)
         if feature is None:
-            found.append(
+            result.append(
                 Health(name, "", "missing", text=f"there is no such bridge; they are {', '.join(BRIDGES.names())}")
             )
             continue
-        found += [_look(name, part) for part in PARTS.get(name, ())] or [
+        result += [_look(name, part) for part in PARTS.get(name, ())] or [
             Health(name, "", "there", text="it needs no library")
         ]
-    return found
+    return result
 
 
 def _look(name: str, part: Part) -> Health:
@@ -103,7 +103,7 @@ def _look(name: str, part: Part) -> Health:
         return Health(name, part.module, "there", number)
     try:
         return Health(name, part.module, "ready", number, part.self_test())
-    except Exception as error:  # a library of others may raise anything; that is what is examined
+    except Exception as error:  # a third-party library may raise anything; that is what is examined
         return Health(name, part.module, "broken", number, f"{type(error).__name__}: {error}")
 
 

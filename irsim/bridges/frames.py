@@ -73,23 +73,23 @@ def axes_of(frame: str) -> Floats:
 def rotation_of(yaw: Floats | float) -> Floats:
     """(..., 3, 3) rotation about z by a yaw [rad]."""
     angle = np.asarray(yaw, dtype=np.float64)
-    found = np.zeros((*angle.shape, 3, 3))
-    found[..., 0, 0] = found[..., 1, 1] = np.cos(angle)
-    found[..., 1, 0] = np.sin(angle)
-    found[..., 0, 1] = -found[..., 1, 0]
-    found[..., 2, 2] = 1.0
-    return found
+    result = np.zeros((*angle.shape, 3, 3))
+    result[..., 0, 0] = result[..., 1, 1] = np.cos(angle)
+    result[..., 1, 0] = np.sin(angle)
+    result[..., 0, 1] = -result[..., 1, 0]
+    result[..., 2, 2] = 1.0
+    return result
 
 
 def pose_matrix(pose: Floats, height: float = 0.0) -> Floats:
     """(..., 4, 4) matrices of poses (..., 3) x, y [m], yaw [rad] at a height [m], frame of irsim."""
     pose = np.asarray(pose, dtype=np.float64)
-    found = np.zeros((*pose.shape[:-1], 4, 4))
-    found[..., :3, :3] = rotation_of(pose[..., 2])
-    found[..., :2, 3] = pose[..., :2]
-    found[..., 2, 3] = height
-    found[..., 3, 3] = 1.0
-    return found
+    result = np.zeros((*pose.shape[:-1], 4, 4))
+    result[..., :3, :3] = rotation_of(pose[..., 2])
+    result[..., :2, 3] = pose[..., :2]
+    result[..., 2, 3] = height
+    result[..., 3, 3] = 1.0
+    return result
 
 
 def to_frame(matrix: Floats, frame: str, transform: Floats | None = None) -> Floats:
@@ -106,8 +106,8 @@ def to_frame(matrix: Floats, frame: str, transform: Floats | None = None) -> Flo
     """
     axes = np.eye(4)
     axes[:3, :3] = axes_of(frame)
-    found: Floats = axes @ np.asarray(matrix, dtype=np.float64) @ axes.T
-    return found if transform is None else np.asarray(transform, dtype=np.float64) @ found
+    result: Floats = axes @ np.asarray(matrix, dtype=np.float64) @ axes.T
+    return result if transform is None else np.asarray(transform, dtype=np.float64) @ result
 
 
 def to_irsim(matrix: Floats, frame: str, transform: Floats | None = None) -> Floats:
@@ -117,21 +117,21 @@ def to_irsim(matrix: Floats, frame: str, transform: Floats | None = None) -> Flo
         matrix = inverse(transform) @ matrix
     axes = np.eye(4)
     axes[:3, :3] = axes_of(frame)
-    found: Floats = axes.T @ matrix @ axes
-    return found
+    result: Floats = axes.T @ matrix @ axes
+    return result
 
 
 def inverse(matrix: Floats) -> Floats:
     """(..., 4, 4) inverse of transforms."""
-    found: Floats = np.linalg.inv(np.asarray(matrix, dtype=np.float64))
-    return found
+    result: Floats = np.linalg.inv(np.asarray(matrix, dtype=np.float64))
+    return result
 
 
 def yaw_of(matrix: Floats) -> Floats:
     """(...) yaw [rad] of poses (..., 4, 4) in the frame of irsim: the direction of their x axis, seen from above."""
     matrix = np.asarray(matrix, dtype=np.float64)
-    found: Floats = np.arctan2(matrix[..., 1, 0], matrix[..., 0, 0])
-    return found
+    result: Floats = np.arctan2(matrix[..., 1, 0], matrix[..., 0, 0])
+    return result
 
 
 def planar_pose(matrix: Floats) -> Floats:
@@ -156,8 +156,8 @@ def camera_pose(
     turned[:3, :3] = CAMERA_AXES[axes]
     world = np.eye(4)
     world[:3, :3] = axes_of(frame)
-    found: Floats = world @ pose_matrix(pose, height) @ turned
-    return found if transform is None else np.asarray(transform, dtype=np.float64) @ found
+    result: Floats = world @ pose_matrix(pose, height) @ turned
+    return result if transform is None else np.asarray(transform, dtype=np.float64) @ result
 
 
 def quaternion_of(rotation: Floats) -> Floats:
@@ -179,5 +179,5 @@ def quaternion_of(rotation: Floats) -> Floats:
     ], axis=-2)  # fmt: skip
     chosen = np.take_along_axis(choices, largest[..., None, None], axis=-2)[..., 0, :]
     chosen = chosen / np.linalg.norm(chosen, axis=-1, keepdims=True)
-    found: Floats = np.where(chosen[..., 3:] < 0, -chosen, chosen)
-    return found
+    result: Floats = np.where(chosen[..., 3:] < 0, -chosen, chosen)
+    return result

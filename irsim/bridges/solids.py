@@ -52,14 +52,14 @@ def triangles(corners: Floats) -> Floats:
     region = shapely.Polygon(corners)
     if not region.is_valid:
         region = region.buffer(0)
-    found = []
+    result = []
     for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(region)):
         points = shapely.get_coordinates(triangle)[:3]
         a, b = points[1] - points[0], points[2] - points[0]
         area = float(a[0] * b[1] - a[1] * b[0]) / 2
         if abs(area) > _SMALLEST_AREA:
-            found.append(points if area > 0 else points[::-1])
-    return np.array(found).reshape(-1, 3, 2)
+            result.append(points if area > 0 else points[::-1])
+    return np.array(result).reshape(-1, 3, 2)
 
 
 def convex_pieces(corners: Floats) -> list[Floats]:
@@ -129,7 +129,7 @@ def solids_of(part: BodyPart, thickness: float) -> list[Solid]:
     Args:
         part: The part. A polygon that is not convex becomes several outlines that fill it; a closed line, the walls of
             a room, has its thickness outside.
-        thickness: Thickness of lines, which have none in irsim [m].
+        thickness: Thickness of lines, which are infinitely thin in irsim [m].
     """
     if isinstance(part, Circle):
         return [part]
@@ -160,7 +160,7 @@ def _walls(line: Line, thickness: float) -> list[Solid]:
     if line.closed:
         x, y = points[:-1].T
         inward = float(np.sign(x @ np.roll(y, -1) - y @ np.roll(x, -1)))  # 1: the inside is on the left
-    found: list[Solid] = []
+    result: list[Solid] = []
     for a, b in itertools.pairwise(points):
         length = float(np.hypot(*(b - a)))
         if not length > 0:
@@ -169,21 +169,21 @@ def _walls(line: Line, thickness: float) -> list[Solid]:
         left = np.array([-along[1], along[0]])
         x, y = (a + b) / 2 - left * inward * thickness / 2
         half = length / 2 + (thickness if inward else 0.0), thickness / 2
-        found.append(Box((float(x), float(y)), half, float(np.arctan2(along[1], along[0]))))
-    return found
+        result.append(Box((float(x), float(y)), half, float(np.arctan2(along[1], along[0]))))
+    return result
 
 
 def part_points(parts: tuple[BodyPart, ...]) -> Floats:
     """(K, 2) points whose convex hull encloses the parts of a footprint [m], body frame."""
-    found: list[Floats] = [np.zeros((0, 2))]
+    result: list[Floats] = [np.zeros((0, 2))]
     for part in parts:
         if isinstance(part, Circle):
             x, y = part.center
             r = part.radius
-            found.append(np.array([[x - r, y - r], [x + r, y - r], [x + r, y + r], [x - r, y + r]]))
+            result.append(np.array([[x - r, y - r], [x + r, y - r], [x + r, y + r], [x - r, y + r]]))
         else:
-            found.append(part.corners if isinstance(part, Polygon) else part.points)
-    return np.concatenate(found)
+            result.append(part.corners if isinstance(part, Polygon) else part.points)
+    return np.concatenate(result)
 
 
 def room_of(scene: SceneDescription) -> Line | None:
@@ -209,8 +209,8 @@ def merged_cells(grid: Grid) -> Floats:
         open_ = {run: kept.get(run, row) for run in runs}
     done.extend((begin, first, end, solid.shape[1]) for (begin, end), first in open_.items())
     cells = np.array(done, dtype=np.float64).reshape(-1, 2, 2)
-    found: Floats = (cells * np.array(grid.cell) + np.array(grid.origin)).reshape(-1, 4)
-    return found
+    result: Floats = (cells * np.array(grid.cell) + np.array(grid.origin)).reshape(-1, 4)
+    return result
 
 
 def _runs(cells: np.ndarray) -> list[tuple[int, int]]:
@@ -241,7 +241,7 @@ class BoundingBox:
 
 
 def box_of(agent: SceneObject) -> BoundingBox:
-    """The smallest such box around a footprint; around its circle if it has none."""
+    """The smallest such box around a footprint; around its circle without a footprint."""
     low, high = Outline(agent.parts).box()
     if not np.isfinite(low).all():
         low, high = np.full(2, -agent.radius), np.full(2, agent.radius)

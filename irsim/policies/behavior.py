@@ -71,12 +71,12 @@ def _changed(record: ObjectRecord, options: Mapping[str, Any], scenario: Resolve
     keys = merged_options(_keys(record.behavior), _keys(record.group_behavior), options)
     drive = {"name": str(getattr(record.kinematics, "name", ""))}
     try:
-        made, found = read_object("robot", {"kinematics": drive, "behavior": keys}, scenario.world, record.id)
+        made, result = read_object("robot", {"kinematics": drive, "behavior": keys}, scenario.world, record.id)
     except ScenarioError as error:
         for item in error.diagnostics:
             raise_if_about_behavior(item, options)
         raise
-    for item in found:
+    for item in result:
         raise_if_about_behavior(item, options)
     task = behavior_fields(made.behavior, scenario.world.bounds)
     given = {key: value for key, value in task.items() if key in keys}  # scripts may have changed the others

@@ -213,7 +213,7 @@ def _made(name: str, maker: Callable[..., Any], options: Mapping[str, Any]) -> P
         what = f"policy {clean(name)!r} cannot be made: {clean(str(error), 300)}"
         raise PolicyError("policy-failed", what, f"irsim policies {clean(name)} lists its options") from error
     if not isinstance(made, Policy):
-        what = f"{clean(name)!r} made {as_given(made)}, which is no policy"
+        what = f"{clean(name)!r} made {as_given(made)}, which is not a policy"
         raise PolicyError("policy-failed", what, "return an object of a class derived from irsim.Policy")
     return made
 
@@ -268,11 +268,11 @@ def _named(policy: Policy, text: str) -> Policy:
 
 def _digest(path: Path) -> str:
     """SHA-256 of a file, and of those beside it that belong to it."""
-    found = hashlib.sha256(path.read_bytes())
+    result = hashlib.sha256(path.read_bytes())
     for other in files_beside(path):
         if other.is_file():
-            found.update(other.read_bytes())
-    return found.hexdigest()
+            result.update(other.read_bytes())
+    return result.hexdigest()
 
 
 def _is_number(value: Any) -> bool:
@@ -307,7 +307,7 @@ def _network(path: Path, text: str, name: str, options: Mapping[str, Any]) -> Po
     unknown = [key for key in options if key != "decision_dt"]
     if unknown or (period is not None and not (_is_number(period) and 0 < period < math.inf)):
         what = f"decision_dt must be a time [s] above 0, got {as_given(period)}"
-        what = f"{clean(unknown[0])!r} is no option of a file" if unknown else what
+        what = f"{clean(unknown[0])!r} is not an option of a file" if unknown else what
         fix = "the only option is decision_dt" if unknown else "write a number of seconds such as 0.25"
         raise PolicyError("policy-failed", f"{clean(name)!r}: {what}", fix, where="policy")
     policy = open_network(path)

@@ -139,16 +139,16 @@ def _info(name: str, kind: str, policy: Any, about: str, options: dict[str, str]
 
 
 def _words(needs: Needs) -> list[str]:
-    found = []
+    result = []
     if needs.neighbors:
         reach = "" if math.isinf(needs.neighbor_range) else f" within {needs.neighbor_range:g} m"
         static = ", also static ones" if needs.static_neighbors else ""
-        found.append(f"{needs.neighbors} nearest neighbors{reach}{static}")
+        result.append(f"{needs.neighbors} nearest neighbors{reach}{static}")
     if needs.scan:
-        found.append("a lidar" if needs.beams is None else f"a lidar with {needs.beams} beams")
+        result.append("a lidar" if needs.beams is None else f"a lidar with {needs.beams} beams")
     if needs.map:
-        found.append(f"the map in cells of {needs.map_resolution:g} m")
-    return found
+        result.append(f"the map in cells of {needs.map_resolution:g} m")
+    return result
 
 
 def _unseen(needs: Needs) -> str:
@@ -181,12 +181,12 @@ def _options(maker: Any) -> dict[str, str]:
 def _arguments(maker: Any) -> dict[str, str]:
     """Argument → its description in a Google docstring."""
     _, _, section = (inspect.getdoc(maker) or "").partition("\nArgs:\n")
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for line in section.splitlines():
         if not line.startswith(" "):
             break
         if named := re.match(r" {4}(\w+)(?: \([^)]*\))?: (.+)", line):
-            found[named[1]] = named[2].strip()
-        elif found:
-            found[[*found][-1]] += f" {line.strip()}"
-    return {name: text.replace("``", "`") for name, text in found.items()}
+            result[named[1]] = named[2].strip()
+        elif result:
+            result[[*result][-1]] += f" {line.strip()}"
+    return {name: text.replace("``", "`") for name, text in result.items()}

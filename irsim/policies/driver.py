@@ -207,10 +207,10 @@ class PolicyDriver:
         chosen = rows[world, place]
         observations = self._observer.observe(chosen, self._first[world, place], slot)
         begin = time.perf_counter()
-        found = self._guarded(self.policy.act, observations)
+        result = self._guarded(self.policy.act, observations)
         self.seconds.append(time.perf_counter() - begin)
         self.decided.append(len(chosen))
-        self._held[world, place, : group.columns] = self._checked(simulation, group, chosen, found)
+        self._held[world, place, : group.columns] = self._checked(simulation, group, chosen, result)
         self._next[world, place] = simulation.count[world] + self._steps
         self._first[world, place] = False
 

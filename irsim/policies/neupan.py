@@ -149,7 +149,7 @@ def _read(config: str) -> dict[str, Any]:
     """The sections of a file of NeuPAN.
 
     Raises:
-        PolicyError: There is no such file, or it is no mapping.
+        PolicyError: There is no such file, or it is not a mapping.
     """
     try:
         data = yaml.safe_load(Path(config).read_text(encoding="utf-8"))
@@ -157,7 +157,9 @@ def _read(config: str) -> dict[str, Any]:
         what = f"the file of NeuPAN {as_given(config)} cannot be read: {str(error).splitlines()[0]}"
         raise PolicyError("policy-failed", what, "write {name: neupan, config: planner.yaml}") from error
     if not isinstance(data, dict):
-        raise PolicyError("policy-failed", f"{config!r} is no file of NeuPAN", "it has sections such as robot and pan")
+        raise PolicyError(
+            "policy-failed", f"{config!r} is not a file of NeuPAN", "it has sections such as robot and pan"
+        )
     return data
 
 
@@ -188,14 +190,14 @@ def _points(pose: Floats, position: Floats, ranges: Floats, angles: Floats) -> F
         return None
     own = position[:, None] + ranges * np.stack([np.cos(angles), np.sin(angles)])
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    found: Floats = np.array([[cos, -sin], [sin, cos]]) @ own + pose[:2, None]
-    return found
+    result: Floats = np.array([[cos, -sin], [sin, cos]]) @ own + pose[:2, None]
+    return result
 
 
 def _velocities(points: Floats, neighbors: Neighbors, b: int) -> Floats:
     """(2, N) velocity of each point [m/s]: that of the neighbor that it lies on, or 0."""
-    found = np.zeros_like(points)
+    result = np.zeros_like(points)
     for k in np.flatnonzero(neighbors.mask[b]).tolist():
         away = np.hypot(*(points - neighbors.position[b, k][:, None]))
-        found[:, away <= neighbors.radius[b, k] + _ON_NEIGHBOR_M] = neighbors.velocity[b, k][:, None]
-    return found
+        result[:, away <= neighbors.radius[b, k] + _ON_NEIGHBOR_M] = neighbors.velocity[b, k][:, None]
+    return result

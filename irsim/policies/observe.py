@@ -209,8 +209,8 @@ class Observer:
 
     def _neighbors(self, rows: NDArray[np.int64]) -> Neighbors:
         simulation = self._simulation
-        found = core.find_neighbors(simulation.world, simulation.state, self.looking, rows)
-        mask, index, position, heading, velocity, radius, arrived, robot, extent, own_extent = found
+        result = core.find_neighbors(simulation.world, simulation.state, self.looking, rows)
+        mask, index, position, heading, velocity, radius, arrived, robot, extent, own_extent = result
         measured = self._needs.neighbor_extents
         return Neighbors(
             mask.view(bool), index, position, heading, velocity, radius, arrived.view(bool), robot.view(bool),

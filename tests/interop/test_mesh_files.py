@@ -156,11 +156,11 @@ def test_other_hostile_files(tmp_path) -> None:
     (tmp_path / "big.obj").write_text("v 0 0 0\nv 1e39 0 0\nv 0 1e39 1e39\nf 1 2 3\n")
     trimesh.PointCloud(np.random.default_rng(0).random((9, 3))).export(tmp_path / "cloud.ply")
     for name, said in [
-        ("nan.stl", "no numbers"),
+        ("nan.stl", "not numbers"),
         ("land.stl", "--resolution"),
         ("faces.obj", "vertex|damaged"),
         ("points.obj", "no triangles|damaged"),
-        ("big.obj", "--resolution|no numbers"),
+        ("big.obj", "--resolution|not numbers"),
         ("cloud.ply", "no faces"),
     ]:
         with pytest.raises(BridgeError, match=said):

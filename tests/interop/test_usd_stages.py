@@ -239,7 +239,7 @@ def test_damaged_and_hostile_stages(tmp_path) -> None:
     with pytest.raises(BridgeError):
         import_map(text, tmp_path / "x.yaml")
     for name, points, counts, index, said in [
-        ("nan", [(np.nan, 0, 0), (1, 0, 0), (0, 1, 0)], [3], [0, 1, 2], "no numbers"),
+        ("nan", [(np.nan, 0, 0), (1, 0, 0), (0, 1, 0)], [3], [0, 1, 2], "not numbers"),
         ("index", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [3], [0, 1, 7], "does not have"),
         ("count", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [2000000000], [0, 1, 2], "need 2,000,000,000"),
         ("negative", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [-3], [0, 1, 2], "need"),

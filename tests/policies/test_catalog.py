@@ -103,7 +103,7 @@ def test_files_have_a_digest_and_are_found_from_their_folder(tmp_path: Path) -> 
         ("nett.npz", "there is no file 'nett.npz'. Fix: did you mean net.npz"),
         ("orca dash", "'orca dash' is not a policy"),
         (7, "a policy cannot be 7"),
-        ("{name: net.npz, sped: 1}", "'sped' is no option of a file"),
+        ("{name: net.npz, sped: 1}", "'sped' is not an option of a file"),
         ("{name: net.npz, decision_dt: -1}", "decision_dt must be a time"),
         ("{name: still, sped: 1}", "policy-failed: policy 'still' has no option 'sped'.*speed"),
         ("{name: random, decison_dt: 1}", "policy 'random' has no option 'decison_dt'.*decision_dt"),

@@ -17,7 +17,7 @@ from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 __all__ = ["Ground", "Role", "Spawner", "cast", "find_actor", "place"]
 
 USUAL_WHEELBASE = 1.0
-"""Of a car whose shape has none [m], as its drive has it."""
+"""Wheelbase of a car whose shape has no wheelbase [m], as its drive has it."""
 
 
 @dataclass(frozen=True)
@@ -26,12 +26,12 @@ class Role:
 
     Attributes:
         agent: The object.
-        kind: ``walker``, ``vehicle``, or ``followed``: an actor of others.
+        kind: ``walker``, ``vehicle``, or ``followed``: an existing actor.
         external: Whether CARLA moves it.
         ahead: How far the middle of its body is ahead of its origin [m]; actors have their origin in the middle.
         lidars: Its lidars that CARLA measures.
         wheelbase: Of the vehicle in CARLA [m]; only of vehicles that are steered.
-        followed: Role name or id of the actor of others.
+        followed: Role name or id of an existing actor.
     """
 
     agent: SceneObject
@@ -82,7 +82,7 @@ def _vehicle(agent: SceneObject, options: Carla, lidars: tuple[Lidar, ...]) -> R
             what = f"'{agent.name}' moves sideways, which a steered vehicle cannot"
             raise BridgeError("bridge-mismatch", what, "command: velocity")
         if wheelbase is None:
-            what = f"'{agent.name}' has no wheelbase, so that its turns are no steering angles"
+            what = f"'{agent.name}' has no wheelbase, so that its turns are not steering angles"
             raise BridgeError("bridge-mismatch", what, "wheelbase: 2.87, or command: velocity")
     return Role(agent, "vehicle", external, box_of(agent).ahead, lidars, wheelbase or USUAL_WHEELBASE)
 
@@ -111,7 +111,7 @@ def _robots_with_lidars(scene: SceneDescription, options: Carla, present: Iterab
         chosen = set(options.lidar.robots)
         for name in sorted(chosen - known):
             fix = suggestion(name, sorted(known), f"those with lidars are {', '.join(sorted(known)) or 'none'}")
-            what = f"{clean(name)!r} is no object in the town with a lidar"
+            what = f"{clean(name)!r} is not an object in the town with a lidar"
             raise BridgeError("bridge-mismatch", what, fix)
     if not chosen:
         fix = "give a robot a sensor lidar2d, or leave out the key lidar"
@@ -166,9 +166,9 @@ class Ground:
                 raise BridgeError("bridge-mismatch", what, "move the scenario with transform, or write ground: project")
             return road
         start = (0.0 if road is None else road) + _ABOVE
-        found = self._world.ground_projection(self._carla.Location(x=x, y=y, z=start), _ABOVE + _BELOW)
-        if found is not None:
-            return float(found.location.z)
+        result = self._world.ground_projection(self._carla.Location(x=x, y=y, z=start), _ABOVE + _BELOW)
+        if result is not None:
+            return float(result.location.z)
         if road is not None:
             return road
         what = f"there is no ground at x={x:.1f}, y={y:.1f} of CARLA"
@@ -186,8 +186,8 @@ class Ground:
         waypoint = self._map.get_waypoint(location, project_to_road=True, lane_type=self._carla.LaneType.Any)
         if waypoint is None:
             return None
-        found = waypoint.transform.location
-        return float(found.z) if abs(found.x - x) + abs(found.y - y) <= _FAR_ROAD else None
+        result = waypoint.transform.location
+        return float(result.z) if abs(result.x - x) + abs(result.y - y) <= _FAR_ROAD else None
 
 
 class Spawner:
@@ -223,11 +223,11 @@ class Spawner:
             family = [name for name in names if name.split(".")[0] == pattern.split(".")[0]] or names
             fix = suggestion(pattern, family, f"such as {', '.join(family[:3])}")
             raise BridgeError("bridge-mismatch", f"the server has no blueprint {clean(pattern)!r}", fix)
-        found = self._library.find(fitting[turn % len(fitting)])
+        result = self._library.find(fitting[turn % len(fitting)])
         for key, value in attributes.items():
-            if found.has_attribute(key):
-                found.set_attribute(key, value)
-        return found
+            if result.has_attribute(key):
+                result.set_attribute(key, value)
+        return result
 
     def drop(self, name: str, blueprint: Any, at: Iterable[float], ground: float) -> Any:
         """Spawn an actor a little above the ground, higher if there is no room.
@@ -263,22 +263,22 @@ class Spawner:
 
 
 def find_actor(world: Any, wanted: str | int, name: str) -> Any:
-    """The actor of others that has a role name or an id.
+    """The existing actor with a role name or an id.
 
     Raises:
         BridgeError: There is none, or there are several.
     """
     actors = list(world.get_actors())
     if isinstance(wanted, int):
-        found = [actor for actor in actors if actor.id == wanted]
+        result = [actor for actor in actors if actor.id == wanted]
     else:
-        found = [actor for actor in actors if actor.attributes.get("role_name") == wanted]
-    if len(found) == 1:
-        return found[0]
+        result = [actor for actor in actors if actor.attributes.get("role_name") == wanted]
+    if len(result) == 1:
+        return result[0]
     roles = sorted({str(actor.attributes.get("role_name")) for actor in actors if actor.attributes.get("role_name")})
-    if found:
-        numbers = ", ".join(str(actor.id) for actor in found[:5])
-        what = f"'{clean(name)}' cannot follow {clean(str(wanted))!r}: {len(found)} actors have this role name"
+    if result:
+        numbers = ", ".join(str(actor.id) for actor in result[:5])
+        what = f"'{clean(name)}' cannot follow {clean(str(wanted))!r}: {len(result)} actors have this role name"
         raise BridgeError("bridge-mismatch", what, f"write the id of one: {numbers}")
     what = f"'{clean(name)}' cannot follow {clean(str(wanted))!r}: the town has no such actor"
     raise BridgeError("bridge-mismatch", what, f"role names in the town are {clean(', '.join(roles[:8])) or 'none'}")

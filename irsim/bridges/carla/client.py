@@ -95,8 +95,8 @@ def _text(data: bytes) -> str | None:
         start, length = 2, data[1]
     else:
         return None
-    found = data[start : start + length]
-    return found.decode("utf-8", "replace") if len(found) == length else None
+    result = data[start : start + length]
+    return result.decode("utf-8", "replace") if len(result) == length else None
 
 
 NEWEST_PYTHON = (3, 12)

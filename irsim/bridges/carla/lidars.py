@@ -66,14 +66,14 @@ def scan_of_points(points: Floats, lidar: Lidar, count: int, low: float, high: f
         line = near * far * np.sin(ahead + behind) / (near * np.sin(behind) + far * np.sin(ahead))
     closest = np.where(ahead < behind, far, near)
     alone = np.where(np.minimum(ahead, behind) <= step / 2 * 1.01, closest, np.inf)
-    found = np.where(joined & (ahead + behind > 1e-9), line, alone)
-    return np.where(found <= lidar.range_max, found, np.inf)
+    result = np.where(joined & (ahead + behind > 1e-9), line, alone)
+    return np.where(result <= lidar.range_max, result, np.inf)
 
 
 def _turn(angle: Floats) -> Floats:
     """The angle in [0, 2 pi) [rad]; one that rounding made slightly negative is 0."""
-    found: Floats = wrap(angle, 0.0)
-    return np.where(found > FULL_TURN - 1e-9, 0.0, found)
+    result: Floats = wrap(angle, 0.0)
+    return np.where(result > FULL_TURN - 1e-9, 0.0, result)
 
 
 def _nearest_in_columns(angles: Floats, ranges: Floats, step: float) -> tuple[Floats, Floats]:
@@ -82,13 +82,13 @@ def _nearest_in_columns(angles: Floats, ranges: Floats, step: float) -> tuple[Fl
     order = np.lexsort((ranges, columns))
     first = np.unique(columns[order], return_index=True)[1]
     chosen = order[first]
-    found = wrap(angles[chosen])
-    sequence = np.argsort(found, kind="stable")
-    return found[sequence], ranges[chosen][sequence]
+    result = wrap(angles[chosen])
+    sequence = np.argsort(result, kind="stable")
+    return result[sequence], ranges[chosen][sequence]
 
 
 _MAX_FRAMES = 64
-"""Number of frames that wait at most; a server that is ticked by others goes on while irsim computes."""
+"""Number of frames that wait at most; a server that another client ticks goes on while irsim computes."""
 _MARGIN = 0.05
 """Points inside of the box of their own carrier, and this near to it [m], are the carrier."""
 
@@ -184,7 +184,7 @@ def attach_lidars(
         options: The options.
         tick: Period of CARLA [s].
     """
-    found = []
+    result = []
     for lidar in role.lidars:
         count = options.points or usual_points(lidar)
         attributes = {
@@ -206,5 +206,5 @@ def attach_lidars(
         sensor = spawner.attach(spawner.blueprint("sensor.lidar.ray_cast", 0, attributes), at, actor)
         extent = actor.bounding_box.extent
         half = float(extent.x), float(extent.y)
-        found.append(AttachedLidar(sensor, lidar, options, count, (x, y, yaw), half))
-    return found
+        result.append(AttachedLidar(sensor, lidar, options, count, (x, y, yaw), half))
+    return result

@@ -36,14 +36,14 @@ class Places:
         """(4, 4) ``T_carla_from_irsim``: maps points x, y, z, 1 of irsim to CARLA."""
         axes = np.eye(4)
         axes[:3, :3] = axes_of("carla")
-        found: Floats = self.transform @ axes
-        return found
+        result: Floats = self.transform @ axes
+        return result
 
     def to_carla(self, pose: Floats) -> Floats:
         """(..., 3) x, y [m], yaw [deg] of CARLA for poses (..., 3) x, y [m], yaw [rad] of irsim."""
-        found = planar_pose(to_frame(pose_matrix(pose), "carla", self.transform))
-        found[..., 2] = np.degrees(found[..., 2])
-        return found
+        result = planar_pose(to_frame(pose_matrix(pose), "carla", self.transform))
+        result[..., 2] = np.degrees(result[..., 2])
+        return result
 
     def to_irsim(self, place: Floats) -> Floats:
         """The inverse of :meth:`to_carla`."""
@@ -53,14 +53,14 @@ class Places:
 
     def velocity_to_carla(self, velocity: Floats) -> Floats:
         """(..., 3) velocity x, y [m/s] and yaw rate [deg/s] of CARLA for (..., 3) vx, vy [m/s], yaw rate [rad/s]."""
-        found = np.array(velocity, dtype=np.float64)
-        found[..., :2] = found[..., :2] @ self.matrix[:2, :2].T
-        found[..., 2] = -np.degrees(found[..., 2])
-        return found
+        result = np.array(velocity, dtype=np.float64)
+        result[..., :2] = result[..., :2] @ self.matrix[:2, :2].T
+        result[..., 2] = -np.degrees(result[..., 2])
+        return result
 
     def velocity_to_irsim(self, velocity: Floats) -> Floats:
         """The inverse of :meth:`velocity_to_carla`."""
-        found = np.array(velocity, dtype=np.float64)
-        found[..., :2] = found[..., :2] @ self.matrix[:2, :2]
-        found[..., 2] = -np.radians(found[..., 2])
-        return found
+        result = np.array(velocity, dtype=np.float64)
+        result[..., :2] = result[..., :2] @ self.matrix[:2, :2]
+        result[..., 2] = -np.radians(result[..., 2])
+        return result

@@ -49,21 +49,21 @@ class Town:
         self.ground = Ground(self.carla, self.world, options.ground)
 
     def take_over(self) -> None:
-        """Make the server synchronous, or check that somebody else ticks it in a way that fits.
+        """Make the server synchronous, or check that another client ticks it in a way that fits.
 
         Raises:
             BridgeError: Steps are not a whole number of ticks.
         """
         settings = self.world.get_settings()
         if self.options.clock == "external":
-            found = settings.fixed_delta_seconds
-            if not found or not _is_whole(self.period / found):
-                what = f"CARLA has ticks of {found} s, and steps of {self.period:g} s are not a whole number of them"
+            result = settings.fixed_delta_seconds
+            if not result or not _is_whole(self.period / result):
+                what = f"CARLA has ticks of {result} s, and steps of {self.period:g} s are not a whole number of them"
                 fix = (
                     f"let the program that ticks CARLA set fixed_delta_seconds to {self.period:g}, or change step_time"
                 )
                 raise BridgeError("bridge-mismatch", what, fix)
-            self.tick = float(found)
+            self.tick = float(result)
             return
         usual = self.period / math.ceil(self.period / _LONGEST_TICK - 1e-9)
         self.tick = self.options.tick or usual

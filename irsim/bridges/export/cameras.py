@@ -128,15 +128,15 @@ def scene_of(run: Run, options: PoseOptions, limits: Limits | None, default: str
             if wrong is not None:
                 what = f"the sidecar '{clean(options.sidecar, 200)}' {wrong}"
                 raise RunError("path-outside-workspace", what, "give a file inside the workspace", where="options")
-            found: MapSidecar | None = read_sidecar(Path(limits.root) / options.sidecar)
+            result: MapSidecar | None = read_sidecar(Path(limits.root) / options.sidecar)
         else:
-            found = read_sidecar(options.sidecar)
+            result = read_sidecar(options.sidecar)
     else:
-        found = run_sidecar(run, limits)
-    if found is None:
+        result = run_sidecar(run, limits)
+    if result is None:
         note = f"the map of the run has no sidecar: cameras are in the frame {default}, whose floor is at height 0"
         return Scene(scene_transform(default), default, (note,))
-    return Scene(found.T_scene_from_irsim, found.frame)
+    return Scene(result.T_scene_from_irsim, result.frame)
 
 
 def run_sidecar(run: Run, limits: Limits | None = None) -> MapSidecar | None:
@@ -182,15 +182,15 @@ def camera_paths(episode: Episode, every: int) -> list[CameraPath]:
         times.append(trace.time[chosen])
         poses.append(trace.pose[chosen])
     step, time, pose = np.concatenate(steps), np.concatenate(times), np.concatenate(poses)
-    found = []
+    result = []
     for row, actor in enumerate(episode.actors):
         there = np.isfinite(pose[:, row]).all(axis=1)
         if there.any():
-            found.append(CameraPath(actor.name, step[there], time[there], pose[there, row]))
-    if not found:
+            result.append(CameraPath(actor.name, step[there], time[there], pose[there, row]))
+    if not result:
         what = "none of the chosen objects is in the world in any of the chosen steps"
         raise RunError("bad-argument", what, "choose other objects, or a smaller every", where="objects")
-    return found
+    return result
 
 
 def camera_to_world(path: CameraPath, axes: str, height: float, scene: Scene) -> Floats:
@@ -202,9 +202,9 @@ def camera_to_world(path: CameraPath, axes: str, height: float, scene: Scene) ->
         height: Height of the camera above the floor [m].
         scene: The world.
     """
-    found = camera_pose(path.pose, axes, height, transform=scene.transform)
-    found[:, :3, :3] /= scene.scale
-    return found
+    result = camera_pose(path.pose, axes, height, transform=scene.transform)
+    result[:, :3, :3] /= scene.scale
+    return result
 
 
 def picture_names(paths: list[CameraPath]) -> Iterator[list[str]]:

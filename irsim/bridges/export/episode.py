@@ -157,7 +157,7 @@ class Episode:
         with_ranges: Whether the ranges of lidars are exported.
         limits: Limits of the reader of the scenario.
         progress: Callback with the number of rows read since the last call.
-        options: Options of the format; None if it has none.
+        options: Options of the format; None without options.
     """
 
     run: Run
@@ -171,14 +171,14 @@ class Episode:
     def lidars(self) -> tuple[Lidar, ...]:
         """The range sensors of the actors, in their order; empty without ranges."""
         beams = {str(key): int(count) for key, count in self.run.meta["sensors"]} if self.with_ranges else {}
-        found = []
+        result = []
         for position, actor in enumerate(self.actors):
             native = [options for options in actor.facts["sensors"] if _has_beams(options)]
             for number, options in enumerate(native):
                 key = f"{actor.name}/{number}"
                 if key in beams:
-                    found.append(Lidar(key, position, number, beams[key], options))
-        return tuple(found)
+                    result.append(Lidar(key, position, number, beams[key], options))
+        return tuple(result)
 
     @cached_property
     def last_step(self) -> int:
@@ -227,22 +227,22 @@ class Episode:
     def _contacts(self) -> NDArray[np.int64]:
         """(C, 2) step and position of the actor of each of its contacts between steps."""
         place = {actor.name: position for position, actor in enumerate(self.actors)}
-        found = [
+        result = [
             (event.step, place[name])
             for event in self.run.events
             if event.kind in BETWEEN_STEPS
             for name in (event.object, event.partner)
             if name in place
         ]
-        return np.array(found, dtype=np.int64).reshape(-1, 2)
+        return np.array(result, dtype=np.int64).reshape(-1, 2)
 
     def _between_steps(self, trace: Trace) -> NDArray[np.bool_]:
         """(T, M) whether an actor touched something within the step that led to a row."""
-        found = np.zeros((len(trace), len(self.actors)), dtype=bool)
+        result = np.zeros((len(trace), len(self.actors)), dtype=bool)
         row, position = self._contacts[:, 0] - int(trace.step[0]), self._contacts[:, 1]
         here = (row >= 0) & (row < len(trace))
-        found[row[here], position[here]] = True
-        return found
+        result[row[here], position[here]] = True
+        return result
 
     @property
     def facts(self) -> dict[str, Any]:

@@ -35,7 +35,7 @@ def chosen_options(model: type[Options] | None, given: Mapping[str, Any], owner:
     """The options of something.
 
     Args:
-        model: Their model; None if there are none.
+        model: Their model; None without options.
         given: What was given.
         owner: What the options are of, as the subject of a sentence.
 
@@ -144,6 +144,6 @@ def find_format(name: str | None, out: Path | None) -> Format:
 
 
 def _load(name: str) -> Format:
-    found = import_module(f"{_PACKAGE}.{name}").FORMAT
-    assert isinstance(found, Format)
-    return found
+    result = import_module(f"{_PACKAGE}.{name}").FORMAT
+    assert isinstance(result, Format)
+    return result

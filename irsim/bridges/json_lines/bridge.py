@@ -78,8 +78,8 @@ class JsonLinesBridge(Bridge):
             self._send("pull", {})
             return self._answer()
         if self.options.answers:
-            found, self._last = self._last, None
-            return found
+            result, self._last = self._last, None
+            return result
         return self._waiting()
 
     def exchange(self, motion: Motion) -> Feedback | None:
@@ -147,11 +147,11 @@ class JsonLinesBridge(Bridge):
             self._lose(f"{self.name} sent a line of more than {_MAX_LINE // 2**20} MB")
         if not lines:
             return None
-        found: dict[str, Any] = {}
+        result: dict[str, Any] = {}
         for line in lines[-_MAX_LINES:]:
             for key, value in vars(self._read(line)).items():
-                found[key] = {**found.get(key, {}), **value} if isinstance(value, dict) else value or found.get(key)
-        return Feedback(**found)
+                result[key] = {**result.get(key, {}), **value} if isinstance(value, dict) else value or result.get(key)
+        return Feedback(**result)
 
     def _receive(self, wait: float) -> bool:
         """Receive what has come within a time [s]; False if nothing has."""

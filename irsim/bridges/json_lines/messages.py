@@ -57,8 +57,8 @@ def _runs(occupied: Any) -> list[int]:
     flat = np.concatenate([[False], np.asarray(occupied, dtype=bool).reshape(-1)])
     changes = np.flatnonzero(flat[1:] != flat[:-1])
     edges = np.concatenate([[0], changes, [len(flat) - 1]])
-    found: list[int] = np.diff(edges).tolist()
-    return found
+    result: list[int] = np.diff(edges).tolist()
+    return result
 
 
 def _plain(value: Any) -> Any:
@@ -76,10 +76,10 @@ def _plain(value: Any) -> Any:
 
 def state_as_json(state: WorldState) -> dict[str, Any]:
     """A state as JSON types; NaN and infinities are ``null``."""
-    found: dict[str, Any] = {"version": SCENE_VERSION, "step": state.step, "time": state.time}
-    found |= {key: getattr(state, key) for key in _BY_ROW}
-    found |= {"ranges": dict(state.ranges), "paths": dict(state.paths)}
-    return _plain(found)  # type: ignore[no-any-return]
+    result: dict[str, Any] = {"version": SCENE_VERSION, "step": state.step, "time": state.time}
+    result |= {key: getattr(state, key) for key in _BY_ROW}
+    result |= {"ranges": dict(state.ranges), "paths": dict(state.paths)}
+    return _plain(result)  # type: ignore[no-any-return]
 
 
 def motion_as_json(motion: Motion) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Import of a map: find the kind of the file, read it, make the map of a level, write all files or none."""
+"""Import of a map: find the kind of the file, read it, make the map of a level, write all files at once."""
 
 from __future__ import annotations
 
@@ -68,36 +68,36 @@ def import_map(
     target, ros_target = _target(out, "out", bounds), None
     if ros_map is not None:
         ros_target = _target(ros_map, "ros_map", bounds)
-    kind, found, source = read_occupancy(file, chosen, bounds)
+    kind, result, source = read_occupancy(file, chosen, bounds)
     unknown = chosen.unknown or kind.unknown
-    values = eroded(found.values, chosen.radius / found.grid.resolution)
+    values = eroded(result.values, chosen.radius / result.grid.resolution)
     filled = np.where(values < 0, 100.0 if unknown == "occupied" else 0.0, values)
-    trip = suggest_trip(found, filled)
+    trip = suggest_trip(result, filled)
     if robot and trip is None:
         raise BridgeError("bridge-file", "the map has no room for a robot", "leave out the robot, or try less --radius")
     sidecar = MapSidecar(
-        scene_transform(found.frame, found.height, found.meters_per_unit),
-        found.frame,
-        found.height,
-        found.grid.resolution,
-        (found.grid.x, found.grid.y),
-        (found.grid.nx, found.grid.ny),
+        scene_transform(result.frame, result.height, result.meters_per_unit),
+        result.frame,
+        result.height,
+        result.grid.resolution,
+        (result.grid.x, result.grid.y),
+        (result.grid.nx, result.grid.ny),
         source,
         {
-            "headroom": chosen.headroom if found.headroom is None else found.headroom,
-            "climb": chosen.climb if found.climb is None else found.climb,
+            "headroom": chosen.headroom if result.headroom is None else result.headroom,
+            "climb": chosen.climb if result.climb is None else result.climb,
             "slope": chosen.slope,
-            "radius": max(chosen.radius, found.radius),
+            "radius": max(chosen.radius, result.radius),
         },
-        found.level,
+        result.level,
         unknown,
     )
-    about = f"Made from {clean(source['file'], 100)}" + (f", level {found.level}" if found.levels else "")
+    about = f"Made from {clean(source['file'], 100)}" + (f", level {result.level}" if result.levels else "")
     placed = trip if robot else None
-    contents = files_of(found, values, filled, target, sidecar, about, placed, ros_target)
-    _check_targets([path for path, _ in contents], [_confined(file, "file", bounds), *found.parts])
+    contents = files_of(result, values, filled, target, sidecar, about, placed, ros_target)
+    _check_targets([path for path, _ in contents], [_confined(file, "file", bounds), *result.parts])
     write_all_or_none(contents, overwrite=overwrite)
-    return _result(kind, found, values, filled, unknown, trip, [str(path) for path, _ in contents])
+    return _result(kind, result, values, filled, unknown, trip, [str(path) for path, _ in contents])
 
 
 def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **options: Any) -> MapImportResult:
@@ -114,11 +114,11 @@ def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **optio
         ExtraError: A library is missing.
     """
     chosen = _options(options)
-    kind, found, _ = read_occupancy(file, chosen, limits or ImportLimits())
+    kind, result, _ = read_occupancy(file, chosen, limits or ImportLimits())
     unknown = chosen.unknown or kind.unknown
-    values = eroded(found.values, chosen.radius / found.grid.resolution)
+    values = eroded(result.values, chosen.radius / result.grid.resolution)
     filled = np.where(values < 0, 100.0 if unknown == "occupied" else 0.0, values)
-    return _result(kind, found, values, filled, unknown, suggest_trip(found, filled), [])
+    return _result(kind, result, values, filled, unknown, suggest_trip(result, filled), [])
 
 
 def read_occupancy(
@@ -145,10 +145,10 @@ def read_occupancy(
     source = {"file": path.name, "kind": kind.name, "bytes": size, "sha256": digest.hexdigest()}
     try:
         read = kind.read(path, options, limits)
-        found = occupancy_of(read, options, limits) if isinstance(read, Scene) else read
+        result = occupancy_of(read, options, limits) if isinstance(read, Scene) else read
     except MemoryError:
         raise unusable(path, "it does not fit into memory", "give a coarser --resolution, or a smaller file") from None
-    return kind, found, source
+    return kind, result, source
 
 
 def _target(name: str | Path, where: str, limits: ImportLimits) -> Path:

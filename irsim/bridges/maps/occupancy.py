@@ -59,18 +59,18 @@ def occupancy_of(scene: Scene, options: ImportOptions, limits: ImportLimits) -> 
         flat = values.reshape(-1)
         flat[barred[flat[barred] == UNKNOWN]] = OCCUPIED
     listed = [(one.height, one.areas[0], one.roof) for one in levels]
-    found = Occupancy(values, grid, scene.frame, level.height, scene.meters_per_unit, number, listed, level.areas)
-    found.kept, found.radius, found.notes = region, scene.radius, list(scene.notes)
-    found.headroom, found.climb = scene.headroom, scene.climb
+    result = Occupancy(values, grid, scene.frame, level.height, scene.meters_per_unit, number, listed, level.areas)
+    result.kept, result.radius, result.notes = region, scene.radius, list(scene.notes)
+    result.headroom, result.climb = scene.headroom, scene.climb
     if spans is not None and len(levels) > 1 and options.level is None and options.height is None:
-        found.notes.append(f"level {number} of {len(levels)} was taken; --list-levels lists them, --level picks one")
+        result.notes.append(f"level {number} of {len(levels)} was taken; --list-levels lists them, --level picks one")
     if spans is not None and _may_be_roof(level, surfaces, spans, options, headroom):
-        found.notes.append(
+        result.notes.append(
             f"this level at {level.height:.2f} m is under the sky, and the scene goes on below it: cells of "
             f"{options.resolution:g} m are too large for rooms, whose walls fill them, so this may be a roof; try "
             f"--resolution {FINE:g}"
         )
-    return cropped(found)
+    return cropped(result)
 
 
 def _within_bounds(scene: Scene, bounds: tuple[float, float, float, float]) -> Scene:
@@ -99,12 +99,12 @@ def _at_seed(levels: list[Level], surfaces: Surfaces, grid: Grid, options: Impor
     if options.seed_point is None:
         return list(range(len(levels)))
     here = surfaces.column == grid.column_at(*options.seed_point)
-    found = [k for k, level in enumerate(levels) if (level.regions[here] >= 0).any()]
-    return found or list(range(len(levels)))
+    result = [k for k, level in enumerate(levels) if (level.regions[here] >= 0).any()]
+    return result or list(range(len(levels)))
 
 
 def _chosen(levels: list[Level], candidates: list[int], options: ImportOptions) -> int:
-    """Number of the level that is asked for, or of the largest candidate that is no roof."""
+    """Number of the level that is asked for, or of the largest candidate that is not a roof."""
     if options.level is not None and options.height is not None:
         raise BridgeError("bridge-file", "level and height both pick a level", "give one of --level and --height")
     if options.level is not None:
@@ -126,15 +126,15 @@ def _region(level: Level, surfaces: Surfaces, grid: Grid, options: ImportOptions
         return 0
     x, y = options.seed_point
     column = grid.column_at(x, y)
-    found = level.regions[(surfaces.column == column) & (level.regions >= 0)] if column is not None else []
-    if not len(found):
+    result = level.regions[(surfaces.column == column) & (level.regions >= 0)] if column is not None else []
+    if not len(result):
         own = level.regions == 0
         centers = grid.centers(surfaces.column[own])
         near = centers[np.argmin(((centers - [x, y]) ** 2).sum(axis=1))]
         what = f"there is no floor of this level at the seed point ({x:g}, {y:g})"
         fix = f"the nearest place of its largest part is --seed-point {near[0]:.2f},{near[1]:.2f}"
         raise BridgeError("bridge-file", what, fix)
-    return int(found[0])
+    return int(result[0])
 
 
 def _values(
@@ -177,7 +177,7 @@ def within(marked: Bools, cells: float) -> Bools:
     """Which cells lie within a distance [cells] of a marked one or of the edge of the array."""
     reach = math.floor(cells)
     padded = np.pad(marked, reach + 1, constant_values=True)
-    found = np.zeros_like(marked)
+    result = np.zeros_like(marked)
     nx, ny = marked.shape
     sums = np.zeros((padded.shape[0], padded.shape[1] + 1), np.int32)
     np.cumsum(padded, axis=1, out=sums[:, 1:])
@@ -185,8 +185,8 @@ def within(marked: Bools, cells: float) -> Bools:
         half = math.floor(math.sqrt(cells * cells - step * step))
         rows = sums[reach + 1 + step : reach + 1 + step + nx]
         middle = reach + 1
-        found |= rows[:, middle + half + 1 : middle + half + 1 + ny] > rows[:, middle - half : middle - half + ny]
-    return found
+        result |= rows[:, middle + half + 1 : middle + half + 1 + ny] > rows[:, middle - half : middle - half + ny]
+    return result
 
 
 def eroded(values: Floats, cells: float) -> Floats:

@@ -12,7 +12,7 @@ from irsim.bridges.maps.voxels import Surfaces
 __all__ = ["Level", "connected", "find_levels", "masked_regions", "numbered"]
 
 _SMALLEST_AREA = 0.5
-"""Connected surfaces smaller than this are no level of their own [m²]."""
+"""Connected surfaces smaller than this are not a level of their own [m²]."""
 _SMALLEST_SHARE = 0.05
 """Share of the largest level that a level must have to be listed."""
 _PEAK_SHARE = 0.1
@@ -57,8 +57,8 @@ def connected(count: int, a: Ints, b: Ints) -> Ints:
     joined[b[b == a + 1]] = True
     first_node = np.flatnonzero(~joined)  # of each run of nodes one after the other, of which grids have few
     run = np.cumsum(~joined) - 1
-    found: Ints = first_node[_roots(len(first_node), run[a], run[b])[run]]
-    return found
+    result: Ints = first_node[_roots(len(first_node), run[a], run[b])[run]]
+    return result
 
 
 def _roots(count: int, a: Ints, b: Ints) -> Ints:
@@ -167,10 +167,10 @@ def find_levels(surfaces: Surfaces, grid: Grid, climb: float, headroom: float) -
             near[0].append(k)
         elif sizes[k] >= _SMALLEST_SHARE * sizes[0]:
             levels.append((height, [k]))
-    found = [_level(height, members, region, sizes * cell) for height, members in sorted(levels)]
-    for level in found:
-        level.roof = _is_roof(level, found, surfaces, grid)
-    return found
+    result = [_level(height, members, region, sizes * cell) for height, members in sorted(levels)]
+    for level in result:
+        level.roof = _is_roof(level, result, surfaces, grid)
+    return result
 
 
 def _layers(floor: np.ndarray, headroom: float) -> Ints:

@@ -82,8 +82,8 @@ class MapSidecar:
         """
         axes = np.eye(4)
         axes[:3, :3] = axes_of(self.frame)
-        found: Floats = self.T_scene_from_irsim @ axes.T
-        return found
+        result: Floats = self.T_scene_from_irsim @ axes.T
+        return result
 
     def to_scene(self, poses: Floats, height: float = 0.0) -> Floats:
         """Positions in the frame of the scene.
@@ -97,8 +97,8 @@ class MapSidecar:
         """
         poses = np.atleast_2d(np.asarray(poses, dtype=np.float64))
         points = np.column_stack([poses[:, :2], np.full(len(poses), height), np.ones(len(poses))])
-        found: Floats = (points @ self.T_scene_from_irsim.T)[:, :3]
-        return found
+        result: Floats = (points @ self.T_scene_from_irsim.T)[:, :3]
+        return result
 
     def scene_poses(self, poses: Floats, height: float = 0.0) -> Floats:
         """Poses in the frame of the scene.
@@ -113,17 +113,17 @@ class MapSidecar:
         """
         poses = np.atleast_2d(np.asarray(poses, dtype=np.float64))
         turn = self.T_scene_from_irsim[:3, :3] / self.scale
-        found = np.zeros((len(poses), 4, 4))
-        found[:, :3, :3] = turn @ rotation_of(poses[:, 2]) @ axes_of(self.frame).T
-        found[:, :3, 3] = self.to_scene(poses, height)
-        found[:, 3, 3] = 1.0
-        return found
+        result = np.zeros((len(poses), 4, 4))
+        result[:, :3, :3] = turn @ rotation_of(poses[:, 2]) @ axes_of(self.frame).T
+        result[:, :3, 3] = self.to_scene(poses, height)
+        result[:, 3, 3] = 1.0
+        return result
 
     def to_irsim(self, points: Floats) -> Floats:
         """The inverse of :meth:`to_scene`: (N, 3) x, y and height above the floor [m] of points (N, 3) of the scene."""
         points = np.atleast_2d(np.asarray(points, dtype=np.float64))
-        found: Floats = (np.column_stack([points, np.ones(len(points))]) @ inverse(self.T_scene_from_irsim).T)[:, :3]
-        return found
+        result: Floats = (np.column_stack([points, np.ones(len(points))]) @ inverse(self.T_scene_from_irsim).T)[:, :3]
+        return result
 
     def as_json(self) -> str:
         """The text of the file."""
@@ -158,8 +158,8 @@ def scene_transform(frame: str, floor_height: float = 0.0, meters_per_unit: floa
     """
     axes = np.eye(4)
     axes[:3, :3] = axes_of(frame) / meters_per_unit
-    found: Floats = axes @ pose_matrix(np.zeros(3), floor_height)
-    return found
+    result: Floats = axes @ pose_matrix(np.zeros(3), floor_height)
+    return result
 
 
 def sidecar_path(scenario: str | Path) -> Path:

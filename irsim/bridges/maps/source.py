@@ -53,7 +53,7 @@ class ImportOptions(Options):
     """Axis of a mesh, a stage or of splats that points up; ``-y``: y points down. ``auto`` is y for glTF and OBJ, z for
     PLY and STL, and what a stage of USD says."""
     level: Annotated[int, Field(ge=0)] | None = None
-    """Number of the level, the lowest is 0. Default: the largest one that is no roof of another."""
+    """Number of the level, the lowest is 0. Default: the largest one that is not a roof of another."""
     height: Meters | None = None
     """Height of a floor along the upward axis: the nearest level is taken."""
     seed_point: tuple[Meters, Meters] | None = None

@@ -104,16 +104,16 @@ def _pieces(corners: Floats, grid: Grid, bottom: float, step: float, cosine: flo
     first = np.floor(low[:, :2]).astype(np.int64)
     small = (first == np.floor(high[:, :2])).all(axis=1)
     where = first[small, 0] * grid.ny + first[small, 1]
-    found = [_packed(where, low[small, 2], high[small, 2], flat[small])]
+    result = [_packed(where, low[small, 2], high[small, 2], flat[small])]
     level = ~small & (high[:, 2] - low[:, 2] <= _LEVEL)  # such as floors, whose many cells all have one height
     for triangle, i, j, _ in rows_of(scaled[level][..., :2], at_centers=False):
         heights = low[level, 2][triangle], high[level, 2][triangle]
-        found.append(_packed(i * grid.ny + j, *heights, flat[level][triangle]))
+        result.append(_packed(i * grid.ny + j, *heights, flat[level][triangle]))
     tilted = ~small & ~level
     large, flat = scaled[tilted], flat[tilted]
     for triangle, i, j, _ in rows_of(large[..., :2], at_centers=False):
-        found.append(_packed(i * grid.ny + j, *_heights(large[triangle], i, j), flat[triangle]))
-    return np.concatenate(found)
+        result.append(_packed(i * grid.ny + j, *_heights(large[triangle], i, j), flat[triangle]))
+    return np.concatenate(result)
 
 
 def _packed(column: Ints, low: Floats, high: Floats, walkable: Bools) -> Ints:
@@ -181,7 +181,7 @@ def walkable_of(spans: Spans, headroom: float, climb: float) -> Surfaces:
     Args:
         spans: Solid parts of columns.
         headroom: Free height that is needed above a floor [m].
-        climb: What lies on a floor and is no higher than this is part of it [m].
+        climb: What lies on a floor and is not higher than this is part of it [m].
     """
     same = spans.column[1:] == spans.column[:-1]
     flat = spans.walkable.copy()
@@ -227,7 +227,7 @@ def _plane(corners: Floats, x: NDArray[Any], y: NDArray[Any]) -> Floats:
     scale = 1.0 / np.where(flat, double, 1.0)
     s = ((x - a[:, 0]) * v[:, 1] - (y - a[:, 1]) * v[:, 0]) * scale
     t = ((y - a[:, 1]) * u[:, 0] - (x - a[:, 0]) * u[:, 1]) * scale
-    found: Floats = np.clip(
+    result: Floats = np.clip(
         a[:, 2] + np.where(flat, s * u[:, 2] + t * v[:, 2], 0.0), least(corners[..., 2]), most(corners[..., 2])
     )
-    return found
+    return result

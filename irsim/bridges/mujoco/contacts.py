@@ -37,7 +37,7 @@ class Contact:
 
     Attributes:
         time: Simulated time [s].
-        objects: Their names; ``map`` and ``walls`` for what is no object.
+        objects: Their names; ``map`` and ``walls`` for what is not an object.
         gap: Distance of their footprints in irsim [m].
         ghost: Whether the footprints do not touch, so that irsim has no contact there.
     """
@@ -200,7 +200,7 @@ class MujocoReport:
     def lines(self) -> list[str]:
         """The main numbers as text."""
         objects = f"{len(self.objects)} object{'s' * (len(self.objects) != 1)}"
-        found = [
+        result = [
             (
                 f"mujoco: moved {objects} for {self.simulated_s:.1f} s in {self.wall_s:.1f} s; in a step robots are "
                 f"up to {self.step_difference_largest_m:.3f} m (median {self.step_difference_median_m:.4f} m) from "
@@ -209,13 +209,13 @@ class MujocoReport:
             f"mujoco: {self.contacts} contacts, {self.ghost_contacts} of them between footprints that do not touch",
         ]
         if self.lidar_beams:
-            found.append(
+            result.append(
                 f"mujoco: ranges of {self.lidar_beams} beams differ by {self.lidar_median_m:.4f} m (median), "
                 f"{self.lidar_p99_m:.4f} m (99 %), {self.lidar_largest_m:.4f} m (largest); "
                 f"{self.lidar_one_sided} hit something in one simulator only"
             )
-        found += [f"mujoco: MuJoCo warned {count} times: {text}" for text, count in self.warnings.items()]
-        return found
+        result += [f"mujoco: MuJoCo warned {count} times: {text}" for text, count in self.warnings.items()]
+        return result
 
 
 def log_report(report: MujocoReport) -> None:

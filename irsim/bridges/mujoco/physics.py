@@ -170,33 +170,33 @@ class Physics:
 
     def poses(self) -> Floats:
         """(K, 3) x, y [m], yaw [rad] of the robots that MuJoCo moves, world frame."""
-        found = np.empty((len(self.rigs), 3))
+        result = np.empty((len(self.rigs), 3))
         for k, (name, body) in enumerate(self.bodies.items()):
             address = int(self.model.jnt_qposadr[self.model.body_jntadr[body]])
-            found[k, :2] = self.data.qpos[address : address + 2]
+            result[k, :2] = self.data.qpos[address : address + 2]
             if self.rigs[name].drive in TURNING:
-                found[k, 2] = wrap(self.data.qpos[address + 2])
+                result[k, 2] = wrap(self.data.qpos[address + 2])
             elif self.rigs[name].drive == "omni":
-                found[k, 2] = self.scene.agents[self.rows[k]].pose[2]
+                result[k, 2] = self.scene.agents[self.rows[k]].pose[2]
             else:
                 w, x, y, z = self.data.qpos[address + 3 : address + 7]
-                found[k, 2] = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-        return found
+                result[k, 2] = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+        return result
 
     def twists(self) -> Floats:
         """(K, 3) vx, vy [m/s], yaw rate [rad/s] of the robots that MuJoCo moves, world frame."""
-        found = np.zeros((len(self.rigs), 3))
+        result = np.zeros((len(self.rigs), 3))
         for k, (name, body) in enumerate(self.bodies.items()):
             first = int(self.model.jnt_dofadr[self.model.body_jntadr[body]])
-            found[k, :2] = self.data.qvel[first : first + 2]
+            result[k, :2] = self.data.qvel[first : first + 2]
             if self.rigs[name].drive in TURNING:
-                found[k, 2] = self.data.qvel[first + 2]
+                result[k, 2] = self.data.qvel[first + 2]
             elif self.rigs[name].drive != "omni":
                 address = int(self.model.jnt_qposadr[self.model.body_jntadr[body]])
                 w, x, y, z = self.data.qpos[address + 3 : address + 7]
                 upward = np.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
-                found[k, 2] = upward @ self.data.qvel[first + 3 : first + 6]  # the rate is in the frame of the body
-        return found
+                result[k, 2] = upward @ self.data.qvel[first + 3 : first + 6]  # the rate is in the frame of the body
+        return result
 
     def warnings(self) -> dict[str, int]:
         """Warnings of MuJoCo, and how often they came."""

@@ -101,11 +101,13 @@ def suite_text(
         name: Name of the suite; characters that suites do not have in their names are left out.
 
     Raises:
-        BridgeError: Nobody is in the window of time and space, or the suite would be too large.
+        BridgeError: No pedestrian is in the window of time and space, or the suite would be too large.
     """
     tracks, _ = make_tracks(recording, places, rate, window)
     if not tracks:
-        raise BridgeError("bridge-file", "nobody is in this window of time and space", "widen --from, --to and --crop")
+        raise BridgeError(
+            "bridge-file", "no pedestrian is in this window of time and space", "widen --from, --to and --crop"
+        )
     low, high = bounds(tracks, layout)
     inset = np.minimum(max(layout.margin / 2, ROBOT_RADIUS), (high - low) / 4)
     inner_low, inner_high = low + inset, high - inset
@@ -130,7 +132,7 @@ def suite_text(
     head = [
         f"# {len(starts)} windows of {length:g} s of {json.dumps(layout.source)}, written by `irsim bridge",
         "# import-pedestrians --suite`. Names of scenarios say when they start. Each seed draws another start and goal",
-        "# of the robot; nobody makes way for it.",
+        "# of the robot; no pedestrian makes way for it.",
         "",
         f"suite: {(word if word[:1].isalpha() else f'recorded_{word}')[:_NAME]}",
         "version: 1",
@@ -156,18 +158,18 @@ def _starts(tracks: Sequence[Track], length: float) -> tuple[list[float], bool]:
     if count == 0:
         return [first], False
     snapped = times[np.searchsorted(times, first + length * np.arange(count) - 1e-9)]
-    found = [start for start in dict.fromkeys(snapped.tolist()) if _cut(tracks, start, length)]
-    return found or [first], True
+    result = [start for start in dict.fromkeys(snapped.tolist()) if _cut(tracks, start, length)]
+    return result or [first], True
 
 
 def _cut(tracks: Sequence[Track], start: float, length: float) -> list[Track]:
     """What is recorded from a time on; times then count from it."""
-    found = []
+    result = []
     for track in tracks:
         inside = (track.times >= start - 1e-9) & (track.times <= start + length + 1e-9)
         if inside.sum() > 1:
-            found.append(Track(track.name, np.maximum(track.times[inside] - start, 0.0), track.places[inside]))
-    return found
+            result.append(Track(track.name, np.maximum(track.times[inside] - start, 0.0), track.places[inside]))
+    return result
 
 
 def _crossing(tracks: Sequence[Track], low: Floats, high: Floats, radius: float) -> str:
@@ -247,7 +249,7 @@ def import_pedestrians(
         overwrite: Replace files that exist.
 
     Raises:
-        BridgeError: The file cannot be used, or nobody is in the window. Nothing is written then.
+        BridgeError: The file cannot be used, or no pedestrian is in the window. Nothing is written then.
         ArgumentError: An option does not fit the file, or no file is to be written.
         TargetError: The scenario or the suite exists.
     """
@@ -285,7 +287,7 @@ def import_pedestrians(
     rate = fps or frame_rate(recording)
     tracks, left_out = make_tracks(recording, places, rate, window)
     if not tracks:
-        what = f"nobody is in {path.name} for two rows, in this window of time and space"
+        what = f"no pedestrian is in {path.name} for two rows, in this window of time and space"
         raise BridgeError("bridge-file", what, "widen --from, --to and --crop; times count from the first frame")
     texts: dict[Path, str] = {}
     made: SuiteText | None = None

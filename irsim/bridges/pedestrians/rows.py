@@ -86,14 +86,14 @@ def read_homography(path: Path) -> Floats:
     Raises:
         BridgeError: The file does not hold such a matrix.
     """
-    found: list[float] = []
+    result: list[float] = []
     for number, text in _lines(path):
-        found += _numbers(path, number, text, "3 numbers", None)
-        if len(found) > 9:
+        result += _numbers(path, number, text, "3 numbers", None)
+        if len(result) > 9:
             break
-    matrix = np.array(found)
+    matrix = np.array(result)
     if matrix.size != 9 or abs(np.linalg.det(matrix.reshape(3, 3))) < 1e-30:
-        what = f"{_name(path)} is no homography, which are 9 numbers that make an invertible matrix"
+        what = f"{_name(path)} is not a homography, which are 9 numbers that make an invertible matrix"
         raise BridgeError("bridge-file", what, "give a file with three lines of three numbers")
     return matrix.reshape(3, 3)
 
@@ -103,7 +103,7 @@ def _lines(path: Path) -> Iterator[tuple[int, str]]:
     try:
         size = path.stat().st_size
         if not path.is_file():
-            raise BridgeError("bridge-file", f"{_name(path)} is no file", "name a file of recorded pedestrians")
+            raise BridgeError("bridge-file", f"{_name(path)} is not a file", "name a file of recorded pedestrians")
         if size > _MAX_BYTES:
             what = f"{_name(path)} has {size / 1e6:.0f} MB, more than {_MAX_BYTES / 1e6:.0f} MB"
             raise BridgeError("bridge-file", what, "cut a part out of it, such as its first lines")
@@ -160,10 +160,10 @@ def _read_splines(path: Path, lines: Iterator[tuple[int, str]]) -> Numbers:
 
 
 def _next(path: Path, lines: Iterator[tuple[int, str]], what: str) -> tuple[int, str]:
-    found = next(lines, None)
-    if found is None:
+    result = next(lines, None)
+    if result is None:
         raise BridgeError("bridge-file", f"{_name(path)} ends before {what}", "give the whole file: it is truncated")
-    return found
+    return result
 
 
 def _count(path: Path, number: int, text: str) -> int:

@@ -36,7 +36,7 @@ _PATIENCE = 2.5
 ROBOT_RADIUS = 0.3
 """[m]."""
 _FIRST, _ROOM = 2.0, 0.5
-"""For how long from the start nobody comes closer to where the robot starts than this [s, m]."""
+"""For how long from the start no pedestrian comes closer to where the robot starts than this [s, m]."""
 _EVENTS_PER_ROW = 6
 """Events of YAML of one row: a time, two numbers and the brackets around them."""
 _FIX = "choose a window of time or space: --from, --to, --crop"

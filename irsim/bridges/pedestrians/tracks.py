@@ -83,9 +83,9 @@ def pixels_to_metres(
         return places * scale
     if size is not None:
         places = np.stack([places[:, 0] + size[0] / 2, size[1] / 2 - places[:, 1]], axis=1)
-    found = np.concatenate([places, np.ones((len(places), 1))], axis=1) @ homography.T
+    result = np.concatenate([places, np.ones((len(places), 1))], axis=1) @ homography.T
     with np.errstate(divide="ignore", invalid="ignore"):
-        ground: Floats = found[:, :2] / found[:, 2:]
+        ground: Floats = result[:, :2] / result[:, 2:]
     if not np.isfinite(ground).all() or np.abs(ground).max(initial=0.0) > 1e6:
         what = "the homography maps a place to infinity"
         raise BridgeError("bridge-file", what, "is it one of this video, or its inverse?")
@@ -105,7 +105,7 @@ def make_tracks(recording: Recording, places: Floats, rate: float, window: Windo
         The tracks, and how many persons were left out because a single row of them is in the window.
 
     Raises:
-        BridgeError: Somebody is at two places in one frame, or the recording is longer than 11 days.
+        BridgeError: A pedestrian is at two places in one frame, or the recording is longer than 11 days.
     """
     if not len(recording.frame):
         return [], 0

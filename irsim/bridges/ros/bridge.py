@@ -125,25 +125,25 @@ class RosBridge(Bridge):
 
     def notes(self) -> list[str]:
         """What was wrong with messages from outside, and how often robots had to stop."""
-        found = [
+        result = [
             f"{self.name}: {topic}: {count} message(s) ignored: {problem}"
             for (topic, problem), count in self._reports.counts.items()
         ]
-        found += [
+        result += [
             f"{self.name}: the topics of '{name}' are below /{spelled}" for name, spelled in self._spelled.items()
         ]
-        found += [f"{self.name}: {text} ({count} times)" for text, count in self._reports.heard.items()]
+        result += [f"{self.name}: {text} ({count} times)" for text, count in self._reports.heard.items()]
         if self._inbox.refused:
-            found.append(f"{self.name}: {self._inbox.refused} messages were too long")
+            result.append(f"{self.name}: {self._inbox.refused} messages were too long")
         if self._real is not None:
-            found += self._real.notes()
+            result += self._real.notes()
             if self.options.dry_run:
-                found.append(f"{self.name}: dry run: no robot was commanded; dry_run: false sends commands")
+                result.append(f"{self.name}: dry run: no robot was commanded; dry_run: false sends commands")
         elif isinstance(self.options, RosOptions):
             given = [key for key in ("dry_run", "odom_origin", "max_speed") if key in self.options.model_fields_set]
             if given:
-                found.append(f"{self.name}: {', '.join(given)} had no effect: no robot is real without mode: real")
-        return found
+                result.append(f"{self.name}: {', '.join(given)} had no effect: no robot is real without mode: real")
+        return result
 
     def close(self) -> None:
         """Send zero commands to real robots and disconnect."""
@@ -166,18 +166,18 @@ class RosBridge(Bridge):
             for key, one in options.qos.items()
         }
         stamped = isinstance(options, RosOptions) and options.stamped
-        found = scene_topics(scene, robots, self._mode, names=options.topics, qos=qos, stamped=stamped)
+        result = scene_topics(scene, robots, self._mode, names=options.topics, qos=qos, stamped=stamped)
         if self._mode == "sim":
-            return found
+            return result
         unused = "cmd_vel" if options.dry_run else "cmd_vel_preview"
-        return tuple(topic for topic in found if topic.key != unused)
+        return tuple(topic for topic in result if topic.key != unused)
 
     def _command_topics(self) -> list[Topic]:
-        found = [topic for topic in self.topics if topic.key == "cmd_vel"]
-        if {topic.robot for topic in found} != self.agents:
+        result = [topic for topic in self.topics if topic.key == "cmd_vel"]
+        if {topic.robot for topic in result} != self.agents:
             raise BridgeError("bridge-mismatch", "robots without the topic cmd_vel cannot be driven",
                               "topics: {cmd_vel: /cmd_vel}, or dry_run: true")  # fmt: skip
-        return found
+        return result
 
     def _publish_once(self, start: WorldState) -> None:
         stamp = nanoseconds(start.time) if self._mode == "sim" else time.time_ns()
@@ -232,9 +232,9 @@ class RosBridge(Bridge):
 
 def _chosen(scene: SceneDescription, names: Sequence[str]) -> list[SceneObject]:
     """The robots with these names, or all robots."""
-    found = {robot.name: robot for robot in scene.robots}
+    result = {robot.name: robot for robot in scene.robots}
     for name in names:
-        if name not in found:
-            fix = suggestion(name, found, f"the robots are {', '.join(found)}")
+        if name not in result:
+            fix = suggestion(name, result, f"the robots are {', '.join(result)}")
             raise BridgeError("bridge-mismatch", f"robots: there is no robot {name!r}", fix)
-    return [found[name] for name in names] if names else list(found.values())
+    return [result[name] for name in names] if names else list(result.values())

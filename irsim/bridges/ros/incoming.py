@@ -74,8 +74,8 @@ class Inbox:
     def take(self) -> dict[Topic, Arrival]:
         """All that has come since the last call."""
         with self._lock:
-            found, self._newest = self._newest, {}
-        return found
+            result, self._newest = self._newest, {}
+        return result
 
     def tell(self, sentence: str) -> None:
         """Keep what the other program says about itself."""
@@ -86,8 +86,8 @@ class Inbox:
     def told(self) -> list[str]:
         """What the other program has said since the last call."""
         with self._lock:
-            found, self._told = self._told, []
-        return found
+            result, self._told = self._told, []
+        return result
 
 
 MAX_METERS = 1e7
@@ -142,7 +142,7 @@ def decode(messages: Messages, topic: Topic, content: Any) -> Any:
         return content
     try:
         return messages.from_cdr(content, topic.kind)
-    except Exception:  # rosbags raises errors of many kinds for bytes that are no message
+    except Exception:  # rosbags raises errors of many kinds for bytes that are not a message
         raise MessageError(f"{len(content)} bytes are not a {topic.kind}") from None
 
 
@@ -188,16 +188,16 @@ def read_scan(message: Any) -> Scan:
     """
     ranges = _field(message, "ranges")
     if not isinstance(ranges, (np.ndarray, Sequence)) or isinstance(ranges, (str, bytes)):
-        raise MessageError("the ranges are no list")
+        raise MessageError("the ranges are not a list")
     if not 0 < len(ranges) <= MAX_BEAMS:
         raise MessageError(f"a scan has 1 to {MAX_BEAMS} beams, got {len(ranges)}")
     try:
         values = np.array([math.inf if one is None else one for one in ranges] if not isinstance(
             ranges, np.ndarray) else ranges, dtype=np.float32)  # fmt: skip
     except (TypeError, ValueError):
-        raise MessageError("some ranges are no numbers") from None
+        raise MessageError("some ranges are not numbers") from None
     if values.ndim != 1:
-        raise MessageError("the ranges are no list of numbers")
+        raise MessageError("the ranges are not a list of numbers")
     names = ("angle_min", "angle_increment", "range_min", "range_max")
     first, step, low, high = (_number(_field(message, name), MAX_METERS, name) for name in names)
     if abs(step) * (len(values) - 1) > 4 * math.pi:
@@ -210,7 +210,7 @@ def fitted_ranges(scan: Scan, lidar: Lidar) -> NDArray[np.float32]:
 
     A beam that the scan does not have, or that is out of the range of either, hit nothing.
     """
-    found = np.full(lidar.beams, math.inf, dtype=np.float32)
+    result = np.full(lidar.beams, math.inf, dtype=np.float32)
     count = len(scan.ranges)
     if scan.increment == 0.0:
         places = np.zeros(lidar.beams) if count == 1 else np.full(lidar.beams, math.nan)
@@ -219,10 +219,10 @@ def fitted_ranges(scan: Scan, lidar: Lidar) -> NDArray[np.float32]:
         places = np.mod((lidar.angles - scan.angle_min) / scan.increment + 0.5, turn) - 0.5
     nearest = np.round(np.nan_to_num(places, nan=-1.0)).astype(np.int64)
     seen = (nearest >= 0) & (nearest < count)
-    found[seen] = scan.ranges[nearest[seen]]
+    result[seen] = scan.ranges[nearest[seen]]
     low, high = max(lidar.range_min, scan.low), min(lidar.range_max, scan.high)
-    found[~((found >= low) & (found <= high))] = math.inf
-    return found
+    result[~((result >= low) & (result <= high))] = math.inf
+    return result
 
 
 def _pose(pose: Any) -> tuple[float, float, float]:
@@ -233,7 +233,7 @@ def _pose(pose: Any) -> tuple[float, float, float]:
     if size == 0.0:  # what many programs send if they do not care about a heading
         return x, y, 0.0
     if abs(size - 1.0) > 0.1:
-        raise MessageError(f"the orientation is no unit quaternion, its length is {size:.3g}")
+        raise MessageError(f"the orientation is not a unit quaternion, its length is {size:.3g}")
     qx, qy, qz, qw = quaternion
     return x, y, math.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
 
@@ -252,7 +252,7 @@ def _numbers(values: Sequence[Any], limit: float, what: str) -> tuple[float, flo
 
 def _number(value: Any, limit: float, what: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float, np.floating)):
-        raise MessageError(f"{what} is no number")
+        raise MessageError(f"{what} is not a number")
     number = float(value)
     if not math.isfinite(number):
         raise MessageError(f"{what} is {number}")

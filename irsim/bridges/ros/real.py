@@ -95,14 +95,14 @@ class RealRobots:
 
     def twists(self, now: float) -> dict[str, Pose]:
         """Their velocities [m/s, m/s, rad/s] in the world frame; zero of those that are stopped."""
-        found = {}
+        result = {}
         for name, pose in self.poses().items():
             robot = self._robots[name]
             assert robot.odometry is not None
             forward, left, rate = ZERO if self._is_old(robot, now) else robot.odometry.velocity
             cosine, sine = math.cos(pose[2]), math.sin(pose[2])
-            found[name] = (cosine * forward - sine * left, sine * forward + cosine * left, rate)
-        return found
+            result[name] = (cosine * forward - sine * left, sine * forward + cosine * left, rate)
+        return result
 
     def commands(self, motion: Motion, now: float) -> dict[str, Velocity]:
         """What the robots are commanded in a step: what they want, or zero while their odometry or scans are old.
@@ -110,7 +110,7 @@ class RealRobots:
         Raises:
             BridgeLostError: No odometry has come for so long that the robot counts as lost.
         """
-        found = {}
+        result = {}
         for name, robot in self._robots.items():
             age = now - robot.when
             if age > self.options.lost_timeout:
@@ -118,12 +118,12 @@ class RealRobots:
                 raise BridgeLostError(what, "see whether the robot runs, then run the scenario again")
             if self._is_old(robot, now):
                 robot.stops += 1
-                found[name] = ZERO
+                result[name] = ZERO
                 continue
             row = robot.agent.index
             start = float(motion.pose[row, 2] - motion.twist[row, 2] * self.step_time)
-            found[name] = body_velocity(motion.twist[row], start)
-        return found
+            result[name] = body_velocity(motion.twist[row], start)
+        return result
 
     def notes(self) -> list[str]:
         """How often robots had to stop because their odometry was old."""

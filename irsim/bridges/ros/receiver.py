@@ -151,15 +151,15 @@ class Receiver:
     def _fresh_commands(self) -> dict[str, Velocity]:
         """Commands of robots that have got some; zero if the last one is too old."""
         oldest = time.monotonic() - self._options.command_timeout
-        found = {}
+        result = {}
         for name, (command, when) in list(self._commands.items()):
             if when >= oldest:
-                found[name] = command
+                result[name] = command
             elif self._options.after_command == "stop":
-                found[name] = ZERO
+                result[name] = ZERO
             else:
                 del self._commands[name]
-        return found
+        return result
 
     def _fresh_ranges(self) -> dict[str, NDArray[np.float32]]:
         """Scans that are not older than odometry may be."""

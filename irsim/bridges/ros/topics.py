@@ -188,7 +188,7 @@ def scene_topics(
         BridgeError: A name cannot be one of a topic, or two topics have the same one.
     """
     spelled = dict(zip(scene.names, ros_names(scene.names), strict=True))
-    found: list[Topic] = []
+    result: list[Topic] = []
     for key, row in TABLE.items():
         direction = row.sim if mode == "sim" else row.real
         pattern = names.get(key, row.name)
@@ -200,17 +200,17 @@ def scene_topics(
         kind = f"{row.kind}Stamped" if stamped and row.kind == _TWIST else row.kind
         base = Topic(key, pattern, kind, direction == "out", qos.get(key, row.qos))
         if row.per == "scene":
-            found.append(base)
+            result.append(base)
         for robot in robots if row.per != "scene" else ():
             named = pattern.replace("{robot}", spelled[robot.name])
             if row.per == "robot":
-                found.append(replace(base, name=named, robot=robot.name))
+                result.append(replace(base, name=named, robot=robot.name))
                 continue
             for lidar in robot.lidars:
                 lidar_name = named.replace("{n}", _suffix(lidar.number))
-                found.append(replace(base, name=lidar_name, robot=robot.name, lidar=lidar.key))
-    _check_unique(found)
-    return tuple(found)
+                result.append(replace(base, name=lidar_name, robot=robot.name, lidar=lidar.key))
+    _check_unique(result)
+    return tuple(result)
 
 
 def pedestrians(scene: SceneDescription) -> list[SceneObject]:

@@ -98,7 +98,7 @@ def read_header(path: Path) -> Header:
     """Read the header of a PLY file.
 
     Raises:
-        BridgeError: The file cannot be read or is no PLY file; the message has the line.
+        BridgeError: The file cannot be read or is not a PLY file; the message has the line.
     """
     try:
         with path.open("rb") as file:

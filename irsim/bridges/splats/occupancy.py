@@ -68,7 +68,7 @@ def spread(
         (nx, ny) mean of the sum over each cell.
     """
     level = _levels(footprints.cover, cell / _FINE)
-    found = np.zeros(shape)
+    result = np.zeros(shape)
     done = 0
     for number in np.unique(level):
         rows = np.flatnonzero(level == number)
@@ -79,12 +79,12 @@ def spread(
         )  # fmt: skip
         sums = _sums(part, origin, (size[0], size[1]), side, partial(_told, progress, done))
         if number == 0:
-            found += sums.reshape(shape[0], _FINE, shape[1], _FINE).mean(axis=(1, 3))
+            result += sums.reshape(shape[0], _FINE, shape[1], _FINE).mean(axis=(1, 3))
         else:
             times = _FINE ** (int(number) - 1)
-            found += sums.repeat(times, axis=0).repeat(times, axis=1)[: shape[0], : shape[1]]
+            result += sums.repeat(times, axis=0).repeat(times, axis=1)[: shape[0], : shape[1]]
         done += len(rows)
-    return found.astype(np.float32)
+    return result.astype(np.float32)
 
 
 def _told(progress: Callable[[int], None], before: int, done: int) -> None:
@@ -98,14 +98,14 @@ def _levels(cover: Floats, finest: float) -> NDArray[np.int64]:
     thin = np.sqrt(np.maximum((cover[:, 0] + cover[:, 2]) / 2 - apart, 0.0)) / finest
     for_few = _power(reach / _MAX_REACH)
     for_shape = np.maximum(_power(thin / _FINE), np.where(reach <= _MAX_LONG_REACH, 0, 1))
-    found: NDArray[np.int64] = np.minimum(np.minimum(for_few, for_shape), _LEVELS)
-    return found
+    result: NDArray[np.int64] = np.minimum(np.minimum(for_few, for_shape), _LEVELS)
+    return result
 
 
 def _power(ratio: Floats) -> NDArray[np.int64]:
     """Smallest power of the ratio of grids that is not below a ratio; 0 for ratios below 1."""
-    found: NDArray[np.int64] = np.ceil(np.log(np.maximum(ratio, 1.0)) / np.log(_FINE) - 1e-9).astype(np.int64)
-    return found
+    result: NDArray[np.int64] = np.ceil(np.log(np.maximum(ratio, 1.0)) / np.log(_FINE) - 1e-9).astype(np.int64)
+    return result
 
 
 def _sums(
@@ -338,8 +338,8 @@ def _normal_share(x: Floats) -> Floats:
     t = 1 / (1 + 0.2316419 * np.abs(x))
     tail = np.exp(-0.5 * np.minimum(x * x, 1400.0)) / math.sqrt(2 * math.pi)
     poly = t * (0.319381530 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429))))
-    found: Floats = np.where(x >= 0, 1 - tail * poly, tail * poly)
-    return found
+    result: Floats = np.where(x >= 0, 1 - tail * poly, tail * poly)
+    return result
 
 
 def _extent(above: Footprints, options: PlanOptions) -> tuple[tuple[float, float], tuple[int, int]]:

@@ -198,10 +198,10 @@ class _Cinema:
         low, high = np.nanmin(points, axis=0) - 1.5, np.nanmax(points, axis=0) + 1.5
         middle, size = (low + high) / 2, high - low
         height = options.focal * max(size[0] / options.width, size[1] / options.rows)
-        found = np.eye(4)
-        found[:3, :3] = np.diag([1.0, -1.0, -1.0])
-        found[:3, 3] = [*middle, height]
-        return found
+        result = np.eye(4)
+        result[:3, :3] = np.diag([1.0, -1.0, -1.0])
+        result[:3, 3] = [*middle, height]
+        return result
 
     def _visible(self, eye: Floats) -> Splats:
         """The splats of the scene without those that hide what is to be seen."""
@@ -221,17 +221,17 @@ def _looking(place: Floats, target: Floats) -> Floats:
     forward = (target - place) / np.linalg.norm(target - place)
     left = np.cross([0.0, 0.0, 1.0], forward)
     left /= np.linalg.norm(left)
-    found = np.eye(4)
-    found[:3, :3] = np.column_stack([forward, left, np.cross(forward, left)]) @ CAMERA_AXES["colmap"]
-    found[:3, 3] = place
-    return found
+    result = np.eye(4)
+    result[:3, :3] = np.column_stack([forward, left, np.cross(forward, left)]) @ CAMERA_AXES["colmap"]
+    result[:3, 3] = place
+    return result
 
 
 def _in_scene(matrix: Floats, world: Scene) -> Floats:
     """A camera of irsim in the frame of the scene, as a rigid matrix."""
-    found: Floats = world.transform @ matrix
-    found[:3, :3] /= world.scale
-    return found
+    result: Floats = world.transform @ matrix
+    result[:3, :3] /= world.scale
+    return result
 
 
 def _write_sheet(cells: list[tuple[str, NDArray[np.uint8]]], target: Path) -> None:

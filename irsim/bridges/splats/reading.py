@@ -53,7 +53,7 @@ def read_splats(path: str | Path, *, harmonics: bool = False) -> Splats:
         harmonics: Whether to read the colors that change with the view direction, too.
 
     Raises:
-        BridgeError: The file cannot be read, is truncated, lacks a column, or has a value that is no number.
+        BridgeError: The file cannot be read, is truncated, lacks a column, or has a value that is not a number.
     """
     source = Path(path)
     header = read_header(source)
@@ -150,11 +150,11 @@ def _text_rows(
     while done < vertex.count:
         chunk = file.read(_CHUNK_BYTES // 16)
         text = rest + chunk
-        found = text.split()
-        rest = found.pop() if found and chunk and not text[-1:].isspace() else b""
+        result = text.split()
+        rest = result.pop() if result and chunk and not text[-1:].isspace() else b""
         if len(rest) > _MAX_WORD:
             _refuse(path, f"splat {done:,}: there is a word of more than {_MAX_WORD} characters")
-        words += found
+        words += result
         count = min(len(words) // width, vertex.count - done)
         if count:
             try:
@@ -169,7 +169,7 @@ def _text_rows(
 
 
 def _check_values(path: Path, rows: NDArray[np.float64], fields: list[str], first: int) -> None:
-    """Refuse values that are no numbers; an infinite logit is an opacity of 0 or 1."""
+    """Refuse values that are not numbers; an infinite logit is an opacity of 0 or 1."""
     bad = ~np.isfinite(rows)
     opacity = fields.index("opacity")
     bad[:, opacity] = np.isnan(rows[:, opacity])

@@ -59,10 +59,10 @@ class Body:
     @property
     def triangles(self) -> list[tuple[float, float]]:
         """Corners of triangles that cover the footprint, three after each other."""
-        found = []
+        result = []
         for triangle in shapely.constrained_delaunay_triangles(self.shape).geoms:
-            found += [(float(x), float(y)) for x, y in triangle.exterior.coords[:3]]
-        return found
+            result += [(float(x), float(y)) for x, y in triangle.exterior.coords[:3]]
+        return result
 
 
 def body_of(agent: SceneObject) -> Body | None:
@@ -221,8 +221,8 @@ def open_recording(
     """
     opened = run if isinstance(run, Run) else open_run(run, workspace)
     scene = recorded_scene(opened, limits)
-    found = [(number, body) for number, agent in enumerate(scene.agents) if (body := body_of(agent)) is not None]
-    rows = [number for number, _ in found]
+    result = [(number, body) for number, agent in enumerate(scene.agents) if (body := body_of(agent)) is not None]
+    rows = [number for number, _ in result]
     steps, times, poses = [], [], []
     for state in recorded_states(opened, every, limits):
         steps.append(state.step)
@@ -232,7 +232,7 @@ def open_recording(
         opened,
         scene,
         scene_of(opened, options, limits, "irsim"),
-        tuple(body for _, body in found),
+        tuple(body for _, body in result),
         np.array(steps, dtype=np.int64),
         np.array(times),
         np.array(poses).reshape(len(steps), len(rows), 3),

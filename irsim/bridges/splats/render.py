@@ -56,8 +56,8 @@ def colors_seen(color: Singles, harmonics: Singles | None, direction: Singles) -
             -0.5900435899266435 * x * (x * x - 3 * y * y),
         ]
     weights = np.stack(terms, axis=1)
-    found: Singles = np.maximum(color + np.einsum("nk,nkc->nc", weights, harmonics[:, : len(terms)]), 0)
-    return found
+    result: Singles = np.maximum(color + np.einsum("nk,nkc->nc", weights, harmonics[:, : len(terms)]), 0)
+    return result
 
 
 _NEAR = 0.05
@@ -118,17 +118,17 @@ def picture(splats: Splats, view: View, background: tuple[float, float, float] =
     """
     if not (0 < view.width <= _MAX_SIDE and 0 < view.rows <= _MAX_SIDE):
         raise ValueError(f"a picture has 1 to {_MAX_SIDE} pixels along each side, got {view.width} x {view.rows}")
-    found = _project(splats, view)
+    result = _project(splats, view)
     pixels = view.width * view.rows
     color = np.zeros((pixels, 3), dtype=np.float64)
     through = np.ones(pixels, dtype=np.float64)
-    areas = (found.box[:, 1] - found.box[:, 0] + 1).astype(np.int64) * (found.box[:, 3] - found.box[:, 2] + 1)
+    areas = (result.box[:, 1] - result.box[:, 0] + 1).astype(np.int64) * (result.box[:, 3] - result.box[:, 2] + 1)
     ends = np.cumsum(areas)
     first = 0
     while first < len(areas):
         before = int(ends[first - 1]) if first else 0
         last = max(first + 1, int(np.searchsorted(ends, before + _PAIRS, side="right")))
-        _blend(found, first, last, areas[first:last], view.width, color, through)
+        _blend(result, first, last, areas[first:last], view.width, color, through)
         first = last
         if through.max() < _FULL:
             break

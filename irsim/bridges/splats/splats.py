@@ -53,17 +53,17 @@ class Splats:
 def rotation_matrices(quaternion: Singles) -> Singles:
     """(N, 3, 3) rotations of unit quaternions (N, 4) w, x, y, z."""
     w, x, y, z = np.moveaxis(quaternion, -1, 0)
-    found = np.empty((*quaternion.shape[:-1], 3, 3), dtype=np.float32)
-    found[..., 0, 0] = 1 - 2 * (y * y + z * z)
-    found[..., 0, 1] = 2 * (x * y - w * z)
-    found[..., 0, 2] = 2 * (x * z + w * y)
-    found[..., 1, 0] = 2 * (x * y + w * z)
-    found[..., 1, 1] = 1 - 2 * (x * x + z * z)
-    found[..., 1, 2] = 2 * (y * z - w * x)
-    found[..., 2, 0] = 2 * (x * z - w * y)
-    found[..., 2, 1] = 2 * (y * z + w * x)
-    found[..., 2, 2] = 1 - 2 * (x * x + y * y)
-    return found
+    result = np.empty((*quaternion.shape[:-1], 3, 3), dtype=np.float32)
+    result[..., 0, 0] = 1 - 2 * (y * y + z * z)
+    result[..., 0, 1] = 2 * (x * y - w * z)
+    result[..., 0, 2] = 2 * (x * z + w * y)
+    result[..., 1, 0] = 2 * (x * y + w * z)
+    result[..., 1, 1] = 1 - 2 * (x * x + z * z)
+    result[..., 1, 2] = 2 * (y * z - w * x)
+    result[..., 2, 0] = 2 * (x * z - w * y)
+    result[..., 2, 1] = 2 * (y * z + w * x)
+    result[..., 2, 2] = 1 - 2 * (x * x + y * y)
+    return result
 
 
 def covariance_of(scale: Singles, quaternion: Singles, linear: Floats | None = None) -> Singles:
@@ -72,8 +72,8 @@ def covariance_of(scale: Singles, quaternion: Singles, linear: Floats | None = N
     if linear is not None:
         axes = linear.astype(np.float32) @ axes
     stretched = axes * scale[:, None, :]
-    found: Singles = stretched @ np.swapaxes(stretched, 1, 2)
-    return found
+    result: Singles = stretched @ np.swapaxes(stretched, 1, 2)
+    return result
 
 
 def scale_of(transform: Floats) -> float:

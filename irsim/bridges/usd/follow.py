@@ -167,13 +167,13 @@ def _operations(prim: Any) -> tuple[Any, Any]:
     from pxr import UsdGeom
 
     placed = UsdGeom.Xformable(prim)
-    found = {operation.GetOpName(): operation for operation in placed.GetOrderedXformOps()}
-    translate, rotate = found.get("xformOp:translate"), found.get("xformOp:rotateZ")
+    result = {operation.GetOpName(): operation for operation in placed.GetOrderedXformOps()}
+    translate, rotate = result.get("xformOp:translate"), result.get("xformOp:rotateZ")
     if translate is not None and rotate is not None:
         return translate, rotate
     placed.ClearXformOpOrder()
     double = UsdGeom.XformOp.PrecisionDouble
-    kept = [operation for name, operation in found.items() if name.startswith("xformOp:scale")]
+    kept = [operation for name, operation in result.items() if name.startswith("xformOp:scale")]
     made = translate or placed.AddTranslateOp(double), rotate or placed.AddRotateZOp(double)
     placed.SetXformOpOrder([*made, *kept])
     return made

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["WALL_THICKNESS", "Solid", "arrow", "disc_solid", "grid_solid", "line_solid", "plane", "polygon_solid"]
 
 WALL_THICKNESS = 0.05
-"""Thickness of solids of lines, which have none in the plane [m]."""
+"""Thickness of solids of lines, which are infinitely thin in the plane [m]."""
 _DISC_CORNERS = 48
 _CONVEX = 1e-9
 """Share of its area by which the convex hull of a convex region may be larger, because of rounding."""
@@ -94,10 +94,10 @@ def line_solid(line: Line, height: float, thickness: float = WALL_THICKNESS) -> 
 
 def grid_solid(grid: Grid, height: float) -> Solid | None:
     """Boxes over the solid cells of a map, as few as runs along x that repeat along y allow; None without any."""
-    found = merged_cells(grid)
-    if not len(found):
+    result = merged_cells(grid)
+    if not len(result):
         return None
-    x0, y0, x1, y1 = found.T
+    x0, y0, x1, y1 = result.T
     corners = [np.stack(pair, axis=1) for pair in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
     return _boxes(np.stack(corners, axis=1), height)
 
@@ -111,9 +111,9 @@ def plane(low: tuple[float, float], high: tuple[float, float]) -> Solid:
 def arrow(radius: float, low: float, high: float) -> Solid:
     """A flat wedge that shows where a body of this radius [m] looks, between two heights [m]."""
     corners = np.array([[0.9, 0.0], [0.35, 0.35], [0.35, -0.35]]) * radius
-    found = polygon_solid(Polygon(corners), high - low)
-    assert found is not None
-    return replace(found, points=found.points + np.array([0.0, 0.0, low]))
+    result = polygon_solid(Polygon(corners), high - low)
+    assert result is not None
+    return replace(result, points=result.points + np.array([0.0, 0.0, low]))
 
 
 def _boxes(quads: Floats, height: float) -> Solid:

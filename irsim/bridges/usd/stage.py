@@ -32,7 +32,7 @@ _LONGEST = 100
 def prim_names(names: Iterable[str]) -> list[str]:
     """A valid name for each name, all different: ``robot 1`` becomes ``robot_1``, a second one ``robot_1_2``."""
     taken: set[str] = set()
-    found = []
+    result = []
     for name in names:
         plain = re.sub(r"[^A-Za-z0-9_]", "_", name)[:_LONGEST] or "object"
         plain = f"_{plain}" if plain[0].isdigit() else plain
@@ -40,8 +40,8 @@ def prim_names(names: Iterable[str]) -> list[str]:
         while chosen.lower() in taken:
             chosen, number = f"{plain}_{number}", number + 1
         taken.add(chosen.lower())
-        found.append(chosen)
-    return found
+        result.append(chosen)
+    return result
 
 
 _ROUGHNESS = 0.6

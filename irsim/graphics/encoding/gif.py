@@ -150,8 +150,8 @@ def _palette(image: Image.Image, hints: Sequence[tuple[int, int, int]], max_colo
         words = words[words != np.array([red, green, blue, 255], np.uint8).view(np.uint32)[0]]
     rest = words if words.size else np.zeros(1, np.uint32)
     other = Image.frombuffer("RGBA", (rest.size, 1), rest.tobytes(), "raw", "RGBA", 0, 1).convert("RGB")
-    found = other.quantize(max_colors, method=Image.Quantize.MEDIANCUT).getpalette() or []
-    own = [(found[i], found[i + 1], found[i + 2]) for i in range(0, len(found), 3)]
+    result = other.quantize(max_colors, method=Image.Quantize.MEDIANCUT).getpalette() or []
+    own = [(result[i], result[i + 1], result[i + 2]) for i in range(0, len(result), 3)]
     chosen: list[tuple[int, int, int]] = list(dict.fromkeys(hints))[:MAX_HINTS]
     for color in own:
         distances = np.abs(np.array(chosen, dtype=np.int16).reshape(-1, 3) - np.array(color, dtype=np.int16))

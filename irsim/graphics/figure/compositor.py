@@ -211,9 +211,9 @@ class Compositor:
             renderer = self._canvas().get_renderer()
             for artist in self.ax.get_children():
                 if artist.get_visible() and not _is_inside(artist, self.ax):
-                    found = artist.get_tightbbox(renderer)
-                    if found is not None and math.isfinite(found.width) and math.isfinite(found.height):
-                        boxes.append(found)
+                    result = artist.get_tightbbox(renderer)
+                    if result is not None and math.isfinite(result.width) and math.isfinite(result.height):
+                        boxes.append(result)
             box = Bbox.union(boxes)
         width, height = self.size
         pad = pad_inches * self.figure.dpi

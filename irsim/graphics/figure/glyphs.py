@@ -48,12 +48,12 @@ class Glyphs:
 
     def get(self, key: Hashable, make: Callable[[], _Piece]) -> _Piece:
         """Return the piece with this key; a new one is made by ``make``."""
-        found = self._known.get(key)
-        if found is None:
+        result = self._known.get(key)
+        if result is None:
             if len(self._known) >= MAX_CACHED_PIECES:
                 self._known.clear()
-            found = self._known[key] = make()
-        return found
+            result = self._known[key] = make()
+        return result
 
 
 class QuickText(Text):

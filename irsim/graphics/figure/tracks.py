@@ -92,13 +92,13 @@ class LineLayer:
 
     def layers(self) -> list[PixelLayer]:
         """Return the layer as masks with their colours."""
-        found = []
+        result = []
         for line in self._tracks:
             mask = self._masks[line]
             if mask.box is not None:
                 left, top, right, bottom = mask.box
-                found.append((mask.coverage[top:bottom, left:right], left, top, mask.color, mask.alpha))
-        return found
+                result.append((mask.coverage[top:bottom, left:right], left, top, mask.color, mask.alpha))
+        return result
 
     @property
     def boxes(self) -> list[Box]:

@@ -86,10 +86,10 @@ class Body:
 
 def read_body(state: State, row: int) -> Body:
     """Read the shape of the object in one row of the simulation."""
-    found = outline(state, row)
-    kind = _KINDS[type(found.parts[0])] if len(found.parts) == 1 else "compound"
-    (left, bottom), (right, top) = (corner.tolist() for corner in found.box())
-    return Body(kind, geometry_of(found.parts), (left, bottom), (right, top), float(state.radius[row]))
+    result = outline(state, row)
+    kind = _KINDS[type(result.parts[0])] if len(result.parts) == 1 else "compound"
+    (left, bottom), (right, top) = (corner.tolist() for corner in result.box())
+    return Body(kind, geometry_of(result.parts), (left, bottom), (right, top), float(state.radius[row]))
 
 
 def geometry_of(parts: Sequence[outlines.Part]) -> Geometry:

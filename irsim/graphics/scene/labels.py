@@ -88,8 +88,8 @@ def free_places(
             placed[i] = choices[int(cost.argmin())]
             if cost.min() <= _COST_OF_DISTANCE * _DISTANCES[_CLOSE]:
                 break
-    found: Floats = placed[:, :2] - boxes[:, :2]
-    return found
+    result: Floats = placed[:, :2] - boxes[:, :2]
+    return result
 
 
 def leader(box: Floats, thing: Floats) -> Floats | None:

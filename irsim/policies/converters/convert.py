@@ -107,15 +107,15 @@ def parse_options(texts: Sequence[str]) -> dict[str, Any]:
     """Options of a command that are given as ``KEY=VALUE``, with values in YAML.
 
     Raises:
-        ArgumentError: A text is none.
+        ArgumentError: A text is not of the form KEY=VALUE.
     """
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals:
             raise ArgumentError(f"{as_given(text)} is not an option", "write KEY=VALUE")
         try:
-            found[key] = yaml.safe_load(value)
+            result[key] = yaml.safe_load(value)
         except yaml.YAMLError:
-            found[key] = value
-    return found
+            result[key] = value
+    return result

@@ -58,7 +58,7 @@ class Weights:
             shape: Its sides; None for any.
 
         Raises:
-            PolicyFileError: There is none, several differ, or it has another shape; the message lists the arrays.
+            PolicyFileError: No array has such a name, several differ, or its shape does not fit; the message lists all.
         """
         for ending in endings:
             named = [name for name in self.arrays if name == ending or name.endswith(f".{ending}")]

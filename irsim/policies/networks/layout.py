@@ -99,18 +99,18 @@ def observe(layout: Layout, observations: Observations) -> dict[str, Value]:
         PolicyInputError: Something that a part needs is not observed.
     """
     rows = _seen_rows(observations)
-    found = {}
+    result = {}
     for part, kernel in zip(layout.parts, layout.kernels, strict=True):
         part.check(observations)
         if kernel is None:
             feature = PARTS.get(part.name)
             assert feature is not None
             assert feature.function is not None, "the registry refuses parts that nothing computes"
-            found[part.key] = feature.function(observations, part)
+            result[part.key] = feature.function(observations, part)
         else:
             array, mask = core.look(kernel, rows)
-            found[part.key] = Value(array, None if mask is None else mask.view(bool))
-    return found
+            result[part.key] = Value(array, None if mask is None else mask.view(bool))
+    return result
 
 
 def _seen_rows(observations: Observations) -> core.SeenRows:

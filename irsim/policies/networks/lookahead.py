@@ -74,7 +74,7 @@ class Lookahead(Options):
 
     V is the value of the state after the move, which the network returns: the robot has moved for `dt`, and neighbors
     have kept their velocities. v is the largest speed of the robot. A robot that is within the threshold of its goal
-    stands still, and one that sees nobody goes straight to its goal.
+    stands still, and one that sees no neighbor goes straight to its goal.
 
     Source: Chen, Liu, Kreiss, Alahi: Crowd-Robot Interaction (2019).
     """
@@ -110,8 +110,8 @@ def take_rows(observations: Observations, rows: NDArray[np.intp] | slice) -> Obs
     """What some of the robots observe, in this order, without scans and maps."""
 
     def taken(whole: Observations | Neighbors) -> dict[str, NDArray[np.generic]]:
-        found = ((field.name, getattr(whole, field.name)) for field in fields(whole))
-        return {name: value[rows] for name, value in found if isinstance(value, np.ndarray)}
+        result = ((field.name, getattr(whole, field.name)) for field in fields(whole))
+        return {name: value[rows] for name, value in result if isinstance(value, np.ndarray)}
 
     seen = observations.neighbors
     others = None if seen is None else replace(seen, **taken(seen))  # type: ignore[arg-type]
@@ -191,10 +191,10 @@ def _reward(options: Lookahead, before: Observations, pose: Floats, velocity: Fl
     reward, dt = options.reward, options.dt
     away = before.goal[:, :2] - pose[:, :2]
     near = np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1]) < before.goal_threshold  # False without a goal
-    found = np.where(near, reward.goal, 0.0)
+    result = np.where(near, reward.goal, 0.0)
     seen = before.neighbors
     if seen is None or seen.mask.shape[1] == 0:
-        return found
+        return result
     relative = seen.position - before.pose[:, None, :2]
     drift = (seen.velocity - velocity[:, None]) * dt
     share = np.ones(seen.mask.shape)
@@ -207,8 +207,8 @@ def _reward(options: Lookahead, before: Observations, pose: Floats, velocity: Fl
     gaps = np.where(seen.mask, distance - before.radius[:, None] - seen.radius, np.inf)
     gap = gaps.min(axis=1)
     missing = np.minimum(gap - reward.distance, 0.0) * reward.discomfort * dt
-    found = np.where(near, reward.goal, np.where(np.isfinite(missing), missing, 0.0))
-    return np.where(gap < 0.0, reward.collision, found)
+    result = np.where(near, reward.goal, np.where(np.isfinite(missing), missing, 0.0))
+    return np.where(gap < 0.0, reward.collision, result)
 
 
 def best_moves(values: Floats, futures: Futures) -> Floats:

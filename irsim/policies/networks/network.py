@@ -39,11 +39,11 @@ class Network:
 
     def by_layer(self) -> dict[str, dict[str, Array]]:
         """Label of a layer -> its arrays by name."""
-        found: dict[str, dict[str, Array]] = {}
+        result: dict[str, dict[str, Array]] = {}
         for key, array in self.arrays.items():
             label, _, name = key.partition(".")
-            found.setdefault(label, {})[name] = array
-        return found
+            result.setdefault(label, {})[name] = array
+        return result
 
 
 def read_document(model: type[BaseModel], data: Any, source: str) -> Any:

@@ -91,23 +91,23 @@ def _pairs(weights: Mapping[str, Any] | Sequence[tuple[Any, Any]], source: str) 
     """Weights (inputs, outputs) and biases (outputs) in the order of the layers."""
     if isinstance(weights, Mapping) or hasattr(weights, "files"):
         named = {str(name): weights[name] for name in weights}  # type: ignore[call-overload,index]
-        found = _numbered(named) or _of_torch(named)
+        result = _numbered(named) or _of_torch(named)
     else:
-        found = [(np.asarray(w), np.asarray(b)) for w, b in weights]
-    if not found:
+        result = [(np.asarray(w), np.asarray(b)) for w, b in weights]
+    if not result:
         raise PolicyFileError(source, [flaw("weights", "no layers are found")], _FIX)
-    for k, (w, b) in enumerate(found):
+    for k, (w, b) in enumerate(result):
         if w.ndim != 2 or b.shape != w.shape[1:]:
             shapes = f"{w.shape} and {b.shape}"
             raise PolicyFileError(source, [flaw(("weights", k), "the shapes do not fit", shapes, "(I, O), (O,)")], _FIX)
-    return found
+    return result
 
 
 def _numbered(named: Mapping[str, Any]) -> list[tuple[Array, Array]]:
-    found: list[tuple[Array, Array]] = []
-    while f"W{len(found)}" in named and f"b{len(found)}" in named:
-        found.append((np.asarray(named[f"W{len(found)}"]), np.asarray(named[f"b{len(found)}"])))
-    return found if len(named) == 2 * len(found) else []
+    result: list[tuple[Array, Array]] = []
+    while f"W{len(result)}" in named and f"b{len(result)}" in named:
+        result.append((np.asarray(named[f"W{len(result)}"]), np.asarray(named[f"b{len(result)}"])))
+    return result if len(named) == 2 * len(result) else []
 
 
 def _of_torch(named: Mapping[str, Any]) -> list[tuple[Array, Array]]:

@@ -150,8 +150,8 @@ class _Layers:
 
 def _numbers(weights: Mapping[str, Any], name: str) -> list[int]:
     """The numbers of the layers of a perceptron, in order: 0, 2, 4, …; activations are the odd ones."""
-    found = (key.split(".")[1] for key in weights if key.startswith(f"{name}.") and key.endswith(".weight"))
-    return sorted(int(word) for word in found if word.isdecimal() and len(word) < 4)
+    result = (key.split(".")[1] for key in weights if key.startswith(f"{name}.") and key.endswith(".weight"))
+    return sorted(int(word) for word in result if word.isdecimal() and len(word) < 4)
 
 
 def _perceptron(weights: Mapping[str, Any], name: str) -> _Perceptron:

@@ -113,7 +113,7 @@ def connect(address: str, seconds: float) -> Channel:
         seconds: Longest time to wait [s].
 
     Raises:
-        PeerError: Nobody listens there, or the address is not one of this machine.
+        PeerError: No program listens there, or the address is not one of this machine.
     """
     host, _, port = address.rpartition(":")
     try:

@@ -59,12 +59,12 @@ def answer(line: bytes, kind: str) -> dict[str, Any]:
     """The object of a line.
 
     Raises:
-        PeerError: It is no JSON object of that type.
+        PeerError: It is not a JSON object of that type.
     """
     try:
         data = json.loads(line, parse_constant=lambda name: math.nan)
     except (ValueError, RecursionError):
-        raise _misunderstood(f"answered {_shown(line)}, which is no line of JSON") from None
+        raise _misunderstood(f"answered {_shown(line)}, which is not a line of JSON") from None
     if not isinstance(data, dict) or data.get("type") != kind:
         raise _misunderstood(f"answered {_shown(line)} where an object with type {kind!r} is expected")
     return data
@@ -83,10 +83,10 @@ def declaration(data: dict[str, Any]) -> dict[str, Any]:
         raise _misunderstood(f"declares {clean(unknown[0], _MAX_SHOWN)!r}; it can declare {', '.join(_DECLARED)}")
     said = {key: data[key] for key in _DECLARED if data.get(key) is not None}
     if not isinstance(said.get("name", ""), str) or not isinstance(said.get("stochastic", True), bool):
-        raise _misunderstood("declares a name that is no text, or a stochastic that is neither true nor false")
+        raise _misunderstood("declares a name that is not text, or a stochastic that is neither true nor false")
     if "drives" in said:
         if not (isinstance(said["drives"], list) and all(isinstance(name, str) for name in said["drives"])):
-            raise _misunderstood("declares drives that are no list of names")
+            raise _misunderstood("declares drives that are not a list of names")
         if unknown := sorted({*said["drives"]} - {*KINEMATICS.names()}):
             known = ", ".join(KINEMATICS.names())
             raise _misunderstood(f"declares the drive {clean(unknown[0], _MAX_SHOWN)!r}; drives are {known}")

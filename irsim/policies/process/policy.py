@@ -79,15 +79,15 @@ class ProcessPolicy(Policy):
         """
         data = self._ask(messages.act(observations), "decision", "timeout")
         try:
-            found: Floats = np.asarray(data.get("decision"), dtype=np.float64)
+            result: Floats = np.asarray(data.get("decision"), dtype=np.float64)
         except (TypeError, ValueError):
-            raise self._lost("decided something that is no table of numbers", _ANSWERS) from None
-        if found.ndim != 2 or len(found) != len(observations):
+            raise self._lost("decided something that is not a table of numbers", _ANSWERS) from None
+        if result.ndim != 2 or len(result) != len(observations):
             rows = f"{len(observations)} row{'s' * (len(observations) != 1)}"
-            raise self._lost(f"decided an array of shape {found.shape} where {rows} of numbers are expected", _ANSWERS)
-        if not np.isfinite(found).all():
+            raise self._lost(f"decided an array of shape {result.shape} where {rows} of numbers are expected", _ANSWERS)
+        if not np.isfinite(result).all():
             raise self._lost("decided numbers that are not finite, or null", _ANSWERS)
-        return found
+        return result
 
     def close(self) -> None:
         """End the process, or the connection to it."""

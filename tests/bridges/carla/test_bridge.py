@@ -149,7 +149,7 @@ def test_a_server_that_does_not_clean_up_is_told(server: Server) -> None:
         ({"walkers": ["car"], "vehicles": ["car"]}, "named under walkers and under vehicles"),
         ({"walkers": [], "vehicles": []}, "no object of the scenario is in the town"),
         ({"vehicles": ["walker"]}, "moves sideways"),
-        ({"lidar": {"robots": ["walker"]}}, "no object in the town with a lidar"),
+        ({"lidar": {"robots": ["walker"]}}, "not an object in the town with a lidar"),
         ({"walker_blueprint": "walker.dog"}, "no blueprint 'walker.dog'"),
         ({"town": "Town01"}, "has loaded Carla/Maps/Town03, not Town01"),
         ({"tick": 0.03}, "not a whole number of ticks of 0.03 s"),

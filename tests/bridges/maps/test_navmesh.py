@@ -97,7 +97,7 @@ def test_other_wrong_contents() -> None:
         (good[:8] + struct.pack("<i", 2**31 - 1) + good[12:], "tiles"),
         (good[:44] + struct.pack("<I", 2**32 - 1) + good[48:], "tile 0 of"),
         (good[:48] + b"DNAV" + good[52:], "Detour's version"),
-        (good[:148] + nan + good[152:], "no numbers"),
+        (good[:148] + nan + good[152:], "not numbers"),
         (good[:108] + nan + good[112:], "agent"),
         (mesh_set(version=2) + b"", None),
         (mesh_set(tile(TWO_ROOMS), version=2, settings=4000), "no tile begins"),

@@ -55,7 +55,7 @@ def test_both_ways_over_one_port(start: Callable[..., Peer], make_env: Callable[
     assert said["header"]["frame_id"] == "map"
     assert set(said["header"]["stamp"]) == ({"sec", "nanosec"} if ros == 2 else {"secs", "nsecs"})
     assert len(server.on("/map")) == len(server.on("/irsim/markers")) == 1
-    assert any("the velocity is no number" in note or "is missing" in note for note in notes)  # the bad ones
+    assert any("the velocity is not a number" in note or "is missing" in note for note in notes)  # the bad ones
 
 
 @pytest.mark.parametrize("ros", [1, 2])

@@ -137,7 +137,7 @@ def changed(ending: str, array: Any) -> Weights:
         (without("net_out.2.bias"), "pi.net_out.2.bias: this bias does not fit, given: none, allowed: 5"),
         (changed("weight_ih_l0", np.ones((18, 5))), "has another shape, given: 18 x 5, allowed: 18 x 8"),
         (changed("weight_hh_l0", np.ones((24, 6))), "the recurrent unit is an LSTM"),
-        (changed("weight_hh_l0", np.ones((7, 6))), "is no GRU"),
+        (changed("weight_hh_l0", np.ones((7, 6))), "is not a GRU"),
         ({**rl_rvo_weights(), "old.ln.bias": np.ones(12, np.float32)}, "several arrays may be the shift"),
         ({**rl_rvo_weights(), "a.0.weight": np.ones((2, 12), np.float32)}, "more than one sequence"),
     ],

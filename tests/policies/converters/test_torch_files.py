@@ -189,7 +189,7 @@ def test_a_truncated_file_is_refused_wherever_it_ends(content: bytes) -> None:
 
 
 def test_other_files_are_named_for_what_they_are(tmp_path: Path) -> None:
-    assert "no file that torch.save wrote: it is empty" in refused(b"")
+    assert "not a file that torch.save wrote: it is empty" in refused(b"")
     assert "not one that torch.save wrote" in refused(pickle.dumps([1, 2]))
     assert "no data.pkl" in refused(zip_bytes({"a.txt": b"a"}))
     assert "TorchScript" in refused(zip_file(mapping({}), {}, **{"constants.pkl": b"."}))

@@ -259,7 +259,7 @@ def test_an_archive_that_lies_about_its_sizes_is_refused() -> None:
     [
         (b"{", "not valid JSON"),
         (b'{"version": 1, "version": 1}', "a key is given twice"),
-        (b'{"decision_dt": NaN}', "NaN is no number"),
+        (b'{"decision_dt": NaN}', "NaN is not a number"),
         (b"[" * 100_000, "not valid JSON"),
         (b"\xff", "not valid JSON"),
         (b"[]", "[] is not a mapping"),

@@ -3,7 +3,7 @@
 Written for commonroad-io 2026.1. Robots are obstacles of the type ``unknown``, obstacles that move are pedestrians, and
 what is static is a pillar. Each robot with a goal is a planning problem as well. A scenario of CommonRoad has no
 parts that are not of one object: parts of compounds and legs of lines are obstacles of their own. Maps and visibility
-have no counterpart: the map is left out, and somebody who comes late or leaves is recorded for as long as they are
+have no counterpart: the map is left out, and an object that comes late or leaves is recorded for as long as they are
 there.
 """
 

@@ -34,7 +34,7 @@ class PeopleOptions(Options):
     tolerance: Annotated[Meters, Field(ge=0)] = 0.1
     """Greatest distance of the recorded path from the straight lines between the points of a command."""
     pause: Annotated[Seconds, Field(gt=0)] = 1.0
-    """Whoever moves less than `tolerance` for this long stands, which is a command of its own."""
+    """A person who moves less than `tolerance` for this long stands, which is a command of its own."""
     z: Meters = 0.0
     """Height of the ground."""
 
@@ -75,7 +75,7 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
 
 
 def _commands(times: Floats, places: Floats, options: PeopleOptions) -> Iterator[str]:
-    """What somebody does, one command after the other.
+    """The commands of a person, one after the other.
 
     Args:
         times: (K,) [s].
@@ -100,7 +100,7 @@ def _commands(times: Floats, places: Floats, options: PeopleOptions) -> Iterator
 
 
 def _stands_until(places: Floats, row: int, tolerance: float) -> int:
-    """Last row up to which somebody stays within ``tolerance`` of the place of a row."""
+    """Last row up to which a person stays within ``tolerance`` of the place of a row."""
     for later in range(row + 1, len(places)):
         if math.dist(places[row], places[later]) > tolerance:
             return later - 1

@@ -239,7 +239,7 @@ def _after(writer: _Writer, name: str, time: float) -> None:
 def _story(
     writer: _Writer, episode: Episode, moving: list[int], times: Floats, poses: Floats, present: list[Any]
 ) -> None:  # fmt: skip
-    """One act, in which each object follows its trajectory; without any that moves, one in which nobody acts."""
+    """One act, in which each object follows its trajectory; without any that moves, one without actions."""
     with writer.element("Story", name="run"), writer.element("Act", name="run"):
         for column in moving:
             rows = present[column]

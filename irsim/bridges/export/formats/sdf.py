@@ -51,15 +51,15 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
 
 def _paths(scene: SceneDescription, time: Floats, pose: Floats) -> dict[str, Floats]:
     """Waypoints of the obstacles that moved, where they were in the world."""
-    found = {}
+    result = {}
     for agent in scene.agents:
         own = pose[:, agent.index]
         there = np.isfinite(own).all(axis=1)
         if agent.role == "robot" or not there.any():
             continue
         if not there.all() or float(np.abs(own[there] - own[there][0]).max()) > _STILL:
-            found[agent.name] = np.column_stack([time[there], own[there]])
-    return found
+            result[agent.name] = np.column_stack([time[there], own[there]])
+    return result
 
 
 FORMAT = Format("sdf", "-gazebo", _write, folder=True, ranges=False, scene=True)

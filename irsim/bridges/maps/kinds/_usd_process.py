@@ -84,12 +84,12 @@ class Collector:
         if prim.IsA(UsdGeom.PointInstancer):
             corners = self._instances(UsdGeom.PointInstancer(prim), depth)
         else:
-            found = _corners(prim, self._time, self._room)
-            if found is None and prim.IsA(UsdGeom.Gprim):
+            result = _corners(prim, self._time, self._room)
+            if result is None and prim.IsA(UsdGeom.Gprim):
                 self.left_out.add(str(prim.GetTypeName()))
-            if found is None:
+            if result is None:
                 return np.zeros((0, 3, 3))
-            corners = found
+            corners = result
             self._take(len(corners))
         return _placed(corners, place(prim))
 
@@ -156,7 +156,7 @@ def _placed(corners: Floats, transform: Any) -> Floats:
 
 
 def _corners(prim: Any, time: Any, most: int) -> Floats | None:
-    """(T, 3, 3) triangles of a prim in its own frame; None for those that are no surfaces, or none that are read."""
+    """(T, 3, 3) triangles of a prim in its own frame; None for those that are not surfaces, or none that are read."""
     from pxr import UsdGeom
 
     if prim.IsA(UsdGeom.Mesh):

@@ -165,7 +165,7 @@ def _load(path: Path, suffix: str, resolver: Any, limits: ImportLimits) -> list[
     logger = logging.getLogger("trimesh")
     level = logger.level
     logger.setLevel(logging.CRITICAL)
-    found: list[Triangles] = []
+    result: list[Triangles] = []
     try:
         with np.errstate(all="ignore"):
             content = io.BytesIO(path.read_bytes())
@@ -179,7 +179,7 @@ def _load(path: Path, suffix: str, resolver: Any, limits: ImportLimits) -> list[
                 total += len(mesh.faces)
                 if total > limits.triangles:
                     raise unusable(path, f"it has more than {limits.triangles:,} triangles", "simplify the mesh")
-                found.append(_placed(path, mesh.vertices, mesh.faces, matrix))
+                result.append(_placed(path, mesh.vertices, mesh.faces, matrix))
     except BridgeError:
         raise
     except MemoryError:
@@ -188,7 +188,7 @@ def _load(path: Path, suffix: str, resolver: Any, limits: ImportLimits) -> list[
         raise unusable(path, f"it is damaged ({_reason(error)})") from None
     finally:
         logger.setLevel(level)
-    return found
+    return result
 
 
 def _placed(path: Path, vertices: Any, faces: Any, matrix: Any) -> Triangles:
@@ -209,7 +209,7 @@ def _checked(path: Path, parts: list[Triangles]) -> Triangles:
     triangles = np.concatenate(parts)
     wrong = ~np.isfinite(triangles).all(axis=(1, 2))
     if wrong.any():
-        raise unusable(path, f"{int(wrong.sum()):,} of its {len(wrong):,} triangles have corners that are no numbers")
+        raise unusable(path, f"{int(wrong.sum()):,} of its {len(wrong):,} triangles have corners that are not numbers")
     return triangles
 
 

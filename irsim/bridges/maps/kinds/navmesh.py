@@ -29,7 +29,7 @@ _SETTINGS_ROOM = 512
 """Bytes after the header of a set within which the first tile begins."""
 _MAX_TILES = 1 << 20
 _GROUND = 0
-"""Type of a polygon that is no jump between two places."""
+"""Type of a polygon that is not a jump between two places."""
 _POLYGON = np.dtype(
     [("link", "<u4"), ("verts", "<u2", 6), ("neighbors", "<u2", 6), ("flags", "<u2"), ("count", "u1"), ("kind", "u1")]
 )
@@ -118,7 +118,7 @@ def _tile(path: Path, blob: memoryview, place: int) -> Tile:
     if triangles is None:
         raise unusable(path, f"the tile at byte {place:,} has polygons whose vertices it does not have")
     if not np.isfinite(triangles).all() or np.abs(triangles).max(initial=0) > 1e7:
-        raise unusable(path, f"the tile at byte {place:,} has vertices that are no numbers")
+        raise unusable(path, f"the tile at byte {place:,} has vertices that are not numbers")
     return Tile(triangles.astype(np.float64), height, radius, climb)
 
 
@@ -147,8 +147,8 @@ def _triangles(
     if (vertex[in_polygon] >= len(points)).any() or (beyond[~in_polygon] >= len(extra)).any():
         return None
     every = np.concatenate([points, extra])
-    found: NDArray[np.float32] = every[np.where(in_polygon, vertex, len(points) + beyond)]
-    return found
+    result: NDArray[np.float32] = every[np.where(in_polygon, vertex, len(points) + beyond)]
+    return result
 
 
 def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:

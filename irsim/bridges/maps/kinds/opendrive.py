@@ -99,7 +99,7 @@ def read_roads(path: Path) -> Iterator[Road]:
     """Roads of a file, one after the other.
 
     Raises:
-        BridgeError: The file is no OpenDRIVE, damaged, or has a value that is no number.
+        BridgeError: The file is not OpenDRIVE, damaged, or has a value that is not a number.
     """
     parser = ET.XMLParser(target=_Builder(path))
     try:

@@ -38,12 +38,12 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     assert raster.origin is not None
     values = raster.values()
     grid = Grid(*raster.origin, raster.width / values.shape[0], *values.shape)
-    found = Occupancy(values, grid, "ros", parts=[picture])
+    result = Occupancy(values, grid, "ros", parts=[picture])
     free = (values >= 0) & (values <= _HALF)
     if not free.any():
-        return found
+        return result
     number, sizes = masked_regions(free)
-    found.regions = [float(size) * grid.resolution**2 for size in sizes]
+    result.regions = [float(size) * grid.resolution**2 for size in sizes]
     if options.seed_point is not None:
         column = grid.column_at(*options.seed_point)
         kept = -1 if column is None else int(number.reshape(-1)[column])
@@ -51,10 +51,10 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
             x, y = options.seed_point
             what = f"the seed point ({x:g}, {y:g}) is not free in this map"
             raise MapFileError("bridge-file", what, "give a free place, or no seed point")
-        found.kept = kept
-        found.values = values.copy()
-        found.values[free & (number != kept)] = OCCUPIED
-    return found
+        result.kept = kept
+        result.values = values.copy()
+        result.values[free & (number != kept)] = OCCUPIED
+    return result
 
 
 KIND = Kind(

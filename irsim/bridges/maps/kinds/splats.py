@@ -60,8 +60,8 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Occupancy:
     grid = Grid(*plan.origin, options.resolution, *plan.occupied.shape)
     values, regions, kept = _kept(plan, grid, options)
     areas = [round(float(cells) * grid.resolution**2, 4) for cells in regions[:_MAX_REGIONS]]
-    found = Occupancy(values, grid, frame, height, unit, 0, [(height, areas[0], False)], areas, kept, notes=notes)
-    return found if options.bounds is not None else cropped(found)
+    result = Occupancy(values, grid, frame, height, unit, 0, [(height, areas[0], False)], areas, kept, notes=notes)
+    return result if options.bounds is not None else cropped(result)
 
 
 def _kept(plan: Plan, grid: Grid, options: ImportOptions) -> tuple[Floats, list[int], int]:

@@ -69,7 +69,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
             triangles = stored["triangles"]
     scale, frame = float(answer["meters_per_unit"]), answer["frame"]
     if not np.isfinite(triangles).all():
-        raise unusable(path, "some of its points are no numbers")
+        raise unusable(path, "some of its points are not numbers")
     if not len(triangles):
         raise unusable(path, "it has no visible meshes", "export the stage with its meshes, not only references")
     return Scene(frame, triangles, meters_per_unit=scale, notes=answer["notes"])
@@ -78,8 +78,8 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
 def _answer(text: str) -> dict[str, Any]:
     """What the process said: its last line of JSON."""
     lines = [line for line in text.splitlines() if line.startswith("{")]
-    found = json.loads(lines[-1]) if lines else {}
-    return found if isinstance(found, dict) else {}
+    result = json.loads(lines[-1]) if lines else {}
+    return result if isinstance(result, dict) else {}
 
 
 def _check_archive(path: Path, limits: ImportLimits) -> None:
@@ -88,7 +88,7 @@ def _check_archive(path: Path, limits: ImportLimits) -> None:
         with zipfile.ZipFile(path) as archive:
             entries = archive.infolist()
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
-        raise unusable(path, f"it is no archive ({error})") from None
+        raise unusable(path, f"it is not an archive ({error})") from None
     if len(entries) > _MAX_FILES:
         raise unusable(path, f"it has {len(entries):,} files inside")
     for entry in entries:

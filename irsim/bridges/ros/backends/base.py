@@ -44,7 +44,7 @@ class Backend:
         raise NotImplementedError
 
     def poll(self) -> None:
-        """Put into the inbox what has come, if nobody else does so.
+        """Put into the inbox what has come, if no thread of the library does so.
 
         Raises:
             BridgeLostError: The connection is gone.

@@ -80,10 +80,10 @@ def struct_type(store: Any, kind: str, made: dict[str, Any] | None = None) -> An
 
 def dds_type(store: Any, kind: str) -> Any:
     """The type of a topic, whose samples are :class:`CdrSample`."""
-    found = struct_type(store, kind)
-    found.serialize = CdrSample.serialize
-    found.deserialize = classmethod(CdrSample.deserialize.__func__)  # type: ignore[attr-defined]
-    return found
+    result = struct_type(store, kind)
+    result.serialize = CdrSample.serialize
+    result.deserialize = classmethod(CdrSample.deserialize.__func__)  # type: ignore[attr-defined]
+    return result
 
 
 def _member(store: Any, definition: Any, made: dict[str, Any]) -> Any:

@@ -89,8 +89,8 @@ def _ros2(options: Ros2, node: str, topics: Sequence[Topic], inbox: Inbox, messa
 
 def _stays_here() -> bool:
     """Whether the variables of ROS 2 say that nodes speak to those on this computer only."""
-    found = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() in ("LOCALHOST", "OFF")
-    return found or os.environ.get("ROS_LOCALHOST_ONLY") == "1"
+    result = os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() in ("LOCALHOST", "OFF")
+    return result or os.environ.get("ROS_LOCALHOST_ONLY") == "1"
 
 
 def _environment_domain() -> int:

@@ -166,18 +166,18 @@ def plain(message: Any, kind: str, store: Any, ros: int) -> dict[str, Any]:
         seconds, nanoseconds = ("sec", "nanosec") if ros == 2 else ("secs", "nsecs")
         return {seconds: int(message.sec), nanoseconds: int(message.nanosec)}
     _, fields = store.fielddefs[kind]
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     for name, (form, detail) in fields:
         if not hasattr(message, name):  # such as ``seq`` of headers in ROS 1
             continue
         value = getattr(message, name)
         if form.name == "NAME":
-            found[name] = plain(value, detail, store, ros)
+            result[name] = plain(value, detail, store, ros)
         elif form.name in ("ARRAY", "SEQUENCE") and detail[0][0].name == "NAME":
-            found[name] = [plain(one, detail[0][1], store, ros) for one in value]
+            result[name] = [plain(one, detail[0][1], store, ros) for one in value]
         else:
-            found[name] = value.tolist() if hasattr(value, "tolist") else value
-    return found
+            result[name] = value.tolist() if hasattr(value, "tolist") else value
+    return result
 
 
 def namespaces(value: Any) -> Any:

@@ -1,7 +1,7 @@
 """``zenoh``: a node of ROS 2 whose middleware is rmw_zenoh, without a ROS installation.
 
 Data goes to the key ``<domain>/<topic>/<type>/RIHS01_<hash>``, with an attachment that has number, time and source;
-tokens below ``@ros2_lv`` show the node and its endpoints to others. DDS and Zenoh nodes do not see each other.
+tokens below ``@ros2_lv`` show the node and its endpoints to other nodes. DDS and Zenoh nodes do not see each other.
 """
 
 from __future__ import annotations

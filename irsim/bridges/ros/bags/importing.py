@@ -89,7 +89,7 @@ def import_bag(
 
     Raises:
         BridgeError: The bag cannot be used. Nothing is written then.
-        ArgumentError: An option is no positive number.
+        ArgumentError: An option is not a positive number.
         TargetError: A file exists.
         ExtraError: rosbags is missing.
     """
@@ -98,26 +98,26 @@ def import_bag(
         value = getattr(options, name)
         if not (math.isfinite(value) and value > 0):
             raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} above 0")
-    found = read_bag(path, options.odom, options.scan)
-    rows = _rows(found, options)
-    times, poses = found.times[rows] - found.times[rows[0]], found.poses[rows]
+    result = read_bag(path, options.odom, options.scan)
+    rows = _rows(result, options)
+    times, poses = result.times[rows] - result.times[rows[0]], result.poses[rows]
     if len(times) * _EVENTS_PER_ROW > DEFAULT_LIMITS.events:
         raise BridgeError("bridge-file", f"{len(times)} poses are more than a scenario may hold", "--from and --to")
-    notes = [f"{found.ignored} messages were not usable and left out"] if found.ignored else []
-    mount = options.mount or found.mount
-    if mount is None and found.scans:
+    notes = [f"{result.ignored} messages were not usable and left out"] if result.ignored else []
+    mount = options.mount or result.mount
+    if mount is None and result.scans:
         notes.append("the bag does not say where the lidar is on the robot; --mount X,Y,YAW says it, 0,0,0 is assumed")
     mount = mount or (0.0, 0.0, 0.0)
-    chosen = _chosen_scans(found, found.times[rows])
-    scans = [found.scans[index] for index in chosen]
+    chosen = _chosen_scans(result, result.times[rows])
+    scans = [result.scans[index] for index in chosen]
     grid: BagMap | None = None
     if scans:
-        at = np.array([composed(_pose_at(found, found.scan_times[index]), mount) for index in chosen])
+        at = np.array([composed(_pose_at(result, result.scan_times[index]), mount) for index in chosen])
         grid = map_of_scans(at, scans, poses[:, :2], options.resolution, options.radius, 1.0)
-    elif found.scan_topic is None:
+    elif result.scan_topic is None:
         named = " of this robot, so there is no map; --scan names those of another one"
-        notes.append(f"the bag has no scans{named if found.elsewhere else ', so there is no map'}")
-    text = _text(found, grid, times, poses, scans[0] if scans else None, mount, path.name, out, options)
+        notes.append(f"the bag has no scans{named if result.elsewhere else ', so there is no map'}")
+    text = _text(result, grid, times, poses, scans[0] if scans else None, mount, path.name, out, options)
     contents = [(out, with_modeline(text, out).encode())]
     picture = out.with_suffix(".png")
     if grid is not None:

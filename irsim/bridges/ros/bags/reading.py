@@ -93,9 +93,9 @@ def read_bag(path: Path, odom: str | None, scan: str | None) -> Recorded:
             if len(rows) > MAX_POSES or len(scans) > MAX_SCANS:
                 raise BridgeError("bridge-file", f"the bag has more than {MAX_POSES} poses or {MAX_SCANS} scans",
                                   "cut it: ros2 bag convert")  # fmt: skip
-    found = _recorded(rows, scans, mounts.get((frames[0], frames[1])), odom_topic, scan_topic, ignored)
-    found.elsewhere = elsewhere
-    return found
+    result = _recorded(rows, scans, mounts.get((frames[0], frames[1])), odom_topic, scan_topic, ignored)
+    result.elsewhere = elsewhere
+    return result
 
 
 def _recorded(

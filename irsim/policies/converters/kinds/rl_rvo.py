@@ -104,7 +104,7 @@ def _units(weights: Weights) -> int:
     if rows == 4 * units:
         raise weights.error("", f"the recurrent unit is an LSTM; {_STRUCTURE}", f"{rows} x {units}")
     if rows != 3 * units or units < 1:
-        raise weights.error("", f"the recurrent unit is no GRU; {_STRUCTURE}", f"{rows} x {units}", "3 U x U")
+        raise weights.error("", f"the recurrent unit is not a GRU; {_STRUCTURE}", f"{rows} x {units}", "3 U x U")
     return int(units)
 
 
@@ -116,8 +116,8 @@ def _reader(weights: Weights, units: int) -> tuple[dict[str, Array], str]:
     arrays = {}
     for ending, suffix in [("", ""), ("_back", "_reverse")] if backward else [("", "")]:
         for ours, theirs in _ARRAYS:
-            found = weights.take(f"array {theirs} of the GRU", [f"{theirs}_l0{suffix}"], shapes[theirs])
-            arrays[f"read.{ours}{ending}"] = found.T.copy() if found.ndim == 2 else found
+            result = weights.take(f"array {theirs} of the GRU", [f"{theirs}_l0{suffix}"], shapes[theirs])
+            arrays[f"read.{ours}{ending}"] = result.T.copy() if result.ndim == 2 else result
     return arrays, "both" if backward else "forward"
 
 
@@ -139,14 +139,14 @@ def _linear_layers(weights: Weights, inputs: int) -> list[tuple[Array, Array]]:
         raise weights.error("", message, weights.listed())
     (prefix,) = fitting
     before = f"{prefix}." if prefix else ""
-    found = []
+    result = []
     for number, weight in sorted(groups[prefix].items()):
         bias = weights.arrays.get(f"{before}{number}.bias")
         if bias is None or bias.shape != weight.shape[:1]:
             given = "none" if bias is None else sides(bias.shape)
             raise weights.error(f"{before}{number}.bias", "this bias does not fit", given, sides(weight.shape[:1]))
-        found.append((weight, bias))
-    return found
+        result.append((weight, bias))
+    return result
 
 
 def _leads(layers: Mapping[int, Array], inputs: int) -> bool:

@@ -49,8 +49,8 @@ def sarl(weights: Weights, options: Sarl) -> Network:
     """The network of these weights."""
     ends = [name for name in weights.arrays if name == "mlp1.0.weight" or name.endswith(".mlp1.0.weight")]
     if len(ends) != 1:
-        found = "no array is" if not ends else "several arrays are"
-        raise weights.error("", f"{found} called mlp1.0.weight, which SARL has once", weights.listed())
+        result = "no array is" if not ends else "several arrays are"
+        raise weights.error("", f"{result} called mlp1.0.weight, which SARL has once", weights.listed())
     before = ends[0].removesuffix("mlp1.0.weight")
     arrays = {name.removeprefix(before): x for name, x in weights.arrays.items() if name.startswith(before)}
     kind = options.kinematics or _published_kind(arrays)

@@ -191,7 +191,7 @@ class _Machine:
         if isinstance(self.stack[-1], list):
             self.stack[-1].extend(items)
         elif not isinstance(self.stack[-1], Stored):  # items of a foreign list are never looked at
-            raise ContentError("a pickle appends to something that is no list")
+            raise ContentError("a pickle appends to something that is not a list")
 
     def _set_item(self, _: Any) -> None:
         value, key = self.stack.pop(), self.stack.pop()
@@ -203,7 +203,7 @@ class _Machine:
     def _put(self, items: list[Any]) -> None:
         target = self.stack[-1].entries if isinstance(self.stack[-1], Stored) else self.stack[-1]
         if not isinstance(target, dict) or len(items) % 2:
-            raise ContentError("a pickle sets items of something that is no dictionary")
+            raise ContentError("a pickle sets items of something that is not a dictionary")
         for key, value in zip(items[::2], items[1::2], strict=True):
             target[_key(key)] = value
 
@@ -237,9 +237,9 @@ class _Machine:
             raise ContentError("a pickle gives attributes to something that has none")
 
     def _persistent(self, _: Any) -> None:
-        found = _from_elsewhere(self.stack.pop())
-        self.stack.append(found)
-        if isinstance(found, Storage) and self._storages.setdefault(found.key, found.kind) != found.kind:
+        result = _from_elsewhere(self.stack.pop())
+        self.stack.append(result)
+        if isinstance(result, Storage) and self._storages.setdefault(result.key, result.kind) != result.kind:
             raise ContentError("a storage has two types")
 
 
@@ -254,7 +254,7 @@ def _key(key: Any) -> Any:
 
 def _name(value: Any) -> Name:
     if not isinstance(value, Name):
-        raise ContentError("a pickle makes an object of something that is no class")
+        raise ContentError("a pickle makes an object of something that is not a class")
     return value
 
 
@@ -270,7 +270,7 @@ def _described(function: Any, arguments: Any) -> Any:
         return Tensor(*arguments[:4])
     if what in ("torch._utils._rebuild_parameter", "torch._utils._rebuild_parameter_with_state"):
         if not arguments or not isinstance(arguments[0], Tensor):
-            raise ContentError("a parameter is no tensor")
+            raise ContentError("a parameter is not a tensor")
         return arguments[0]
     if what == "collections.OrderedDict":
         return _ordered(arguments)
@@ -278,12 +278,12 @@ def _described(function: Any, arguments: Any) -> Any:
 
 
 def _ordered(arguments: tuple[Any, ...]) -> dict[Any, Any]:
-    found: dict[Any, Any] = {}
+    result: dict[Any, Any] = {}
     for pair in arguments[0] if arguments and isinstance(arguments[0], list) else ():
         if not (isinstance(pair, (list, tuple)) and len(pair) == 2):
             raise ContentError("an ordered dictionary is made of something else than pairs")
-        found[_key(pair[0])] = pair[1]
-    return found
+        result[_key(pair[0])] = pair[1]
+    return result
 
 
 def _from_elsewhere(place: Any) -> Any:
@@ -291,7 +291,7 @@ def _from_elsewhere(place: Any) -> Any:
     if isinstance(place, tuple) and len(place) >= 2 and place[0] == "module":
         return _name(place[1])
     if not (isinstance(place, tuple) and len(place) in (5, 6) and place[0] == "storage"):
-        raise ContentError("a pickle refers to something that is no storage")
+        raise ContentError("a pickle refers to something that is not a storage")
     kind, key, count = _name(place[1]), place[2], place[4]
     if not isinstance(key, (str, int)) or not isinstance(count, int) or not 0 <= count < 2**62:
         raise ContentError("a storage has no key or no size")

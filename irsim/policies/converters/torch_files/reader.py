@@ -33,7 +33,7 @@ def read_torch(path: str | Path, limits: Limits = LIMITS) -> dict[str, Array]:
         Name -> array of float32. Names of modules inside others are joined by dots, as in a state dictionary.
 
     Raises:
-        PolicyFileError: It is no such file, it is over the limits, or a tensor cannot be used.
+        PolicyFileError: It is not such a file, it is over the limits, or a tensor cannot be used.
     """
     return parse_torch(read_bytes(Path(path), limits.file_bytes, "a file that torch.save wrote"), str(path), limits)
 
@@ -74,16 +74,16 @@ def _archive(content: bytes, limits: Limits) -> dict[str, Array]:
 
 def _root(entries: Iterable[str]) -> str:
     """Folder of the archive that everything lies in, with its slash."""
-    found = [name.removesuffix("data.pkl") for name in entries if name == "data.pkl" or name.endswith("/data.pkl")]
-    if len(found) != 1:
+    result = [name.removesuffix("data.pkl") for name in entries if name == "data.pkl" or name.endswith("/data.pkl")]
+    if len(result) != 1:
         raise ContentError("it is an archive, but not one that torch.save wrote: it has no data.pkl")
-    return found[0]
+    return result[0]
 
 
 # pickles one after the other ------------------------------------------------------------------------------------------
 def _pickles(content: bytes, limits: Limits) -> dict[str, Array]:
     if not content.startswith(b"\x80"):
-        raise ContentError("it is no file that torch.save wrote" + (": it is empty" if not content else ""))
+        raise ContentError("it is not a file that torch.save wrote" + (": it is empty" if not content else ""))
     stream = io.BytesIO(content)
     if read_pickle(stream) != _MAGIC:
         raise ContentError("it is a pickle, but not one that torch.save wrote")
@@ -107,7 +107,7 @@ def _is_key(key: Any) -> bool:
 
 def _storages(stream: io.BytesIO, end: int, keys: Iterable[str], kinds: Mapping[str, str]) -> dict[str, bytes]:
     """The bytes of storages, each after the number of its numbers."""
-    found = {}
+    result = {}
     for key in keys:
         count = int.from_bytes(stream.read(8), "little")
         width = ITEM_BYTES.get(kinds.get(key, ""))
@@ -119,5 +119,5 @@ def _storages(stream: io.BytesIO, end: int, keys: Iterable[str], kinds: Mapping[
             claimed = f"{count} numbers" if count < 2**62 else "a huge number"
             what = "a storage claims more numbers than the file has; it may be truncated"
             raise ContentError(what, claimed, f"{left} bytes")
-        found[key] = stream.read(count * width)
-    return found
+        result[key] = stream.read(count * width)
+    return result

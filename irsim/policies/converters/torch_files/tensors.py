@@ -38,9 +38,9 @@ def named_tensors(root: Any, limits: Limits) -> dict[str, Tensor]:
     Dictionaries, lists and objects of foreign classes are searched; keys and attributes are joined by dots.
 
     Raises:
-        ContentError: There are none or too many, they are nested too deeply, or two have the same name.
+        ContentError: There are no tensors or too many, they are nested too deeply, or two have the same name.
     """
-    found: dict[str, Tensor] = {}
+    result: dict[str, Tensor] = {}
     waiting: list[tuple[str, Any, int]] = [("", root, 0)]
     places = 0
     while waiting:
@@ -49,17 +49,17 @@ def named_tensors(root: Any, limits: Limits) -> dict[str, Tensor]:
         if places + len(waiting) > _MAX_PLACES or depth > _MAX_DEPTH:
             raise ContentError("the object is nested too deeply or refers to itself", place=name)
         if isinstance(value, Tensor):
-            if name in found:
+            if name in result:
                 raise ContentError("two tensors have the same name", place=name)
-            found[name] = value
-            if len(found) > limits.arrays:
+            result[name] = value
+            if len(result) > limits.arrays:
                 raise ContentError("too many tensors", f"more than {limits.arrays}", f"up to {limits.arrays}")
         else:
             inside = [(f"{name}.{key}" if name else key, one, depth + 1) for key, one in _children(value)]
             waiting += reversed(inside)
-    if not found:
+    if not result:
         raise ContentError("there are no tensors in it")
-    return found
+    return result
 
 
 def _children(value: Any) -> Iterator[tuple[str, Any]]:
@@ -104,13 +104,13 @@ def arrays_of(tensors: Mapping[str, Tensor], content: Mapping[str, bytes], limit
         ContentError: One has another type, does not fit its storage, or has numbers that are not finite.
     """
     total = 0
-    found = {}
+    result = {}
     for name, tensor in tensors.items():
         total += _checked_count(name, tensor, limits)
         if total > limits.parameters:
             raise ContentError("too many numbers in all tensors", str(total), f"up to {limits.parameters}", place=name)
-        found[name] = _array(name, tensor, content)
-    return found
+        result[name] = _array(name, tensor, content)
+    return result
 
 
 def _checked_count(name: str, tensor: Tensor, limits: Limits) -> int:

@@ -62,12 +62,12 @@ def gru(options: Gru, inputs: Sequence[Value], arrays: Arrays, memory: Array | N
     (value,) = inputs
     assert value.mask is not None
     count = value.array.shape[1]
-    found = []
+    collected = []
     for suffix in options.suffixes:
         order = range(count - 1, -1, -1) if suffix == _BACK else range(count)
-        found.append(_read(value, Gates.of(arrays, suffix), order))
+        collected.append(_read(value, Gates.of(arrays, suffix), order))
     last = options.result == "last"
-    parts = [states[end] if last else states for states, end in found]
+    parts = [states[end] if last else states for states, end in collected]
     if options.merge == "sum":
         result = parts[0] if len(parts) == 1 else parts[0] + parts[1]
     else:

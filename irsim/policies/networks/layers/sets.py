@@ -25,7 +25,7 @@ from irsim.policies.networks.values import Array, Shape, Value, add_in_order
 
 
 class Pool(LayerOptions):
-    """Maximum, mean or sum over the members that are present; zeros if there is none."""
+    """Maximum, mean or sum over the members that are present; zeros for an empty set."""
 
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [{"name": "pool", "label": "crowd", "inputs": ["each"], "method": "max"}]

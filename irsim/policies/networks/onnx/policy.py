@@ -225,8 +225,8 @@ def _input_problems(document: OnnxDocument, model: OnnxModel) -> Iterator[Diagno
 def _output_problems(document: OnnxDocument, model: OnnxModel) -> Iterator[Diagnostic]:
     tensor = model.outputs.get(document.output.input)
     if tensor is None:
-        found = ", ".join(map(clean, model.outputs))
-        yield flaw(("output", "input"), "the model has no such output", document.output.input, found)
+        result = ", ".join(map(clean, model.outputs))
+        yield flaw(("output", "input"), "the model has no such output", document.output.input, result)
     elif len(tensor.shape) != 2 or tensor.shape[0] != 1 or tensor.type not in _FLOATS:
         yield flaw(("output", "input"), "the result is a row of numbers for each robot", _text(tensor), "1 x numbers")
     else:

@@ -61,13 +61,13 @@ class Own(PartOptions):
     def channels(self) -> tuple[Channel, ...]:
         """One for each feature, or for each feature and control."""
         most = 1.0 if self.clip else math.inf
-        found: list[Channel] = []
+        result: list[Channel] = []
         for name in self.features:
             high = 1.0 if name in ("heading_cos", "heading_sin", "arrived") else most
             low = 0.0 if name in ("speed", "radius", "arrived") else -high
             names = [f"{name}_{i + 1}" for i in range(self.controls)] if name in _PER_CONTROL else [name]
-            found += [Channel(each, low, high) for each in names]
-        return tuple(found)
+            result += [Channel(each, low, high) for each in names]
+        return tuple(result)
 
 
 PARTS.register(Own, kernel=core.OwnOptions)
@@ -167,14 +167,14 @@ def self_state(observations: Observations, options: SelfState) -> Value:
     there = np.isfinite(o.goal[:, 0]) & np.isfinite(o.goal[:, 1])
     away = np.where(there[:, None], o.goal[:, :2] - o.pose[:, :2], 0.0)
     velocity = turn_back(o.velocity, axis)
-    found = np.zeros((len(o), 6))
-    found[:, 0] = np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1])
-    found[:, 1] = o.high[:, 0]
+    result = np.zeros((len(o), 6))
+    result[:, 0] = np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1])
+    result[:, 1] = o.high[:, 0]
     if options.heading == "unwrapped":  # math.atan2, because that of NumPy has other last bits on other processors
-        found[:, 2] = o.pose[:, 2] - np.array([math.atan2(y, x) for x, y in axis.tolist()])
+        result[:, 2] = o.pose[:, 2] - np.array([math.atan2(y, x) for x, y in axis.tolist()])
     elif options.heading == "wrapped":
         ahead = turn_back(x_axis("own", o.pose, o.goal), axis)
-        found[:, 2] = [math.atan2(y, x) for x, y in ahead.tolist()]
-    found[:, 3] = o.radius
-    found[:, 4:] = velocity
-    return Value(found)
+        result[:, 2] = [math.atan2(y, x) for x, y in ahead.tolist()]
+    result[:, 3] = o.radius
+    result[:, 4:] = velocity
+    return Value(result)

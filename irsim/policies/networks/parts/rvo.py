@@ -92,7 +92,7 @@ class RvoCones(PartOptions):
     decimals: Decimals | None = 2
     """Numbers are rounded to so many decimals; null keeps them."""
     zero_row: Bool = True
-    """Whether the set has one member of zeros for a robot that sees nobody."""
+    """Whether the set has one member of zeros for a robot that sees no neighbor."""
 
     @property
     def members(self) -> int:
