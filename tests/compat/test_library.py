@@ -13,7 +13,6 @@ import pytest
 import shapely
 
 import irsim
-import irsim.lib
 from irsim.lib import (
     Behavior,
     GeometryFactory,
@@ -62,30 +61,6 @@ obstacle:
 EGO = [1, 1, 0.4, 0.1, 0.3, 1.0, 0.2, 0.3]
 OTHERS = [[2, 1.2, -0.3, 0, 0.3], [1.5, 2, 0, -0.4, 0.4]]
 LINES = [[0, 0, 3, 0]]
-
-
-@pytest.mark.parametrize("name", irsim.lib.__all__)
-def test_every_name_can_be_imported(name: str) -> None:
-    assert getattr(irsim.lib, name) is not None
-    assert name in dir(irsim.lib)
-
-
-@pytest.mark.parametrize(
-    ("module", "names"),
-    [
-        ("irsim.lib.behavior", "Behavior register_behavior register_group_behavior"),
-        ("irsim.lib.behavior.behavior_registry", "behaviors_map behaviors_class_map group_behaviors_map"),
-        ("irsim.lib.behavior.group_behavior", "GroupBehavior"),
-        ("irsim.lib.behavior.group_behavior_methods", "OrcaGroupBehavior SfmGroupBehavior beh_omni_orca"),
-        ("irsim.lib.algorithm", "cast_rays omni_angular_kinematics reciprocal_vel_obs social_force_model"),
-        ("irsim.lib.algorithm.rvo", "reciprocal_vel_obs"),
-        ("irsim.lib.handler.kinematics_handler", "KinematicsFactory OmniKinematics register_kinematics"),
-        ("irsim.lib.handler.geometry_handler", "GeometryFactory geometry_handler CircleGeometry"),
-    ],
-)
-def test_old_import_paths(module: str, names: str) -> None:
-    for name in names.split():
-        assert callable(getattr(import_module(module), name)) or name.endswith("_map")
 
 
 def test_dash_of_arrays() -> None:

@@ -21,6 +21,19 @@ irsim.world.obstacles.obstacle_omni:ObstacleOmni irsim.world.obstacles.obstacle_
 irsim.world.map.fog_map:FogMap irsim.world.map.obstacle_map:ObstacleMap
 irsim.world.map.grid_map_generator_base:GridMapGenerator irsim.world.map.image_map_generator:ImageGridGenerator
 irsim.world.map.perlin_map_generator:PerlinGridGenerator
+irsim:__version__ irsim.env.env_base:EnvBase irsim.env.env_config:EnvConfig irsim.env.env_logger:EnvLogger
+irsim.env.env_plot:EnvPlot irsim.env.env_plot:draw_patch irsim.env.env_plot:set_patch_property
+irsim.env.env_plot:linewidth_from_data_units irsim.env.env_plot:geometry_to_path irsim.env.env_plot3d:EnvPlot3D
+irsim.world.object_base:ObjectBase irsim.world.object_base:ObjectInfo irsim.world.object_base:ObstacleInfo
+irsim.world.object_group:ObjectGroup irsim.world.object_factory:ObjectFactory irsim.util.util:normalize_actions
+irsim.config:env_param irsim.config:world_param irsim.config:path_param irsim.config:palette_param
+irsim.lib.behavior.group_behavior:GroupBehavior irsim.lib.behavior.group_behavior_methods:OrcaGroupBehavior
+irsim.lib.behavior.group_behavior_methods:SfmGroupBehavior irsim.lib.behavior.group_behavior_methods:beh_omni_orca
+irsim.lib.algorithm:cast_rays irsim.lib.algorithm:omni_angular_kinematics irsim.lib.algorithm:reciprocal_vel_obs
+irsim.lib.algorithm:social_force_model irsim.lib.algorithm.rvo:reciprocal_vel_obs
+irsim.lib.handler.kinematics_handler:KinematicsFactory irsim.lib.handler.kinematics_handler:OmniKinematics
+irsim.lib.handler.kinematics_handler:register_kinematics irsim.lib.handler.geometry_handler:GeometryFactory
+irsim.lib.handler.geometry_handler:geometry_handler irsim.lib.handler.geometry_handler:CircleGeometry
 """
 
 
