@@ -50,7 +50,7 @@ DIFFERENCES: dict[str, Difference] = {
         "in worlds of more than 2,500 m^2, or where its own grid of 0.1 m shows no way). Walls that stand free are "
         "passed on the nearer side by "
         "`rvo`, `sfm`, `orca` and `avocado`, walls round the object block what reaches them; posts beside a free way "
-        "hold nobody back under `sfm`. `unobstructed` "
+        "hold no robot back under `sfm`. `unobstructed` "
         "linestrings count for `rvo` and `sfm` as in 2.12, other `unobstructed` walls for none. Moving polygons stay "
         "discs, moving linestrings as in 2.12. `orca` also sees moving objects outside its group",
         "robots drove through walls, stayed metres away from them or stood before them, and closed rooms of "
@@ -140,8 +140,8 @@ DIFFERENCES: dict[str, Difference] = {
         "with `arrive_mode: state`, `dash` stops at the goal with a heading error below `angle_tolerance`, or "
         "oscillates around it, and does not arrive if position and heading error together exceed `goal_threshold`",
         "the same law, but `omni_angular`, and `diff` under every behavior, turn the rest: `diff` brakes for its goal, "
-        "stands there and turns on the spot, unless its behavior avoids somebody who would run into it; a car reaches "
-        "goal poses under `follow`",
+        "stands there and turns on the spot, unless its behavior avoids an object that would run into it; a car "
+        "reaches goal poses under `follow`",
         "a robot at its goal should arrive",
     ),
     "D25": Difference(
@@ -201,7 +201,7 @@ DIFFERENCES: dict[str, Difference] = {
         "goals could lie outside the world",
     ),
     "dynamics-18": Difference(
-        "state rows beyond those of the drive are overwritten in each step",
+        "state rows that the drive does not have are overwritten in each step",
         "they keep their value",
         "an error in 2.12",
     ),

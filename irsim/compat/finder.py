@@ -80,7 +80,7 @@ class _AnotherName(_Loader):
         return module
 
     def exec_module(self, module: ModuleType) -> None:
-        module.__spec__ = self._spec  # the import system has just replaced it with that of the old path
+        module.__spec__ = self._spec  # the import system has just replaced it with the spec of the old path
 
     def get_source(self, fullname: str) -> str:
         """One line, which ``python -m`` runs."""

@@ -123,7 +123,7 @@ class _GridPlanner(PathPlanner):
     Without ``robot``, the default robot of the map is used; without that one, the footprint is one cell.
 
     Attributes:
-        resolution: Size of a cell along x [m]: that of the grid of the map, or else the resolution of the map. A
+        resolution: Size of a cell along x [m]: the cell size of the grid, or else the resolution of the map. A
             resolution that does not divide the map is rounded, when planning, to the nearest one that does. A written
             value holds for this planner only, which then searches cells of that size; the map keeps its own.
         x_width, y_width: Number of cells along x and y; a written number holds until ``resolution`` is written.
@@ -184,7 +184,7 @@ class AStarPlanner(_GridPlanner):
 
 
 class JPSPlanner(_GridPlanner):
-    """Finds paths as short as those of A* by jumping over cells without a choice; the start must be free."""
+    """Finds paths as short as A* by jumping over cells without a choice; the start must be free."""
 
     def _kernel(self) -> Any:
         return core.JpsOptions(resolution=0.0)

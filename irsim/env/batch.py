@@ -193,7 +193,7 @@ def batch(
             at a number from fresh entropy.
         threads: Number of threads; by default one per core.
         strict: Treat what IR-SIM would ignore as errors, as for ``irsim.make``.
-        policy: What drives the robots of all worlds instead of their behaviors; see :func:`irsim.open_policy`.
+        policy: The policy that drives all robots instead of their behaviors; see :func:`irsim.open_policy`.
 
     Raises:
         ValueError: ``n`` is below 1, or the number of seeds is not ``n``.

@@ -51,7 +51,7 @@ class Env(EnvState):
         step_mode: ``internal`` (irsim moves the objects) or ``external`` (the caller moves them).
         headless: Draw nothing at all.
         strict: Treat what IR-SIM would ignore (misspelt keys, unknown behaviors) as errors.
-        policy: What drives the robots instead of their behaviors; see :meth:`set_policy`.
+        policy: The policy that drives the robots instead of their behaviors; see :meth:`set_policy`.
     """
 
     def __init__(

@@ -88,7 +88,7 @@ def _held(env: Any) -> bool:
 def rollout(env: EnvState, steps: int, *, until_done: bool = True) -> Rollout:
     """Advance the simulation by up to ``steps`` periods in one call, driven by behaviors, and return the whole record.
 
-    The result equals that of the same number of calls of :func:`step`, bit for bit.
+    The result is the same as after as many calls of :func:`step`, bit for bit.
 
     Args:
         steps: Largest number of periods.

@@ -24,13 +24,13 @@ def create_robot(env: EnvState, kinematics: Any = None, **keys: Any) -> ScriptOb
             it has no goal.
 
     Raises:
-        ScenarioError: A key or value is not valid. What IR-SIM would ignore is logged as a warning instead.
+        ScenarioError: A key or value is not valid. A key that IR-SIM would ignore is logged as a warning instead.
     """
     return _create(env, "robot", kinematics, keys)
 
 
 def create_obstacle(env: EnvState, kinematics: Any = None, **keys: Any) -> ScriptObject:
-    """Make an obstacle and return it; the arguments are those of :func:`create_robot`."""
+    """Make an obstacle and return it; it takes the arguments of :func:`create_robot`."""
     return _create(env, "obstacle", kinematics, keys)
 
 
@@ -107,7 +107,7 @@ def restore_objects(env: EnvState) -> None:
 
 
 def count_ids(env: EnvState) -> None:
-    """Give new objects the ids that follow those of the file."""
+    """Give new objects ids after the ids of the file."""
     env.env_param.id_iter = count(len(env.scenario.objects))
 
 
@@ -180,7 +180,7 @@ class ObjectList(list[ScriptObject]):
         self._reread()
 
     def _refused(self, *args: Any, **kwargs: Any) -> NoReturn:
-        raise TypeError("the order of `env.objects` is that of the world: objects can only be appended or removed")
+        raise TypeError("`env.objects` has the order of the world: objects can only be appended or removed")
 
     insert = sort = reverse = __setitem__ = __imul__ = _refused
 

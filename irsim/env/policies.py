@@ -53,8 +53,8 @@ def set_policy(env: EnvState, policy: PolicySource | None) -> None:
     Actions that are given to ``step`` take precedence over it. ``reset`` and ``reload`` keep it.
 
     Args:
-        policy: What :func:`irsim.open_policy` takes: a policy, a function of observations, or a name such as ``orca``.
-            None gives the robots back to the behaviors of the scenario.
+        policy: An argument of :func:`irsim.open_policy`: a policy, a function of observations, a name such as
+            ``orca``. None gives the robots back to the behaviors of the scenario.
 
     Raises:
         PolicyError: The policy cannot drive these robots (``policy-mismatch``); nothing is changed then.

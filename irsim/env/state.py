@@ -35,7 +35,7 @@ class EnvState:
             the next step or frame carries out.
         debug_count: Number of single steps that were requested in debugging.
         _simulation: The simulation behind the environment.
-        _policy: What drives the robots instead of their behaviors, or None.
+        _policy: The policy that drives the robots instead of their behaviors, or None.
         _written: Id -> record, of the robots whose behavior a policy has replaced, as the scenario has them.
         _objects: The present objects, in the order of their rows.
         _originals: The objects of the scenario file.

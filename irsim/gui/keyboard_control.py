@@ -53,7 +53,7 @@ class HasControlMode(Protocol):
 
 
 class Controlled(Protocol):
-    """What keys act on: the part of an environment that the keyboard needs."""
+    """The target of the keys: the part of an environment that the keyboard needs."""
 
     logger: Logger
     display: bool

@@ -1,4 +1,4 @@
-"""Messages shaped like those of ROS; ``env.get_msg()`` makes them, ``env.receive_msg(…)`` reads them."""
+"""Messages in the shape of ROS messages; ``env.get_msg()`` makes them, ``env.receive_msg(…)`` reads them."""
 
 from irsim.msg.geometry import (
     Header,

@@ -1,4 +1,4 @@
-"""The building blocks of messages: header, point, vector, quaternion, pose and twist, shaped like those of ROS."""
+"""The building blocks of messages: header, point, vector, quaternion, pose and twist, in the shape of ROS messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Messages about objects, sensors and environments, shaped like those of ROS (nav_msgs, sensor_msgs), without ROS."""
+"""Messages about objects, sensors and environments, in the shape of ROS (nav_msgs, sensor_msgs), without ROS."""
 
 from __future__ import annotations
 

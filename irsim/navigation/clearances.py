@@ -49,7 +49,7 @@ class Clearance:
     Attributes:
         distance: (T, R, 3) distance between footprints [m] to the nearest robot, human and static thing, in this order
             (:data:`irsim.simulation.roles.KINDS`); negative where they overlap, NaN where there is none of the kind.
-        partner: (T, R, 3) which object that is, an index into ``names``; -1 where there is none.
+        partner: (T, R, 3) which object that is, an index into ``names``; -1 without one.
         robots: (R,) indices of the robots.
         names: Names of the N objects.
     """
@@ -98,8 +98,8 @@ def clearance(
     """Distances between the true footprints, in every row of a trace.
 
     Objects that are ``unobstructed`` have no distances, as others pass through them. A map counts as its occupied
-    cells, ``world.boundary: walls`` as the line around the world. The depth of an overlap is that of the deepest
-    corner of one outline inside the other.
+    cells, ``world.boundary: walls`` as the line around the world. The depth of an overlap is the depth of the
+    deepest corner of one outline inside the other.
 
     Args:
         trace: A trace, or its (T, N, 3) poses.

@@ -19,9 +19,9 @@ from irsim.simulation.occupancy import grid_occupied
 __all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarsen", "terrain_of", "world_map"]
 
 MAX_EQUAL_RATIO = 1.05
-"""A resolution up to this many times that of the grid of the world counts as equal to it."""
+"""A resolution up to this many times the cell size of the grid of the world counts as equal to it."""
 MIN_EQUAL_RATIO = 0.95
-"""A resolution down to this many times that of the grid of the world counts as equal to it."""
+"""A resolution down to this many times the cell size of the grid of the world counts as equal to it."""
 
 
 @runtime_checkable
@@ -137,7 +137,7 @@ def world_map(
         corner: Lower left corner [m].
         grid: (nx, ny) occupancy of the world, or None.
         resolution: Cell size [m]. Cells of the grid can be merged (a merged cell is occupied if any of its parts is)
-            but not divided; the map then keeps the value, but its cells are those of the grid. A value that is not
+            but not divided; the map then keeps the value, but it uses the cells of the grid. A value that is not
             positive stands for the resolution of the grid.
         obstacles: Obstacles in the world.
     """
@@ -160,7 +160,7 @@ def world_map(
         merged = coarsen(grid, round(width / resolution), round(height / resolution))
         size = width / merged.shape[0], height / merged.shape[1]
         even = all(math.isclose(extent, resolution, rel_tol=1e-9) for extent in size)
-        rest = "" if even else f", in fact {size[0]:.4g} m x {size[1]:.4g} m because the world is no multiple of that"
+        rest = "" if even else f", in fact {size[0]:.4g} m x {size[1]:.4g} m because the world is not a multiple of it"
         warnings.warn(f"{reason}: they are merged to cells of {resolution:g} m{rest}", UserWarning, stacklevel=3)
         grid = merged
     elif resolution < MIN_EQUAL_RATIO * grid_resolution:
@@ -229,7 +229,7 @@ Cells = tuple[tuple[float, float], tuple[float, float], int, int]
 
 
 def cells_of(env_map: Any, resolution: float | None = None) -> Cells:
-    """Return the cells that grid planners use: those of ``resolution`` [m] if given, else those of the grid, if any."""
+    """Return the cells that grid planners use: cells of ``resolution`` [m], or without it the cells of the grid."""
     if resolution is None and env_map.grid is not None:
         nx, ny = env_map.grid.shape
     else:

@@ -42,7 +42,7 @@ def _find(objects: Sequence[SimObject], key: Any) -> SimObject:
 
 
 def _plain_control(view: SimObject, action: Any) -> Sequence[float] | None:
-    """Return an action that is the finite floats of one control; None for others, which `_checked_control` converts.
+    """Return an action that is the finite floats of one control; None for forms that `_checked_control` converts.
 
     NumPy would take longer for them than a step of a small world.
     """

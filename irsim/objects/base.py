@@ -1,4 +1,4 @@
-"""What the modules that make up an object know of it: its row of a simulation, its record, and its state."""
+"""An object as the modules know it that make it up: its row of a simulation, its record, and its state."""
 
 from __future__ import annotations
 

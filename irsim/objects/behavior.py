@@ -129,7 +129,7 @@ def _set_behavior(view: SimObject, keys: dict[str, Any]) -> None:
     """Replace the behavior of an object by one with the keys of a scenario.
 
     Raises:
-        ScenarioError: A key or value is not valid. What IR-SIM would ignore is logged as a warning instead.
+        ScenarioError: A key or value is not valid. A key that IR-SIM would ignore is logged as a warning instead.
     """
     record, world = view.record, view._simulation.scenario.world
     if record.kinematics is None:

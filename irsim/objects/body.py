@@ -162,7 +162,7 @@ class Body:
         return centre
 
     def _outlines(self, *, world_frame: bool) -> list[Floats]:
-        """(2, M) points of each part; those of a circle run clockwise from its heading."""
+        """(2, M) points of each part; the points of a circle run clockwise from its heading."""
         simulation, row = self._object._simulation, self._object.row
         turn = float(simulation.pose[row, 2]) if world_frame else 0.0
         angles = turn - np.arange(_CIRCLE_POINTS) * (2 * math.pi / _CIRCLE_POINTS)

@@ -2,7 +2,7 @@
 
 A write either takes effect in the engine at once or raises an error that says what to call instead. Writing a setting
 of an object replaces the record of the object in the engine and changes nothing else. Settings survive ``reset``.
-``reload`` restores those of the file, as does the next scene if objects have been added or deleted.
+``reload`` restores the settings of the file, as does the next scene if objects have been added or deleted.
 """
 
 from __future__ import annotations

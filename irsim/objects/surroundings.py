@@ -1,4 +1,4 @@
-"""The other objects of the world of an object: all, near ones, those that it touches or sees."""
+"""The other objects of the world of an object: all, near ones, touched ones, seen ones."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ __all__ = ["Surroundings"]
 class Surroundings:
     """The other objects of the world of one object, ``robot.surroundings``.
 
-    The world of an object that ``env.create_robot`` has made and ``env.add_object`` has not added yet is that of the
-    environment.
+    An object that ``env.create_robot`` has made is surrounded by the objects of the environment even before
+    ``env.add_object`` adds it.
     """
 
     def __init__(self, view: SimObject) -> None:
@@ -33,7 +33,7 @@ class Surroundings:
 
     @property
     def near(self) -> list[Any]:
-        """The other objects whose bounding boxes overlap that of this one, without ``unobstructed`` objects."""
+        """The other objects with bounding boxes that overlap its own, without ``unobstructed`` objects."""
         view = self._object
         if view._made_beside is None:
             objects = self.objects

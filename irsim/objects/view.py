@@ -240,7 +240,7 @@ class ObjectView:
 
     @property
     def heading(self) -> float:
-        """Direction of travel for an ``omni`` drive, heading of the body for others [rad]."""
+        """Direction of travel for an ``omni`` drive, heading of the body for other drives [rad]."""
         return heading(self)
 
     @property

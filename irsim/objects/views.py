@@ -13,7 +13,7 @@ __all__ = ["views"]
 
 
 def views(simulation: Simulation, world: int = 0) -> list[ObjectView]:
-    """Return the objects of one world, in the order of their rows; those of an environment have old names, too."""
+    """Return the objects of one world, in the order of their rows; objects of an environment have old names, too."""
     if simulation.make_view is None:
         simulation.make_view = ObjectView
     return simulation.views(world)

@@ -33,7 +33,7 @@ _CELLS_PER_RADIUS = 6
 _LINE_DISTANCES_M = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 """Distances [m] at which lines can be drawn; those below the radius of the smallest robot are not used."""
 MIN_LINE_RATIO = 1.4
-"""A line is drawn only if its distance is at least this many times that of the previous line."""
+"""A line is drawn only if its distance is at least this many times the distance of the previous line."""
 MAX_LINES = 3
 """Largest number of distances at which lines are drawn."""
 MAX_LABEL_CANDIDATES = 60

@@ -29,7 +29,7 @@ _LABEL_GAP_SHARE = 0.01
 """Distance between a label and the thing that it names, as a share of the height of the picture."""
 _SMALL_TEXT_PT = 7.0
 _OBSTACLE_ALPHA = 0.5
-"""Opacity of goals and paths of obstacles, as a share of that of robots."""
+"""Opacity of goals and paths of obstacles, as a share of the same for robots."""
 MIN_ARROW_SHARE = 0.025
 """Smallest length of an arrow, as a share of the longer side of the picture."""
 _ARROW_EDGE = Stroke("#333333", 0.6)

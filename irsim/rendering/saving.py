@@ -89,7 +89,7 @@ class Saving:
         """Draw the present picture.
 
         Args:
-            options: Options of ``savefig`` that replace those of saved figures.
+            options: Options of ``savefig`` that replace the defaults of saved figures.
 
         Returns:
             The pixels, and the box (left, top, right, bottom) [px] that they were cut from, if they were cut.
@@ -167,7 +167,7 @@ class Saving:
         self._plot.saved_figure_kwargs.update(options)
 
     def _colors(self) -> list[tuple[int, int, int]]:
-        """Return the colours that a reduced palette must keep: those of opaque bodies, paper and ink."""
+        """Return the colours that a reduced palette must keep: opaque bodies, paper and ink."""
         return opaque_colors(self._plot.scene())
 
 

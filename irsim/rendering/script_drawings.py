@@ -1,4 +1,4 @@
-"""What user code draws into the picture of an environment: scripts, and sensors of their own."""
+"""Drawings of user code in the picture of an environment: by scripts, and by sensors of users."""
 
 from __future__ import annotations
 

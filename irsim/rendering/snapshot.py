@@ -61,9 +61,9 @@ def render_scene(
         out: File to write as well; default: none.
         size_px: Longer side of the picture [px].
         world: Index of the world in a batch.
-        labels: Draw names, paths and goals; if there are many names, those of robots only.
+        labels: Draw names, paths and goals; if there are many names, only the names of robots.
         title: Text above the picture; default: the title that the scenario sets, and the time.
-        viewpoint: Point or object name to centre on; default: that of the scenario.
+        viewpoint: Point or object name to centre on; default: the one of the scenario.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the whole world.
         overrides: Object plot keys.
         extra: Callback that adds marks or labels to the scene.

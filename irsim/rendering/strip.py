@@ -32,7 +32,7 @@ _PX_PER_DPI = 4.0
 MAX_OBSTACLE_NAMES = 12
 """Obstacles are named only if there are at most this many."""
 _LEGENDS = ("contact between two steps", "between two steps", "contact")
-"""What the diamonds mean, beside the time of the first tile that has one; the longest that fits."""
+"""Meaning of the diamonds, beside the time of the first tile that has one; the longest that fits."""
 _DIAMOND_PX = 4
 _FRAME_COLOR = "#868e96"
 _TEXT_COLOR = "black"
@@ -137,7 +137,7 @@ def _simplify(scene: Scene, simulation: Simulation, *, first: bool) -> None:
     """Remove what a small tile has no space for.
 
     Goals of obstacles have no labels; the first tile names the obstacles, if they are few, and has the labels that
-    belong to no object. What does not move has neither path nor goal.
+    belong to no object. Objects that do not move have neither path nor goal.
     """
     movers = {view.id for view in views(simulation) if view.role == "robot" or can_move(view)}
     robots = {view.id for view in views(simulation) if view.role == "robot"}

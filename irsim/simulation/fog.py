@@ -31,7 +31,7 @@ def fog_shape(width: float, height: float, resolution: float) -> tuple[int, int]
 
 
 def fog_resolution(scenario: ResolvedScenario) -> float:
-    """Return the cell size [m] that the scenario asks for: its own, that of its map along x, or the default."""
+    """Return the cell size [m] that the scenario asks for: its own, the one of its map along x, or the default."""
     world = scenario.world
     if world.fog_map_resolution is not None:
         return float(world.fog_map_resolution)
@@ -65,7 +65,7 @@ def build_fog(scenario: ResolvedScenario) -> core.Fog | None:
 
 
 class FogMap:
-    """A grid of explored and unexplored cells; that of an environment is ``env._world.fog_map``.
+    """A grid of explored and unexplored cells; an environment has it as ``env._world.fog_map``.
 
     Args:
         width: Extent along x [m].

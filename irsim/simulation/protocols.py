@@ -1,4 +1,4 @@
-"""What a simulation asks of drives and hooks written in Python, and an environment of the recorder of an episode."""
+"""Protocols of drives and hooks written in Python, which a simulation calls, and of the recorder of an episode."""
 
 from __future__ import annotations
 
@@ -61,10 +61,10 @@ class ExternalDrives(Protocol):
         """Look for the objects that they move; True if there are any."""
 
     def prepare(self, worlds: Sequence[int], *, anew: bool = False) -> None:
-        """Construct the handlers of objects that have none, or of all."""
+        """Construct handlers for objects without one, or for all."""
 
     def reset(self, worlds: Sequence[int]) -> None:
-        """Set the controls back to those of the start."""
+        """Set the controls back to their initial values."""
 
     def follow(self) -> None:
         """Turn the velocities that native behaviors want into controls."""

@@ -47,7 +47,7 @@ def generator(
         noise: Number of calls of ``reset()`` in this scene.
         stream: Name of the stream in ``irsim._core.STREAMS``.
         object_id: Id of the object that draws.
-        index: Index among several streams of that name, such as that of a sensor among the sensors of its object.
+        index: Index among several streams of that name, such as the index of a sensor among the sensors of its object.
         first: Number of the first block of draws.
     """
     import numpy as np

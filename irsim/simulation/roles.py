@@ -50,7 +50,7 @@ def social_groups(records: Sequence[ObjectRecord]) -> list[tuple[int, ...]]:
 
 
 def travelling_humans(records: Sequence[ObjectRecord]) -> frozenset[str]:
-    """Names of the humans that have a last goal, unlike those that wander or loop."""
+    """Names of the humans that have a last goal, unlike objects that wander or loop."""
     kinds = kinds_of(records)
     return frozenset(
         record.name

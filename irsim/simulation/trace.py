@@ -307,7 +307,7 @@ def past_goals(simulation: Simulation, row: int) -> Floats | None:
 
 
 def all_poses(simulation: Simulation) -> Floats | None:
-    """Return the (T + 1, N, 3) poses of all objects; None if :func:`past_poses` does not know those of one of them."""
+    """Return the (T + 1, N, 3) poses of all objects; None if :func:`past_poses` lacks one of them."""
     found = [past_poses(simulation, row) for row in range(simulation.objects)]
     known = [poses for poses in found if poses is not None]
     return np.stack(known, axis=1) if known and len(known) == len(found) else None

@@ -1,4 +1,4 @@
-"""What is watched in a world: its zones, and the fields of view that the scenario gives to objects."""
+"""Watched parts of a world: its zones, and the fields of view that the scenario gives to objects."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def build_zones(scenario: ResolvedScenario) -> list[core.Part]:
 
 
 def is_watching(record: ObjectRecord) -> bool:
-    """Whether an object has a field of view that is watched: one that the scenario writes, not just that of a lidar."""
+    """Whether an object has a watched field of view: one that the scenario gives, not just the one of a lidar."""
     return record.watches and record.fov is not None and record.fov_radius is not None
 
 
@@ -40,9 +40,9 @@ def build_views(scenario: ResolvedScenario) -> list[core.View]:
 
 
 def build_targets(scenario: ResolvedScenario) -> list[int]:
-    """Indices of the objects that count as seen: those that can move, robots, and obstacles with tags.
+    """Indices of the objects that count as seen: movable ones, robots, and obstacles with tags.
 
-    Plain static obstacles, maps and walls do not count: whoever turns sees and loses them all the time.
+    Plain static obstacles, maps and walls do not count: a turning robot would see and lose them all the time.
     """
     return [
         index

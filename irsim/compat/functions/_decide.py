@@ -44,7 +44,7 @@ def behavior_options(name: str, keys: Mapping[str, Any]) -> BaseModel:
     """Return the options of a built-in behavior from the keys that it takes; other keys are ignored.
 
     Raises:
-        LookupError: The name is not that of a built-in behavior.
+        LookupError: No built-in behavior has the name.
         ValidationError: A value is not valid.
     """
     feature = BEHAVIORS.get(name)
@@ -72,7 +72,7 @@ class Agent:
         Args:
             number: Id of the object.
             options: Behavior of an agent that decides; None for other agents.
-            grouped: Whether the behavior is that of the group.
+            grouped: Whether the behavior belongs to the group.
         """
         speed = math.hypot(*self.wanted) if self.wanted else 0.0
         goals = []

@@ -44,7 +44,7 @@ class reciprocal_vel_obs:
         obs_state_list: Sequence[Sequence[float]],
         line_obs_list: Sequence[Sequence[float]] | None = None,
     ) -> None:
-        """Replace the states; the arguments are those of the constructor."""
+        """Replace the states; the arguments are as for the constructor."""
         self.state = list(state)
         self.obs_state_list = list(obs_state_list)
         self.line_obs_list = list(line_obs_list or [])

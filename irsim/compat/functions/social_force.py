@@ -88,7 +88,7 @@ class SocialForceModelBatch:
         line_obs_list: Any = None,
         social_groups: list[list[int]] | None = None,
     ) -> None:
-        """Replace the states; the arguments are those of the constructor."""
+        """Replace the states; the arguments are as for the constructor."""
         self.states = [list(map(float, state)) for state in states]
         self.neighbor_states = [
             list(map(float, state)) for state in ([] if neighbor_states is None else neighbor_states)
@@ -217,7 +217,7 @@ class social_force_model:
         neighbor_list: Sequence[Sequence[float]],
         line_obs_list: Sequence[Sequence[float]] | None = None,
     ) -> None:
-        """Replace the states; the arguments are those of the constructor."""
+        """Replace the states; the arguments are as for the constructor."""
         self._model.update([state], neighbor_list, line_obs_list)
 
     def cal_vel(self) -> list[float]:

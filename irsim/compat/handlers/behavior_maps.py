@@ -1,4 +1,4 @@
-"""Behaviors by kinematics and name: the built-in ones and those that user code has registered."""
+"""Behaviors by kinematics and name: built-in ones and ones that user code has registered."""
 
 from __future__ import annotations
 

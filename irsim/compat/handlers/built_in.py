@@ -126,7 +126,7 @@ def OmniRVO(
 
     Args:
         state_tuple: [x, y, vx, vy, padded radius, wanted vx, wanted vy, theta], as ``rvo_state`` of objects.
-        neighbor_list: [x, y, vx, vy, padded radius] of others, as ``rvo_neighbors``.
+        neighbor_list: [x, y, vx, vy, padded radius] of each neighbor, as ``rvo_neighbors``.
         vxmax: Bound of the search [m/s].
         vymax: Bound of the search [m/s].
         acce: Half width of the search around the present velocity [m/s].
@@ -178,7 +178,7 @@ def SFMVelocity(
 
     Args:
         state_tuple: [x, y, vx, vy, padded radius, wanted vx, wanted vy, …].
-        neighbor_list: [x, y, vx, vy, padded radius] of others.
+        neighbor_list: [x, y, vx, vy, padded radius] of each neighbor.
         line_segments: [x1, y1, x2, y2] of lines.
         vmax: Speed cap [m/s].
         step_time: Period [s].

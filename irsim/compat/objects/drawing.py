@@ -50,12 +50,12 @@ class PlotKeys(dict[str, Any]):
 class OldDrawing(ObjectView):
     """Drawing of one object by hand; part of :class:`irsim.compat.objects.view.ScriptObject`.
 
-    Every ``plot_*`` method draws into axes, by default those of the environment, and lists its artists here until
+    Every ``plot_*`` method draws into axes, by default the axes of the environment, and lists its artists here until
     ``plot_clear``. ``state`` is the pose at which to draw, x, y [m] and heading [rad] in any shape, by default the
     present one. Other keywords are plot keys that hold for this drawing only.
 
     Attributes:
-        ax: The axes used last; before the first drawing those of the environment, None without one.
+        ax: The axes used last; before the first drawing the axes of the environment, None without one.
         plot_patch_list, plot_line_list, plot_text_list, plot_trail_list: Artists by kind.
         object_patch, object_img, goal_patch, arrow_patch, fov_patch, trajectory_line: Artist drawn last, or None.
     """
@@ -94,7 +94,7 @@ class OldDrawing(ObjectView):
 
     @property
     def ax(self) -> Any:
-        """The axes used last; before the first drawing those of the environment, None without one."""
+        """The axes used last; before the first drawing the axes of the environment, None without one."""
         own = self.__dict__.get("_ax")
         if own is not None:
             return own
@@ -113,7 +113,7 @@ class OldDrawing(ObjectView):
             ax: Matplotlib axes.
             state: Pose at which to draw.
             vertices: Outline to draw in place of the body, (2, N), in the world frame [m].
-            **kwargs: Plot keys in place of those of the object.
+            **kwargs: Plot keys in place of the object's own.
         """
         axes = self._on(ax)
         if axes is None:
@@ -143,7 +143,7 @@ class OldDrawing(ObjectView):
                 sensor.plot(axes, self.state if state is None else state)
 
     def plot_object(self, ax: Any = None, state: Any = None, vertices: Any = None, **kwargs: Any) -> None:
-        """Draw the body, or the cells of a map; the arguments are those of :meth:`plot`."""
+        """Draw the body, or the cells of a map; the arguments are as for :meth:`plot`."""
         axes = self._on(ax)
         if axes is None:
             return
@@ -161,7 +161,7 @@ class OldDrawing(ObjectView):
     def plot_object_image(
         self, ax: Any = None, state: Any = None, vertices: Any = None, description: str | None = None, **kwargs: Any
     ) -> bool:
-        """Draw the image that ``description`` names, by default that of the object, in place of the body.
+        """Draw the image that ``description`` names, by default the object's own, in place of the body.
 
         Returns:
             Whether the image exists.
@@ -232,7 +232,7 @@ class OldDrawing(ObjectView):
             arrow_width: Width [m].
             arrow_color: Colour.
             arrow_zorder: Drawing layer.
-            **kwargs: Plot keys in place of those of the object.
+            **kwargs: Plot keys in place of the object's own.
         """
         axes = self._on(ax)
         if axes is None:

@@ -26,7 +26,7 @@ class _Kept:
 
     def __setattr__(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
-        # The fields are those of the classes below, all of which are dataclasses; this base is none.
+        # The fields belong to the classes below, which are dataclasses; this base is not one.
         if "_added" in self.__dict__ and name not in type(self).__dataclass_fields__:  # type: ignore[attr-defined]
             self._added[name] = value
 

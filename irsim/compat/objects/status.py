@@ -178,7 +178,7 @@ class OldStatus(ObjectView):
         simulation.stopped[self.row] = collided and self.role in _STOPS.get(simulation.world.collision_mode, ())
 
     def check_status(self) -> None:
-        """Update the flags of arrival, then those of collision and stop, as at the end of a step."""
+        """Update the flag of arrival, then the flags of collision and stop, as at the end of a step."""
         self.check_arrive_status()
         self.check_collision_status()
 

@@ -58,7 +58,7 @@ def validate_shape(**shape_requirements: Any) -> Callable[[Function], Function]:
 
 
 def validate_length(**length_requirements: int) -> Callable[[Function], Function]:
-    """Return a decorator that checks the minimum length of arguments; those that are None are not checked."""
+    """Return a decorator that checks the minimum length of arguments; lengths that are None are not checked."""
 
     def decorate(function: Function) -> Function:
         @functools.wraps(function)

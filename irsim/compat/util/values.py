@@ -67,7 +67,7 @@ def is_list_not_list_of_lists(lst: Any) -> bool:
 
 
 def is_2d_list(data: Any) -> bool:
-    """Whether the first item of a sequence is a list or tuple; False for arrays, which are no lists, and for None."""
+    """Whether the first item of a sequence is a list or tuple; False for arrays, which are not lists, and for None."""
     if data is None or isinstance(data, np.ndarray):
         return False
     return len(data) > 0 and isinstance(data[0], (list, tuple))

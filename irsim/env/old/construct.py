@@ -182,7 +182,7 @@ class ObjectGroup(Sequence[ScriptObject]):
 
     Args:
         members: The objects.
-        group_id: Number of the group; by default that of the first member.
+        group_id: Number of the group; by default the group of the first member.
     """
 
     def __init__(self, members: Iterable[ScriptObject], group_id: int | None = None) -> None:

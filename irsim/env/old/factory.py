@@ -30,7 +30,7 @@ class ObjectFactory:
     """Makes objects that do not belong to a world yet.
 
     Args:
-        world: The world for which objects are made; by default that of the environment used last.
+        world: The world for which objects are made; by default the world of the environment used last.
     """
 
     def __init__(self, world: Any = None) -> None:
@@ -104,7 +104,7 @@ class ObjectFactory:
             points: (2, M) centres of the occupied cells [m]; without points no obstacle is made.
             reso: Extent of a cell along x and y [m].
             grid_map: (nx, ny) occupancies; by default ``points`` are entered into a grid over the world.
-            world_offset: Lower left corner of the map [m]; by default that of the world.
+            world_offset: Lower left corner of the map [m]; by default the corner of the world.
 
         Returns:
             A list of one :class:`irsim.compat.objects.view.ObstacleMap`, or an empty list.

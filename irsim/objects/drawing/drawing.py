@@ -24,7 +24,7 @@ PLOT_KEYS = ("show_goal", "show_goal_text", "show_sensor", "show_trail", "trail_
 
 
 class Drawing:
-    """What is drawn of one object, ``robot.drawing``; what is written here holds from the next frame on.
+    """How one object is drawn, ``robot.drawing``; a change takes effect from the next frame on.
 
     Attributes:
         text: Text that is drawn in place of ``label``; None shows ``label``.
@@ -52,7 +52,7 @@ class Drawing:
 
     @property
     def label(self) -> str:
-        """What pictures call the object: the name that the user gave, without one ``short_label``."""
+        """Name of the object in pictures: the name that the user gave, without one ``short_label``."""
         view: SimObject = self.__dict__["_view"]
         return self.short_label if view.name == f"{view.role}_{view.id}" else clean(view.name, MAX_LABEL)
 

@@ -122,7 +122,7 @@ _SOLID = ("-", "solid")
 
 @dataclass(slots=True)
 class _Kept:
-    """What is kept of an object: its line or its trail, with their style and body and the number of states read."""
+    """Kept for an object: its line or its trail, with their style and body and the number of states read."""
 
     style: ObjectStyle
     body: Body

@@ -278,7 +278,7 @@ class SceneBuilder:
 
         Args:
             view: The object.
-            overrides: Plot keys in place of those of the object.
+            overrides: Plot keys in place of the object's own.
             pose: x, y [m], heading [rad]; by default the present pose.
             goal: x, y [m], heading [rad]; by default the present goal.
         """

@@ -87,7 +87,7 @@ class PythonDrives:
         return bool(self.objects)
 
     def prepare(self, worlds: Sequence[int], *, anew: bool = False) -> None:
-        """Construct the handlers of objects that have none, or of all.
+        """Construct handlers for objects without one, or for all.
 
         Raises:
             TypeError: A constructor does not take a key of the scenario.
@@ -334,7 +334,7 @@ def handler_of(view: SimObject) -> KinematicsHandler | None:
 
 
 def heading(view: SimObject) -> float:
-    """Return the direction of travel for an ``omni`` drive, the heading of the body for others [rad]."""
+    """Return the direction of travel for an ``omni`` drive, the heading of the body for other drives [rad]."""
     if (handler := handler_of(view)) is not None:
         return float(handler.compute_heading(view.state, view.velocity))
     simulation, row = view._simulation, view.row

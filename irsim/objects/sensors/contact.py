@@ -192,8 +192,8 @@ def contact_step(
         iterations: Largest number of sweeps over the pairs.
         slop: Gap that is left between the objects [m].
         margin: Ignored, accepted for compatibility.
-        step_time: Period in which the objects are pushed apart, which determines their velocities [s]; None is that of
-            the world.
+        step_time: Period in which the objects are pushed apart, which determines their velocities [s]; None is the step
+            time of the world.
 
     Raises:
         ValueError: The objects belong to several environments.

@@ -31,7 +31,7 @@ class PythonSensor:
     A function is called ``function(parent, options, rng)`` and what it returns becomes ``data``. A class is made once
     for each object, ``cls(parent, options)``. Its ``step(state)`` is called, with ``rng`` set before, and what that
     returns becomes ``data`` unless it is None; its ``reset()``, if it has one, is called when an episode begins. Other
-    attributes are those of the instance. Both kinds are called after the step and after all native sensors.
+    attributes come from the instance. Both kinds are called after the step and after all native sensors.
 
     Args:
         parent: The object that carries it.
@@ -97,11 +97,11 @@ class PythonSensor:
 
 
 def _nothing() -> None:
-    """Stand in for the ``reset`` of a sensor that has none."""
+    """Stand in for the ``reset`` of a sensor without one."""
 
 
 def sensors_of(simulation: Simulation, view: SimObject) -> list[Any]:
-    """Return the sensors of an object in the order of its entry, without those that are not implemented."""
+    """Return the sensors of an object in the order of its entry, without unimplemented ones."""
     native = _native(simulation, view)
     sensors: list[Any] = []
     for index, options in enumerate(view.record.sensors):
@@ -129,7 +129,7 @@ def _native(simulation: Simulation, view: SimObject) -> Iterator[int]:
 
 
 def _measure(simulation: Simulation, mask: NDArray[np.bool_] | None) -> None:
-    """Let the registered sensors measure, in every world or in those of a mask."""
+    """Let the registered sensors measure, in every world or in the worlds of a mask."""
     for world in range(simulation.copies) if mask is None else np.flatnonzero(mask):
         for view in simulation.views(int(world)):
             for sensor in view.sensors:
