@@ -14,7 +14,7 @@ from irsim.diagnostics.errors import InputError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
-from irsim.scenario.yaml.document import Document
+from irsim.scenario.yaml.document import Document, load_text
 from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = [
@@ -55,8 +55,6 @@ def parse_behavior(text: str) -> dict[str, Any] | None:
         if not text or any(character in text for character in " :{}[],"):
             raise InputError(f"{text!r} is not a valid behavior", _FIX)
         return {"name": text}
-    from irsim.scenario.yaml.document import load_text
-
     document = load_text(text)
     if document.problems or not isinstance(document.data, Mapping) or not isinstance(document.data.get("name"), str):
         raise InputError(f"{text!r} is not a valid behavior", _FIX)

@@ -19,6 +19,7 @@ from irsim.options.base import Options
 from irsim.options.units import Meters, Number, Radians, Seconds
 from irsim.scenario.messages.number_text import read_number
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Spreads
+from irsim.scenario.yaml.document import load_text
 from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = ["Perturbation", "Perturbations", "perturbation_text", "perturbed", "perturbed_message", "read_perturbations"]
@@ -205,8 +206,6 @@ def _read_one(item: Any) -> tuple[Perturbation | None, list[str]]:
 def _read_text(text: str) -> tuple[dict[str, Any] | None, list[str]]:
     """The keys of ``key=value,…``, or of a mapping in YAML; words without ``=`` continue the list of objects."""
     if text.strip().startswith("{"):
-        from irsim.scenario.yaml.document import load_text
-
         document = load_text(text)
         data = document.data
         return (None, [f"{as_given(text)} is not a mapping"]) if document.problems else (data, [])

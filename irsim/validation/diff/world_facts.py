@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.diagnostics.diagnostic import format_path
 from irsim.objects.extensions.behaviors import PythonBehaviors
 from irsim.simulation.build import group_behaviors
 
@@ -79,8 +80,6 @@ def _group_behaviors(env: Env) -> dict[int, tuple[Any, list[int]]]:
 
 
 def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact: bool) -> dict[str, Any]:
-    from irsim.diagnostics.diagnostic import format_path
-
     record = view.record
     group_behavior, members = led.get(view.index, (None, []))
     found: dict[str, Any] = {"name": view.name, "entry": format_path(record.path), "index": record.index}
