@@ -11,7 +11,7 @@ from rich.text import Text
 from irsim.cli.options import Json
 from irsim.cli.output import console, print_json
 from irsim.lookup import Answer, Answers, as_brief_text, lookup, lookup_several, topics_of
-from irsim.lookup.text import facts
+from irsim.lookup.answer import facts
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType

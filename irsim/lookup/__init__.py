@@ -4,8 +4,7 @@ The answers are generated from the registries, the schema of the models, the tem
 cannot contradict them.
 """
 
-from irsim.lookup.answer import Answer, Answers, Key, TopicError
-from irsim.lookup.text import as_brief_text, as_text
+from irsim.lookup.answer import Answer, Answers, Key, TopicError, as_brief_text, as_text
 from irsim.lookup.topics import lookup, lookup_several, schema_part, topics_of
 
 __all__ = [

@@ -9,11 +9,10 @@ from irsim.common.event_kinds import BETWEEN_STEPS, EVENTS
 from irsim.compat import DIFFERENCES
 from irsim.diagnostics.codes import CODES, TOOL_CODES, Code
 from irsim.diagnostics.examples import EXAMPLES
-from irsim.lookup.answer import Answer, Key
+from irsim.lookup.answer import Answer, Key, first_sentence
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.metrics import METRIC_TOPICS
 from irsim.lookup.schema_walk import mappings, yaml_text
-from irsim.lookup.text import first_sentence
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
 

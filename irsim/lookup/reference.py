@@ -17,10 +17,10 @@ from irsim.common.files import write_atomically
 from irsim.compat.changed_scenes import CHANGED_SCENES
 from irsim.compat.differences import ABSENT, DIFFERENCES, EXTENSIONS, FEATURES, KEY_DIFFERENCES, NAME_DIFFERENCES
 from irsim.compat.names import reference_names
+from irsim.lookup.answer import plain_table
 from irsim.lookup.api_pages import PACKS
 from irsim.lookup.pages import pages
 from irsim.lookup.schema_walk import Node, mappings
-from irsim.lookup.text import plain_table
 from irsim.options.registry import REGISTRIES
 from irsim.scenario.model.json_schema import json_schema
 

@@ -10,14 +10,13 @@ from collections.abc import Callable, Sequence
 from irsim.bundled import templates
 from irsim.common.text import clean
 from irsim.lookup import full_text
-from irsim.lookup.answer import Answer, Key, TopicError
+from irsim.lookup.answer import Answer, Key, TopicError, first_sentence
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.index import all_codes, code_answer
 from irsim.lookup.metrics import METRIC_TOPICS, metric_line
 from irsim.lookup.schema_walk import Node, alternatives, paths, step
 from irsim.lookup.small_examples import example_of
 from irsim.lookup.synonyms import EVERYDAY, named
-from irsim.lookup.text import first_sentence
 from irsim.options.registry import REGISTRIES
 
 __all__ = ["MAX_HITS", "all_topics", "near_topics", "search_answer"]

@@ -20,11 +20,10 @@ from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
 from irsim_mcp.answers import failure
 from irsim_mcp.call_log import CallLog
-from irsim_mcp.completions import add_completions
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.prompts import add_prompts
-from irsim_mcp.resources import RUN, add_docs, add_resources, add_run_resources, media_type, replay_app
+from irsim_mcp.resources import RUN, add_completions, add_docs, add_resources, add_run_resources, media_type, replay_app
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.services import Services
 from irsim_mcp.skills import Skills

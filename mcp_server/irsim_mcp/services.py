@@ -1,8 +1,11 @@
-"""Services that tools and resources share: workspace, limits, workers and jobs."""
+"""Services that tools and resources share: workspace, limits, workers, jobs, and the texts of recent calls."""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import re
+from collections import OrderedDict
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
@@ -12,12 +15,12 @@ from irsim.common.text import clean
 from irsim_mcp.answers import Found, failure
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
-from irsim_mcp.recent_texts import RecentTexts
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.suites import suite_of
 from irsim_mcp.worker import Progress, Workers
 
-__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Services", "line_of"]
+__all__ = ["RecentTexts", "RunId", "ScenarioPath", "ScenarioYaml", "Services", "line_of"]
+
 
 ScenarioPath = Annotated[str | None, Field(description="Workspace file, or id of a text.")]
 ScenarioYaml = Annotated[str | None, Field(description="Or its YAML text (at most 256 KiB).")]
@@ -27,6 +30,43 @@ RunId = Annotated[str, Field(max_length=100, description="Of run_episode, or a j
 
 _MAX_CACHED = 100
 """Number of answers about the scenario language that are cached."""
+
+
+_MAX_TEXTS = 64
+"""Number of texts that are kept."""
+_MAX_CHARACTERS = 4 * 1024**2
+"""Number of characters of all kept texts together."""
+_ID = re.compile(r"text-[0-9a-f]{6}")
+
+
+class RecentTexts:
+    """Scenario texts of one server, the least recently used of which are forgotten first."""
+
+    def __init__(self) -> None:
+        self._texts: OrderedDict[str, str] = OrderedDict()
+
+    def remember(self, text: str) -> str:
+        """Keep a text and return its id, which depends on the text alone."""
+        name = f"text-{hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:6]}"
+        self._texts[name] = text
+        self._texts.move_to_end(name)
+        while len(self._texts) > 1 and (
+            len(self._texts) > _MAX_TEXTS or sum(map(len, self._texts.values())) > _MAX_CHARACTERS
+        ):
+            self._texts.popitem(last=False)
+        return name
+
+    def find(self, name: str) -> str | None:
+        """Return the text with an id; None if it was forgotten or never given."""
+        text = self._texts.get(name)
+        if text is not None:
+            self._texts.move_to_end(name)
+        return text
+
+    @staticmethod
+    def is_id(name: str) -> bool:
+        """Whether a name has the form of an id."""
+        return _ID.fullmatch(name) is not None
 
 
 @dataclass(frozen=True)

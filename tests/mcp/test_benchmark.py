@@ -10,7 +10,7 @@ import pytest
 
 import irsim
 from irsim.lookup.topics import lookup
-from irsim_mcp.recent_texts import RecentTexts
+from irsim_mcp.services import RecentTexts
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, call, connected, data_of, error_of, text_of
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]

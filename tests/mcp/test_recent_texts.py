@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim_mcp.recent_texts import RecentTexts
+from irsim_mcp.services import RecentTexts
 from tests.mcp.conftest import CRASH, ROOM, connected, data_of, error_of, text_of
 
 pytestmark = pytest.mark.anyio

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from irsim.lookup.pages import find_gaps
 from irsim.lookup.reference import main, out_of_date
-from irsim.lookup.unsupported import find_gaps
 from irsim.options.registry import REGISTRIES
 from irsim.scenario.model.json_schema import json_schema
 

@@ -26,8 +26,7 @@ from irsim_mcp.limits import (
     MAX_STEPS,
     MAX_WAIT_SECONDS,
 )
-from irsim_mcp.recent_texts import RecentTexts
-from irsim_mcp.services import Services, line_of
+from irsim_mcp.services import RecentTexts, Services, line_of
 from irsim_mcp.suites import suite_of
 from irsim_mcp.tool import StrictTool, reporter, strict
 
