@@ -39,6 +39,7 @@ def options(**overrides: Any) -> core.AvocadoOptions:
         "attention_time": 14.15,
         "attention_step": 0.57,
         "noise": 0.0,
+        "keep_gap": None,
     }
     return core.AvocadoOptions(**{**default, **overrides})
 

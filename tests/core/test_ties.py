@@ -78,6 +78,31 @@ def test_two_that_meet_head_on_pass(law: str, drive: str, degrees: float) -> Non
     assert max(robot.time_to_goal or math.inf for robot in result.robots) < 14
 
 
+@pytest.mark.parametrize("count", [2, 3, 5, 7, 8])
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("law", ["avocado", "avocado, noise: 0"])
+def test_rings_under_avocado_swap_without_a_contact_at_long_steps_too(law: str, drive: str, count: int) -> None:
+    angles = [math.tau * k / count for k in range(count)]
+    starts = [(10 + 4 * math.cos(a), 10 + 4 * math.sin(a)) for a in angles]
+    document = yaml.safe_load(scene(law, drive, starts, [(20 - x, 20 - y) for x, y in starts]))
+    document["robot"][0] |= {"vel_max": [1.5, 1.5], "vel_min": [-1.5, -1.5]}
+    for step in (0.1, 0.2):
+        document["world"] |= {"step_time": step, "contacts": "swept"}
+        result = irsim.run(text=yaml.safe_dump(document), seed=1)
+        assert result.outcome == "success", (step, result.reason)
+
+
+def test_avocado_keeps_gaps_where_it_was_in_a_tie_or_is_told_to() -> None:
+    starts, goals = [(4, 10), (10, 4.6)], [(16, 10), (10, 16)]
+    usual, never, always = (
+        motion(scene(f"avocado, noise: 0{option}", "omni", starts, goals), 100)
+        for option in ("", ", keep_gap: false", ", keep_gap: true")
+    )
+    assert np.array_equal(usual, never)  # nothing is mirrored here
+    gap = [np.linalg.norm(path[:, 0, :2] - path[:, 1, :2], axis=1).min() for path in (never, always)]
+    assert gap[1] >= gap[0]
+
+
 @pytest.mark.parametrize("law", ["orca", "avocado, noise: 0"])
 def test_cars_that_meet_head_on_pass(law: str) -> None:
     assert irsim.run(text=head_on(law, "acker", 30), seed=0).outcome == "success"

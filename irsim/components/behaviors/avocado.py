@@ -75,6 +75,8 @@ class Avocado(BehaviorOptions):
     noise: Annotated[MetersPerSecond, Field(ge=0)] = 1e-4
     """Largest noise on the velocity of another object, along and across the line of sight, while it gets no attention:
     it ends deadlocks. `eta` of the paper."""
+    keep_gap: bool | None = None
+    """Take at most 2/5 of a gap to a circle in a step; null: robots do once they were in a tie."""
 
     def draws(self) -> bool:
         """Whether there is noise."""

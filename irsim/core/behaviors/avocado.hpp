@@ -21,6 +21,7 @@ struct AvocadoOptions : OrcaSettings {
   double attention_time;              // kappa: time to a collision that gets most of the attention [s]
   double attention_step;              // delta: share of the attention that is renewed in a step
   double noise;                       // eta: largest error of an observed velocity, without attention [m/s]
+  std::optional<bool> keep_gap;  // whether a step takes only a share of a gap; none: those of robots after a tie do
 
   static constexpr auto fields() {
     using O = AvocadoOptions;
@@ -30,7 +31,7 @@ struct AvocadoOptions : OrcaSettings {
                         field("own_weight", &O::own_weight), field("evidence_weight", &O::evidence_weight),
                         field("evidence_gain", &O::evidence_gain), field("bias", &O::bias),
                         field("attention_time", &O::attention_time), field("attention_step", &O::attention_step),
-                        field("noise", &O::noise)));
+                        field("noise", &O::noise), field("keep_gap", &O::keep_gap)));
   }
 };
 

@@ -215,11 +215,16 @@ bool breaks_ties(const Behavior& behavior) {
 /// differ by at most 2 kLeanSpeed times the sum of both speeds, and no speed exceeds 1 + speed2.
 double same_speed2(double speed2) { return 4.0 * kLeanSpeed * (2.0 + speed2); }
 
+/// What an object has found about ties with its neighbors.
+struct Ties {
+  bool any = false;      // whether it is one of a mirrored pair
+  bool on_line = false;  // whether it meets the other one of a pair head-on
+};
+
 /// The share that an object takes over from another one of `all` if their motion is mirrored: some of that for one on
-/// its right, less than nothing for one on its left. `on_line` is set if the other one, within `reach`, is on neither
-/// side.
+/// its right, less than nothing for one on its left. `ties` notes a tie with the other one, within `reach`.
 double lean(const World& world, const State& state, int w, const OrcaCrowd& all, int self, int m, double speed,
-            double reach, bool& on_line) {
+            double reach, Ties& ties) {
   const OrcaAgent &agent = all.movers[self], &other = all.movers[m];
   if (!may_mirror(other.position - agent.position, agent.velocity + other.velocity, reach, kLeanSpeed)) return 0.0;
   if (!breaks_ties(world.behaviors[all.group[m]].behavior)) return 0.0;
@@ -228,19 +233,20 @@ double lean(const World& world, const State& state, int w, const OrcaCrowd& all,
       mirrored(state, {first + world.moving[self], first + world.moving[m], agent.velocity, other.velocity, speed,
                        agent.radius + other.radius, kLeanSpeed, kTieDirection});
   if (!side) return 0.0;
+  ties.any = true;
   if (std::fabs(*side) > kParallelSine) return *side < 0.0 ? kLeanShare : -kLeanShare;
-  on_line = true;
+  ties.on_line = true;
   return 0.0;
 }
 
 /// Add half-planes of the nearest movers, from the right to the left of `ahead` if they are equally near. Returns
-/// whether the object and one of them meet head-on, on one line.
-bool avoid_movers(const OrcaSettings& options, const World& world, const State& state, int w, int self, double speed,
+/// the ties with them.
+Ties avoid_movers(const OrcaSettings& options, const World& world, const State& state, int w, int self, double speed,
                   Vec2 ahead, const TieWay& way, Reciprocity* reciprocity, OrcaCrowd& all) {
   const int object = world.moving[self], group = all.member_of[self];
   const OrcaAgent& agent = all.movers[self];
   const int most = std::min(options.maxNeighbors, static_cast<int>(all.movers.size()) - 1);
-  if (most <= 0) return false;
+  if (most <= 0) return {};
   if (static_cast<int>(all.neighbors.size()) < most) all.neighbors.resize(most);
   const auto seen = [&](int m) {
     return m != self && (all.member_of[m] == group || targets_role(world, object, world.moving[m]));
@@ -256,7 +262,7 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
   const double speed2 = all.speed2[self], same = same_speed2(speed2);
   const int* groups = all.group.data();
   const bool routes = !state.routes.empty(), routed = state.route_of(own_row) != nullptr;
-  bool on_line = false;
+  Ties ties;
   for (near = all.neighbors.data(); near != end; ++near) {
     const int m = near->index;
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
@@ -271,7 +277,7 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
       other = &taken;
     }
     if (way.may_meet(all.movers[m].position, near->distance2) && std::fabs(all.speed2[m] - speed2) <= same && mutual)
-      share = clip(share + lean(world, state, w, all, self, m, speed, options.neighborDist, on_line), 0.0, 1.0);
+      share = clip(share + lean(world, state, w, all, self, m, speed, options.neighborDist, ties), 0.0, 1.0);
     if (mutual && routes) {
       const Precedence order = precedence(world, state, w, object, world.moving[m]);
       if (order == Precedence::first) continue;
@@ -282,7 +288,7 @@ bool avoid_movers(const OrcaSettings& options, const World& world, const State& 
       continue;
     avoid_agent(agent, *other, share, options.timeHorizon, world.step_time, self < m, all.planes.emplace_back());
   }
-  return on_line;
+  return ties;
 }
 
 }  // namespace
@@ -318,9 +324,9 @@ void avoid(const OrcaSettings& options, const Decision& decision, Reciprocity* r
     // Ties are of origins, which are not always the centres.
     const double off = 2.0 * all.off_origin;
     const TieWay tie_way = breaks ? TieWay(agent.position, way, far, speed, off, options.neighborDist) : TieWay();
-    if (avoid_movers(options, world, state, decision.w(), self, speed, ahead, tie_way, reciprocity, all)) {
-      preferred = keep_right(preferred, kLeanTurn);
-    }
+    const Ties ties = avoid_movers(options, world, state, decision.w(), self, speed, ahead, tie_way, reciprocity, all);
+    if (ties.any && reciprocity != nullptr) reciprocity->tied();
+    if (ties.on_line) preferred = keep_right(preferred, kLeanTurn);
     Vec2 velocity;
     bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
                                 all.scratch, velocity);

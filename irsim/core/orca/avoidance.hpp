@@ -18,6 +18,8 @@ class Reciprocity {
   /// Args:
   ///   other: Mover m; what the object takes it for may be changed.
   virtual double share(int m, OrcaAgent& other) = 0;
+  /// Called if the object and another one are mirror images of each other.
+  virtual void tied() {}
 };
 
 /// Write, for each object of the decision, the velocity nearest to the wanted one that avoids everything.
