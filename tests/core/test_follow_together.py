@@ -6,10 +6,12 @@ import itertools
 import json
 import math
 import random
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 
 import irsim
 from irsim.api.read_input import read_scenario
@@ -151,3 +153,71 @@ def test_cars_that_brake_slowly_do_not_touch_the_walls_of_a_crowded_room(seed: i
     starts = {event.object for event in result.events if event.kind == "collision" and event.step <= 1}
     hits = [event for event in result.events if event.kind == "collision" and "boundary" in str(event.partner)]
     assert [event for event in hits if event.object not in starts] == []
+
+
+SLOW_CARS = yaml.safe_load(Path(__file__).with_name("slow_cars.yaml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("case", SLOW_CARS, ids=lambda case: f"{case['local']}-{case['world']['step_time']}")
+def test_cars_that_brake_slowly_touch_nobody(case: dict[str, Any]) -> None:
+    car = {
+        "kinematics": {"name": "acker"},
+        "shape": {"name": "rectangle", "length": 0.6, "width": 0.4, "wheelbase": 0.35},
+        "goal_threshold": 0.3,
+        "behavior": {"name": "follow", "local": {"name": case["local"]}},
+        **case["limits"],
+    }
+    document = {
+        "world": {"width": 15, "height": 15, "boundary": "walls", "contacts": "swept", "time_limit": 60}
+        | case["world"],
+        "robot": [car | {"state": row[:3], "goal": row[3:]} for row in case["robots"]],
+        "obstacle": [
+            {"shape": {"name": "rectangle", "length": length, "width": width}, "state": pose}
+            for length, width, *pose in case["obstacles"]
+        ],
+    }
+    result = irsim.run(text=yaml.safe_dump(document), seed=1)
+    assert not [event for event in result.events if event.kind == "collision"]
+    assert 2 * sum(robot.time_to_goal is not None for robot in result.robots) >= len(result.robots)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("local", ["orca", "footprint_orca", "rvo", "sfm", "avocado"])
+def test_no_car_that_brakes_slowly_touches_anything_in_random_crowds(local: str) -> None:
+    """Eight cars among four boxes, with steps of up to 0.3 s."""
+    for seed in range(12):
+        draw = random.Random(seed)
+        taken: list[tuple[list[float], float]] = []
+
+        def place(radius: float, draw: random.Random = draw, taken: list[tuple[list[float], float]] = taken) -> Any:
+            while True:
+                spot = [draw.uniform(1.2, 10.8), draw.uniform(1.2, 10.8)]
+                if all(math.dist(spot, other) > radius + size + 0.25 for other, size in taken):
+                    taken.append((spot, radius))
+                    return spot
+
+        acce, top = draw.choice([0.3, 0.6, 1]), draw.choice([0.8, 1.5])
+        ends = [(place(0.45), place(0.45)) for _ in range(8)]
+        cars = [
+            {
+                "kinematics": {"name": "acker"},
+                "shape": {"name": "rectangle", "length": 0.6, "width": 0.4, "wheelbase": 0.35},
+                "state": [*start, math.atan2(goal[1] - start[1], goal[0] - start[0])],
+                "goal": goal,
+                "goal_threshold": 0.3,
+                "vel_max": [top, 0.8],
+                "vel_min": [-top, -0.8],
+                "acce": [acce, 4],
+                "behavior": {"name": "follow", "local": {"name": local}},
+            }
+            for start, goal in ends
+        ]
+        boxes = [
+            {"shape": {"name": "rectangle", "length": 1.2, "width": 0.8}, "state": [*place(0.75), draw.uniform(-3, 3)]}
+            for _ in range(4)
+        ]
+        world = {"width": 12, "height": 12, "boundary": "walls", "contacts": "swept", "time_limit": 40}
+        world |= {"step_time": draw.choice([0.1, 0.2, 0.3]), "integration": draw.choice(["euler", "exact"])}
+        text = yaml.safe_dump({"world": world, "robot": cars, "obstacle": boxes})
+        result = irsim.run(text=text, seed=1)
+        assert not [event for event in result.events if event.kind == "collision"], seed

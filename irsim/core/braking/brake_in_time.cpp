@@ -156,7 +156,7 @@ void brake_in_time(const Decision& decision, int k, Vec3& command) {
     command = slower;
     return;
   }
-  command = braking_control(drive, decision.state.control[row]);
+  command = braking_control(drive, decision.state.control[row][1]);
 }
 
 }  // namespace irsim

@@ -39,9 +39,9 @@ bool plans(const World& world, const State& state, int row, int object) {
 
 }  // namespace
 
-Vec3 braking_control(const Drive& drive, const Vec3& present) {
+Vec3 braking_control(const Drive& drive, double steering) {
   const auto* car = std::get_if<AckerOptions>(&drive);
-  return car != nullptr && car->mode == Steering::steer ? Vec3{{0.0, present[1], 0.0}} : Vec3{};
+  return car != nullptr && car->mode == Steering::steer ? Vec3{{0.0, steering, 0.0}} : Vec3{};
 }
 
 bool brakes_in_time(const World& world, int object) {
@@ -84,7 +84,7 @@ void stop_after(const World& world, const State& state, int row, int object, con
       early = 0.5 * (1.0 - world.step_time / dt);
     }
     const Vec3 before = control;
-    mean = control = within_limits(world, state, row, object, control, braking_control(drive, control), dt);
+    mean = control = within_limits(world, state, row, object, control, braking_control(drive, control[1]), dt);
     for (int c = 0; c < 3; ++c) mean[c] += early * (before[c] - control[c]);
     if (stands(drive, mean)) return;
   }
@@ -110,7 +110,7 @@ Stops& stops(const World& world, const State& state, Workspace& work, int w) {
       continue;
     }
     if (stands(world.drive[i], state.control[row])) continue;
-    stop_after(world, state, row, i, braking_control(world.drive[i], state.control[row]), all.extra, all.trial);
+    stop_after(world, state, row, i, braking_control(world.drive[i], state.control[row][1]), all.extra, all.trial);
     all.points.insert(all.points.end(), all.trial.begin(), all.trial.end());
     stop.count += static_cast<int>(all.trial.size());
     for (const Vec2 p : all.trial)

@@ -40,7 +40,10 @@ bool is_inert(const World& world, const State& state, int row, int object);
 
 /// The control that brakes: zero, but wheels that are steered keep their present angle. The way on which an object
 /// comes to rest with it is the one that others leave free, and that is free of walls.
-Vec3 braking_control(const Drive& drive, const Vec3& present);
+///
+/// Args:
+///   steering: The present angle of these wheels [rad].
+Vec3 braking_control(const Drive& drive, double steering);
 
 /// The stops of world w, which the first call of a step computes.
 Stops& stops(const World& world, const State& state, Workspace& work, int w);

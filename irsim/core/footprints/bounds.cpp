@@ -10,16 +10,6 @@ namespace {
 constexpr double kLeastGap = 0.005;          // part of a gap that stays free [m]
 constexpr double kLeastStandingGap = 0.001;  // gap that is kept from what stands [m]
 
-bool glides(const World& world, const State& state, int row, int object) {
-  bool found = false;
-  with(world.drive[object], [&](const auto& drive) {
-    const Rows kind = rows(drive);
-    for (int c = 0; c < kind.travel; ++c) found = found || std::isfinite(state.acce[row][c]);
-    found = found || (kind.yaw >= 0 && std::isfinite(state.acce[row][kind.yaw]));
-  });
-  return found;
-}
-
 }  // namespace
 
 void fill_reaches(const Decision& decision, const OrcaCrowd& all, FootprintCrowd& crowd) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "braking/stops.hpp"
 #include "world/state.hpp"
 #include "world/world.hpp"
 
@@ -183,9 +184,9 @@ Vec3 Ahead::limited(Vec3 wanted) const {
 }
 
 Vec3 Ahead::braking() const {
-  const auto* car = std::get_if<AckerOptions>(&world.drive[object]);
-  const double* rows = &state.extra[static_cast<std::size_t>(row) * state.extra_rows];
-  return car && car->mode == Steering::steer ? Vec3{{0.0, rows[0], 0.0}} : Vec3{};
+  const bool car = std::holds_alternative<AckerOptions>(world.drive[object]);
+  return braking_control(world.drive[object],
+                         car ? state.extra[static_cast<std::size_t>(row) * state.extra_rows] : 0.0);
 }
 
 void Ahead::step_and_stop(Vec3 control, Manoeuvre& out) const {
@@ -218,6 +219,16 @@ double Ahead::play() const {
   if (kind.travel > 1) way = length(way, gap(1)), far = length(far, whole(1));
   if (kind.yaw >= 0) turn = gap(kind.yaw);
   return std::min(range(), way + (far + reach) * turn);
+}
+
+bool glides(const World& world, const State& state, int row, int object) {
+  bool found = false;
+  with(world.drive[object], [&](const auto& drive) {
+    const Rows kind = rows(drive);
+    for (int c = 0; c < kind.travel; ++c) found = found || std::isfinite(state.acce[row][c]);
+    found = found || (kind.yaw >= 0 && std::isfinite(state.acce[row][kind.yaw]));
+  });
+  return found;
 }
 
 }  // namespace irsim

@@ -54,4 +54,7 @@ struct Ahead {
   double play() const;
 };
 
+/// Whether an object cannot stop, or stop turning, at once.
+bool glides(const World& world, const State& state, int row, int object);
+
 }  // namespace irsim

@@ -38,4 +38,9 @@ double inner_radius(const Shapes& shapes, int object) {
   return radius;
 }
 
+double sweeping_reach(const Shapes& shapes, int object) {
+  const double reach = extent_of(shapes, object).reach;
+  return inner_radius(shapes, object) < reach ? reach : 0.0;
+}
+
 }  // namespace irsim

@@ -16,4 +16,7 @@ Extent extent_of(const Shapes& shapes, int object);
 /// this disc at every heading. A polygon counts only if the origin is on the inner side of all its edges.
 double inner_radius(const Shapes& shapes, int object);
 
+/// How far a footprint reaches where a turn about its origin changes what it covers: 0 for a disc about it [m].
+double sweeping_reach(const Shapes& shapes, int object);
+
 }  // namespace irsim

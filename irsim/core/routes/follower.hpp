@@ -3,7 +3,9 @@
 // paths and poses into commands that keep clear of static objects.
 #pragma once
 
+#include "footprints/manoeuvres.hpp"
 #include "phases.hpp"
+#include "routes/extents.hpp"
 #include "routes/route.hpp"
 #include "world/spec.hpp"
 
@@ -22,6 +24,8 @@ class Follower {
         route_(state.routes[row_]),
         fixed_(*state.scenes[w].fixed),
         shapes_(*state.scenes[w].shapes),
+        glides_(glides(world, state, row_, object)),
+        reach_(sweeping_reach(shapes_, object)),
         blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data(), nullptr} {
     if (!options_.within.empty()) within_.emplace(options_.within);
     collect_avoided();
@@ -119,19 +123,50 @@ class Follower {
   void forget_retreat();
   /// Plan poses round all movers where they are. The present route stays if there is no such plan.
   bool plan_among_others();
+  /// How far an object can get in two steps and the stop after them [m].
+  double range(int object) const;
+  /// An object, to be run ahead.
+  Ahead ahead_of(int object) const;
+  /// Index in `Workspace::stop_hulls` of what an object covers if it brakes now; of its body if it is on no route.
+  int stop_of(int object);
+  /// Find the widest strip between what this object and another one cover until they stand.
+  ///
+  /// Args:
+  ///   side: The part of the plane up to which this object then reaches, seen across the strip.
+  /// Returns: Its width [m].
+  double strip_between_stops(int other, Side& side);
   /// Find the lines between this object and its moving neighbors, and write its sides of them to `Workspace::sides`.
+  ///
+  /// Where one of two cannot stop at once, the line runs between the ways on which both come to rest if they brake now.
+  /// So braking is always allowed, and two that stay on their sides never touch.
   void find_sides();
+  /// Whether the object stays on its sides in a step with this command and in the stop after it.
+  bool stays_on_sides(const Vec3& command);
+  /// A command that leads along these lines: a drive that cannot move sideways turns there first. None if it is not
+  /// worth it.
+  std::optional<Vec3> along_sides(const Vec3& u);
   /// Slow down or turn aside where the command would cross such a line, so that nothing that moves is touched.
   void keep_apart(Vec3& u);
   /// Slow down, veer or back up where the command would end in a collision with a static object.
   void keep_clear(Vec3& u);
-  /// A car that stops because no command is free keeps its last steering if it would touch something static with the
-  /// wanted one: a step ago the stop with that steering was free.
+  /// The control that brakes; the wheels of a car keep their angle. A step ago this stop was free.
+  Vec3 braking() const;
+  /// A car that stops because no command is free keeps its wheels as they are if it would touch something static with
+  /// the wanted steering.
   void hold_steering(Vec3& u);
   /// Stop.
   void brake(Vec3& u);
   /// Set the gap to walls that the next command must keep: the gap of the route, or a little less than the present gap.
   void measure_gap();
+  /// The body at a pose that is tried.
+  Footprint body_at(const Pose& pose);
+  /// Whether the body touches nothing static between two times of a step [s], at both of which it does not.
+  ///
+  /// Args:
+  ///   pose: At the start of the step.
+  ///   twist: Of the step.
+  ///   halvings: How often the time may be halved; what is then left is free.
+  bool clear_between(const Pose& pose, const Vec3& twist, double from, double to, int halvings);
   /// Whether the body at a pose touches nothing static, keeps the gap to it, and stays on its `Workspace::sides`.
   bool clear_at(const Pose& pose);
   /// Whether a command, followed by braking as hard as the limits allow, leads to no collision.
@@ -145,6 +180,8 @@ class Follower {
   Route& route_;
   const Fixed& fixed_;
   const Shapes& shapes_;
+  const bool glides_;   // whether it cannot stop at once
+  const double reach_;  // how far it reaches where a turn matters [m]
   Blockers blockers_;
   double gap_ = 0.0;                // gap to static objects that the next command must keep [m]
   std::optional<Region> within_;    // area that the path must not leave

@@ -42,11 +42,7 @@ void Follower::update_target() {
   aim(target);
 }
 
-void Follower::adjust_command() {
-  Vec3& u = state_.command[row_];
-  adjust(u);
-  route_.steering = u[1];
-}
+void Follower::adjust_command() { adjust(state_.command[row_]); }
 
 void Follower::adjust(Vec3& u) {
   if (std::isnan(state_.goal[row_].x)) return;
@@ -57,7 +53,7 @@ void Follower::adjust(Vec3& u) {
   if (!route_.legs.empty()) {
     follow_legs(u);
     if (!route_.legs.empty()) return keep_apart(u);
-    if (route_.path.empty()) return;  // the legs are blocked, and no other path was found
+    if (route_.path.empty()) return brake(u);  // the legs are blocked, and no other path was found
   }
   if (route_.uncertain || parks()) report_if_stuck();
   if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) steer_to_corner(u);
@@ -148,6 +144,7 @@ void find_routes(const World& world, State& state, int w, Workspace& work, int o
 }
 
 void keep_routes(const World& world, State& state, int w, Workspace& work, int only) {
+  if (!world.routed.empty()) work.stop_hulls.clear(world.objects);
   for (const int i : world.routed) {
     if ((only < 0 || only == i) && follows_route(world, state, w, i))
       Follower(world, state, w, i, work).adjust_command();

@@ -52,7 +52,6 @@ struct Route {
   int blocked_steps = 0;           // consecutive steps in which something blocked the leg
   bool keeps_heading = false;      // the path is free of collisions only at the present heading
   std::int64_t parking_at = -1;    // step of the last plan to the heading of the goal; -1: none yet
-  double steering = 0.0;           // second control of a car at its last step
   int backing_steps = 0;           // remaining steps of backing up
   double wall_radius = 0.0;        // radius of the disc about the origin that behaviors keep off walls [m]
   double wall_margin = 0.0;        // gap between the body and walls below which no command is allowed to lead [m]

@@ -4,6 +4,8 @@
 #pragma once
 
 #include "collision/support.hpp"
+#include "footprints/hulls.hpp"
+#include "footprints/manoeuvres.hpp"
 
 namespace irsim {
 
@@ -11,6 +13,15 @@ namespace irsim {
 struct Side {
   Vec2 normal;
   double offset;  // [m]
+};
+
+/// What the movers of one world cover until they stand: scratch memory, by id.
+struct StopHulls {
+  Hulls all;
+  std::vector<int> body, stop;  // hulls of the body, and of all its places if it brakes now; -1: unknown
+  Manoeuvre way;                // that is looked at
+
+  void clear(int objects) { all.clear(), body.assign(objects, -1), stop.assign(objects, -1); }
 };
 
 /// Find the widest strip between the convex hulls of two footprints.

@@ -1,7 +1,9 @@
 // Steering to the next corner, and commands that keep clear of static objects.
 #include "routes/follower.hpp"
 
+#include "braking/stops.hpp"
 #include "collision/touch.hpp"
+#include "integration.hpp"
 #include "routes/sides.hpp"
 #include "world/features.hpp"
 
@@ -11,6 +13,7 @@ namespace {
 constexpr int kBackingSteps = 8;        // steps that a manoeuvre of backing up lasts
 constexpr double kGapShare = 0.9;       // share of a gap to a wall that is too small already which a command must keep
 constexpr int kMaxBrakingSteps = 1000;  // number of steps of braking that are simulated ahead
+constexpr int kHalvings = 6;            // of a step in which a corner of the object sweeps past something static
 
 }  // namespace
 
@@ -138,8 +141,10 @@ void Follower::keep_clear(Vec3& u) {
   if (car) hold_steering(u);
 }
 
+Vec3 Follower::braking() const { return ahead_of(object_).braking(); }
+
 void Follower::hold_steering(Vec3& u) {
-  const Vec3 held{{0.0, route_.steering, 0.0}};
+  const Vec3 held = braking();
   const double wanted = gap_;
   for (const double gap : {wanted, 0.0}) {  // the stop that was free a step ago may have kept a smaller gap
     gap_ = gap;
@@ -151,7 +156,7 @@ void Follower::hold_steering(Vec3& u) {
 }
 
 void Follower::brake(Vec3& u) {
-  u = {};
+  u = glides_ ? braking() : Vec3{};
   if (std::holds_alternative<AckerOptions>(world_.drive[object_])) hold_steering(u);
 }
 
@@ -163,13 +168,19 @@ void Follower::measure_gap() {
   gap_ = now < wanted ? std::max(0.0, kGapShare * now) : wanted;
 }
 
-bool Follower::clear_at(const Pose& pose) {
+Footprint Follower::body_at(const Pose& pose) {
   work_.ghost.resize(shapes_.size[0]);
   work_.ghost.place(shapes_, object_, pose, unit(pose.theta));
-  const Footprint body = work_.ghost.footprint(shapes_, object_);
+  return work_.ghost.footprint(shapes_, object_);
+}
+
+bool Follower::clear_at(const Pose& pose) {
+  const Footprint body = body_at(pose);
   if (gap_ > 0.0 ? blockers_.gap(body, gap_) < gap_ : blockers_.meet(body)) return false;
-  for (const Side& side : work_.sides) {
-    if (support(body, side.normal) > side.offset) return false;
+  if (!glides_) {  // others see to their sides in `stays_on_sides`
+    for (const Side& side : work_.sides) {
+      if (support(body, side.normal) > side.offset) return false;
+    }
   }
   for (const int other : route_.parked_seen) {  // a way round them may not exist
     if (is_parked(other) && touch(body, state_.scenes[w_].moving.footprint(shapes_, other))) return false;
@@ -181,7 +192,21 @@ bool Follower::clear_at(const Pose& pose) {
   });
 }
 
+bool Follower::clear_between(const Pose& pose, const Vec3& twist, double from, double to, int halvings) {
+  const double way = norm({twist[0], twist[1]}) * (to - from), turn = std::fabs(twist[2]) * (to - from);
+  const double travel = way + reach_ * turn;
+  if (travel <= 2.0 * gap_ || halvings == 0) return true;
+  const double middle = 0.5 * (from + to);
+  const Pose there = pose_at(pose, twist, middle, world_.integration);
+  const double room = blockers_.gap(body_at(there), 0.5 * travel);
+  if (room >= 0.5 * travel) return true;
+  return room > 0.0 && room >= gap_ && clear_between(pose, twist, from, middle, halvings - 1) &&
+         clear_between(pose, twist, middle, to, halvings - 1);
+}
+
 bool Follower::clear_after(const Vec3& command) {
+  if (glides_ && !stays_on_sides(command)) return false;
+  const bool car = std::holds_alternative<AckerOptions>(world_.drive[object_]);
   Pose pose = state_.pose[row_];
   Vec3 control = state_.control[row_], wanted = command, twist;
   const double* extra = &state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
@@ -195,17 +220,17 @@ bool Follower::clear_after(const Vec3& command) {
       moves = moves || control[c] != 0.0;
     }
     if (k > 0 && !moves) return true;
+    const Pose before = pose;
     with(world_.drive[object_], [&](const auto& drive) {
       control = constrain(drive, control);
       run(drive,
           Motion{pose, work_.extra.data(), twist, unit(pose.theta), control, world_.step_time, world_.integration});
     });
     if (!clear_at(pose)) return false;
-    wanted = {};
-    if (std::holds_alternative<AckerOptions>(world_.drive[object_])) {
-      wanted[1] = command[1];
-      if (k > 0 && std::fabs(control[0]) < 1e-9) return true;
-    }
+    const bool sweeps = reach_ * std::fabs(twist[2]) * world_.step_time > gap_;  // a corner may cut another one
+    if (sweeps && !clear_between(before, twist, 0.0, world_.step_time, kHalvings)) return false;
+    wanted = car ? braking_control(world_.drive[object_], work_.extra[0]) : Vec3{};
+    if (car && k > 0 && std::fabs(control[0]) < 1e-9) return true;
   }
   return true;
 }

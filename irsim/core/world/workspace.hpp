@@ -56,6 +56,7 @@ struct Workspace {
   SearchMemory search;            // memory of planners
   Outlines ghost;                 // outline of an object at a pose that is tried
   std::vector<Side> sides;        // lines that an object on a route must not cross
+  StopHulls stop_hulls;           // of the objects near one on a route
   Stops stops;
 };
 
