@@ -54,6 +54,7 @@ class AvocadoOptions(_Options):
         attention_time: float,
         attention_step: float,
         noise: float,
+        keep_gap: bool | None,
     ) -> None: ...
 
 class DashOptions(_Options):

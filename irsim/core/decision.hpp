@@ -16,11 +16,12 @@ struct Decision {
   const int* objects;  // (K,) ids within the world
   int count;           // K
   const std::vector<int>&
-      members;         // ids of all objects of the behavior, or of the group, including objects that do not decide now
-  bool grouped;        // from `group_behavior`: members know each other
-  Workspace& work;     // scratch memory
-  Opinions* opinions;  // (R,) memory of `avocado`: only the row of an object that decides is read and written
-  Detour* detours;     // (R,) memory of `footprint_orca`, likewise
+      members;      // ids of all objects of the behavior, or of the group, including objects that do not decide now
+  bool grouped;     // from `group_behavior`: members know each other
+  Workspace& work;  // scratch memory
+  // (R,) memory of `avocado`: of objects that do not decide only ties before this step are read
+  Opinions* opinions;
+  Detour* detours;     // (R,) memory of `footprint_orca`: only the row of an object that decides is read and written
   std::int64_t* tied;  // (R,) memory of `rvo`, likewise
 
   int w() const { return first_row / world.objects; }

@@ -76,7 +76,7 @@ class Avocado(BehaviorOptions):
     """Largest noise on the velocity of another object, along and across the line of sight, while it gets no attention:
     it ends deadlocks. `eta` of the paper."""
     keep_gap: bool | None = None
-    """Take at most 2/5 of a gap to a circle in a step; null: robots do once they were in a tie."""
+    """Take at most 2/5 of a gap to a circle in a step; null: robots do for 7 s after a tie of either."""
 
     def draws(self) -> bool:
         """Whether there is noise."""

@@ -12,7 +12,7 @@
 namespace irsim {
 namespace {
 
-constexpr double kTieCare = 20.0;    // time after a tie in which gaps are kept [s]
+constexpr double kTieCare = 7.0;     // time after a tie in which gaps are kept [s]
 constexpr double kMinChange = 1e-6;  // a smaller change of velocity is a rounding error and says nothing [m/s]
 
 /// Time until two discs touch if they keep their velocities [s]: 0 if they overlap, infinite if they never touch.
@@ -76,7 +76,10 @@ class LearnedShare final : public Reciprocity {
     return 1.0 - clip(0.5 * (of.opinion + 1.0), 0.0, 1.0);
   }
 
-  void tied() override { opinions_->tied = now_; }
+  void tied() override {
+    if (opinions_->tied < now_) opinions_->tied_before = opinions_->tied;
+    opinions_->tied = now_;
+  }
 
  private:
   /// The opinion of the object with this number, old or new, as an entry of the present ones.
@@ -115,20 +118,25 @@ class LearnedShare final : public Reciprocity {
   bool formed_ = false;  // whether the opinions of this step are known, because the object has decided before
 };
 
-/// Whether an object was lately the mirror image of another one.
+/// Whether an object was lately, before this step, the mirror image of another one: what others see of it.
 bool was_tied(const Decision& decision, int row) {
-  const std::int64_t tied = decision.opinions[row].tied, now = decision.state.count[decision.w()];
+  const Opinions& its = decision.opinions[row];
+  const std::int64_t now = decision.state.count[decision.w()], tied = its.tied < now ? its.tied : its.tied_before;
   return tied >= 0 && static_cast<double>(now - tied) * decision.world.step_time <= kTieCare;
 }
 
-/// Let object k keep gaps to the round bodies near it.
+/// Let object k keep gaps to the round bodies near it: to all of them if it is told to, or where one of both was in a
+/// tie.
 void keep_gaps_of(const AvocadoOptions& options, const Decision& decision, int k, Intent& intent) {
   const Ego ego = ego_of(decision, k);
   const Vec3& top = decision.state.vel_max[ego.row];
   const double body = ego.radius - kPadding, ahead = norm({top[0], top[1]}) * decision.world.step_time / kClosingShare;
+  const bool all = options.keep_gap || was_tied(decision, ego.row);
   decision.work.nearby.clear();
   for_discs(decision, ego, options.neighborDist, [&](const Disc& disc) {
-    if (may_close(disc.centre - ego.position, body + disc.radius, ahead)) add_nearby(decision, ego, disc);
+    if (may_close(disc.centre - ego.position, body + disc.radius, ahead) &&
+        (all || was_tied(decision, decision.first_row + disc.object)))
+      add_nearby(decision, ego, disc);
   });
   if (!decision.work.nearby.empty()) keep_gaps(decision, ego, false, intent);
 }
@@ -138,10 +146,11 @@ void keep_gaps_of(const AvocadoOptions& options, const Decision& decision, int k
 void avocado(const AvocadoOptions& options, const Decision& decision, Intent* intents) {
   LearnedShare shares(options, decision);
   avoid(options, decision, &shares, intents);
+  const bool ties = std::any_of(decision.objects, decision.objects + decision.count,
+                                [&](int object) { return was_tied(decision, decision.first_row + object); });
   for (int k = 0; k < decision.count; ++k) {
     const bool robot = decision.world.is_robot[decision.objects[k]] != 0;
-    if (options.keep_gap.value_or(robot && was_tied(decision, decision.row(k))))
-      keep_gaps_of(options, decision, k, intents[k]);
+    if (options.keep_gap.value_or(robot && ties)) keep_gaps_of(options, decision, k, intents[k]);
   }
 }
 
