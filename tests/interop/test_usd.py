@@ -265,11 +265,13 @@ def test_commands_of_the_page(tmp_path: Path, monkeypatch) -> None:
     from typer.testing import CliRunner
 
     from irsim.cli.app import app
-    from tests.skills.test_bridges import blocks
+    from irsim.common.data_files import skills_directory
+    from tests.skills.conftest import fences
 
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scene.yaml").write_text(TEXT)
-    for command in (line for block in blocks("usd.md", "bash") for line in block.splitlines()):
+    page = (skills_directory() / "irsim-runner" / "bridges" / "usd.md").read_text(encoding="utf-8")
+    for command in (line for block in fences(page, "bash") for line in block.splitlines()):
         if command.startswith("irsim "):
             done = CliRunner().invoke(app, shlex.split(command)[1:])
             assert done.exit_code == 0, (command, done.output)

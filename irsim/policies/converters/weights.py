@@ -13,9 +13,9 @@ from irsim.common.text import clean
 from irsim.options.base import Options
 from irsim.options.registry import Registry
 from irsim.policies.networks.errors import PolicyFileError, flaw
-from irsim.policies.networks.values import Array
+from irsim.policies.networks.values import Array, sides
 
-__all__ = ["CONVERTERS", "ConverterOptions", "Weights", "sides"]
+__all__ = ["CONVERTERS", "ConverterOptions", "Weights"]
 
 CONVERTERS = Registry("converter", "irsim.policies.converters.kinds", "irsim.policy_converters")
 """Kinds of weights: each has a function of (weights, options) that returns a network."""
@@ -87,11 +87,6 @@ class Weights:
 
 def _short(name: str) -> str:
     return clean(name, 80)
-
-
-def sides(shape: Sequence[int | None]) -> str:
-    """A shape as text."""
-    return " x ".join("any" if side is None else str(side) for side in shape) or "one number"
 
 
 def _fits(given: Sequence[int], wanted: Sequence[int | None]) -> bool:

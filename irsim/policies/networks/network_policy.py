@@ -13,10 +13,9 @@ from irsim.common.arrays import Floats
 from irsim.policies.driver import decision_steps
 from irsim.policies.networks.document import PolicyHead
 from irsim.policies.networks.errors import PolicyInputError
-from irsim.policies.networks.graph import GraphPlan, run_graph
 from irsim.policies.networks.layout import layout_needs, layout_shapes, observe
 from irsim.policies.networks.lookahead import Lookahead, best_moves, look_ahead, straight, take_rows
-from irsim.policies.networks.network import Network
+from irsim.policies.networks.network import GraphPlan, Network, run_graph
 from irsim.policies.networks.output import Present, decide
 from irsim.policies.networks.values import Array, Value
 from irsim.policies.policy import Policy

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 
-__all__ = ["Array", "Channel", "Shape", "Value", "add_in_order", "apply"]
+__all__ = ["Array", "Channel", "Shape", "Value", "add_in_order", "apply", "sides"]
 
 Array = NDArray[Any]
 """Array of float32 or float64."""
@@ -97,3 +97,8 @@ def add_in_order(arrays: Iterable[Array]) -> Array:
     for array in others:
         total += array
     return total
+
+
+def sides(shape: Sequence[int | None]) -> str:
+    """A shape as text."""
+    return " x ".join("any" if side is None else str(side) for side in shape) or "one number"

@@ -59,8 +59,8 @@ def crowd() -> dict[str, Any]:
 
 def filled(data: dict[str, Any], seed: int = 0) -> Network:
     """A network of a document with random weights."""
-    from irsim.policies.networks.graph import plan_graph
     from irsim.policies.networks.layout import layout_shapes
+    from irsim.policies.networks.network import plan_graph
 
     document: PolicyDocument = read_document(PolicyDocument, data, "test")
     plan = plan_graph(layout_shapes(document.layout), document.network)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from irsim.options.registry import Feature
-from irsim.policies.networks.graph import GraphPlan, plan_graph, run_graph
 from irsim.policies.networks.layers._options import LAYERS
+from irsim.policies.networks.network import GraphPlan, plan_graph, run_graph
 from irsim.policies.networks.values import Shape, Value
 from irsim.testing import conformance
 from tests.policies.networks.observed import same_bits

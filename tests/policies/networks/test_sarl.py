@@ -40,7 +40,7 @@ def test_people_whose_score_is_exactly_zero_do_not_count() -> None:
     }
     network = sarl_network(blind, lookahead=AHEAD, neighbors=5)
     alone = sarl_network(weights, lookahead=AHEAD, neighbors=5)
-    from irsim.policies.networks.graph import run_graph
+    from irsim.policies.networks.network import run_graph
     from irsim.policies.networks.values import Value
 
     seen = observe(network.document.layout, observations(8))

@@ -10,10 +10,10 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from irsim.options.units import Integer, Meters, MetersPerSecond, Seconds
-from irsim.policies.converters.weights import CONVERTERS, ConverterOptions, Weights, sides
+from irsim.policies.converters.weights import CONVERTERS, ConverterOptions, Weights
 from irsim.policies.networks.document import FORMAT, VERSION, PolicyDocument
 from irsim.policies.networks.network import Network, read_document
-from irsim.policies.networks.values import Array
+from irsim.policies.networks.values import Array, sides
 
 _SELF, _CONE, _RESULT = 6, 8, 2
 """Numbers that the robot observes of itself and of each other one, and numbers that it decides."""
