@@ -11,7 +11,6 @@ from irsim.common.arguments import as_given
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.pictures import Camera
-from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.step import Result
 from irsim.learning.tasks.files import TaskError, TaskSource
 from irsim.learning.workers.divided import AnyWorlds
@@ -163,3 +162,16 @@ def facts(result: Result, slot: int) -> dict[str, Any]:
     arrived, collided = bool(result.arrived.reshape(-1)[slot]), bool(result.collided.reshape(-1)[slot])
     between = int(result.contacts_between_steps.reshape(-1)[slot])
     return {"arrived": arrived, "collided": collided, "is_success": arrived, "contacts_between_steps": between}
+
+
+def observation_space(worlds: AnyWorlds) -> gymnasium.spaces.Box:
+    """The box of the observations of one learner."""
+    return gymnasium.spaces.Box(worlds.eyes.low, worlds.eyes.high, dtype=np.float32)
+
+
+def action_space(worlds: AnyWorlds) -> gymnasium.spaces.Space[Any]:
+    """The box of numbers from -1 to 1 of an action, or the numbers of the choices."""
+    choices = worlds.task.action.choices
+    if choices is not None:
+        return gymnasium.spaces.Discrete(len(choices))
+    return gymnasium.spaces.Box(-1.0, 1.0, (worlds.width,), dtype=np.float32)

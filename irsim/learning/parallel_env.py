@@ -8,9 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.extras import require
-from irsim.learning.gym_env import RENDER_MODES, begin, check_render_mode, drawn_facts, facts, frames_per_second
+from irsim.learning.gym_env import (
+    RENDER_MODES,
+    action_space,
+    begin,
+    check_render_mode,
+    drawn_facts,
+    facts,
+    frames_per_second,
+    observation_space,
+)
 from irsim.learning.pictures import Camera
-from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskSource
 from irsim.learning.worlds import Worlds
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
+from irsim.learning.gym_env import action_space, observation_space
 from irsim.learning.ladder import Ladder
 from irsim.learning.pictures import Camera
-from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.tasks.files import TaskSource
 from irsim.learning.workers.divided import open_worlds
 

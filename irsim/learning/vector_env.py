@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from irsim.common.arguments import as_given
 from irsim.common.extras import require
 from irsim.diagnostics.errors import ArgumentError
-from irsim.learning.gym_env import RENDER_MODES, check_render_mode, frames_per_second
+from irsim.learning.gym_env import RENDER_MODES, action_space, check_render_mode, frames_per_second, observation_space
 from irsim.learning.pictures import Camera
-from irsim.learning.spaces import action_space, observation_space
 from irsim.learning.step import Result
 from irsim.learning.tasks.files import TaskSource
 from irsim.learning.workers.divided import AnyWorlds, open_worlds
