@@ -108,9 +108,6 @@ def _check_end(tail: bytes, most: int) -> None:
 def _check_entries(entries: Sequence[zipfile.ZipInfo], most: int, packed: bool) -> None:
     if len({entry.filename for entry in entries}) < len(entries):
         raise ContentError("two entries of the archive have the same name")
-    total = sum(entry.file_size for entry in entries)
-    if total > most:
-        raise ContentError("too large when unpacked", f"{total} bytes", f"up to {most}")
     known = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) if packed else (zipfile.ZIP_STORED,)
     for entry in entries:
         if entry.flag_bits & 1 or entry.compress_type not in known:
@@ -119,6 +116,9 @@ def _check_entries(entries: Sequence[zipfile.ZipInfo], most: int, packed: bool) 
                                place=entry.filename)  # fmt: skip
         if not packed and entry.file_size != entry.compress_size:
             raise ContentError("an entry of the archive has two sizes", place=entry.filename)
+    total = sum(entry.file_size for entry in entries)
+    if total > most:
+        raise ContentError("too large when unpacked", f"{total} bytes", f"up to {most}")
 
 
 def pack_arrays(arrays: Mapping[str, NDArray[Any]]) -> bytes:

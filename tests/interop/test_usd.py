@@ -276,7 +276,7 @@ def test_commands_of_the_page(tmp_path: Path, monkeypatch) -> None:
             done = CliRunner().invoke(app, shlex.split(command)[1:])
             assert done.exit_code == 0, (command, done.output)
     assert {path.name for path in tmp_path.glob("*.usd?")} == {"run.usdc", "start.usda"}
-    [layer] = blocks("usd.md", "usda")
+    [layer] = fences(page, "usda")
     (tmp_path / "mine.usda").write_text(layer.replace("person.usd@", "person.usda@"))
     (tmp_path / "person.usda").write_text('#usda 1.0\n(\n defaultPrim = "P"\n)\ndef Sphere "P" {}\n')
     stage = Usd.Stage.Open(str(tmp_path / "mine.usda"))

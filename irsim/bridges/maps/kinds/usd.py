@@ -12,13 +12,13 @@ import os
 import subprocess
 import sys
 import tempfile
-import zipfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from irsim.bridges.maps.source import ImportLimits, ImportOptions, Kind, Scene, unusable
+from irsim.common.archives import ContentError, opened_archive
 from irsim.common.child import ONE_THREAD
 
 __all__ = ["KIND"]
@@ -38,7 +38,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     if options.up == "-y":
         raise unusable(path, "y does not point down in stages of USD", "give --up y or z, or leave it out")
     if path.suffix.lower() == ".usdz":
-        _check_archive(path, limits)
+        _check_archive(path)
     with tempfile.TemporaryDirectory(prefix="irsim-usd-") as folder:
         out = Path(folder) / "stage.npz"
         request = {"file": os.path.abspath(path), "out": str(out), "triangles": limits.triangles}
@@ -82,22 +82,18 @@ def _answer(text: str) -> dict[str, Any]:
     return result if isinstance(result, dict) else {}
 
 
-def _check_archive(path: Path, limits: ImportLimits) -> None:
+def _check_archive(path: Path) -> None:
     """A ``.usdz`` stores its files uncompressed, so that it cannot grow when it is read."""
     try:
-        with zipfile.ZipFile(path) as archive:
-            entries = archive.infolist()
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
-        raise unusable(path, f"it is not an archive ({error})") from None
-    if len(entries) > _MAX_FILES:
-        raise unusable(path, f"it has {len(entries):,} files inside")
-    for entry in entries:
-        if entry.compress_type != zipfile.ZIP_STORED or entry.file_size != entry.compress_size:
-            raise unusable(path, f"its file '{entry.filename[:80]}' is compressed, which usdz does not allow")
-        if entry.flag_bits & 1 or entry.filename.startswith(("/", "\\")) or ".." in Path(entry.filename).parts:
-            raise unusable(path, f"its file '{entry.filename[:80]}' is encrypted or lies outside of it")
-    if sum(entry.file_size for entry in entries) > path.stat().st_size:
-        raise unusable(path, "its files overlap")
+        size = path.stat().st_size
+        with opened_archive(path, most_bytes=size, most_entries=_MAX_FILES, packed=False) as archive:
+            names = archive.namelist()
+    except ContentError as error:
+        place = f" (its file '{error.place}')" if error.place else ""
+        raise unusable(path, f"it is not an archive of usdz: {error.message}{place}") from None
+    outside = next((name for name in names if name.startswith(("/", "\\")) or ".." in Path(name).parts), None)
+    if outside is not None:
+        raise unusable(path, f"its file '{outside[:80]}' lies outside of it")
 
 
 KIND = Kind(
