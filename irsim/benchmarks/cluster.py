@@ -27,7 +27,7 @@ from irsim.common.version import version
 from irsim.policies.catalog import file_of, files_beside, with_file
 from irsim.scenario.behavior_override import check_behavior_name
 
-__all__ = ["ClusterError", "check_jobs", "run_chunk", "run_on_cluster"]
+__all__ = ["ClusterError", "run_on_cluster"]
 
 _CHUNK_S = 5.0
 """Time that a chunk should take [s]: sending one costs some milliseconds."""

@@ -18,7 +18,7 @@ from irsim.common.extras import require
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError, CodedError
 
-__all__ = ["AUTO", "ClusterError", "connected"]
+__all__ = ["ClusterError", "connected"]
 
 AUTO = "auto"
 """Address of the cluster that RAY_ADDRESS names, else of the one on this machine, which is started if there is none."""

@@ -23,7 +23,7 @@ from irsim.scenario.messages.translate import located
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
-__all__ = ["Expanded", "check_scenarios", "expand"]
+__all__ = ["Expanded", "expand"]
 
 
 def expand(suite: Suite, file: Path) -> list[Expanded]:

@@ -16,8 +16,6 @@ from irsim.results.benchmark import CROWDED, LOST, BenchmarkRow, EpisodeRow, Est
 __all__ = [
     "ALL",
     "KEYS",
-    "estimates",
-    "incident_counts",
     "incident_messages",
     "incident_seeds",
     "is_summary",

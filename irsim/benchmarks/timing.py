@@ -12,7 +12,7 @@ from irsim.benchmarks.episode import Job, environment_of
 from irsim.diagnostics.errors import PlacementError
 from irsim.simulation.simulation import Simulation
 
-__all__ = ["DecisionTimer", "Decisions", "time_behavior", "timing_report", "was_timed"]
+__all__ = ["Decisions", "time_behavior", "timing_report", "was_timed"]
 
 Decisions = Sequence[tuple[float, int]]
 """Wall-clock time [s] of each decision of a policy, and the number of robots that it decided for."""

@@ -21,7 +21,7 @@ from irsim.simulation.build import kernel_options
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["PythonTerms", "Threats", "weighted_terms"]
+__all__ = ["PythonTerms", "weighted_terms"]
 
 
 def weighted_terms(terms: Sequence[RewardOptions]) -> list[tuple[Any, float]]:

@@ -13,7 +13,6 @@ __all__ = [
     "LIST",
     "MAPPING",
     "ONE",
-    "PER_OBJECT",
     "UNION_TAGS",
     "Offset",
     "OrNull",

@@ -9,7 +9,7 @@ import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = ["BUNDLED", "IMAGES", "image_places", "why_outside"]
+__all__ = ["BUNDLED", "image_places", "why_outside"]
 
 _INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
 """Unicode categories: control characters, text-direction marks, lone surrogates, line and paragraph separators."""

@@ -31,7 +31,7 @@ from irsim.simulation.simulation import Simulation
 from irsim.simulation.step_cost import step_work
 from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
 
-__all__ = ["BUDGET", "SECONDS", "dry_run"]
+__all__ = ["SECONDS", "dry_run"]
 
 BUDGET = 300_000
 """Work of a dry run: steps times objects, weighted by cost (:mod:`irsim.simulation.step_cost`); about a second.

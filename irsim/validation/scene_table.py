@@ -21,7 +21,7 @@ from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.simulation.build import build_world
 from irsim.validation.scene_passages import find_passages
 
-__all__ = ["MAX_LIDARS", "SEEDS", "lidar_hits", "scene_table", "sensors_in_words"]
+__all__ = ["SEEDS", "scene_table"]
 
 SEEDS = 20
 """Number of seeds that are tried if places are random."""

@@ -10,15 +10,7 @@ from irsim.policies.catalog import SUFFIXES
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, SuiteResult
 from irsim.scenario.yaml.document import load_text
 
-__all__ = [
-    "MAX_WORST",
-    "families",
-    "labels_of",
-    "policy_labels",
-    "protocols",
-    "series",
-    "worst_episodes",
-]
+__all__ = ["families", "labels_of", "policy_labels", "protocols", "series", "worst_episodes"]
 
 MAX_LABEL = 24
 """Characters of a behavior that is its own label; a longer one is numbered."""

@@ -32,7 +32,7 @@ import torch
 from stable_baselines3 import PPO
 from torch import nn
 
-__all__ = ["draw_curve", "export_policy", "network_of"]
+__all__ = ["export_policy", "network_of"]
 
 
 _ACTIVATIONS = {nn.ReLU: "relu", nn.Tanh: "tanh", nn.ELU: "elu", nn.SiLU: "silu", nn.GELU: "gelu"}

@@ -23,7 +23,7 @@ from irsim.learning.workers.process import Worker, stop
 from irsim.learning.worlds import Autoreset, Worlds
 from irsim.simulation.simulation import Simulation
 
-__all__ = ["MAX_WORKERS", "AnyWorlds", "DividedWorlds", "open_worlds"]
+__all__ = ["AnyWorlds", "DividedWorlds", "open_worlds"]
 
 MAX_WORKERS = 256
 """Largest number of processes."""

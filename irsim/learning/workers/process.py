@@ -12,7 +12,7 @@ from typing import Any
 from irsim.common.child import ONE_THREAD, Child, python
 from irsim.diagnostics.errors import WorkerError
 
-__all__ = ["DONE", "Worker", "packed_error", "read_exactly", "read_message", "stop", "unpacked_error", "write_message"]
+__all__ = ["DONE", "Worker", "packed_error", "read_message", "stop", "write_message"]
 
 
 DONE = b"\0"

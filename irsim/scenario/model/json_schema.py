@@ -10,7 +10,7 @@ from typing import Any
 from irsim.options.base import SCHEMA_PARTS, SchemaParts
 from irsim.scenario.model.scenario import Scenario
 
-__all__ = ["INEXPRESSIBLE", "SCHEMA_ID", "build_schema", "check", "json_schema", "schema_text"]
+__all__ = ["INEXPRESSIBLE", "SCHEMA_ID", "check", "json_schema", "schema_text"]
 
 SCHEMA_ID = "https://irsim.dev/schema/scenario.schema.json"
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from irsim.scenario.resolve.body_size import top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
 
-__all__ = ["HORIZONS", "Braking", "braking_of", "follow_text", "horizons_that_work", "short_horizons"]
+__all__ = ["Braking", "braking_of", "follow_text", "horizons_that_work", "short_horizons"]
 
 HORIZONS = ("timeHorizon", "timeHorizonObst")
 """Keys of behaviors: time horizons for what moves, and for what stands [s]."""

@@ -16,7 +16,7 @@ from irsim.scenario.limits import Limits
 from irsim.scenario.yaml.nodes import NO_KEY, Anchored, Frame, Mark, Node, merge, scalar_mark, start_mark
 from irsim.scenario.yaml.scalars import resolve, resolve_tagged
 
-__all__ = ["Composed", "compose", "syntax_problem"]
+__all__ = ["Composed", "compose"]
 
 _MERGE = object()
 _COLLECTION_TAGS = (None, "!", "tag:yaml.org,2002:map", "tag:yaml.org,2002:seq")

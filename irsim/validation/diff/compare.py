@@ -16,7 +16,7 @@ from irsim.scenario.yaml.document import Document
 from irsim.validation.diff.keys import Pairs, changed_keys, data_of, entry_pairs, place
 from irsim.validation.diff.worlds import changed_worlds
 
-__all__ = ["changed_comments", "changed_lines", "comments_message", "compare"]
+__all__ = ["compare"]
 
 _MAX_NAMED = 6
 """Number of keys or objects that the summary names."""

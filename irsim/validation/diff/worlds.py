@@ -16,7 +16,7 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.validation.diff.keys import Pairs, moved, same
 from irsim.validation.diff.world_facts import describe_world
 
-__all__ = ["changed_worlds", "differing", "listed", "match_objects", "object_facts"]
+__all__ = ["changed_worlds", "differing", "listed"]
 
 _BEHAVIORS = ("behavior", "group_behavior")
 _WRITTEN = {

@@ -12,7 +12,7 @@ from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.scenes import Scene
 from irsim.validation.feasibility.tally import Tally
 
-__all__ = ["check", "fits_at"]
+__all__ = ["check"]
 
 _RINGS = (0.5, 0.98)
 """Radii of the rings on which places around a goal are tried, as shares of the arrival distance."""

@@ -17,7 +17,7 @@ from irsim.validation.feasibility.scenes import FAR, Scene
 from irsim.validation.feasibility.tally import Tally
 from irsim.validation.scene_passages import Places, passages_of_legs
 
-__all__ = ["EASE", "Missed", "add_unreachable", "missed_way", "report_narrow", "report_no_path"]
+__all__ = ["EASE", "add_unreachable", "report_narrow", "report_no_path"]
 
 EASE = 1.25
 """A gap narrower than this many times the width of the robot is reported as narrow."""

@@ -25,7 +25,7 @@ from irsim.validation.feasibility.reachability import Leg
 from irsim.validation.feasibility.scenes import Scene, Thing
 from irsim.validation.feasibility.tally import Tally
 
-__all__ = ["Trap", "check", "trap_of"]
+__all__ = ["check"]
 
 _EIGHT_NEIGHBOUR_BOUND = math.cos(math.pi / 8)
 """Least ratio of the shortest path to the shortest one over cells with eight neighbours."""
