@@ -49,7 +49,7 @@ def files(tmp_path):
     return [str(tmp_path / "crowd.yaml"), str(tmp_path / "alone.yaml")]
 
 
-def test_each_episode_is_what_run_gives(files) -> None:
+def test_each_episode_equals_a_run_with_its_seed(files) -> None:
     found = irsim.benchmark(files, seeds=[4, 7])
     assert [(e.scenario, e.seed) for e in found.episodes] == [(files[0], 4), (files[0], 7), (files[1], 4)]
     for episode in found.episodes:
@@ -90,7 +90,9 @@ def test_a_log_has_every_episode_from_the_moment_it_is_done(files, tmp_path) -> 
     assert parts[2].rows[1].paired["path_length"].n == 1  # of the second behavior one seed is done
 
 
-def test_a_log_is_in_order_whoever_computed_and_may_end_in_the_middle_of_a_line(files, tmp_path, monkeypatch) -> None:
+def test_a_log_is_in_order_for_any_number_of_processes_and_may_end_in_the_middle_of_a_line(
+    files, tmp_path, monkeypatch
+) -> None:
     monkeypatch.setattr(pool_module, "_START_DELAY_S", 0.0)
     log = tmp_path / "episodes.jsonl"
     whole = irsim.benchmark(files, ["rvo", "orca"], 6, workers=3, log=log)
@@ -102,7 +104,7 @@ def test_a_log_is_in_order_whoever_computed_and_may_end_in_the_middle_of_a_line(
     assert order == [one for one in ((e.scenario, e.behavior, e.seed) for e in whole.episodes) if one in order]
 
 
-def test_what_is_stopped_has_as_much_of_every_behavior(files, tmp_path) -> None:
+def test_a_stopped_benchmark_has_equally_many_episodes_of_every_behavior(files, tmp_path) -> None:
     class Stopped(Exception):
         pass
 
@@ -118,7 +120,7 @@ def test_what_is_stopped_has_as_much_of_every_behavior(files, tmp_path) -> None:
     assert [row.paired["path_length"].n for row in part.rows[1:]] == [15, 15]
 
 
-def test_what_is_no_log_is_told(files, tmp_path) -> None:
+def test_a_file_that_is_not_a_log_is_an_error(files, tmp_path) -> None:
     for text in ("", "{}\n", "what\n", '{"number": 1}\n'):
         (tmp_path / "log").write_text(text)
         with pytest.raises(irsim.runs.RunError, match="is not a log of a benchmark"):
@@ -166,7 +168,7 @@ def test_a_behavior_that_draws_random_numbers_runs_with_every_seed(files) -> Non
     assert [len(found.episodes), found.notes] == [6, []]
 
 
-def test_what_is_not_random_is_run_once_and_said(files) -> None:
+def test_a_scenario_without_randomness_runs_once_and_a_note_says_so(files) -> None:
     found = irsim.benchmark(files[1], seeds=20)
     assert len(found.episodes) == 1
     assert "nothing is random" in found.notes[0]
@@ -190,7 +192,7 @@ def test_scenarios_that_weigh_the_same_are_also_taken_together(files, tmp_path) 
     assert irsim.benchmark(fixed).rows[-1].scenario == "(all)"
 
 
-def test_seeds_and_robots_that_failed_are_told(files) -> None:
+def test_rows_name_the_seeds_and_robots_that_failed(files) -> None:
     found = irsim.benchmark(files[0], seeds=range(100, 110))
     [row] = found.rows
     ends = {e.seed: e.outcome for e in found.episodes}
@@ -278,7 +280,7 @@ def job(text: str, behavior: str) -> Job:
     return Job(text, None, behavior, None, True, (), ())
 
 
-def test_robots_keep_what_they_are_to_do() -> None:
+def test_robots_keep_their_tasks_under_another_behavior() -> None:
     text = "robot:\n  - {kinematics: {name: diff}, number: 2, group_behavior: {name: orca, timeHorizon: 3}}\n"
     text += "  - {kinematics: {name: omni}, behavior: {name: dash, wander: true, range_high: [3, 3]}}\n"
     text += "  - {shape: {name: circle}}\nobstacle: {kinematics: {name: omni}, behavior: {name: sfm}, state: [5, 5]}\n"
@@ -294,12 +296,12 @@ def test_robots_keep_what_they_are_to_do() -> None:
 
 
 @pytest.mark.parametrize("wrong", ["", "a b", "{name: 3}", "{timeHorizon: 5}", "{name: [", "name: orca"])
-def test_what_is_no_behavior(wrong) -> None:
+def test_text_that_is_not_a_behavior_is_refused(wrong) -> None:
     with pytest.raises(InputError, match="bad-argument"):
         parse_behavior(wrong)
 
 
-def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path) -> None:
+def test_invalid_comparisons_are_refused_before_anything_runs(files, tmp_path) -> None:
     with pytest.raises(OverLimitError, match="2 scenarios x 3 policies x 100 seeds = 600 episodes"):
         irsim.benchmark(files, ["rvo", "orca", "sfm"], 100, most_episodes=500)
     with pytest.raises(InputError, match="did you mean rvo"):

@@ -81,7 +81,7 @@ def test_several_problems_are_named_at_once(tmp_path: Path) -> None:
         ({"name": "one", "scenario": {"world": {}}, "vary": {"world.name": ["a b", "a/b"]}}, "are called 'one-a-b'"),
     ],
 )
-def test_what_cannot_be_expanded_is_named(scenario: dict[str, Any], problem: str, tmp_path: Path) -> None:
+def test_a_suite_that_cannot_be_expanded_says_where(scenario: dict[str, Any], problem: str, tmp_path: Path) -> None:
     file = written(tmp_path, scenarios=[scenario])
     with pytest.raises(SuiteError) as caught:
         expand(SUITES.read(load_path(file)), file)

@@ -173,7 +173,7 @@ def test_monstrous_numbers(text: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["directory", "/dev/null", "/dev/zero", "fifo", "binary", "unreadable"])
-def test_what_is_no_text_file(kind: str, tmp_path: Path) -> None:
+def test_a_file_that_is_not_text_is_reported(kind: str, tmp_path: Path) -> None:
     path = tmp_path / "scenario.yaml"
     if kind == "directory":
         path.mkdir()
@@ -202,7 +202,7 @@ def test_what_is_no_text_file(kind: str, tmp_path: Path) -> None:
         "world\n",
     ],
 )
-def test_what_is_no_scenario(text: str) -> None:
+def test_data_that_are_not_a_scenario_are_reported(text: str) -> None:
     reading = read(text)
     assert reading.scenario is None
     assert len(reading.errors) >= 1

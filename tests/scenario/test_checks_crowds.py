@@ -69,6 +69,6 @@ def test_others_are_not(text: str) -> None:
     assert "crowd-stops" not in [finding.code for finding in irsim.validate(text=text).findings]
 
 
-def test_with_the_fix_nobody_freezes(tmp_path: Path) -> None:
+def test_with_the_fix_no_object_freezes(tmp_path: Path) -> None:
     assert stopped(tmp_path, crowd()) > 6
     assert stopped(tmp_path, crowd(mode="unobstructed_obstacles")) == 0

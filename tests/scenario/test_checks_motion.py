@@ -179,7 +179,7 @@ def test_says_nothing_of_sane_ones(data: Any) -> None:
     assert set(codes(data)) <= {"no-behavior", "coarse-steps"}
 
 
-def test_what_is_said_never_to_arrive_does_not() -> None:
+def test_objects_reported_never_to_arrive_do_not_arrive() -> None:
     """Omni drives without the direction of their goal, and a threshold of 0."""
     text = (
         "robot: {{kinematics: {{name: {}}}, shape: {{name: circle, radius: 0.2}}, behavior: {{name: dash}}, "
@@ -191,7 +191,7 @@ def test_what_is_said_never_to_arrive_does_not() -> None:
     assert irsim.run(text=text.format("diff", 0, "goal_threshold: 0"), seed=0).outcome == "timeout"
 
 
-def test_what_is_said_to_hop_over_its_goal_does() -> None:
+def test_objects_reported_to_hop_over_their_goal_do() -> None:
     """And with the threshold that the fix names it arrives."""
     text = (
         "robot: {{kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.2}}, behavior: {{name: dash}}, "
@@ -221,7 +221,7 @@ def test_goals_that_steps_jump_over_are_told_under_every_behavior(behavior: str)
     assert "goal-overshoot" not in {d.code for d in read(text.format(behavior, 0, 0.26)).diagnostics}
 
 
-def test_what_is_said_to_jump_through_a_wall_does() -> None:
+def test_objects_reported_to_jump_through_a_wall_do() -> None:
     text = (
         "world: {{step_time: {}}}\n"
         "robot: {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.2}}, behavior: {{name: dash}}, "

@@ -40,7 +40,9 @@ def test_random_placement_counts_the_minimal_distance() -> None:
         ("acker", "follow", [9, 9, 1], False),
     ],
 )
-def test_headings_that_nobody_steers_for(drive: str, behavior: str, goal: list[float], expected: bool) -> None:
+def test_goal_headings_that_no_behavior_steers_for(
+    drive: str, behavior: str, goal: list[float], expected: bool
+) -> None:
     kinematics = {"name": drive, **({"wheelbase": 0.3} if drive == "acker" else {})}
     data = robot(kinematics=kinematics, goal=goal, arrive_mode="state", behavior={"name": behavior}, state=[1, 1, 0])
     assert ("heading-not-reached" in [c for _, c, _ in findings(data)]) == expected
@@ -108,7 +110,7 @@ def test_touching_is_not_measured() -> None:
     assert all("e-" not in item.message for item in found)
 
 
-def test_a_ship_is_no_lorry() -> None:
+def test_a_very_long_body_in_a_large_world_is_a_hint_and_in_a_small_one_a_warning() -> None:
     ship = {"name": "rectangle", "length": 220, "width": 30}
     for size, severity in ((2000, "hint"), (300, "warning")):
         data = {"world": {"width": 2000, "height": size}, **robot(shape=ship, state=[200, 150], goal=[900, 150])}

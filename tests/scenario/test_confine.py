@@ -105,7 +105,7 @@ def test_names_count_from_the_folder_of_the_scenario_too(root: Path) -> None:
     assert "path-outside-workspace" in [item.code for item in errors]
 
 
-def test_no_feature_names_files_that_nobody_looks_at() -> None:
+def test_the_options_that_name_files_are_known() -> None:
     keys = {
         f"{kind}.{name}"
         for kind, registry in REGISTRIES.items()
