@@ -66,7 +66,7 @@ def benchmark(
         typer.Option(
             "--policies",
             metavar="A,B,…",
-            help="What drives all robots, to compare: behaviors such as rvo,orca or '{name: orca, timeHorizon: 5}', "
+            help="Policies of all robots, to compare: behaviors such as rvo,orca or '{name: orca, timeHorizon: 5}', "
             "files (model.npz), plug-ins; irsim policies lists them. The first is the reference for differences. Of a "
             "suite: names of its policies, or others.",
             show_default="as-written, or all of a suite",
@@ -81,7 +81,7 @@ def benchmark(
             metavar="N|LIST",
             help="Number of seeds from 0, or a list of seeds: 20, 5-9, 1,4,7. Of a suite: the number of its seeds, "
             "from its first one on, or other seeds.",
-            show_default="10, or those of a suite",
+            show_default="10, or the seeds of a suite",
         ),
     ] = "",
     perturb: Perturb = None,
@@ -146,7 +146,7 @@ def benchmark(
 
     The table shows the rates of success, collision and time-out with 95 % intervals, and mean times, speeds and paths.
     --json and --csv contain all metrics. A suite and every benchmark with -o writes each episode into a folder as soon
-    as it is done; after an interruption, --resume goes on there, and the results are those of an undisturbed run.
+    as it is done; after an interruption, --resume goes on there, and the results equal those of an undisturbed run.
     """
     if json_output and csv_output:
         raise InputError("--json and --csv cannot be combined", "give one of them")
@@ -306,7 +306,7 @@ def _episodes_note(found: Estimate, episodes: int) -> str:
 def _labels(files: list[str]) -> dict[str, str]:
     """Return a short label for each file; full paths without suffix if the file names are not unique.
 
-    Names that are not files, such as those of the scenarios of a suite, are their own labels.
+    Names that are not files, such as the texts of the scenarios of a suite, are their own labels.
     """
     stems = {name: re.sub(r"(/scenario)?\.ya?ml$", "", name) for name in files}
     short = {name: stem.rsplit("/", 1)[-1] if stem != name else name for name, stem in stems.items()}

@@ -1,4 +1,4 @@
-"""What ``irsim benchmark`` runs: files, a suite, or what an interrupted benchmark has left in its folder."""
+"""The work of ``irsim benchmark``: files, a suite, or what an interrupted benchmark has left in its folder."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def _suite(name: str, wanted: Wanted) -> Plan:
 
 
 def _suite_seeds(text: str) -> int | list[int] | None:
-    """The seeds of a suite: their number, the seeds, or None for those of the suite."""
+    """The seeds of a suite: their number, the seeds, or None for the seeds of the suite."""
     if not text or text.strip().isdecimal():
         return int(text) if text else None
 

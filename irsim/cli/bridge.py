@@ -30,7 +30,7 @@ __all__ = ["bridge_app", "export_scene", "import_bag"]
 
 
 bridge_app = typer.Typer(
-    name="bridge", help="Bridges to other programs: robots, simulators, formats of others.", no_args_is_help=True
+    name="bridge", help="Bridges to other programs: robots, simulators and their formats.", no_args_is_help=True
 )
 _COLORS = {"ready": "green", "there": "green", "missing": "yellow", "broken": "red"}
 
@@ -43,7 +43,7 @@ def doctor(
 ) -> None:
     """List the bridges: which of their libraries are there, and whether these work on this machine.
 
-    The exit code is 1 if a library is broken; one that is missing is none that you need until you use its bridge.
+    The exit code is 1 if a library is broken; a missing one is needed only when you use its bridge.
     """
     for name in names or ():
         if name not in BRIDGES.names():

@@ -76,7 +76,7 @@ def page(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="File to write, .html.")],
     run: RunName = "last",
     max_splats: Annotated[
-        int, typer.Option(min=1, max=4_000_000, help="Those that are seen least are left out above this number.")
+        int, typer.Option(min=1, max=4_000_000, help="The least visible ones are left out above this number.")
     ] = 1_000_000,
     options: Settings = None,
     json_output: Json = False,

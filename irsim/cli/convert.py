@@ -18,7 +18,7 @@ def convert(
         typer.Argument(metavar="KIND", help="Kind of weights, such as rl_rvo; irsim describe convert explains all."),
     ],
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="What torch.save wrote: a state dictionary, or a whole module.")
+        Path, typer.Argument(metavar="FILE", help="File that torch.save wrote: a state dictionary, or a whole module.")
     ],
     out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Policy file to write, .npz.")],
     options: Annotated[
@@ -47,7 +47,9 @@ def export_policy(
         Path, typer.Argument(metavar="FILE", help="File to write, .npz or .onnx; its card and curve get .md and .png.")
     ],
     license: Annotated[str, typer.Option("--license", help="Licence of the weights, such as MIT.")] = "",
-    description: Annotated[str, typer.Option("--description", help="What the policy does; default: the title.")] = "",
+    description: Annotated[
+        str, typer.Option("--description", help="A sentence about the policy; default: the title.")
+    ] = "",
 ) -> None:
     """Make a policy file of a training, with its model card and curve; needs the extra `learn`.
 

@@ -27,7 +27,7 @@ MAX_ROWS = 20
 MAX_CSV_TEXT_LENGTH = 200
 """Longer texts are cut off in comma-separated values [characters]."""
 _FULL_WIDTH = 120
-"""Width of a table that is no terminal's [characters]."""
+"""Width of a table outside a terminal [characters]."""
 
 
 def inspect(

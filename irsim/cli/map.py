@@ -125,7 +125,7 @@ def import_(
         int | None,
         typer.Option(
             min=0,
-            help="Number of the level, 0 is the lowest. Default: the largest that is no roof.",
+            help="Number of the level, 0 is the lowest. Default: the largest but the roof.",
             show_default=False,
         ),
     ] = None,

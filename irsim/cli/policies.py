@@ -69,7 +69,7 @@ def _default(value: str) -> str:
 
 
 def _network(facts: dict[str, Any]) -> dict[str, str]:
-    """What a network says of itself, as lines; empty for other policies."""
+    """The description of a network in its own words, as lines; empty for other policies."""
     if not facts:
         return {}
     parts = [

@@ -29,7 +29,7 @@ def render(
     policy: Annotated[
         str | None,
         typer.Option(
-            "--policy", help="What drives every robot instead: a behavior, a policy, or a file (irsim policies)."
+            "--policy", help="Policy of every robot instead: a behavior, a policy, or a file (irsim policies)."
         ),
     ] = None,
     seed: Seed = None,

@@ -22,6 +22,6 @@ SENTENCES = {
     "describe": "Explain a key, a component, a template, a metric or an error code. Without a topic, list all topics.",
     "schema": "Write the JSON Schemas of scenarios, suites, tasks and networks, or connect a scenario file to its schema.",
     "map": "Import maps from other worlds into scenarios: meshes, navigation meshes, USD, roads, ROS; and export maps.",
-    "bridge": "Bridges to other programs: robots, simulators, formats of others.",
+    "bridge": "Bridges to other programs: robots, simulators and their formats.",
     "skills": "List and install the skills for coding agents.",
 }

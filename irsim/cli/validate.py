@@ -110,7 +110,7 @@ def validate(
 
 
 def _kind(file: str) -> str:
-    """What a file is: ``a suite``, ``a task`` or ``a scenario``."""
+    """The kind of a file: ``a suite``, ``a task`` or ``a scenario``."""
     if file == "-":
         return "a scenario"
     return "a suite" if is_suite(file) else "a task" if TASKS.is_file(file) else "a scenario"

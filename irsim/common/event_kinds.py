@@ -30,7 +30,7 @@ EVENTS: dict[str, str] = {
     "waypoint": "A goal is reached, and another one follows.",
     "collision": "A contact of two objects begins; it is reported once, not at every step. Its time is the end of the "
     "step, or the first touch with world.contacts: swept.",
-    "no_path": "The behavior follow has found no path, or none round the object partner, which stands for good.",
+    "no_path": "The behavior follow has found no path, or no path round the object partner, which stands for good.",
     "overshoot": "An object passed its goal within goal_threshold between two steps without arriving; reported once "
     "per goal.",
     "zone_entry": "The body of an object begins to touch a region of world.zones.",

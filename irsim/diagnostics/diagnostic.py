@@ -45,8 +45,8 @@ class Diagnostic:
         line, column: Position of the node in the text, counted from 1; None when the source has no text.
         length: Characters to underline.
         given: The offending value, as written.
-        allowed: What is accepted: names, a range, a type.
-        fix: What to write instead, in words that a person or agent can act on.
+        allowed: Accepted values: names, a range, a type.
+        fix: The text to write instead, in words that a person or agent can act on.
         edit: The best repair as a machine-applicable edit, if there is one.
         tolerated: Whether IR-SIM 2.12 continues in spite of this error. ``irsim.make`` and ``irsim run`` then do what
             it does (such as ignoring the key that ``edit`` would rename) and show a warning, unless asked to be strict.

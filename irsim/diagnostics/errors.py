@@ -50,8 +50,8 @@ class CodedError(IrsimError):
 
     Attributes:
         code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: What is wrong, without the code.
-        fix: What to do instead, or None.
+        message: The problem, without the code.
+        fix: The remedy, or None.
         where: Argument that is wrong, or None.
     """
 

@@ -201,7 +201,7 @@ def key_table(keys: Iterable[Key], gaps: Mapping[str, Iterable[str]] | None = No
     """Return a table with one row per key: name, accepted values, default, meaning.
 
     Args:
-        keys: The keys. A star marks those that accept one value per object.
+        keys: The keys. A star marks keys that accept one value per object.
         gaps: Key -> values that are not simulated, which its row lists.
     """
     rows = []

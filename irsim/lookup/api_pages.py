@@ -164,7 +164,7 @@ PACKS: dict[str, Callable[[], Pages]] = {
     "irsim-benchmark": comparisons,
     "irsim-dev": contributing,
 }
-"""Skill -> function that returns its pages; those of ``irsim-scenario`` are made from the schema of the language."""
+"""Skill -> function that returns its pages; ``irsim-scenario`` is made from the schema of the language."""
 
 
 def _find(name: str) -> tuple[str, Any]:

@@ -60,7 +60,7 @@ def index_answer() -> Answer:
 
 
 def _overview(registry: Registry) -> str:
-    """List the components of a kind; those that are not simulated come last."""
+    """List the components of a kind; the ones that are not simulated come last."""
     features = registry.features()
     later = [feature.name for feature in features if not feature.simulated]
     names = [", ".join(feature.name for feature in features if feature.simulated)]

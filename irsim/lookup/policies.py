@@ -17,7 +17,7 @@ def policy_answer(topic: str) -> Answer | None:
     """Describe a policy that ships with irsim or comes from a plug-in, by its name there or in a suite; None: no such.
 
     Args:
-        topic: What is asked for: ``sarl``, ``RL-RVO``, or ``ppo``, as a suite calls another one.
+        topic: The word in question: ``sarl``, ``RL-RVO``, or ``ppo``, as a suite calls another one.
     """
     name = topic.strip().lower().replace("-", "_").replace(" ", "_")
     known = {*trained_policies(), *POLICIES.names()}

@@ -76,7 +76,7 @@ def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[
 
 
 def _is_searched(path: tuple[str, ...]) -> bool:
-    """Whether free text may mean a key: robots have those of obstacles, and few mean the keys of a single bridge."""
+    """Whether free text may mean a key: robots have the keys of obstacles, and few mean the keys of a single bridge."""
     return path[0] != "obstacle" and (path[0] != "bridges" or len(path) == 2)
 
 

@@ -16,7 +16,7 @@ __all__ = ["BETTER", "example_of", "small_example"]
 
 
 BETTER = ("arrive_mode", "avoid", "fov", "fov_radius", "fov_occlusion", "goal_threshold", "show_fov")
-"""Keys whose small example says more than those of templates, because they need each other."""
+"""Keys whose small example says more than the examples of templates, because they need each other."""
 
 _VALUES: dict[str, Any] = {
     "acce": [0.5, 1.0],
@@ -176,7 +176,7 @@ def _of(table: dict[str, Any], path: tuple[str, ...]) -> Any:
 
 
 def _value(schema: Node, path: tuple[str, ...], node: Node) -> Any:
-    """Return a value for a key: that of the table, the other state of a switch, or the default."""
+    """Return a value for a key: the one of the table, the other state of a switch, or the default."""
     known = _of(_VALUES, path)
     if known is not None:
         return known

@@ -115,7 +115,7 @@ def _extras() -> tuple[Metric, ...]:
         extra(
             "path_irregularity",
             "rad",
-            "cumulative_heading_change minus that of the shortest path (with the first turn, if it must turn to move)",
+            "cumulative_heading_change less that along the shortest path (with the first turn, if it must turn to move)",
             better="less",
         ),
         extra("path_efficiency", "ratio", "path length / L*; 1 is best", better="less"),
@@ -183,7 +183,7 @@ EPISODE_METRICS: tuple[Metric, ...] = (
     Metric(
         "pedestrian_delay",
         "s",
-        "time of the humans to their goals minus that of the same seed without robots; of those who arrive in both",
+        "time of the humans to their goals, minus the time without robots (same seed); of those who arrive in both",
         canonical=False,
         better="less",
     ),

@@ -55,9 +55,8 @@ def inspect_run(
 
     Args:
         run: Id of the run, its folder, or ``last``.
-        view: ``rows``: positions and more, step by step; ``collisions``: contacts, with place and speeds, and of those
-            that begin and end within one step (the kinds ``contact_between_steps`` and ``passed_through``) the deepest
-            overlap;
+        view: ``rows``: positions and more, step by step; ``collisions``: contacts, with place and speeds; if they begin
+            and end within one step (``contact_between_steps``, ``passed_through``) also with the deepest overlap;
             ``closest``: the closest approaches of each robot to the nearest five robots, humans and static objects,
             with time and place, as distances between footprints at the ends of steps (negative: overlap);
             ``speeds``: path length and speeds of each robot and its longest stop, until it arrived (or of all requested

@@ -22,9 +22,9 @@ def failure(code: str, what: str, *, where: str | None = None, fix: str | None =
 
     Args:
         code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        what: What is wrong; shortened if the line gets too long.
+        what: The problem; shortened if the line gets too long.
         where: The argument or path that is wrong.
-        fix: What to change.
+        fix: The change that helps.
     """
     if code not in CODES and code not in TOOL_CODES:
         raise LookupError(f"undocumented error code {code!r}: add it to irsim/diagnostics/codes/")
@@ -55,7 +55,7 @@ def json_answer(found: Found, most: int, alternative: str, *, prefix: str = "") 
     Args:
         found: The result.
         most: Greatest number of characters.
-        alternative: What to do if the JSON is longer.
+        alternative: Advice if the JSON is longer.
         prefix: Beginning of the message if the JSON is longer.
 
     Raises:

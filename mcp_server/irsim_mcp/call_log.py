@@ -39,7 +39,7 @@ class CallLog:
         path: The file; it is made, and what it holds already is kept.
 
     Raises:
-        CallLogRefused: The file cannot be written, or is no ordinary file.
+        CallLogRefused: The file cannot be written, or is not an ordinary file.
     """
 
     def __init__(self, path: Path) -> None:
@@ -158,7 +158,7 @@ def _picture_size(data: str) -> tuple[int, int]:
 
 
 def _as_json(value: object) -> str:
-    """JSON without line breaks; nothing where a value is nested too deeply or is no JSON."""
+    """JSON without line breaks; nothing where a value is nested too deeply or is not JSON."""
     try:
         return json.dumps(value, ensure_ascii=False, separators=(",", ":"))
     except (TypeError, ValueError, RecursionError):

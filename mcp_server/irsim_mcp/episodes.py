@@ -23,7 +23,7 @@ def check_finished(state: Mapping[str, Any]) -> None:
     """Check that a job has a result.
 
     Raises:
-        ToolError: The job has no result, or none yet.
+        ToolError: The job has no result, or has not finished.
     """
     if "result" not in state:
         fix = "get_job waits for it" if state["status"] == "running" else "call benchmark again"
@@ -68,7 +68,7 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
 
 
 def policy_names(result: Mapping[str, Any]) -> dict[str, str]:
-    """Text of each policy → its short name, that of the suite if it has one."""
+    """Text of each policy → its short name, which a suite may give."""
     from irsim.benchmarks.report.rows import labels_of
 
     return labels_of(result["behaviors"]) | {text: name for name, text in result.get("policies", {}).items()}

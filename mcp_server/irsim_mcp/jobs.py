@@ -1,7 +1,7 @@
 """Jobs: work that takes longer than a call, in processes that outlive the call, with their state on disk.
 
-A job is a folder ``<workspace>/.irsim/jobs/<id>`` like that of a run: ``run.json`` has its progress, a lock shows that
-a server is in charge of it, ``result.json`` is written at the end. A job without a result of which no server is in
+A job is a folder ``<workspace>/.irsim/jobs/<id>``, like a run: ``run.json`` has its progress, a lock shows that a
+server is in charge of it, ``result.json`` is written at the end. A job without a result of which no server is in
 charge was interrupted. The processes end with their server; the episodes they had completed are kept.
 """
 
@@ -168,7 +168,7 @@ class Jobs:
             remove(job)
 
     async def _state_with_partial_result(self, job: Path) -> dict[str, Any]:
-        """State of a job; that of a stopped job includes the result of its completed episodes."""
+        """State of a job; the state of a stopped job includes the result of its completed episodes."""
         state = _state(job)
         if state["status"] in ("cancelled", "interrupted") and state["done"] and "result" not in state:
             files = {"log": str(job / _LOG), "to": str(job / PARTIAL)}

@@ -40,7 +40,7 @@ MAX_RUN_SECONDS = 45
 
 @dataclass(frozen=True)
 class ServerLimits:
-    """Limits of the server; those of the first group can be changed on its command line.
+    """Limits of the server; the first group can be changed on its command line.
 
     Attributes:
         robots: Number of robots of a scenario.

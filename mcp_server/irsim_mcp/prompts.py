@@ -48,7 +48,7 @@ def add_prompts(server: MCPServer, services: Services) -> None:
     """Register the prompts with a server."""
 
     def design_scenario(
-        goal: Annotated[str, Field(description="What the scene should show or test, in plain words.")],
+        goal: Annotated[str, Field(description="The situation that the scene should show or test, in plain words.")],
         kinematics: Annotated[str, Field(description="Drive of the robots: diff, acker, omni, …")] = "diff",
         difficulty: Annotated[str, Field(description="easy, medium or hard")] = "medium",
     ) -> str:
@@ -163,7 +163,7 @@ with others: a change that helps only with the seeds you inspected is not a fix.
 _COMPARE = """\
 Compare fairly the behaviors that could drive the robots in {what} of the robot-navigation simulator irsim.
 
-1. Call validate_scenario on it; it must be valid. lookup lists the behaviors; choose those that fit its drive.
+1. Call validate_scenario on it; it must be valid. lookup lists the behaviors; choose some that fit its drive.
 2. Try one seed of each with run_episode (policy=…) to rule out trivial failures.
 3. Call benchmark with all of them over at least 20 seeds, with the same scenario and horizon; get_job waits for it.
 4. Read the intervals: where they overlap, the difference is not significant; say so, or use more seeds.

@@ -97,7 +97,7 @@ class IrsimServer(MCPServer[Any]):
         return await super().call_tool(name, arguments, context)
 
     async def list_resource_templates(self) -> list[ResourceTemplate]:
-        """The resource templates; that of runs has no media type, as each artifact has its own."""
+        """The resource templates; the template of runs has no media type, as each artifact has its own."""
         listed = await super().list_resource_templates()
         return [one.model_copy(update={"mime_type": None}) if one.uri_template == RUN else one for one in listed]
 

@@ -306,7 +306,7 @@ def _result(answer: dict[str, Any], argument: str) -> Found:
 
 
 def line_of(item: dict[str, Any]) -> str:
-    """The line of a problem, in words; empty if it has none."""
+    """The line of a problem, in words; empty without one."""
     return "" if item["line"] is None else f" line {item['line']}"
 
 

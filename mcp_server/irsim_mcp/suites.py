@@ -26,7 +26,7 @@ def _names() -> frozenset[str]:
 
 
 def suite_of(given: str) -> str | None:
-    """The bundled suite that a name begins with; None if there is none, or a file is meant."""
+    """The bundled suite that a name begins with; None without a suite, or if a file is meant."""
     if "\n" in given or given.endswith((".yaml", ".yml")):
         return None
     name = given.partition("/")[0]
@@ -65,7 +65,7 @@ def plan_of(
         policies: Names of its policies, other behaviors, or files; default: its policies.
         seeds: Number of seeds.
         root: The workspace, in which files must lie.
-        first: First seed; default: that of the suite.
+        first: First seed; default: the first one of the suite.
 
     Raises:
         InputError: A scenario is not of the suite.

@@ -213,7 +213,7 @@ def _slim(schema: Any) -> Any:
 
 
 def _accepted(schema: Mapping[str, Any], given: Any = None) -> str:
-    """What an argument accepts, in words; for many names only the one most similar to the given value."""
+    """The values that an argument accepts, in words; for many names only the one most similar to the given value."""
     if "enum" in schema:
         all_names = f"give one of {', '.join(map(str, schema['enum']))}"
         is_name = isinstance(given, str) and len(schema["enum"]) > 2

@@ -1,4 +1,4 @@
-"""What is documented about a code."""
+"""The documentation of a code."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ KEYS_AND_VALUES: dict[str, Code] = {
     # keys and values
     "unknown-key": Code(
         "unknown key",
-        "The key is not part of the language at this place; 'allowed' lists those that are. IR-SIM 2.12 ignores most "
+        "The key is not part of the language at this place; 'allowed' lists the known keys. IR-SIM 2.12 ignores most "
         "unknown keys: irsim.make and irsim run do so too, with a warning; strict reading refuses them.",
     ),
     "missing-key": Code(

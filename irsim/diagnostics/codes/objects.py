@@ -60,7 +60,7 @@ OBJECTS: dict[str, Code] = {
     "driven-without-goal": Code(
         "robot of a bridge without a goal",
         "A robot that the program at the other end of a bridge may drive arrives, like any other, at its goal, which "
-        "ends the run. Without 'goal' that is [1, 9, 0], a place that nobody has chosen. Write the goal; where only "
+        "ends the run. Without 'goal' that is [1, 9, 0], a place that was not chosen. Write the goal; where only "
         "the other program knows it, write one out of reach, such as goal: [1000, 0], and the time_limit of the world.",
     ),
     "heading-in-degrees": Code(

@@ -53,7 +53,7 @@ _MAX_ROWS = 50
 _MAX_NOTES = 10
 _DECIMALS = 3
 _NO_ROOM = "No seed has room: use fewer or smaller objects, or smaller spreads."
-"""What to do if no episode took place."""
+"""Advice if no episode took place."""
 _MAX_FAILED_SEEDS = 10
 """Number of seeds that a row lists of each kind of failure."""
 _MAX_FAILURES = 3
@@ -294,7 +294,7 @@ def _decision_times(timing: dict[str, Any] | None, labels: dict[str, str]) -> li
 def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str], detailed: bool) -> dict[str, Any]:
     """One scenario under one behavior; numbers as [value, low, high], or only the value if there is no interval.
 
-    ``n`` has the number of episodes in which a metric is defined, if not in all; ``diff.n`` that of differences.
+    ``n`` has the number of episodes in which a metric is defined, if not in all; ``diff.n`` the number of differences.
     """
     shown: dict[str, Any] = {
         "scenario": clean(row["scenario"], 100),
@@ -366,7 +366,7 @@ def _lines(row: dict[str, Any], partly: bool = False) -> list[str]:
 
     Args:
         row: The numbers by key.
-        partly: Some episodes failed, and the times are those of the robots that arrived nevertheless.
+        partly: Some episodes failed, and the times are of the robots that arrived nevertheless.
     """
     fewer = row.get("n", {})
     some = " of robots that arrived" if partly else ""

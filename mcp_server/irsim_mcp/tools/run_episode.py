@@ -101,7 +101,7 @@ def _json_answer(found: Found, most: int) -> TextContent:
 
 
 def _advice(result: RunResult, given: str) -> str:
-    """What to do next; ``given`` is the argument that gives the scenario again."""
+    """The next call to make; ``given`` is the argument that gives the scenario again."""
     seed, outcome = f" seed={result.seed}" if result.random else "", result.outcome
     run = f" {given}{seed}" if result.run_id is None else f" run_id={result.run_id}"
     if result.lost_code is not None:
