@@ -72,7 +72,7 @@ EVERYDAY: dict[str, str] = {
     "robot.arrive_mode": "goal angle threshold, goal heading, goal angle, goal yaw, final heading, heading tolerance, "
     "heading threshold, yaw tolerance, arrival heading",
     "robot.number": "number of robots, how many robots, number of obstacles, count, fleet size",
-    "robot.vel_max": "sprint, run fast, hurry, turn rate, turn_rate, "
+    "robot.vel_max": "sprint, run fast, hurry, turn rate, "
     "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity",
     "robot.acce": "acceleration, acceleration limit, braking, brake, braking distance, stopping distance, deceleration",
     "robot.distribution": "random positions, random placement, random start, scatter, spread, placement",
