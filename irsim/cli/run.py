@@ -60,7 +60,7 @@ def run(
         typer.Option(
             "--bridge",
             metavar="NAME",
-            help="Connect to another program, beside the bridges of the scenario: a name such as json_lines, or '{name: "
+            help="Connect to another program, besides bridges of the scenario: a name such as json_lines, or '{name: "
             'json_lines, address: "127.0.0.1:9100"}\'. Repeatable; irsim bridge doctor lists them.',
             show_default=False,
         ),
