@@ -8,9 +8,6 @@ from operator import attrgetter
 from typing import Any
 
 from irsim.common.arrays import Floats
-from irsim.compat.handlers.behavior import Behavior
-from irsim.compat.handlers.geometry import handler_of as shape_handler
-from irsim.compat.handlers.kinematics import KinematicsFactory
 from irsim.compat.objects.info import ObjectInfo, ObstacleInfo
 from irsim.components.kinematics._handler import KinematicsHandler
 from irsim.objects.behavior import BehaviorKeys, ObjectBehavior
@@ -75,6 +72,8 @@ class OldNames(ObjectView):
     @property
     def kf(self) -> KinematicsHandler:
         """Handler of the drive: for a drive of user code the one in use, otherwise one with the same results."""
+        from irsim.compat.handlers.kinematics import KinematicsFactory  # few scripts use handlers, and they load slowly
+
         if (handler := handler_of(self)) is not None:
             return handler
         options: Any = self.record.kinematics
@@ -89,11 +88,15 @@ class OldNames(ObjectView):
     @property
     def gf(self) -> Any:
         """Handler of the shape, placed at the present pose."""
+        from irsim.compat.handlers.geometry import handler_of as shape_handler
+
         return shape_handler(self)
 
     @property
     def obj_behavior(self) -> Any:
         """The behavior as an object with the method ``gen_vel``."""
+        from irsim.compat.handlers.behavior import Behavior
+
         if "_behavior" not in self.__dict__:
             made = self.__dict__["_behavior"] = Behavior(self.info, self.beh_config)
             made.follow(self.beh_config)

@@ -18,7 +18,13 @@ if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["PythonBehaviors", "attach_python_behaviors", "call", "construct", "forget_behavior"]
+__all__ = [
+    "PythonBehaviors",
+    "attach_python_behaviors",
+    "call",
+    "construct",
+    "forget_behavior",
+]
 
 
 class PythonBehaviors:

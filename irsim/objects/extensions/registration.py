@@ -1,8 +1,9 @@
-"""Registration of behaviors by kinematics and name."""
+"""Registration of behaviors by kinematics and name; it loads little, because modules of behaviors import it first."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeVar
 
 from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
@@ -26,12 +27,7 @@ def register_behavior(kinematics: str, action: str) -> Callable[[Made], Made]:
     Raises:
         ValueError: The pair is registered already.
     """
-
-    def add(function: Made) -> Made:
-        CUSTOM_BEHAVIORS.register(kinematics, action, function)
-        return function
-
-    return add
+    return _decorator(partial(CUSTOM_BEHAVIORS.register, kinematics, action))
 
 
 def register_behavior_class(kinematics: str, action: str) -> Callable[[Made], Made]:
@@ -44,12 +40,7 @@ def register_behavior_class(kinematics: str, action: str) -> Callable[[Made], Ma
     Raises:
         ValueError: The pair is registered already.
     """
-
-    def add(maker: Made) -> Made:
-        CUSTOM_BEHAVIORS.register_class(kinematics, action, maker)
-        return maker
-
-    return add
+    return _decorator(partial(CUSTOM_BEHAVIORS.register_class, kinematics, action))
 
 
 def register_group_behavior(kinematics: str, action: str) -> Callable[[Made], Made]:
@@ -61,12 +52,7 @@ def register_group_behavior(kinematics: str, action: str) -> Callable[[Made], Ma
     Raises:
         ValueError: The pair is registered already.
     """
-
-    def add(function: Made) -> Made:
-        CUSTOM_GROUP_BEHAVIORS.register(kinematics, action, function)
-        return function
-
-    return add
+    return _decorator(partial(CUSTOM_GROUP_BEHAVIORS.register, kinematics, action))
 
 
 def register_group_behavior_class(kinematics: str, action: str) -> Callable[[Made], Made]:
@@ -75,9 +61,12 @@ def register_group_behavior_class(kinematics: str, action: str) -> Callable[[Mad
     Raises:
         ValueError: The pair is registered already.
     """
+    return _decorator(partial(CUSTOM_GROUP_BEHAVIORS.register_class, kinematics, action))
 
-    def add(maker: Made) -> Made:
-        CUSTOM_GROUP_BEHAVIORS.register_class(kinematics, action, maker)
-        return maker
+
+def _decorator(register: Callable[[Any], None]) -> Callable[[Made], Made]:
+    def add(made: Made) -> Made:
+        register(made)
+        return made
 
     return add
