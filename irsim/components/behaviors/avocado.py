@@ -13,12 +13,11 @@ from irsim.options.units import Count, Degrees, Fraction, Hertz, Meters, MetersP
 
 
 class Avocado(BehaviorOptions):
-    """Avoid others as `orca` does, but learn from what each of them does how much of the avoidance is left to make.
+    """Avoid others as `orca` does, but learn how much of the avoidance each of them leaves.
 
-    It forms an opinion of every moving object near it, and makes more of the change of velocity for one that does not
-    react, less for one that gives way. Use it where it is unknown who gives way. An opinion starts neutral, which is
-    the half that `orca` makes. Walls, dead ends, limits, `acce` and goals are as in `orca`, but cars touch where many
-    meet: take `orca` for them. Its weak noise breaks symmetry; seed and place in the file decide it.
+    It forms an opinion of every moving object near it, and yields more to one that does not react, less to one that
+    gives way. Use it where it is unknown who gives way. Opinions start neutral: the half that `orca` makes. Walls,
+    dead ends, limits, `acce` and goals are as in `orca`, but cars touch where many meet: use `orca` there. Its weak noise breaks symmetry; seed and place in the file decide it.
     """
 
     in_group: ClassVar[bool] = True

@@ -15,10 +15,10 @@ from irsim.options.units import Degrees, Integer, Meters, MetersPerSecond, Numbe
 class Sfm(BehaviorOptions):
     """Walk like a pedestrian: pulled to the goal, pushed away by objects and by walls (social force model).
 
-    It starts from rest and does not brake at its goal: it overshoots and swings back, so use a `goal_threshold` of
-    about 0.3 m, and keep the goals of several objects a metre apart. One that touches another stops for good, unless
-    `world.collision_mode` is `unobstructed_obstacles`. A wall that stands free is passed on the nearer
-    side; boxes that touch are walls of their own, a `compound` is one. It stays in dead ends.
+    It starts from rest and does not brake at its goal: it swings back, so use a `goal_threshold` of
+    about 0.3 m, and keep goals a metre apart. One that touches another stops for good, unless
+    `world.collision_mode` is `unobstructed_obstacles`. Free-standing walls are passed on the nearer
+    side; touching boxes count singly, a `compound` as one. It stays in dead ends.
     """
 
     in_group: ClassVar[bool] = True
