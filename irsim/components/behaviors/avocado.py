@@ -17,7 +17,8 @@ class Avocado(BehaviorOptions):
 
     It forms an opinion of every moving object near it, and yields more to one that does not react, less to one that
     gives way. Use it where it is unknown who gives way. Opinions start neutral: the half that `orca` makes. Walls,
-    dead ends, limits, `acce` and goals are as in `orca`, but cars touch where many meet: use `orca` there. Its weak noise breaks symmetry; seed and place in the file decide it.
+    dead ends, limits, `acce` and goals are as in `orca`, but cars touch where many meet: use `orca`
+    there. Weak noise breaks symmetry; seed and place in the file decide it.
     """
 
     in_group: ClassVar[bool] = True

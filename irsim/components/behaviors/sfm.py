@@ -13,7 +13,7 @@ from irsim.options.units import Degrees, Integer, Meters, MetersPerSecond, Numbe
 
 
 class Sfm(BehaviorOptions):
-    """Walk like a pedestrian: pulled to the goal, pushed away by objects and by walls (social force model).
+    """Walk like a pedestrian: pulled to the goal, pushed away by objects and walls (social force model).
 
     It starts from rest and does not brake at its goal: it swings back, so use a `goal_threshold` of
     about 0.3 m, and keep goals a metre apart. One that touches another stops for good, unless
