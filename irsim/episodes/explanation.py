@@ -295,8 +295,11 @@ def _state(facts: EpisodeFacts, row: int, robot: RobotResult) -> str:
             stalled = stalled_step(simulation, view, facts.events)
             if stalled is not None and no_way is not None:
                 return f"hardly moves {place}: {no_way}"
-            since = "" if stalled is None else f", hardly nearer than at {seconds(stalled * facts.step_time)}"
-            return f"still moved at {speed:.2g} m/s, {place}{since}"
+            moved = f"still moved at {speed:.2g} m/s, {place}"
+            if stalled is None:
+                return moved
+            since = f", hardly nearer than at {seconds(stalled * facts.step_time)}"
+            return moved + since + _obstruction_message(facts, row)
         return f"hardly moves {place}" + (f": {no_way}" if no_way else _obstruction_message(facts, row))
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"

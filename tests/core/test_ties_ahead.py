@@ -141,3 +141,27 @@ def test_a_tie_is_forgotten_with_its_episode() -> None:
             path.append(batch.pose[0].copy())
         paths.append(path)
     assert np.array_equal(*paths)
+
+
+@pytest.mark.parametrize(("radius", "gap", "aside"), [(0.5, 0.1, 0), (0.5, 0, 0.3), (1, 0.3, 0), (2, 0.1, 1)])
+@pytest.mark.parametrize("drive", ["diff", "acker"])
+@pytest.mark.parametrize("law", ["orca", "avocado"])
+def test_two_circles_side_by_side_are_a_dead_end_that_is_announced(
+    law: str, drive: str, radius: float, gap: float, aside: float
+) -> None:
+    half = radius + gap / 2
+    text = scene([robot(law, drive, 0)], [pillar(radius, y=10 + aside + side * half) for side in (-1, 1)])
+    assert [found.code for found in irsim.validate(text=text).findings] == ["needs-planning"]
+    result = irsim.run(text=text, seed=0)
+    assert result.outcome == "timeout"
+    assert "name: follow" in (result.reason or "")
+    planned = text.replace(f"name: {law}", f"name: follow\n    local: {law}")
+    assert irsim.run(text=planned, seed=0).outcome == "success"
+
+
+@pytest.mark.parametrize("law", ["orca", "avocado"])
+def test_two_circles_that_leave_a_way_are_no_dead_end(law: str) -> None:
+    for half, aside in ((0.9, 0), (0.55, 0.9)):  # between them, and outside of both
+        text = scene([robot(law, "diff", 0)], [pillar(0.5, y=10 + aside + side * half) for side in (-1, 1)])
+        assert irsim.validate(text=text).findings == []
+        assert irsim.run(text=text, seed=0).outcome == "success"

@@ -35,6 +35,8 @@ _MAX_TRAPS = 8
 """Number of robots in one scene that are checked for flat walls across their line."""
 _TIGHT_TIME_SHARE = 0.9
 """Share of the time limit above which a route leaves no time for turning and giving way."""
+_MAX_CIRCLES = 60
+"""Number of circles beside a straight line up to which pairs of them are looked at."""
 _MIN_DETOUR = 1.25
 """Ratio of path to straight line from which on a behavior without path planning is likely to get stuck."""
 _CREEP_SPEED = 0.15
@@ -87,7 +89,10 @@ def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, l
         if blocked and mover.behavior in ("dash", *REACTIVE) and looked_at < _MAX_TRAPS:
             looked_at += 1
             trap = trap_of(scene, blocked[0])
-        if trap is not None and mover.behavior in REACTIVE:
+        if trap is None and mover.behavior in REACTIVE and (pocket := _first_pocket(scene, route)) is not None:
+            leg, trap = pocket
+            _report_trap(mover, leg, trap, scene, tally)
+        elif trap is not None and mover.behavior in REACTIVE:
             _report_trap(mover, blocked[0], trap, scene, tally)
         elif mover.behavior in REACTIVE and getattr(mover.record.kinematics, "steered", False):
             _check_car(mover, route, grid if isinstance(grid, ClearanceGrid) else None, scene, tally)
@@ -196,13 +201,17 @@ def _least_time(mover: Mover, length: float, rate: float) -> float:
 
 def _report_trap(mover: Mover, leg: Leg, trap: Trap, scene: Scene, tally: Tally) -> None:
     x, y = trap.place
+    where = (
+        f"in front of a wall {metres(trap.length)} long"
+        if trap.gap is None
+        else f"in front of two circles {metres(trap.gap)} apart, too near for it to pass between them"
+    )
     tally.add(
         "needs-planning",
         mover.goal_path(leg.index),
         mover.record,
         f"'{mover.behavior}' avoids nearby objects but plans no path: '{mover.record.name}' is likely to stop near "
-        f"({x:.2f}, {y:.2f}), in front of a wall {metres(trap.length)} long, behind which its goal "
-        f"({leg.goal[0]:g}, {leg.goal[1]:g}) lies",
+        f"({x:.2f}, {y:.2f}), {where}, behind which its goal ({leg.goal[0]:g}, {leg.goal[1]:g}) lies",
         f"behavior: {{name: follow, planner: astar, local: {mover.behavior}}}, or waypoints",
         scene.seed,
         serious=False,
@@ -283,15 +292,17 @@ _MAX_CORNERS = 200
 
 @dataclass(frozen=True)
 class Trap:
-    """A side of an obstacle, across the straight line to the goal.
+    """A side of an obstacle, or two circles, across the straight line to the goal.
 
     Attributes:
-        place: The point of the side that is nearest to the goal [m].
-        length: Length of the side [m].
+        place: The point of the side that is nearest to the goal, or the place that touches both circles [m].
+        length: Length of the side, or the width of both circles [m].
+        gap: Gap between both circles [m]; None for a side.
     """
 
     place: Point
     length: float
+    gap: float | None = None
 
 
 def trap_of(scene: Scene, leg: Leg) -> Trap | None:
@@ -313,6 +324,59 @@ def trap_of(scene: Scene, leg: Leg) -> Trap | None:
             if met is not None and met < best[0]:
                 best = met, _trap(a, b, leg)
     return best[1]
+
+
+def _first_pocket(scene: Scene, route: list[Leg]) -> tuple[Leg, Trap] | None:
+    """The first leg that leads between two static circles which the body does not fit between, and where it stops."""
+    for leg in route:
+        body = leg.mover.shape.around
+        circles = list(_circles(scene))
+        reach = 2 * body + max((radius for *_, radius in circles), default=0.0)
+        near = [circle for circle in circles if _is_beside(leg, circle, reach)]
+        if len(near) > _MAX_CIRCLES:
+            return None
+        for a, b in itertools.combinations(near, 2):
+            trap = _pocket(a, b, body, leg)
+            if trap is not None:
+                return leg, trap
+    return None
+
+
+def _circles(scene: Scene) -> Iterator[tuple[float, float, float]]:
+    """Centre and radius of every static circle, world frame [m]."""
+    for parts, (x, y, theta) in scene.things:
+        cos, sin = math.cos(theta), math.sin(theta)
+        for part in parts:
+            if isinstance(part, core.Circle):
+                u, v = part.center
+                yield x + cos * u - sin * v, y + sin * u + cos * v, part.radius
+
+
+def _is_beside(leg: Leg, circle: tuple[float, float, float], reach: float) -> bool:
+    """Whether a circle is within a distance of the straight line [m]."""
+    (px, py), (qx, qy), (x, y, radius) = leg.start, leg.goal, circle
+    dx, dy = qx - px, qy - py
+    along = ((x - px) * dx + (y - py) * dy) / (dx * dx + dy * dy or 1.0)
+    share = min(1.0, max(0.0, along))
+    return math.hypot(px + share * dx - x, py + share * dy - y) < radius + reach
+
+
+def _pocket(a: tuple[float, float, float], b: tuple[float, float, float], body: float, leg: Leg) -> Trap | None:
+    """The place that touches two circles, if the way to the goal leads between them there and from the start."""
+    length = math.dist(a[:2], b[:2])
+    gap = length - a[2] - b[2]
+    if not (length > 0 and gap < 2 * body) or _meets(leg.start, leg.goal, a[:2], b[:2]) is None:
+        return None
+    ux, uy = (b[0] - a[0]) / length, (b[1] - a[1]) / length
+    from_a, from_b = a[2] + body, b[2] + body
+    along = (length**2 + from_a**2 - from_b**2) / (2 * length)
+    if from_a <= abs(along):
+        return None
+    away = math.copysign(math.sqrt(from_a**2 - along**2), ux * (leg.start[1] - a[1]) - uy * (leg.start[0] - a[0]))
+    place = (a[0] + along * ux - away * uy, a[1] + along * uy + away * ux)
+    if _meets(place, leg.goal, a[:2], b[:2]) is None:
+        return None
+    return Trap(place, length + a[2] + b[2], max(0.0, gap))
 
 
 def _surrounds(thing: Thing, place: Point) -> bool:
