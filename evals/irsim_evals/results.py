@@ -28,19 +28,19 @@ class Trial(Record):
     """Name of the model, where one answered."""
     title: str
     prompt: str
-    """What was asked, later turns included."""
+    """The request, later turns included."""
     category: list[str]
     level: int
     family: str
     """Cases of one family are not independent."""
     hard: str = ""
-    """What makes it hard."""
+    """Why it is hard."""
     reply: str = ""
     """Last message of the agent."""
     ended: str = ""
     """Why the attempt ended before the agent was done: a limit, an error of the model's service."""
     drift: list[str] = []
-    """Answers of tools that differ from those of the recording that was replayed."""
+    """Answers of tools that differ from the recording that was replayed."""
     verdict: Verdict
 
     @property
@@ -74,7 +74,7 @@ def trial_of(instance: Instance, verdict: Verdict, arm: str, **more: Any) -> Tri
 
     Args:
         instance: The case.
-        verdict: What the grader said.
+        verdict: The grader's verdict.
         arm: Who answered.
         more: ``number``, ``model``, ``reply``, ``ended`` and ``drift`` of the trial.
     """
@@ -102,7 +102,7 @@ def read_results(path: Path) -> Results:
 
     Raises:
         OSError: It cannot be read.
-        pydantic.ValidationError: It is no file of results.
+        pydantic.ValidationError: It is not a file of results.
     """
     path = path / "results.json" if path.is_dir() else path
     return Results.model_validate_json(path.read_text(encoding="utf-8"))

@@ -8,10 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["Interval", "mcnemar", "mean_pass_hat_k", "paired_bootstrap", "pass_hat_k", "wilson"]
+from irsim.metrics import statistics
 
-Z_95 = 1.959963984540054
-"""Quantile of the standard normal distribution for a two-sided interval of 95 %."""
+__all__ = ["Interval", "mcnemar", "mean_pass_hat_k", "paired_bootstrap", "pass_hat_k", "wilson"]
 
 
 class Interval(NamedTuple):
@@ -22,29 +21,18 @@ class Interval(NamedTuple):
     high: float
 
 
-def wilson(passed: float, total: int, z: float = Z_95) -> Interval:
-    """Share of passes with Wilson's score interval.
+def wilson(passed: float, total: int) -> Interval:
+    """Share of passes with Wilson's score interval of 95 %.
 
     Args:
         passed: Number of passes; with shares of passes, their sum.
         total: Number of trials; without trials nothing is known, and the interval is 0 to 1.
-        z: Quantile of the standard normal distribution; default: 95 %.
 
     Raises:
         ValueError: There are fewer trials than passes, or a number is negative.
-
-    References:
-        Wilson: Probable inference, the law of succession, and statistical inference (1927).
     """
     _check_counts(passed, total)
-    if total == 0:
-        return Interval(math.nan, 0.0, 1.0)
-    share = passed / total
-    middle = (share + z * z / (2 * total)) / (1 + z * z / total)
-    half = z / (1 + z * z / total) * math.sqrt(share * (1 - share) / total + z * z / (4 * total * total))
-    low = 0.0 if passed == 0 else max(0.0, middle - half)
-    high = 1.0 if passed == total else min(1.0, middle + half)
-    return Interval(share, low, high)
+    return Interval(passed / total, *statistics.wilson(passed, total)) if total else Interval(math.nan, 0.0, 1.0)
 
 
 def pass_hat_k(passed: int, total: int, k: int) -> float:

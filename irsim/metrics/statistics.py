@@ -23,7 +23,7 @@ _MAX_CACHED = 5_000_000
 """Number of weights that are cached for the next call."""
 
 
-def wilson(successes: int, count: int) -> tuple[float, float]:
+def wilson(successes: float, count: int) -> tuple[float, float]:
     """95 % interval of a proportion (Wilson 1927); NaN for a count of 0."""
     if count < 1:
         return math.nan, math.nan

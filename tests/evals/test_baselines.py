@@ -57,16 +57,8 @@ def run_offline(tmp_path: Path, *arguments: str) -> subprocess.CompletedProcess[
     (hooks / "sitecustomize.py").write_text(NO_NETWORK, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(hooks), os.environ.get("PYTHONPATH", "")])}
     command = [sys.executable, "-m", "irsim_evals", *arguments]
-    return subprocess.run(
-        command,
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=1500,
-        check=False,
-        cwd=tmp_path,
-        encoding="utf-8",
-    )
+    options = {"env": environment, "capture_output": True, "text": True, "encoding": "utf-8", "cwd": tmp_path}
+    return subprocess.run(command, timeout=1500, check=False, **options)
 
 
 def snapshot() -> dict[str, dict[str, bool]]:
@@ -141,7 +133,7 @@ def test_baselines_see_the_request_only(name):
     ("arguments", "message"),
     [
         (["--arm", "rulez"], "did you mean rules"),
-        ([], "nobody is said to answer"),
+        ([], "no arm says who answers"),
         (["--arm", "null", "pub-1"], "no case or category is called 'pub-1'"),
         (["--arm", "null", "--output", __file__], "is a file"),
     ],

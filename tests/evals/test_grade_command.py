@@ -57,7 +57,7 @@ def test_the_table_shows_verdicts_and_costs_and_then_what_failed(exported: Path)
     assert second.split()[:2] == ["pub-19", "FAIL"]
     assert second.split()[-3:] == ["?", "?", "?"]
     assert "\npub-19\n  range: expected only robot[0].sensors[0].range_max differs" in text
-    assert "note: calls.jsonl: lines that are no record of a call and are left out: 1 of 3" in text
+    assert "note: calls.jsonl: lines that do not record a call and are left out: 1 of 3" in text
     assert text.endswith("1 of 2 cases pass\n")
     assert irsim_evals("grade", exported / "pub-01")[0] == 0
 
@@ -239,6 +239,8 @@ def test_verdicts_are_kept_for_the_report(exported: Path, tmp_path: Path) -> Non
     first, second = read_results(tmp_path / "results.json").trials
     assert (first.key, first.arm, first.reply) == (("pub-01", ""), "me", "It is scenario.yaml.")
     assert (first.verdict.cost.tokens, second.verdict.strict, second.reply) == (120, False, "")
+    irsim_evals("grade", exported / "pub-01", "--output", tmp_path / "results.json")
+    assert [one.arm for one in read_results(tmp_path / "results.json").trials] == [exported.name]
 
 
 @pytest.mark.anyio

@@ -90,9 +90,9 @@ def test_values_of_a_file(has: dict[str, Any], passes: bool) -> None:
     ("files", "observed"),
     [
         ({}, "there is no such file"),
-        ({"result.json": "rows:\n- 20"}, "it is no JSON"),
-        ({"result.json": "[" * 200_000}, "it is no JSON"),
-        ({"result.json": "9" * 10_000}, "it is no JSON"),
+        ({"result.json": "rows:\n- 20"}, "it is not JSON"),
+        ({"result.json": "[" * 200_000}, "it is not JSON"),
+        ({"result.json": "9" * 10_000}, "it is not JSON"),
     ],
 )
 def test_a_file_that_holds_no_values(files: dict[str, str], observed: str) -> None:

@@ -78,7 +78,7 @@ def test_no_program_may_be_left_where_only_yaml_was_wanted() -> None:
         ("().__class__.__mro__", "line 1: it uses __"),
         ("import irsim\nirsim.register_behavior(1)", "line 2: a runner registers no code"),
         ("import irsim\nenv = irsim.make('a.yaml')\nenv.robot.set_state([1, 2, 0])", "line 3: a runner does not place"),
-        ("def f(:", "it is no Python"),
+        ("def f(:", "it is not Python"),
         ("from .other import x", "line 1: it imports a module beside it"),
     ],
 )

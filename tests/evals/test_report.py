@@ -25,7 +25,7 @@ from irsim_evals.report.page import page
 from irsim_evals.report.pictures import Drawn, Job, draw_trials
 from irsim_evals.report.summary import summarize
 from irsim_evals.results import Results, read_results, results_of, trial_of
-from tests.evals.trials import SCENARIO, file_of, trial
+from tests.evals.trials import file_of, trial
 
 HOSTILE = "</pre></script><script>alert(1)</script><img src=x onerror=alert(2)>\u202e\x1b[31m"
 
@@ -281,16 +281,3 @@ def test_real_answers_are_shown_with_what_was_given() -> None:
     assert "graded with other cases" not in text
     results.cases = "older"
     assert "graded with other cases" in page(content_of(results, pictures=False))
-
-
-def test_grade_writes_results_that_report_reads(tmp_path: Path) -> None:
-    assert run("export", tmp_path / "mine", "pub-01").exit_code == 0
-    folder = tmp_path / "mine" / "pub-01"
-    (folder / "scenario.yaml").write_text(SCENARIO)
-    (folder / "reply.md").write_text("Here it is.")
-    done = run("grade", tmp_path / "mine", "--output", tmp_path / "r.json")
-    assert done.exit_code == 1
-    (one,) = read_results(tmp_path / "r.json").trials
-    assert (one.arm, one.reply, one.verdict.strict) == ("mine", "Here it is.", False)
-    run("grade", tmp_path / "mine", "--output", tmp_path / "r.json", "--arm", "me")
-    assert read_results(tmp_path / "r.json").trials[0].arm == "me"

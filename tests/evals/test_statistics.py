@@ -6,25 +6,12 @@ import math
 
 import pytest
 
+import irsim.metrics
 from irsim_evals.statistics import mcnemar, mean_pass_hat_k, paired_bootstrap, pass_hat_k, wilson
 
 
-def test_wilson_solves_the_equation_that_defines_it():
-    z = 1.959963984540054
-    for passed, total in ((1, 10), (7, 10), (29, 30), (33, 50)):
-        interval = wilson(passed, total)
-        assert interval.estimate == passed / total
-        for bound in (interval.low, interval.high):
-            assert (passed / total - bound) ** 2 == pytest.approx(z * z * bound * (1 - bound) / total)
-
-
-def test_wilson_of_none_and_of_all():
-    z2 = 1.959963984540054**2
-    assert wilson(0, 20) == (0.0, 0.0, pytest.approx(z2 / (20 + z2)))
-    assert wilson(20, 20) == (1.0, pytest.approx(20 / (20 + z2)), 1.0)
-
-
 def test_wilson_without_trials_says_that_nothing_is_known():
+    assert wilson(7, 10) == (0.7, *irsim.metrics.wilson(7, 10))
     interval = wilson(0, 0)
     assert math.isnan(interval.estimate)
     assert interval[1:] == (0.0, 1.0)
@@ -38,19 +25,18 @@ def test_impossible_counts_are_an_error(passed, total):
         pass_hat_k(passed, total, 1)
 
 
-def test_pass_hat_k_counts_the_draws_that_all_pass():
-    assert pass_hat_k(3, 4, 1) == 3 / 4
-    assert pass_hat_k(3, 4, 2) == 3 / 6
-    assert pass_hat_k(3, 4, 3) == 1 / 4
-    assert pass_hat_k(3, 4, 4) == 0
-    assert pass_hat_k(5, 5, 5) == 1
+@pytest.mark.parametrize(
+    ("passed", "total", "k", "chance"),
+    [(3, 4, 1, 3 / 4), (3, 4, 2, 3 / 6), (3, 4, 3, 1 / 4), (3, 4, 4, 0), (5, 5, 5, 1)],
+)
+def test_pass_hat_k_counts_the_draws_that_all_pass(passed, total, k, chance):
+    assert pass_hat_k(passed, total, k) == chance
 
 
-def test_pass_hat_k_needs_k_attempts():
-    with pytest.raises(ValueError, match="there are 2"):
-        pass_hat_k(2, 2, 3)
-    with pytest.raises(ValueError, match="at least 1"):
-        pass_hat_k(2, 2, 0)
+@pytest.mark.parametrize(("k", "message"), [(3, "there are 2"), (0, "at least 1")])
+def test_pass_hat_k_needs_k_attempts(k, message):
+    with pytest.raises(ValueError, match=message):
+        pass_hat_k(2, 2, k)
 
 
 def test_mean_pass_hat_k_leaves_out_cases_with_few_attempts():
@@ -68,12 +54,11 @@ def test_mcnemar_is_the_binomial_tail():
         mcnemar(-1, 2)
 
 
-def test_paired_bootstrap_of_equal_differences_has_no_width():
-    assert paired_bootstrap({"a": [1, 1], "b": [1], "c": [1, 1, 1]}) == (1, 1, 1)
-
-
-def test_paired_bootstrap_of_one_family_has_no_width():
-    assert paired_bootstrap({"a": [0, 1, 1, 0]}) == (0.5, 0.5, 0.5)
+@pytest.mark.parametrize(
+    ("differences", "mean"), [({"a": [1, 1], "b": [1], "c": [1, 1, 1]}, 1), ({"a": [0, 1, 1, 0]}, 0.5)]
+)
+def test_paired_bootstrap_of_equal_differences_or_of_one_family_has_no_width(differences, mean):
+    assert paired_bootstrap(differences) == (mean, mean, mean)
 
 
 def test_paired_bootstrap_agrees_with_the_normal_approximation():

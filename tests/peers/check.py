@@ -80,16 +80,9 @@ class Peers:
         """
         try:
             done = subprocess.run(
-                command,
-                cwd=ROOT,
-                env=self.environment,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                text=True,
-                timeout=seconds,
-                check=False,
-            )
+                command, cwd=ROOT, env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT, text=True, timeout=seconds, check=False,
+            )  # fmt: skip
         except subprocess.TimeoutExpired as late:
             raise Failed(f"{' '.join(command)}\ntook more than {seconds:g} s\n{late.output or ''}") from None
         if done.returncode not in codes:
@@ -225,6 +218,17 @@ def skill_folders(peers: Peers) -> str:
     return ", ".join(folder.name for folder in folders)
 
 
+def quiet(peers: Peers, *command: str) -> Callable[[], str]:
+    """A check whose output says nothing more than that it passes."""
+    return lambda: peers.run(*command)[:0]
+
+
+def client(peers: Peers, environment: str, program: str, workspace: str) -> str:
+    """Calls of every tool by another client, in an environment of its own."""
+    path = ROOT / "tests" / "peers" / program
+    return peers.run(peers.python(environment), str(path), sys.executable, workspace)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run all checks; 1 if one has failed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -232,7 +236,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--only", default="", help="run the checks whose names hold this")
     options = parser.parse_args(arguments)
     peers = Peers(options.folder.resolve())
-    clients = ROOT / "tests" / "peers"
+    validate = ("claude", "plugin", "validate", "--strict")
     with tempfile.TemporaryDirectory(prefix="irsim-peers-") as workspace, served() as url:
         checks: list[tuple[str, Callable[[], str]]] = [
             ("Inspector 2.12.0: strict lint, modern era", lambda: strict(peers, workspace, "modern")),
@@ -240,49 +244,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
             ("Inspector 2.12.0: load 50 x 8", lambda: load(peers, workspace)),
             ("Inspector 2.12.0: skills with digests", lambda: skills_over_mcp(peers, workspace)),
             ("conformance 0.1.16", lambda: conformance(peers, "node", url, "--suite", "all")),
-            (
-                "conformance 0.2.0-alpha.12, revision 2026-07-28",
-                lambda: conformance(peers, "next", url, "--requirements", "2026-07-28"),
-            ),
-            (
-                "conformance 0.2.0-alpha.12, revision 2025-11-25",
-                lambda: conformance(peers, "next", url, "--suite", "all", "--spec-version", "2025-11-25"),
-            ),
-            *(
-                (
-                    f"conformance 0.2.0-alpha.12: {name}",
-                    lambda name=name: peers.run(peers.conformance("next"), "server", "--url", url, "--scenario", name)[
-                        :0
-                    ],
-                )
-                for name in SKILL_SCENARIOS
-            ),
-            (
-                "claude plugin validate: marketplace",
-                lambda: peers.run("claude", "plugin", "validate", "--strict", str(ROOT))[:0],
-            ),
-            (
-                "claude plugin validate: plugin",
-                lambda: peers.run(
-                    "claude", "plugin", "validate", "--strict", str(ROOT / ".claude-plugin" / "plugin.json")
-                )[:0],
-            ),
-            (
-                "mcpb validate",
-                lambda: peers.run("mcpb", "validate", str(ROOT / "mcp_server" / "bundle" / "manifest.json"))[:0],
-            ),
+            ("conformance 0.2.0-alpha.12, revision 2026-07-28",
+             lambda: conformance(peers, "next", url, "--requirements", "2026-07-28")),
+            ("conformance 0.2.0-alpha.12, revision 2025-11-25",
+             lambda: conformance(peers, "next", url, "--suite", "all", "--spec-version", "2025-11-25")),
+            *((f"conformance 0.2.0-alpha.12: {name}",
+               quiet(peers, peers.conformance("next"), "server", "--url", url, "--scenario", name))
+              for name in SKILL_SCENARIOS),
+            ("claude plugin validate: marketplace", quiet(peers, *validate, str(ROOT))),
+            ("claude plugin validate: plugin", quiet(peers, *validate, str(ROOT / ".claude-plugin" / "plugin.json"))),
+            ("mcpb validate", quiet(peers, "mcpb", "validate", str(ROOT / "mcp_server" / "bundle" / "manifest.json"))),
             ("agentskills validate", lambda: skill_folders(peers)),
-            (
-                "client of mcp 1.30.0",
-                lambda: peers.run(peers.python("mcp1"), str(clients / "old_client.py"), sys.executable, workspace),
-            ),
-            (
-                "anthropic 2.12.0 async_mcp_tool",
-                lambda: peers.run(
-                    peers.python("anthropic"), str(clients / "anthropic_client.py"), sys.executable, workspace
-                ),
-            ),
-        ]
+            ("client of mcp 1.30.0", lambda: client(peers, "mcp1", "old_client.py", workspace)),
+            ("anthropic 2.12.0 async_mcp_tool", lambda: client(peers, "anthropic", "anthropic_client.py", workspace)),
+        ]  # fmt: skip
         wrong = 0
         for name, check in [("install", peers.install), *checks]:
             if options.only in name or name == "install":

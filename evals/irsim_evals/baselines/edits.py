@@ -56,7 +56,7 @@ _NOT = r",?\s*\b(?:not|nicht|no)\b (?:the|der|die|das|den|el|la|los|las)\b[^.;]*
 
 
 def value_at(data: Any, path: Path) -> Any:
-    """The value at a path; None if there is none."""
+    """The value at a path; None if the path leads nowhere."""
     for part in path:
         try:
             data = data[part]
@@ -76,7 +76,7 @@ def entries(data: Any, section: str) -> Iterator[tuple[Path, dict[str, Any]]]:
 
 
 def add(text: str, path: Path, key: str, value: Any) -> str:
-    """Add an item to the list under a key of a mapping; the list is made if there is none.
+    """Add an item to the list under a key of a mapping; the list is made if it does not exist yet.
 
     Args:
         text: The file.

@@ -2,7 +2,7 @@
 
 The server is a process of its own, called over standard input and output as an agent's host calls it. Fixes that its
 findings suggest are applied; then the scenario is run, and behavior, collision mode or places of obstacles are changed
-if robots do not arrive. What the request names stays.
+if robots do not arrive. Everything that the request names stays.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def _fixed(server: Server, text: str, base: str | None, hints: bool = False) -> 
 
 
 def _edit_of(finding: dict[str, Any], data: Any) -> Edit | None:
-    """The repair of a finding: its own edit, a free place or a value that it names, no key that nobody knows."""
+    """The repair of a finding: its own edit, a place or a value that it names, or the removal of an unknown key."""
     path = parse_path(finding["path"])
     suggested = finding["edit"]
     if suggested is not None:
@@ -149,7 +149,7 @@ def _driven(data: Any) -> list[dict[str, Any]]:
 def _score(server: Server, data: Any) -> tuple[float, float] | None:
     """Share of robots that arrive, and how much goes on without robots; None if it does not run.
 
-    Without robots the share is 1 if nobody touches anybody, and the number of arrivals less that of collisions counts:
+    Without robots the share is 1 if there is no collision, and ties are broken by arrivals minus collisions:
     people who stop after a collision do not arrive any more.
     """
     shares, surplus = [], 0

@@ -1,4 +1,4 @@
-"""What a baseline gets to see of a case: what an agent gets, and nothing of what the grader knows."""
+"""The part of a case that a baseline sees: all that an agent gets, and nothing that only the grader knows."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ class Task:
     """A request.
 
     Attributes:
-        prompt: What the agent is asked.
-        turns: What the user says after each reply.
+        prompt: The request to the agent.
+        turns: Messages of the user after each reply.
         files: The files that the folder starts with: name → text.
     """
 

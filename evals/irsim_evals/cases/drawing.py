@@ -45,7 +45,7 @@ class Drawing(Record):
     grid: float | None = None
     """Distance of grid lines, with numbers at the edges [m]."""
     items: list[Item]
-    """What is drawn, the first below."""
+    """The things in it, the first at the bottom."""
 
 
 def draw(drawing: Drawing) -> bytes:

@@ -30,7 +30,7 @@ class Instance:
         case: The case, in which every expression is replaced by its value.
         values: Parameters and derived values.
         name: Empty for the case as published, else the seed of the instance.
-        prompt: What the agent is asked.
+        prompt: The request to the agent.
     """
 
     case: Case

@@ -52,14 +52,14 @@ class _AssertionBase(Record):
     weight: float = 1.0
     """Weight in the share of assertions that hold."""
     when: Literal["always", "built", "unbuilt"] | None = None
-    """Whether it counts only if there is a scenario, or only if there is none; default: with a scenario if it is about
+    """Whether it counts only if there is a scenario, or only if there is not; default: with a scenario if it is about
     the world, else always."""
     file: str = ""
     """Scenario that an assertion about the start is about, where an answer has several; default: the main one."""
 
     @property
     def predicate(self) -> Predicate:
-        """What it says."""
+        """Its predicate."""
         found: Predicate = next(
             value for name in registered() if (value := getattr(self, _attribute(name))) is not None
         )
@@ -90,7 +90,7 @@ class EpisodePlan(Record):
     seeds: list[int] = [0]
     """One episode per seed."""
     seconds: Quantity
-    """Simulated time [s]; an episode goes on after everybody has arrived."""
+    """Simulated time [s]; an episode goes on after all robots have arrived."""
     share: Quantity = 1.0
     """Share of the episodes in which each assertion must hold."""
     behavior: str | None = None
@@ -98,7 +98,7 @@ class EpisodePlan(Record):
     speed: dict[str, Quantity] = {}
     """Selection → factor of the speed limits of its bodies, such as 0.5 for half as fast."""
     check: Annotated[list[Assertion], Field(alias="assert")]
-    """What must happen."""
+    """Assertions about each episode."""
 
 
 def _as_list(value: Any) -> Any:
@@ -106,7 +106,7 @@ def _as_list(value: Any) -> Any:
 
 
 class Pin(Record):
-    """What a prompt pins or leaves free, for the proof of the grader."""
+    """Facts that a prompt pins or leaves free, for the proof of the grader."""
 
     of: str = "all"
     """Selection of the bodies; ``world`` for the world itself, ``reply`` and ``text`` for the words of the answer."""
@@ -136,25 +136,25 @@ class Case(Record):
     id: str
     """Name of the case; its file has the same name."""
     title: str
-    """What it is about, in a few words."""
+    """Its subject, in a few words."""
     family: str = ""
     """Cases of one family share a base, so their results are not independent; default: the case itself."""
     category: list[str]
-    """What it tests: ``basic``, ``geometry``, ``units``, ``kinematics``, ``multi``, ``sensors``, ``maps``, ``social``,
-    ``rl``, ``bench``, ``edit``, ``ambiguous``, ``impossible``, ``i18n``, ``adversarial``,
+    """Abilities that it tests: ``basic``, ``geometry``, ``units``, ``kinematics``, ``multi``, ``sensors``, ``maps``,
+    ``social``, ``rl``, ``bench``, ``edit``, ``ambiguous``, ``impossible``, ``i18n``, ``adversarial``,
     or the name of the skill whose task it is."""
     level: Annotated[int, Field(ge=1, le=4)]
     """1 is easy, 4 is hard."""
     language: str = "en"
     """Language of the prompt."""
     hard: str = ""
-    """What makes it hard, for cases of level 4."""
+    """Why it is hard, for cases of level 4."""
     prompt: str
-    """What the agent is asked."""
+    """The request to the agent."""
     wordings: list[str] = []
     """Other ways to ask for the same; a fresh instance draws one."""
     turns: list[str] = []
-    """What the user says after each reply."""
+    """Messages of the user after each reply."""
     files: dict[str, str] = {}
     """Files that the folder starts with: name → text."""
     drawings: dict[str, Drawing] = {}
@@ -165,7 +165,7 @@ class Case(Record):
     """Programs that the agent may leave: none, ones that only run scenarios, or any, which are run only where
     ``irsim-evals grade --run-programs`` says so."""
     disposition: list[Disposition] = ["build"]
-    """What the agent may do: build a scenario, ask first, or say that it cannot be done."""
+    """Ways in which the agent may answer: build a scenario, ask first, or say that it cannot be done."""
     seeds: list[int] = [0]
     """Seeds of the worlds that assertions about the start look at."""
     overlap: bool = False
@@ -177,9 +177,9 @@ class Case(Record):
     select: dict[str, Selector] = {}
     """Name → bodies that assertions speak of."""
     check: Annotated[list[Assertion], Field(alias="assert")] = []
-    """What must be true of the world at its start, of the files and of the reply."""
+    """Assertions about the world at its start, the files and the reply."""
     episodes: list[EpisodePlan] = []
-    """What must happen."""
+    """Assertions about each episode."""
     pins: list[Pin] = []
     """Facts that the prompt pins: a change of one must be noticed."""
     free: list[Pin] = []
@@ -187,7 +187,7 @@ class Case(Record):
     waived: list[Waiver] = []
     """Mutants that the proof leaves out, with reasons."""
     equivalent: str = ""
-    """What else is an answer, for reviewers."""
+    """Other answers that are right, for reviewers."""
 
     @model_validator(mode="after")
     def _unique(self) -> Case:

@@ -11,6 +11,7 @@ import yaml
 from irsim_evals.cases.drawing import draw
 from irsim_evals.cases.instance import Instance, instance_of, substitute
 from irsim_evals.grader.artefact import BINARY, Answer
+from irsim_evals.grader.material import write_files
 
 __all__ = ["all_case_ids", "case_ids", "case_of", "folder", "given_pictures", "golds_of", "raw_case", "write_given"]
 
@@ -22,12 +23,12 @@ def folder(kind: str) -> Path:
 
 
 def case_ids() -> list[str]:
-    """Ids of the cases that count: those that commands are about if nobody names others."""
+    """Ids of the cases that count: commands are about these unless others are named."""
     return sorted(path.stem for path in folder("cases").glob("*.yaml"))
 
 
 def all_case_ids() -> list[str]:
-    """Ids of all cases, those of the tasks of the skills included, which lie in folders of their own."""
+    """Ids of all cases, including the tasks of the skills, which lie in folders of their own."""
     return sorted(_case_files())
 
 
@@ -65,14 +66,7 @@ def given_pictures(instance: Instance) -> dict[str, bytes]:
 
 def write_given(folder: Path, instance: Instance) -> None:
     """Write the files and pictures that the folder of a case starts with."""
-    for name, text in instance.case.files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    for name, content in given_pictures(instance).items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
+    write_files(folder, instance.case.files, given_pictures(instance))
 
 
 def _gold(path: Path, instance: Instance) -> Answer:

@@ -32,7 +32,7 @@ Fingerprint = tuple[tuple[str, int, int], ...]
 
 
 class _Work(NamedTuple):
-    """What is graded: the folder of a case, and the seed of its instance."""
+    """One folder to grade: its case, and the seed of the instance."""
 
     folder: Path
     case: str
@@ -105,7 +105,7 @@ def _reply(instance: Instance, folder: Path) -> str:
 
 
 def _works(folder: Path, case: str | None) -> list[_Work]:
-    """What there is to grade.
+    """The folders to grade.
 
     Raises:
         ArgumentError: There is nothing to grade.
@@ -203,7 +203,7 @@ def _watch(
 
 
 def fingerprint(folder: Path) -> Fingerprint:
-    """What tells two states of a folder apart. Hidden files are left out; files that vanish meanwhile are, too."""
+    """The state of a folder, to tell it from another one, without hidden files and files that vanish meanwhile."""
     found = []
     for parent, folders, names in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".") and name != "__pycache__"]

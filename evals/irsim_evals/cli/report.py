@@ -72,7 +72,7 @@ def compare(
         list[Path], typer.Argument(metavar="A [B]", help="Two files of results or folders, or one with two arms.")
     ],
     arm: Annotated[
-        list[str] | None, typer.Option("--arm", help="Arm to compare; twice for two arms, that of A first.")
+        list[str] | None, typer.Option("--arm", help="Arm to compare; twice for two arms, A's first.")
     ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -97,7 +97,7 @@ def compare(
 
 
 def _sides(files: Sequence[Path], arms: Sequence[str]) -> list[tuple[str, list[Trial], str, list[Trial]]]:
-    """What is compared with what: name and trials of the first and of the second side.
+    """The two sides of each comparison: name and trials of the first and of the second.
 
     Raises:
         ArgumentError: The files and arms do not say which two sides are meant.

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -26,22 +25,6 @@ __all__ = ["run", "summaries", "verdicts_text"]
 
 _ALL_BASELINES = "baselines"
 """Name of all baselines together."""
-
-
-@dataclass(frozen=True)
-class _Model:
-    """What an arm with a model needs to know."""
-
-    model: str | None
-    epochs: int
-    token_limit: int | None
-    cost_limit: float | None
-    time_limit: int | None
-    replay: Path | None
-    grade_only: bool
-    price: tuple[float, float] | None
-    base_url: str | None
-    log_dir: Path
 
 
 def run(
@@ -90,9 +73,11 @@ def run(
     arms have run, however many cases passed.
     """
     arms = _arms(arm)
-    given = _Model(
-        model, epochs, token_limit, cost_limit, time_limit, replay, grade_only, price, base_url, output / "logs"
-    )
+    options = {
+        "model": model, "epochs": epochs, "token_limit": token_limit, "cost_limit": cost_limit,
+        "time_limit": time_limit, "replay": replay, "replay_mode": "grade" if grade_only else "full", "price": price,
+        "base_url": base_url, "log_dir": output / "logs",
+    }  # fmt: skip
     if output.exists() and not output.is_dir():
         raise ArgumentError(f"{output} is a file", "give a folder with --output")
     instances = _instances(chosen(wanted), fresh, trials)
@@ -102,7 +87,7 @@ def run(
             if name in BASELINES:
                 done += run_baseline(name, instances, report)
             else:
-                done += _run_model(name, instances, given, report)
+                done += _run_model(name, instances, options, report)
     path = output / "results.json"
     write_results(results_of(done), path)
     if verdicts is not None:
@@ -172,7 +157,7 @@ def _arms(given: list[str] | None) -> list[str]:
     """
     known = [*BASELINES, *MODEL_ARMS]
     if not given:
-        raise ArgumentError("nobody is said to answer", f"give --arm: {', '.join([_ALL_BASELINES, *known])}")
+        raise ArgumentError("no arm says who answers", f"give --arm: {', '.join([_ALL_BASELINES, *known])}")
     found: list[str] = []
     for name in given:
         if name not in known and name != _ALL_BASELINES:
@@ -188,23 +173,11 @@ def _instances(names: list[str], fresh: int | None, trials: int) -> list[Instanc
     return [case_of(name, seed) for name in names for seed in seeds]
 
 
-def _run_model(arm: str, instances: list[Instance], given: _Model, report: Callable[[int, int], None]) -> list[Trial]:
-    if given.model is None and given.replay is None:
+def _run_model(
+    arm: str, instances: list[Instance], options: dict[str, Any], report: Callable[[int, int], None]
+) -> list[Trial]:
+    if options["model"] is None and options["replay"] is None:
         raise ArgumentError(f"the arm {arm} needs a model", "add --model anthropic/NAME, or --replay RECORDING")
     from irsim_evals.harness.run import run_arm
 
-    return run_arm(
-        arm,
-        instances,
-        model=given.model or "",
-        epochs=given.epochs,
-        token_limit=given.token_limit,
-        cost_limit=given.cost_limit,
-        time_limit=given.time_limit,
-        log_dir=given.log_dir,
-        replay=given.replay,
-        base_url=given.base_url,
-        progress=report,
-        price=given.price,
-        replay_mode="grade" if given.grade_only else "full",
-    )
+    return run_arm(arm, instances, progress=report, **options)

@@ -1,4 +1,4 @@
-"""What an agent left in a folder, read with care: sizes, links and names are checked before anything is opened."""
+"""The folder that an agent left, read with care: sizes, links and names are checked before anything is opened."""
 
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ _MAX_LOG_BYTES = 16_000_000
 
 @dataclass(frozen=True)
 class Answer:
-    """What somebody made of a case.
+    """An answer to a case.
 
     Attributes:
-        name: What it is called.
+        name: Its name.
         files: Path in the folder → text.
         reply: Last message.
         replies: Message after each turn.
@@ -76,7 +76,7 @@ def from_folder(folder: Path, name: str = "", turns: int = 1) -> Answer:
 
     Args:
         folder: Its files, and its last message in ``reply.md``, those before in ``reply-1.md``, ``reply-2.md`` …
-        name: Name of the answer; default: that of the folder.
+        name: Name of the answer; default: the folder's.
         turns: Number of turns of the case. The last message may also be numbered.
 
     Raises:
@@ -118,7 +118,7 @@ def from_folder(folder: Path, name: str = "", turns: int = 1) -> Answer:
 
 
 def _turn_of(name: str, turns: int) -> int | None:
-    """The turn to which a file holds the reply; None for a file that is no reply."""
+    """The turn to which a file holds the reply; None for any other file."""
     found = _REPLY.fullmatch(name)
     if found is None or (found[1] and not 1 <= int(found[1]) <= turns):
         return None
@@ -162,7 +162,7 @@ def rivals(answer: Answer, given: Mapping[str, str], found: str) -> list[str]:
     Args:
         answer: The answer.
         given: Files that it started with.
-        found: What :func:`find_scenario` has found.
+        found: The result of :func:`find_scenario`.
     """
     if found == "reply.md":
         others = [block for block in _blocks(answer.reply)[:-1] if block.strip() != _blocks(answer.reply)[-1].strip()]
@@ -206,7 +206,7 @@ def cost_of(path: Path) -> Cost:
     lines = [line for line in data.split(b"\n") if line.strip()]
     calls = [call for line in lines if (call := _call_of(line)) is not None]
     left_out = len(lines) - len(calls)
-    notes = [f"{path.name}: lines that are no record of a call and are left out: {left_out} of {len(lines)}"]
+    notes = [f"{path.name}: lines that do not record a call and are left out: {left_out} of {len(lines)}"]
     return Cost(
         calls=len(calls),
         errors=sum(call.error for call in calls),
@@ -221,7 +221,7 @@ def _log_of(path: Path) -> bytes:
     with os.fdopen(file, "rb") as stream:
         found = os.fstat(file)
         if not stat.S_ISREG(found.st_mode):
-            raise ValueError("it is no ordinary file")
+            raise ValueError("it is not an ordinary file")
         if found.st_size > _MAX_LOG_BYTES:
             raise ValueError(f"it has {found.st_size:,} bytes, and at most {_MAX_LOG_BYTES:,} are read")
         return stream.read(_MAX_LOG_BYTES)

@@ -1,4 +1,4 @@
-"""What is true of one object of a world, however the file expresses it: the objects that assertions are about."""
+"""One object of a world, however the file expresses it: assertions are about these."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ class Body:
 
     Attributes:
         index: Its row in the simulation.
-        record: What the scenario says of it, once resolved.
+        record: Its record in the resolved scenario.
         static: Whether it never moves.
         kinematics: Name of its drive; None for a static object.
-        behavior: Name of the behavior that moves it, its own or that of its group.
+        behavior: Name of the behavior that moves it, its own or its group's.
         options: Options of that behavior.
         pose: x, y, heading.
-        goals: Its goals in order; those of objects that were given none are left out.
+        goals: Its goals in order; empty for objects to which the file gives no goal.
         footprint: Outline, a shapely geometry.
         radius: Radius of a disc; None for other shapes.
         box: The rectangle that the footprint is; None for other shapes.
@@ -146,7 +146,7 @@ class Body:
 
 
 def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
-    """What is true of an object."""
+    """The body of an object."""
     record: Any = view.record
     kinematics = None if record.static or record.kinematics is None else str(record.kinematics.name)
     of_group = record.behavior is None and kinematics is not None

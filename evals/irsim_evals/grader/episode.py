@@ -24,7 +24,7 @@ _CHUNK_STEPS = 100
 
 @dataclass
 class Episode:
-    """What happened.
+    """A simulated episode.
 
     Attributes:
         scene: The world at its start; its environment has been stepped.

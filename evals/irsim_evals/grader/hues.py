@@ -56,7 +56,7 @@ def hue_of(color: str | None) -> str | None:
 
 
 def discernible(colors: Iterable[str | None]) -> list[str | None]:
-    """Colors of which any two look different; those that look like an earlier one are left out.
+    """Colors of which any two look different; colors that look like an earlier one are left out.
 
     Args:
         colors: As ``#rrggbb``; None and names of other kinds are compared as they are.

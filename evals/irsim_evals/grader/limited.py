@@ -1,4 +1,4 @@
-"""Grading in a process of its own with limits of memory, time and files: an answer is somebody else's work.
+"""Grading in a process of its own with limits of memory, time and files: an answer is untrusted input.
 
 Processes are forked from a server that has imported the grader, so that each costs milliseconds. Where the system
 cannot fork, each is started anew.
@@ -56,9 +56,9 @@ def run_limited(work: Callable[..., Any], arguments: tuple[Any, ...], seconds: f
 
     Args:
         work: Function of a module; what it takes and returns can be pickled.
-        arguments: What it takes.
+        arguments: Its arguments.
         seconds: Time after which the process is ended [s].
-        what: What it does, for the message.
+        what: Its task in words, for the message.
 
     Raises:
         LimitError: The process took too long, or ended without a result.

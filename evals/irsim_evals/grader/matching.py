@@ -22,7 +22,7 @@ UNITS: dict[str, float] = {
 """Factor from a unit to metres, radians, seconds, kilograms or 1."""
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d/]*)(?:/([^\s\d/]+))?\s*")
 Kind = Literal["count", "length", "size", "angle", "heading", "axis", "speed", "rate", "time", "share", "name", "flag"]
-"""What a value measures, which decides how closely it must agree."""
+"""The kind of quantity, which decides how closely values must agree."""
 TOLERANCES: dict[str, tuple[float, float]] = {
     "count": (0.0, 0.0),
     "length": (0.02, 0.05),
@@ -94,7 +94,7 @@ class Match(BaseModel):
     le: Quantity | None = None
     """At most."""
     tol: Quantity | None = None
-    """Absolute tolerance of `eq` and `in`, instead of that of the kind."""
+    """Absolute tolerance of `eq` and `in`, instead of the kind's."""
     given: bool | None = None
     """Whether there is a value at all."""
 

@@ -1,4 +1,4 @@
-"""What the grader has of an answer when it checks assertions: files, worlds, episodes, the reply."""
+"""Everything the grader has of an answer when it checks assertions: files, worlds, the reply."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LIMITS = Limits(
     bytes=2_000_000, events=200_000, expansion=50_000, aliases=10_000, objects=5_000, robots=2_000, cells=4_000_000,
     map_bytes=16_000_000, problems=20, root=str(Path(__file__).parent / "predicates"),
 )  # fmt: skip
-"""What a scenario may ask for. Files are read only below ``root``, where there is no map."""
+"""Limits of a scenario. Files are read only below ``root``, where there is no map."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class Opened:
     Attributes:
         document: The scenario as written.
         scenario: The scenario; None if it is not valid for a case.
-        findings: What the checker said about it.
-        errors: What makes it invalid for a case: errors, and keys that mean nothing.
+        findings: Findings of the checker.
+        errors: Findings that make it invalid for a case: errors, and keys that mean nothing.
     """
 
     document: Document
@@ -76,7 +76,7 @@ class Material:
     """An answer, opened.
 
     Attributes:
-        scenario: The scenario that the simulator has read; None if there is none to read.
+        scenario: The scenario that the simulator has read; None if there is no scenario to read.
         selectors: Selections of the case.
         texts: Text of each file that the agent left, by its path in the folder.
         main: Path of the file that holds the scenario.
@@ -84,7 +84,7 @@ class Material:
         reply: Last message of the agent.
         replies: Its message after each turn.
         document: The scenario as written.
-        findings: What the checker said about the scenario.
+        findings: Findings of the checker about the scenario.
         blobs: Content of each picture or array that the agent left.
         workplace: Temporary folder of this grading.
         trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
@@ -191,7 +191,7 @@ def with_speeds(
     """A scenario with other speed limits.
 
     Args:
-        scenario: The scenario, perhaps with another behavior than that of the answer.
+        scenario: The scenario, perhaps with another behavior than the answer's.
         material: The answer.
         seed: Seed of the world in which the bodies are selected.
         factors: Name of a selection → factor of every limit of its bodies.

@@ -1,4 +1,4 @@
-"""What the grader found out: one outcome for each assertion, and the verdict on an artefact."""
+"""Results of the grader: one outcome for each assertion, and the verdict on an artefact."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Stage = Literal["parse", "schema", "load", "sane", "facts", "relations", "behavi
 STAGES: tuple[Stage, ...] = ("parse", "schema", "load", "sane", "facts", "relations", "behavior", "edits", "reply")
 """The funnel. A failure in one of the first three ends the grading: nothing after it can be observed."""
 NOT_REACHED = "not reached"
-"""What is observed of an assertion after the grading has ended."""
+"""Observed value of an assertion that comes after the end of the grading."""
 
 
 def name_of(case: str, instance: str) -> str:
@@ -54,7 +54,7 @@ class Outcome(Record):
 
 
 class Cost(Record):
-    """What an answer cost, as far as it is known."""
+    """Cost of an answer, as far as it is known."""
 
     calls: int | None = None
     """Number of calls of tools."""
@@ -70,9 +70,9 @@ class Cost(Record):
     cache_tokens: int | None = None
     """Tokens that the model read from its cache or wrote to it."""
     dollars: float | None = None
-    """Price [US dollar], where that of the model is known."""
+    """Price [US dollar], where the model's price is known."""
     notes: list[str] = []
-    """What could not be counted, and why."""
+    """Notes about costs that could not be counted, and why."""
 
 
 class Verdict(Record):
@@ -86,7 +86,7 @@ class Verdict(Record):
     rate: float = Field(ge=0, le=1)
     """Weighted share of the assertions that hold; what comes after a failed stage counts as failed."""
     disposition: str | None = None
-    """What the agent did: build, ask or flag."""
+    """Whether the agent built a scenario, asked or flagged a problem."""
     reached: Stage
     """Last stage of the funnel in which nothing failed before it."""
     outcomes: list[Outcome]

@@ -66,11 +66,11 @@ _FORBIDDEN_ATTRIBUTES = {
 
 @dataclass(frozen=True)
 class Printed:
-    """What came of running a program.
+    """The run of a program.
 
     Attributes:
         passed: Whether it ended by itself, and without an error.
-        text: What it printed.
+        text: Its output.
         why: Why it did not pass.
         ended: Whether it ended by itself.
         episodes: The episodes that it started in a rehearsal.
@@ -89,7 +89,7 @@ def is_program(name: str) -> bool:
 
 
 def problems_in(texts: Mapping[str, str], given: Mapping[str, str], allowed: str) -> list[str]:
-    """What is wrong with the programs of an answer.
+    """Problems of the programs of an answer.
 
     Args:
         texts: Files of the answer.
@@ -102,7 +102,7 @@ def problems_in(texts: Mapping[str, str], given: Mapping[str, str], allowed: str
     found = []
     for name in names:
         if not name.endswith(".py"):
-            found.append(f"{name} is no Python program")
+            found.append(f"{name} is not a Python program")
         else:
             found += [f"{name}, {problem}" for problem in problems_of(texts[name])]
     return found
@@ -158,11 +158,11 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def problems_of(text: str) -> list[str]:
-    """What a program does that a runner of scenarios may not do, each with its line; empty if it is one."""
+    """Things a program does that a runner of scenarios may not do, each with its line; empty if it is one."""
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        return [f"it is no Python: {error}"]
+        return [f"it is not Python: {error}"]
     found: list[str] = []
     for node in ast.walk(tree):
         why = _problem(node)

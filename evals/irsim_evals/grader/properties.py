@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,7 +22,7 @@ class Property:
     """One property.
 
     Attributes:
-        kind: What it measures.
+        kind: Kind of quantity.
         key: Key of the entry that decides it.
         of: Computes it; None where the body has no such property.
     """
@@ -95,26 +95,18 @@ def _to_goal(_: Scene, body: Body) -> float | None:
     return None if goal is None else math.atan2(goal[1] - body.pose[1], goal[0] - body.pose[0])
 
 
+def _share(scene: Scene, point: Sequence[float], component: int) -> float:
+    """A coordinate as a share of the extent of the world."""
+    low, high = scene.bounds[component], scene.bounds[component + 2]
+    return (point[component] - low) / (high - low)
+
+
 def _of_world(component: int) -> Callable[[Scene, Body], Any]:
-    """Position as a share of the extent of the world."""
-
-    def of(scene: Scene, body: Body) -> float:
-        x0, y0, x1, y1 = scene.bounds
-        low, high = ((x0, x1), (y0, y1))[component]
-        return (body.position[component] - low) / (high - low)
-
-    return of
+    return lambda scene, body: _share(scene, body.position, component)
 
 
 def _goal_of_world(component: int) -> Callable[[Scene, Body], Any]:
-    def of(scene: Scene, body: Body) -> float | None:
-        if body.goal is None:
-            return None
-        x0, y0, x1, y1 = scene.bounds
-        low, high = ((x0, x1), (y0, y1))[component]
-        return (body.goal[component] - low) / (high - low)
-
-    return of
+    return lambda scene, body: None if body.goal is None else _share(scene, body.goal, component)
 
 
 def _limit(kinematics: tuple[str, ...], component: int, sign: int) -> Callable[[Scene, Body], Any]:

@@ -40,7 +40,7 @@ class Started:
         file: Path of the scenario, relative to the folder of the answer; empty for a text.
         behaviors: Names of the behaviors of its robots.
         seed: Its seed.
-        steps: Number of steps of the episode if nobody arrives; None where only the scenario ends it, and it does not
+        steps: Number of steps of the episode if no robot arrives; None where only the scenario ends it, and it does not
             say when.
     """
 
@@ -51,7 +51,7 @@ class Started:
 
 
 def read_log(path: Path) -> list[Started]:
-    """The episodes in the order in which they were started; without a file there are none."""
+    """The episodes in the order in which they were started; without a file there are no episodes."""
     if not path.is_file():
         return []
     found: dict[Any, Started] = {}
@@ -66,7 +66,7 @@ def read_log(path: Path) -> list[Started]:
 
 
 def rehearse(path: Path) -> None:
-    """Simulate nothing from now on, and write down what episodes this process starts: those of benchmarks when they are
+    """Simulate nothing from now on, and write down which episodes this process starts: a benchmark's when they are
     planned, others when the next one begins and at the end of the process."""
     from irsim.benchmarks import comparison
     from irsim.simulation.simulation import Simulation

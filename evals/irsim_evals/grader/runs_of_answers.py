@@ -1,4 +1,4 @@
-"""The episodes that an answer runs: those that its programs start, or those that its commands would."""
+"""The episodes that an answer runs: its programs start them, or its commands would."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["Runs", "runs_of"]
 
 _COMMAND = re.compile(r"^(?P<before>.*?)\birsim\s+benchmark\s(?P<words>[^\n`]*)", re.MULTILINE)
 _NEGATED = re.compile(r"\b(not|never|don.t|instead of|avoid|without|nor)\b|^\s*#(?!\s*\$)", re.IGNORECASE)
-"""What stands before a command that is not meant to be run."""
+"""Words before a command that is not meant to be run."""
 _HIDDEN = re.compile(r"<!--.*?-->", re.DOTALL)
 _PYTHON = re.compile(r"```python[^\n`]*\n(.*?)```", re.DOTALL)
 _FLAGS = ("--json", "--csv", "--strict", "--full", "--resume")
@@ -36,12 +36,12 @@ _MAX_RESULT_BYTES = 1_000_000
 
 @dataclass(frozen=True)
 class Runs:
-    """What an answer runs.
+    """The episodes that an answer runs.
 
     Attributes:
-        by: What runs it, for people: the name of a program, or ``the command``.
+        by: Who runs them, for people: the name of a program, or ``the command``.
         started: The episodes; none where the answer only tells of them.
-        words: What a program prints and the files that it writes, and its code without comments unless it prints and
+        words: Output of a program and the files that it writes, and its code without comments unless it prints and
             writes nothing; or else the commands and the reply.
     """
 
@@ -51,7 +51,7 @@ class Runs:
 
 
 def runs_of(material: Material, behaviors: set[str], seconds: float) -> Runs | str:
-    """What an answer runs, or what is wrong with it.
+    """The episodes that an answer runs, or the problem that keeps it from running them.
 
     A program decides if it starts episodes, else commands do that are written in other files or the reply.
 

@@ -1,9 +1,10 @@
-"""What must hold in every scenario that is built, whether a prompt says so or not."""
+"""Requirements of every scenario that is built, whether a prompt says so or not."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
@@ -68,42 +69,19 @@ def check_scene(scene: Scene, *, overlap: bool = True) -> list[Outcome]:
 
     starts = [(body, list(body.pose[:2])) for body in moving if outside(body.pose[0], body.pose[1])]
     goals = [(body, goal[:2]) for body in moving for goal in body.goals if outside(goal[0], goal[1])]
-    outcomes = [
-        _outcome(
-            "inside-world",
-            not starts and not goals,
-            "every robot and goal lies in the world",
-            summary(starts + goals) or "all",
-            f"{(starts + goals)[0][0].entry}.{'state' if starts else 'goal'}" if starts or goals else None,
-            scene.seed,
-            [Mark(points=[list(point)], text=body.name) for body, point in starts + goals],
-        )
+    out = starts + goals
+    marks = [Mark(points=[list(point)], text=body.name) for body, point in out]
+    key = "state" if starts else "goal"
+    outcomes = [_outcome("inside-world", "every robot and goal lies in the world", out, "all", key, scene.seed, marks)]
+    restless = [
+        (body, f"never goes slower than {body.slowest:g} m/s")
+        for body in scene.bodies
+        if not body.static and body.slowest > 0
     ]
-    restless = [(body, low) for body in scene.bodies if not body.static and (low := body.slowest) > 0]
-    outcomes.append(
-        _outcome(
-            "can-stand",
-            not restless,
-            "every body may stand still",
-            summary([(body, f"never goes slower than {low:g} m/s") for body, low in restless]) or "all",
-            f"{restless[0][0].entry}.vel_min" if restless else None,
-            scene.seed,
-            [Mark(points=[list(body.position)], text=body.name) for body, _ in restless],
-        )
-    )
+    outcomes.append(_outcome("can-stand", "every body may stand still", restless, "all", "vel_min", scene.seed))
     if overlap:
-        found = overlaps(scene)
-        outcomes.append(
-            _outcome(
-                "no-overlap",
-                not found,
-                "nothing overlaps at the start",
-                summary([(body, f"overlaps {other}") for body, other in found]) or "nothing",
-                f"{found[0][0].entry}.state" if found else None,
-                scene.seed,
-                [Mark(points=[list(body.position)], text=body.name) for body, _ in found],
-            )
-        )
+        found = [(body, f"overlaps {other}") for body, other in overlaps(scene)]
+        outcomes.append(_outcome("no-overlap", "nothing overlaps at the start", found, "nothing", "state", scene.seed))
     return outcomes
 
 
@@ -113,26 +91,21 @@ def check_goals(scene: Scene) -> Outcome:
     bodies = [b for b in scene.bodies if not b.static and b.behavior is not None and b.goals and not b.record.wander]
     ways = [(body, math.dist(body.pose[:2], body.goals[-1][:2])) for body in bodies]
     odd = [
-        (body, f"has arrived {body.record.goal_threshold:g} m away", f"{body.entry}.goal_threshold")
+        (body, f"has arrived {body.record.goal_threshold:g} m away")
         for body, way in ways
         if body.record.goal_threshold > max(_NEAR, _NEAR_SHARE * way)
     ]
+    key = "goal_threshold"
     robots = [(body, way) for body, way in ways if body.role == "robot"]
     reach = [
         math.inf if limit is None else limit * top_speed(body.record) + body.record.goal_threshold for body, _ in robots
     ]
     late = [(body, way) for (body, way), far in zip(robots, reach, strict=True) if way > far]
     if late and len(late) == len(robots):
-        odd += [(body, f"has {limit:g} s for {way:.1f} m", "world.time_limit") for body, way in late]
-    return _outcome(
-        "goals-count",
-        not odd,
-        "goals count as reached only near them, and the time limit leaves room for the way",
-        summary([(body, text) for body, text, _ in odd]) or "so it is",
-        odd[0][2] if odd else None,
-        scene.seed,
-        [],
-    )
+        key = key if odd else "world.time_limit"
+        odd += [(body, f"has {limit:g} s for {way:.1f} m") for body, way in late]
+    expected = "goals count as reached only near them, and the time limit leaves room for the way"
+    return _outcome("goals-count", expected, odd, "so it is", key, scene.seed, [])
 
 
 def check_moves(episode: Episode) -> Outcome:
@@ -145,27 +118,34 @@ def check_moves(episode: Episode) -> Outcome:
         path = episode.positions(body.index)
         if not near and np.hypot(*(path - path[0]).T).max() < _MOVED:
             still.append((body, "stays where it is"))
-    return _outcome(
-        "moves",
-        not still,
-        "every body with a goal and a behavior moves",
-        summary(still) or "all",
-        f"{still[0][0].entry}.behavior" if still else None,
-        episode.seed,
-        [Mark(points=[list(body.position)], text=body.name) for body, _ in still],
-    )
+    expected = "every body with a goal and a behavior moves"
+    return _outcome("moves", expected, still, "all", "behavior", episode.seed)
 
 
 def _outcome(
-    name: str, passed: bool, expected: str, observed: str, path: str | None, seed: int, marks: list[Mark]
+    name: str,
+    expected: str,
+    odd: Sequence[tuple[Body, Any]],
+    right: str,
+    key: str,
+    seed: int,
+    marks: list[Mark] | None = None,
 ) -> Outcome:
+    """The outcome of something that must hold for every body.
+
+    Args:
+        name: Name of the assertion.
+        expected: The requirement.
+        odd: Bodies for which it does not, with what was seen instead.
+        right: The observed value if it holds for all.
+        key: Key of the entry that decides; one with a dot in it is a whole path.
+        seed: Seed of the world.
+        marks: Places for the picture; default: the bodies' positions.
+    """
+    if marks is None:
+        marks = [Mark(points=[list(body.position)], text=body.name) for body, _ in odd]
+    where = None if not odd else key if "." in key else f"{odd[0][0].entry}.{key}"
     return Outcome(
-        assertion=name,
-        stage="sane",
-        passed=passed,
-        expected=expected,
-        observed=observed,
-        yaml_path=path,
-        seed=seed,
-        marks=marks,
-    )
+        assertion=name, stage="sane", passed=not odd, expected=expected, observed=summary(odd) or right,
+        yaml_path=where, seed=seed, marks=marks,
+    )  # fmt: skip

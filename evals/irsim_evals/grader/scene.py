@@ -36,7 +36,7 @@ class Scene:
 
     Attributes:
         seed: Its seed.
-        env: The environment, which nobody has stepped.
+        env: The environment at its start.
         bodies: Robots and obstacles in the order of the file; neither the map nor the walls round the world.
     """
 

@@ -1,4 +1,4 @@
-"""What an agent of each arm is told before the prompt, and the skills that it may read."""
+"""The arms of models: the system message of each, and the skills that an agent may read."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def skills_hash() -> str:
 
 
 def _server_instructions(folder: Path) -> str:
-    """What the MCP server says about itself, which hosts put before their models."""
+    """The server's own instructions, which hosts put before their models."""
     from irsim_mcp.server import build_server
 
     return build_server(folder).instructions or ""

@@ -12,6 +12,7 @@ from inspect_ai.model import ChatCompletionChoice, ChatMessageAssistant, ModelOu
 from inspect_ai.tool import ToolCall
 
 from irsim_evals.cases.instance import Instance
+from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.outcome import Cost, Verdict
 from irsim_evals.harness.recording import Attempt, Call, Names, RecordingEnds, Turn, digest, scrubbed, task_hash
 from irsim_evals.harness.task import SCORER, Work
@@ -32,13 +33,13 @@ _MAX_DRIFT = 160
 
 
 def attempt_of(sample: Any, arm: str, instance: Instance, work: Work | None) -> Attempt:
-    """What a sample of a log holds, without keys and paths of the machine.
+    """The attempt that a sample of a log records, without keys and paths of the machine.
 
     Args:
         sample: Sample of the log.
         arm: Name of the arm.
         instance: The instance of the case.
-        work: What is known of the attempt besides.
+        work: Further facts about the attempt.
     """
     folders = [work.folder, work.folder.parent] if work is not None else []
     ended, failed = _end_of(sample, work)
@@ -59,8 +60,6 @@ def trial_from(attempt: Attempt, sample: Any, instance: Instance, model: str) ->
     """The trial of an attempt; one that an error ended is a failed verdict which says so."""
     verdict = None if attempt.failed else _verdict_of(sample)
     if verdict is None:
-        from irsim_evals.grader.grade import failed_verdict
-
         verdict = failed_verdict(instance, None, "finished", "parse", attempt.ended or "the attempt has no result")
     verdict.cost = attempt.cost
     reply = attempt.replies[-1] if attempt.replies else ""
@@ -69,8 +68,6 @@ def trial_from(attempt: Attempt, sample: Any, instance: Instance, model: str) ->
 
 def unfinished(instance: Instance, arm: str, number: int, model: str, why: str) -> Trial:
     """The trial of an attempt that was never made."""
-    from irsim_evals.grader.grade import failed_verdict
-
     verdict = failed_verdict(instance, None, "finished", "parse", why)
     return trial_of(instance, verdict, arm, number=number, model=model, ended=why)
 
@@ -92,7 +89,7 @@ def _end_of(sample: Any, work: Work | None) -> tuple[str, bool]:
 
 
 def _error_of(sample: Any) -> str:
-    """The error that ended an attempt, in one line: that of the model's service if it was one."""
+    """The error that ended an attempt, in one line; an error of the model's service comes first."""
     asked = [event for event in sample.events if event.event == "model"]
     if not asked or not asked[-1].error:
         return f"the attempt failed: {_one_line(sample.error.message)}"
@@ -179,7 +176,7 @@ def replayed_model(attempt: Attempt, model: str, folder: Path) -> Any:
     """A model that answers as recorded, with the ids of the runs that the tools make now.
 
     Args:
-        attempt: What was recorded.
+        attempt: The recorded attempt.
         model: Name of the recorded model.
         folder: Folder of the attempt, for paths in arguments.
     """
@@ -200,7 +197,7 @@ def replayed_model(attempt: Attempt, model: str, folder: Path) -> Any:
 
 
 def drift_of(recorded: Attempt, now: Attempt) -> list[str]:
-    """What the tools answered otherwise than when it was recorded."""
+    """Answers of the tools that differ from the recorded ones."""
     before = [call for turn in recorded.messages for call in turn.calls]
     after = [call for turn in now.messages for call in turn.calls]
     found = []

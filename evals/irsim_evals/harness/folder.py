@@ -95,7 +95,7 @@ class Folder:
         return f"{rest[:_MAX_TEXT]}\n[cut; the file has {len(text):,} characters, go on with start={start + _MAX_TEXT}]"
 
     def names(self, below: str = ".") -> list[str]:
-        """Paths of the files, sorted; those of a reference folder only if it is asked for.
+        """Paths of the files, sorted; files of a reference folder only if it is asked for.
 
         Raises:
             FolderError: There is no such folder.
@@ -134,7 +134,7 @@ class Folder:
 def _parts(name: str) -> list[str]:
     """Parts of a path that a model gave."""
     if "\0" in name or len(name) > 300:
-        raise FolderError("this is no name of a file; give a short path such as scenario.yaml")
+        raise FolderError("this is not the name of a file; give a short path such as scenario.yaml")
     path = PurePosixPath(name.strip().replace("\\", "/"))
     if path.is_absolute() or ".." in path.parts or (path.parts and path.parts[0].endswith(":")):
         raise FolderError(f"{name} is outside the folder; give a path inside it, such as scenario.yaml")

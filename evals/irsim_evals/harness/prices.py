@@ -31,7 +31,7 @@ _PRICES: dict[str, Price] = {
 }
 """List prices of Anthropic, as of autumn 2026. A model that is not here has no price until one is given."""
 _CACHE_WRITE, _CACHE_READ = 1.25, 0.1
-"""Price of a token written to the cache for five minutes, and of one read from it, in those of an ordinary one. Some
+"""Price of a token written to the cache for five minutes, and of one read from it, in prices of an ordinary one. Some
 models read their cache for less, so that the money of an attempt is at most what is said."""
 
 
@@ -54,7 +54,7 @@ def set_price(model: str, price: Price | None, *, needed: bool) -> None:
         needed: Whether there must be one, since there is a limit of the cost.
 
     Raises:
-        ArgumentError: There must be one, and none is known.
+        ArgumentError: There must be one, and it is not known.
     """
     from inspect_ai.model import ModelCost, ModelInfo, get_model_info, set_model_info
 

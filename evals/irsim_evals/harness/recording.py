@@ -1,6 +1,7 @@
 """Recordings: what a model answered and what the tools said, one JSON line for each attempt, to replay and to grade.
 
-The first line says what was recorded with what. Recordings hold no keys and no paths of the machine.
+The first line says which model was recorded, with which versions and limits. Recordings hold no keys and no paths of
+the machine.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import case_of, given_pictures
 from irsim_evals.grader.artefact import Answer
+from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_answer
 from irsim_evals.grader.outcome import Cost, Record, name_of
 from irsim_evals.results import Trial, trial_of
@@ -52,7 +54,7 @@ class RecordingEnds(RuntimeError):
 
 
 class Header(Record):
-    """What was recorded with what."""
+    """Model, versions and limits of a recording."""
 
     kind: Literal["header"] = "header"
     schema_version: int = 1
@@ -159,7 +161,7 @@ def read_recording(path: Path) -> Recording:
     """Read a file of JSON lines.
 
     Raises:
-        ArgumentError: It cannot be read, or is no recording.
+        ArgumentError: It cannot be read, or is not a recording.
     """
     fix = "give a .jsonl file that irsim-evals run has written"
     try:
@@ -171,14 +173,14 @@ def read_recording(path: Path) -> Recording:
         raise ArgumentError(f"{path} cannot be read: {error.strerror}", fix) from None
     except (ValueError, ValidationError) as error:
         why = str(error).splitlines()[0] if str(error) else "it is empty"
-        raise ArgumentError(f"{path} is no recording: {why}", fix) from None
+        raise ArgumentError(f"{path} is not a recording: {why}", fix) from None
 
 
 def find_recording(path: Path, arm: str) -> Recording:
     """The recording of an arm: a file, or the newest one in a folder of logs; beside a log of inspect_ai lies its own.
 
     Raises:
-        ArgumentError: There is none, or it is one of another arm.
+        ArgumentError: There is no recording, or it is one of another arm.
     """
     if path.is_dir():
         found = sorted(path.glob("*.jsonl"), key=lambda one: (one.stat().st_mtime, one.name), reverse=True)
@@ -210,7 +212,7 @@ def grade_recording(recording: Recording, instances: Sequence[Instance] | None =
     """Grade the recorded files with the grader of today, without tools and without a model.
 
     Args:
-        recording: What was recorded.
+        recording: The recording.
         instances: Those to grade; default: all of the recording.
 
     Raises:
@@ -237,8 +239,6 @@ def _matched(recording: Recording, instances: Sequence[Instance] | None) -> Iter
 
 
 def _graded(attempt: Attempt, instance: Instance, header: Header) -> Trial:
-    from irsim_evals.grader.grade import failed_verdict
-
     reply = attempt.replies[-1] if attempt.replies else ""
     answer = Answer("recorded", attempt.files, reply, tuple(attempt.replies), given_pictures(instance))
     if attempt.failed:

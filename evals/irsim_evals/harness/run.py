@@ -71,16 +71,16 @@ def run_arm(
 
     Args:
         arm: One of ``MODEL_ARMS``.
-        instances: What to answer.
-        model: Name with its provider, such as ``anthropic/claude-opus-5``; with ``replay`` that of the recording.
+        instances: The cases to answer.
+        model: Name with its provider, such as ``anthropic/claude-opus-5``; with ``replay`` the recording's.
         epochs: Attempts at each instance.
         token_limit: Tokens of one attempt.
         cost_limit: Cost of one attempt [US dollar].
         time_limit: Duration of one attempt [s].
         log_dir: Folder for logs and recordings; it is made.
         replay: Recording (``.jsonl``) whose answers are played again, without network, or the folder with the logs of
-            a run; ``epochs`` and limits are then those of the recording.
-        base_url: Address of the model's service; default: that of its provider.
+            a run; ``epochs`` and limits are then the recording's.
+        base_url: Address of the model's service; default: its provider's.
         progress: Called with the number of attempts that are done, and of all.
         message_limit: Messages of one attempt.
         price: US dollars for a million tokens that are read and written, for a model whose price is not known.

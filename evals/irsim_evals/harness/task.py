@@ -24,6 +24,7 @@ from inspect_ai.tool import ToolDef, ToolError, mcp_connection, mcp_server_stdio
 
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import given_pictures, write_given
+from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.grader.outcome import Verdict, name_of
 from irsim_evals.harness.arms import briefing, skill_folders
@@ -44,7 +45,7 @@ _STOPS = {
 
 @dataclass
 class Work:
-    """What is known of one attempt while it lasts.
+    """An attempt while it lasts.
 
     Attributes:
         folder: Folder of the agent.
@@ -69,8 +70,8 @@ class Session:
         arm: Name of the arm.
         instances: Name of an instance → the instance.
         total: Number of attempts.
-        progress: Called after each attempt with the number of those that are done, and of all.
-        model_of: Model for an instance, the number of an attempt and its folder; None for that of the evaluation.
+        progress: Called after each attempt with the number of finished attempts, and of all.
+        model_of: Model for an instance, the number of an attempt and its folder; None for the evaluation's.
         works: Instance and number of an attempt → what is known of it.
         done: Number of attempts that are done.
     """
@@ -165,7 +166,7 @@ def _agent(session: Session) -> Any:
 
 
 async def _converse(conversation: Any, tools: Sequence[Any], turns: Sequence[str], model: Any, work: Work) -> None:
-    """Let the agent work until it answers, then say the next turn, until there is none."""
+    """Let the agent work until it answers, then say the next turn, until there are no more."""
     agent = react(prompt=None, tools=tools, model=model, submit=False)
     for turn in (None, *turns):
         if turn is not None:
@@ -210,8 +211,6 @@ def _grade(instance: Instance, work: Work) -> Verdict:
         (work.folder / "reply.md").write_text(last, encoding="utf-8", errors="replace")
         return grade_folder(instance, work.folder)
     except Exception as error:
-        from irsim_evals.grader.grade import failed_verdict
-
         return failed_verdict(instance, None, "gradable", "parse", f"{type(error).__name__}: {error}"[:300])
 
 
@@ -251,7 +250,7 @@ def file_tools(folder: Folder) -> list[Any]:
 def server_tools(arm: str, folder: Path) -> list[Any]:
     """The MCP servers of an arm, each a process of its own.
 
-    They start in the folder above that of the agent and do not import from there, so that no file of the agent takes
+    They start in the folder above the agent's and do not import from there, so that no file of the agent takes
     the place of one of their modules. The process gets no environment but the usual paths, hence no key.
     """
     found = []

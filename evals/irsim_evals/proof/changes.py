@@ -72,7 +72,7 @@ def touches(
     Args:
         case: The case.
         scenes: The first world and the second one.
-        changed: What differs, as :func:`changed_facts` says it.
+        changed: Differences, as :func:`changed_facts` says them.
         pins: Pinned or free facts.
     """
     selectors = dict(case.select)

@@ -1,4 +1,4 @@
-"""Mutants of a right answer: what a wrong one looks like that somebody could really give."""
+"""Mutants of a right answer: what a wrong one looks like that could really be given."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def mutants_of(data: Data) -> Iterator[Mutant]:
 
 
 def mutants_of_text(text: str) -> Iterator[tuple[str, str, Data]]:
-    """What was changed, the new text and its data, for each number of a scenario: it is doubled, or 1 if it is 0."""
+    """The change in words, the new text and its data, for each number of a scenario: it is doubled, or 1 if it is 0."""
     start = 0
     for k, line in enumerate(text.splitlines(keepends=True)):
         code = line.partition("#")[0]
@@ -55,7 +55,7 @@ def mutants_of_answer(instance: Instance, answer: Answer, main: str | None) -> I
     Args:
         instance: The case.
         answer: A right answer.
-        main: Name of the file with the scenario; None if there is none.
+        main: Name of the file with the scenario; None without a scenario.
     """
     for what, reply in (("left out", ""), ("a boast", _BOAST), ("the prompt", instance.prompt)):
         yield "reply_replaced", what, "reply", replace(answer, reply=reply, replies=(*answer.replies[:-1], reply))
@@ -78,6 +78,6 @@ def mutants_of_answer(instance: Instance, answer: Answer, main: str | None) -> I
         yield "edit_left_out", "the file as it was given", "edit", with_text(instance.case.files[main])
     if instance.case.python == "none":
         files = {**answer.files, "make_scenario.py": "print('world: {}')\n"}
-        yield "program_left", "a program that nobody asked for", "files", replace(answer, files=files)
+        yield "program_left", "a program that was not asked for", "files", replace(answer, files=files)
     yield "tag_added", "a tag that runs code", "files", with_text(f"{text}\nplugins: {_TAG}\n")
     yield "cut_short", "the first half of the file", "files", with_text(text[: len(text) // 2] + "\n  - {")

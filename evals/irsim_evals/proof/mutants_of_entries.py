@@ -193,7 +193,7 @@ def plugged(data: Data) -> Change:
 
 @operator
 def cosmetic(data: Data) -> Change:
-    """Names, colors and a lidar that nobody asked for."""
+    """Names, colors and a lidar that were not asked for."""
 
     def paint(entry: Data) -> Any:
         if isinstance(entry.get("color"), list) or entry.get("color") == "cycle":

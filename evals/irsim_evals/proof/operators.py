@@ -1,4 +1,4 @@
-"""What mutants and rewrites are made of: their registers, and ways to go through a scenario, change it and write it."""
+"""Parts of mutants and rewrites: their registers, and ways to go through a scenario, change it and write it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Mutant:
 
     Attributes:
         operator: Name of the operator that made it.
-        what: What was changed, for people.
+        what: The change, for people.
         data: The scenario.
     """
 

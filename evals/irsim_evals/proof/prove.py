@@ -32,8 +32,8 @@ class Disagreement:
     Attributes:
         trial: The answer.
         assertion, predicate: Its id in the case, and what it says.
-        passed: What the grader says; the second implementation says the opposite.
-        observed: What the grader observed.
+        passed: The grader's opinion; the second implementation's is the opposite.
+        observed: Observed value of the grader.
     """
 
     trial: Trial
@@ -45,16 +45,16 @@ class Disagreement:
 
 @dataclass
 class Proof:
-    """What came out.
+    """Results of a proof.
 
     Attributes:
         done: (kind, operator) → number of trials, and of those graded wrongly.
         wrong: Trials that were graded wrongly, with their verdicts.
-        left_out: Mutants of facts that no case pins or leaves free: (operator) → number; those that cases waive are
-            under ``waived``.
+        left_out: Mutants of facts that no case pins or leaves free: (operator) → number; mutants that cases waive
+            are under ``waived``.
         by_case: (case, kind) → number of trials.
         compared: Predicate → number of assertions that the second implementation has judged, too.
-        disagreements: Those that it has judged otherwise.
+        disagreements: Assertions that it has judged otherwise.
     """
 
     done: Counter[tuple[str, str]] = field(default_factory=Counter)
@@ -99,7 +99,7 @@ def prove(
         quick: All golds, and a random tenth of the rest.
         seed: Seed of the choice, and of one fresh instance of each case.
         progress: Callback ``(done, total)``.
-        runner: What does the gradings, in their order.
+        runner: Does the gradings, in their order.
     """
     proof = Proof()
     choice = random.Random(seed)
@@ -115,7 +115,7 @@ def prove(
 
 
 def tried(trial: Trial, second: bool) -> tuple[Kind, Any, dict[str, bool]] | None:
-    """What a trial is, the verdict on its answer, and what the second implementation thinks of some assertions.
+    """The kind of a trial, the verdict on its answer, and what the second implementation thinks of some assertions.
 
     None for a mutant of facts that the case neither pins nor leaves free.
     """

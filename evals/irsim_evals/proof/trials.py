@@ -31,7 +31,7 @@ from irsim_evals.proof.rewrites import rewrites_of
 __all__ = ["Kind", "Trial", "kind_of", "scene_of", "trials_of"]
 
 Kind = Literal["gold", "rewrite", "mutant", "pinned mutant", "broken mutant", "free mutant", "null"]
-"""What a trial is. A ``mutant`` is a changed scenario whose world has not been compared with the original one yet."""
+"""Kind of a trial. A ``mutant`` is a changed scenario whose world has not been compared with the original one yet."""
 _NEVER_RIGHT = ("on_top", "goal_outside")
 """Operators whose mutants break what must hold in every scenario."""
 
@@ -42,10 +42,10 @@ class Trial:
 
     Attributes:
         case, gold: Case and gold that it was made from.
-        kind: What it is.
-        operator: What made it.
-        what: What was changed.
-        instance, answer: What is graded.
+        kind: Its kind.
+        operator: Name of the operator that made it.
+        what: The change in words.
+        instance, answer: The case, and the answer that is graded.
         file: Name of the scenario in the answer that was changed; empty if another part was.
         original: Text of that scenario before.
     """
@@ -109,7 +109,7 @@ def trials_of(
 
     Args:
         case_id: The case.
-        left_out: Counts mutants that are no trials.
+        left_out: Counts mutants that are not tried.
         seed: Seed of the fresh instance.
         keep: Asked for each change whether it is tried.
     """
@@ -151,8 +151,7 @@ def _changed(
 
 
 def _mutants(text: str, edited: bool) -> Iterator[tuple[str, str, Callable[[], str]]]:
-    """Operator and what was changed of each mutant of a scenario, and what writes it; those of an edited file keep its
-    comments."""
+    """Operator, change and writer of each mutant of a scenario; mutants of an edited file keep its comments."""
     comments = _comments(text) if edited else ""
     for mutant in mutants_of(yaml.safe_load(text)):
         yield mutant.operator, mutant.what, partial(_written, mutant.data, comments)
@@ -173,7 +172,7 @@ def _comments(text: str) -> str:
 def _changed_words(
     case_id: str, instance: Instance, gold: Answer, main: str | None, left_out: Counter[str]
 ) -> Iterator[Trial]:
-    """Mutants of the reply and of the text. What a reply says is free unless the case pins it."""
+    """Mutants of the reply and of the text. The words of a reply are free unless the case pins them."""
     pinned = {fact for pin in instance.case.pins if pin.of in ("reply", "text") for fact in pin.facts}
     for operator, what, fact, answer in mutants_of_answer(instance, gold, main):
         if _is_waived(instance, operator, what):

@@ -1,7 +1,7 @@
 """``results.json`` of a report: the trials, and beside them the aggregates and the runs in the fields of skill-creator.
 
 ``runs`` and ``run_summary`` have the names of its ``benchmark.json``, so that its viewer can read the file;
-``expectations`` are those of its ``grading.json``. ``irsim-evals report`` and ``compare`` read the trials again.
+``expectations`` has the names of its ``grading.json``. ``irsim-evals report`` and ``compare`` read the trials again.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ class Change:
 
     Attributes:
         case, instance: The case.
-        title: What it is about.
+        title: Its subject.
         before, after: Share of the attempts that passed.
         reason: First assertion that does not hold in the set in which the case fails.
     """
@@ -82,7 +82,7 @@ class Comparison:
 
     @property
     def sentence(self) -> str:
-        """What came out, in words."""
+        """The result, in words."""
         if not self.pairs:
             return f"{self.first} and {self.second} have no case in common, so nothing can be compared."
         a, b = self.passed
@@ -114,7 +114,7 @@ def compare(before: Sequence[Trial], after: Sequence[Trial], first: str, second:
 
     Args:
         before, after: The trials.
-        first, second: What they are called.
+        first, second: Their names.
     """
     one, two = attempts(before), attempts(after)
     common = sorted(set(one) & set(two))

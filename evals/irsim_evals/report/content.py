@@ -17,12 +17,12 @@ __all__ = ["Content", "content_of"]
 
 @dataclass(frozen=True)
 class Content:
-    """What a report shows.
+    """The content of a report.
 
     Attributes:
         title: Title of the page.
         results: All trials.
-        asked: What the case of each trial asks.
+        asked: The question of each trial's case.
         arms: Numbers of each arm.
         categories, levels: Passes by category and by level.
         comparisons: Each arm compared with the one before.

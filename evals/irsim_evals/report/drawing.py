@@ -1,4 +1,4 @@
-"""Draws the world of an answer at one or more times. Runs in a limited process: the answer is somebody else's work."""
+"""Draws the world of an answer at one or more times. Runs in a limited process: the answer is untrusted input."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ def draw_answer(job: Job) -> list[Drawn] | str:
     """The world of a scenario at its start and at the end of an episode; a sentence if it cannot be drawn.
 
     Args:
-        job: What is drawn.
+        job: The worlds to draw.
     """
     try:
         with tempfile.TemporaryDirectory() as folder:
             return _both(job, Path(folder))
     except IrsimError as error:
         return f"The world cannot be built: {str(error).splitlines()[0][:200]}"
-    except Exception as error:  # somebody else's scenario may break what draws it, but not the report
+    except Exception as error:  # an untrusted scenario may break the drawing, but not the report
         return f"The drawing failed: {type(error).__name__}: {error}"[:200]
 
 

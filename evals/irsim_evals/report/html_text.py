@@ -1,4 +1,4 @@
-"""Pieces of HTML from texts that somebody else wrote: everything is escaped, long texts are cut with a sentence."""
+"""Pieces of HTML from untrusted texts: everything is escaped, long texts are cut with a sentence."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def code(text: str, marked: Collection[int] = ()) -> str:
 
 
 def difference(before: str, after: str) -> str:
-    """What changed in a file, line by line; a sentence if nothing did."""
+    """The changes of a file, line by line; a sentence if nothing did."""
     old, new = before.splitlines(), after.splitlines()
     if old == new:
         return '<p class="note">The file is the one that was given.</p>'

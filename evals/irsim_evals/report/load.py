@@ -21,10 +21,10 @@ __all__ = ["Asked", "Proof", "ProofRow", "asked_of", "load_proof", "load_results
 _RIGHT_KINDS = ("gold", "rewrite", "free mutant")
 """Kinds of the proof that the grader must accept; it must reject all others."""
 _MAX_MESSAGE = 120
-"""Characters of somebody else's message that an error repeats."""
+"""Characters of a foreign message that an error repeats."""
 _ADVICE = "write one with irsim-evals grade DIR --output FILE or irsim-evals run"
 _EPISODE_S = 10.0
-"""Length of the episode that is drawn where a case has none [s]."""
+"""Length of the episode that is drawn where a case has no episodes [s]."""
 
 
 class ProofRow(BaseModel):
@@ -37,7 +37,7 @@ class ProofRow(BaseModel):
 
 
 class Proof(BaseModel):
-    """What ``irsim-evals prove --json`` printed, as far as the report shows it."""
+    """The output of ``irsim-evals prove --json``, as far as the report shows it."""
 
     model_config = ConfigDict(extra="ignore")
 
@@ -130,10 +130,10 @@ def _first(error: ValidationError) -> str:
 
 @dataclass(frozen=True)
 class Asked:
-    """What a case asks.
+    """The question of a case.
 
     Attributes:
-        known: Whether the case is one of those that are installed, unchanged.
+        known: Whether the case is installed, unchanged.
         given: Files that the agent started with.
         seed: Seed of the first world.
         episode_seed: Seed of the first episode.
@@ -152,7 +152,7 @@ class Asked:
 
 
 def asked_of(results: Results) -> list[Asked]:
-    """What the case of each trial asks; nothing is known if the trials were made with other cases than the present."""
+    """The question of each trial's case; nothing is known if the trials were made with other cases than the present."""
     if results.cases != cases_hash():
         return [Asked() for _ in results.trials]
     found: dict[tuple[str, str], Asked] = {}
@@ -167,7 +167,7 @@ def _asked(trial: Trial) -> Asked:
         return Asked()
     try:
         instance = case_of(trial.verdict.case, int(trial.verdict.instance) if trial.verdict.instance else None)
-    except ValueError:  # an instance that is no number
+    except ValueError:  # an instance that is not a number
         return Asked()
     case = instance.case
     plan = case.episodes[0] if case.episodes else None

@@ -16,7 +16,7 @@ __all__ = ["markdown"]
 _MAX_FAILED = 15
 """Number of failed cases that are listed for an arm."""
 _MAX_TEXT = 160
-"""Characters of a text that somebody else wrote."""
+"""Characters of an untrusted text."""
 
 
 def markdown(content: Content) -> str:

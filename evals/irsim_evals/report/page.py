@@ -22,7 +22,7 @@ __all__ = ["page", "sections"]
 
 _SOURCES = Path(__file__).with_name("web")
 _CHANGED = (
-    '<p class="note">These answers were graded with other cases than those that are installed now. So changes of given '
+    '<p class="note">These answers were graded with other cases than the installed ones. So changes of given '
     "files are not shown, and the second picture shows each world after 10 s.</p>\n"
 )
 _MAX_WRONG = 20
@@ -160,7 +160,9 @@ def _cost(arms: Sequence[ArmSummary]) -> str:
             cells.append(none if each is None else number(each))
         rows.append(cells)
     heads = ["arm", "answers with a known cost", *(f"{escaped(UNITS.get(n, n))} per pass" for n in names)]
-    return _plain(heads, rows) + _note("What all these answers cost, failed ones included, divided by those that pass.")
+    return _plain(heads, rows) + _note(
+        "The cost of all these answers, failed ones included, divided by the answers that pass."
+    )
 
 
 def _comparisons(comparisons: Iterable[Comparison]) -> str:

@@ -21,7 +21,7 @@ _MAX_BYTES = 5_000_000
 
 @dataclass(frozen=True)
 class Job:
-    """What is drawn: the world of a scenario at its start, and at the end of an episode.
+    """The worlds to draw: a scenario at its start, and at the end of an episode.
 
     Attributes:
         name: Name of the scenario's file.
@@ -67,7 +67,7 @@ class Gallery:
 
     Attributes:
         pictures: Name → picture; the name is a digest of what is drawn.
-        shown: Number of a trial → names of its pictures, or a sentence that says why there are none.
+        shown: Number of a trial → names of its pictures, or a sentence that says why there are no pictures.
         size: Size of all pictures [B].
     """
 
@@ -77,7 +77,7 @@ class Gallery:
 
 
 def main_file(trial: Trial, asked: Asked) -> tuple[str, str] | None:
-    """Name and text of the scenario that was graded; None if there is none."""
+    """Name and text of the scenario that was graded; None without a scenario."""
     return find_scenario(Answer("", trial.verdict.files, trial.reply), asked.given)
 
 
@@ -88,7 +88,7 @@ def draw_trials(
 
     Args:
         trials: The trials.
-        asked: What the case of each trial asks.
+        asked: The question of each trial's case.
         progress: Callback ``(done, total)``.
     """
     gallery = Gallery()
@@ -144,7 +144,7 @@ def _keep(gallery: Gallery, name: str, drawn: list[Drawn] | str) -> list[str] | 
 
 
 def _job(trial: Trial, asked: Asked, found: tuple[str, str]) -> Job:
-    """What is drawn: worlds with the seeds that the failures were observed with, else with those of the case."""
+    """The job of drawing a trial: worlds with the seeds that the failures were observed with, else with the case's."""
     failed = [one for one in trial.verdict.failed() if one.seed is not None]
     start = next((one.seed for one in failed if one.stage != "behavior"), None)
     end = next((one.seed for one in failed if one.stage == "behavior"), None)

@@ -39,7 +39,7 @@ class Table:
 
 @dataclass(frozen=True)
 class CostSummary:
-    """What an arm cost, as far as its trials say so.
+    """Cost of an arm, as far as its trials say so.
 
     Attributes:
         known: Number of trials whose cost is known.
@@ -65,7 +65,7 @@ class ArmSummary:
         rate: Mean share of the assertions that hold, over cases, with Wilson's interval.
         funnel: Stage → share of the attempts in which nothing failed up to it.
         pass_hat: k → mean chance that k attempts at one case all pass.
-        cost: What the arm cost.
+        cost: Its cost.
         seconds: Mean time of grading one answer [s].
     """
 

@@ -87,7 +87,7 @@ def test_a_recording_of_another_prompt_is_refused(recording: Recording) -> None:
 def test_other_files_are_no_recordings(text: str, tmp_path: Path) -> None:
     path = tmp_path / "other.jsonl"
     path.write_text(text)
-    with pytest.raises(ArgumentError, match="is no recording"):
+    with pytest.raises(ArgumentError, match="is not a recording"):
         read_recording(path)
     with pytest.raises(ArgumentError, match="cannot be read"):
         read_recording(tmp_path / "missing.jsonl")
@@ -125,8 +125,8 @@ def test_prices_are_those_of_dated_models_too() -> None:
         ("C:\\x.yaml", "outside the folder"),
         ("link/x.yaml", "outside the folder"),
         (".hidden", "begin with a dot"),
-        ("a\0b", "no name of a file"),
-        ("x" * 400, "no name of a file"),
+        ("a\0b", "not the name of a file"),
+        ("x" * 400, "not the name of a file"),
         ("sub", "is a folder"),
         ("skills/s/SKILL.md", "can be read only"),
         ("given.yaml/x", "cannot be written"),

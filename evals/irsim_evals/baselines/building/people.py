@@ -66,7 +66,7 @@ def add_people(request: Request, frame: Frame, robots: list[Entry], obstacles: l
 
 
 def way_of_robot(request: Request, frame: Frame) -> Way | None:
-    """The way of a robot before which people cross; None if nobody crosses."""
+    """The way of a robot before which people cross; None if there are no crossings."""
     if "crossing" not in request.layouts or not request.people:
         return None
     along = next((s for words, s in DIRECTIONS if re.search(rf"{_DRIVES}(?:{words})", request.text)), (1.0, 0.0))

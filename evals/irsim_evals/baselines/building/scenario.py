@@ -131,7 +131,7 @@ def _behavior(name: str, entry: Entry) -> Entry:
 
 
 def describe(scenario: dict[str, Any]) -> str:
-    """What was assumed, in words and numbers of the scenario."""
+    """The assumptions, in words and numbers of the scenario."""
     world = scenario["world"]
     facts = [f"the world is {world['width']:g} x {world['height']:g} m"]
     for section, noun in (("robot", "robots"), ("obstacle", "obstacles")):

@@ -126,7 +126,7 @@ class Quantity:
 
     Attributes:
         value: In m, s, rad or kg and quotients of them; a share as a fraction.
-        kind: What its unit measures; ``count`` without a unit.
+        kind: The quantity that its unit measures; ``count`` without a unit.
         start, end: Where it stands in the text.
     """
 

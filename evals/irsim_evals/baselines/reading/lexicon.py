@@ -34,7 +34,7 @@ NOUNS: dict[str, str] = {
     ),
     "trap": r"u-shaped trap|u-shaped|u-trap|u-förmig\w*|en forma de u|u ?形",
 }
-"""What a request speaks of. The order decides which wins where two match at one place."""
+"""Things that a request speaks of. The order decides which wins where two match at one place."""
 
 DRIVES: dict[str, str] = {
     "omni_angular": (

@@ -1,4 +1,4 @@
-"""What a request speaks of: nouns with their numbers, and places with what each is for."""
+"""The nouns of a request with their numbers, and its places with their roles."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Mention:
         definite: Whether it points back to something that was mentioned.
         oblique: Whether a preposition stands before it, so that what follows is rather about something else.
         words: The noun with its adjectives.
-        facts: What the text says about it, added by :mod:`.facts`.
+        facts: Everything that the text says about it, added by :mod:`.facts`.
     """
 
     kind: str
@@ -144,7 +144,7 @@ class Place:
     """A point or a direction.
 
     Attributes:
-        role: What it is the place of.
+        role: Start, goal, heading or obstacle.
         point: x, y [m]; None for a direction.
         signs: Direction along x and y; (0, 0) for a point.
         position: Where it stands in the text.
@@ -176,7 +176,7 @@ def places_of(text: str, mentions: list[Mention]) -> list[Place]:
 
 
 def _role(text: str, mentions: list[Mention], position: int, is_point: bool, before: list[Place]) -> Role | None:
-    """What a place is for, by the last word before it in the sentence that says so."""
+    """The role of a place, by the last word before it in the sentence that says so."""
     begin, _ = sentence_of(text, position)
     cues = [(match.start(), match.lastgroup) for match in _ANY_CUE.finditer(text, begin) if match.end() <= position]
     things = [m for m in mentions if begin <= m.start < position and m.kind in ("obstacle", "robot", "person", "wall")]

@@ -54,7 +54,7 @@ class Group:
 
 @dataclass
 class Request:
-    """What a request asks for.
+    """A request, understood.
 
     Attributes:
         text: The request as :func:`.language.plain` leaves it.

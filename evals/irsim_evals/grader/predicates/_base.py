@@ -1,4 +1,4 @@
-"""What all predicates have in common."""
+"""Base classes of predicates, their register, and how they tell what they saw."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _MAX_NAMED = 4
 
 @dataclass
 class Observation:
-    """What a predicate saw.
+    """An observation of a predicate.
 
     Attributes:
         passed: Whether the assertion holds.
@@ -48,14 +48,14 @@ class Observation:
 
 
 class Predicate(BaseModel):
-    """What an assertion says; the keys of a predicate are the fields of its class."""
+    """The content of an assertion; the keys of a predicate are the fields of its class."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
 
     stage: ClassVar[Stage] = "facts"
     """Part of the funnel that it belongs to."""
     subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]]
-    """What it looks at."""
+    """Its subject."""
     name: ClassVar[str] = ""
     """Key under which cases use it."""
 
@@ -122,14 +122,14 @@ def judged(
     said: str = "",
     marks: Sequence[Mark] = (),
 ) -> Observation:
-    """What was seen of bodies each of which must be as expected.
+    """The observation of bodies each of which must be as expected.
 
     Args:
-        expected: What each must be, for people.
+        expected: The requirement, for people.
         wrong: The bodies that are not, with what they are.
-        right: What was seen if there are none.
+        right: The observed value if no body is wrong.
         key: Key of an entry that decides it.
-        said: What stands before either.
+        said: Words before the observed value.
         marks: Places that wrong bodies are about.
     """
     where = f"{wrong[0][0].entry}.{key}" if wrong else None

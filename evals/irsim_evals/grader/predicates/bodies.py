@@ -1,4 +1,4 @@
-"""What bodies are: how many, with which properties and sensors; and whether each row of a table has one."""
+"""Properties of bodies: how many there are, with which values and sensors; and a body for each row of a table."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class Visits(OfBodies, EpisodePredicate):
         return judged(expected, wrong, "so it is", "waypoints", marks=marks)
 
     def _problem(self, way: np.ndarray) -> str:
-        """What is wrong with a path; empty if nothing is."""
+        """The problem of a path; empty if it is right."""
         row = 0
         for number in range(self.laps * len(self.places)):
             place = np.array(self.places[number % len(self.places)])

@@ -1,4 +1,4 @@
-"""What happens between bodies in an episode: collisions, distances, who comes nearer."""
+"""Encounters of bodies in an episode: collisions, distances, and who comes nearer."""
 
 from __future__ import annotations
 

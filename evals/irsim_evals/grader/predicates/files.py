@@ -1,4 +1,4 @@
-"""What the agent left: files, values in them, edits of what was given, programs and what commands print."""
+"""Files that the agent left: values in them, edits of given files, programs, and output of commands."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Files(AnswerPredicate):
     pattern: str
     """Such as ``*.py``."""
     number: Match
-    """Accepted numbers of files, those that were given left out."""
+    """Accepted numbers of files; given files are left out."""
     contain: list[str] = []
     """Regular expressions that each of them contains."""
     lack: list[str] = []
@@ -80,7 +80,7 @@ class Data(AnswerPredicate):
         try:
             content = json.loads(text)
         except (ValueError, RecursionError):
-            return Observation(False, expected, "it is no JSON")
+            return Observation(False, expected, "it is not JSON")
         seen, passed = [], True
         for path, match in self.has.items():
             found = values_at(content, path)
@@ -106,7 +106,7 @@ def values_at(data: Any, path: str) -> list[Any]:
 
 @register("edits")
 class Edits(AnswerPredicate):
-    """What differs between the file that was given and the file that was left: by key, and in the world it makes."""
+    """Differences between the file that was given and the file that was left: by key, and in the world it makes."""
 
     stage = "edits"
 
@@ -193,8 +193,8 @@ def _covers(allowed: str, path: str) -> bool:
 
 
 def value_at(data: Any, path: str) -> Any:
-    """The value at a path such as ``robot[0].sensors[1].number``; None if there is none. One entry may be written
-    with or without a list around it."""
+    """The value at a path such as ``robot[0].sensors[1].number``; None if the path leads nowhere. One entry may be
+    written with or without a list around it."""
     for name, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
         if name:
             if isinstance(data, list) and len(data) == 1:
@@ -214,7 +214,7 @@ class Program(AnswerPredicate):
     stage = "behavior"
 
     pattern: str = "*.py"
-    """Names of the programs; those that were given are left out."""
+    """Names of the programs; given ones are left out."""
     number: Match = Match(ge=1)
     """Accepted numbers of programs."""
     prints: list[str] = []

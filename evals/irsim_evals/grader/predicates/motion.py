@@ -195,7 +195,7 @@ class Explores(EpisodePredicate):
 
     def observe(self, material: Material, episode: Episode) -> Observation:
         """Compare the shares."""
-        expected = f"explored share after {self.at:g} s: {self.growth.words()} times that of the first step"
+        expected = f"explored share after {self.at:g} s: {self.growth.words()} times the share after the first step"
         if not episode.explored:
             return Observation(False, expected, "there is no fog map", "world.fog_map")
         first = episode.explored[0][1]

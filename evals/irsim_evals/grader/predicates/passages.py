@@ -152,7 +152,7 @@ class Doorway(ScenePredicate):
     end: tuple[Quantity, Quantity]
     """The other end [m]."""
     depth: Quantity = 0.2
-    """What is solid at most this far beside the line counts as on it [m]."""
+    """Solid things at most this far beside the line count as on it [m]."""
     openings: Match = Match(eq=1)
     """Accepted numbers of openings."""
     width: Match | None = None

@@ -29,7 +29,7 @@ class Inside(OfBodies, ScenePredicate):
     stage = "relations"
 
     what: Literal["position", "footprint", "goal"] = "position"
-    """What lies in the region: its position, its whole footprint, or each of its goals."""
+    """The part that lies in the region: its position, its whole footprint, or each of its goals."""
     region: tuple[Quantity, Quantity, Quantity, Quantity] | None = None
     """x0, y0, x1, y1 [m]; default: the world."""
     shares: tuple[Quantity, Quantity, Quantity, Quantity] | None = None
@@ -80,7 +80,7 @@ class Near(OfBodies, ScenePredicate):
     place: tuple[Quantity, Quantity] | None = None
     """A place instead of a selection [m]."""
     what: Literal["position", "footprint", "goal"] = "position"
-    """What of the first selection counts. Footprints are measured to footprints, edge to edge."""
+    """The part of the first selection that counts. Footprints are measured to footprints, edge to edge."""
     distance: Match
     """Accepted distances [m]."""
     farthest: bool = False
@@ -131,7 +131,7 @@ class Spacing(OfBodies, ScenePredicate):
     stage = "relations"
 
     what: Literal["position", "footprint", "goal"] = "position"
-    """What is measured: between positions, between the edges of footprints, or between last goals."""
+    """Ends of the distances: between positions, between the edges of footprints, or between last goals."""
     distance: Match
     """Accepted values of the smallest distance [m]."""
 
@@ -164,7 +164,7 @@ class Beside(OfBodies, ScenePredicate):
     way_of: str
     """Selection of one body, whose way leads from its start to its goal."""
     what: Literal["start", "goal"] = "start"
-    """What lies there."""
+    """The place that lies there."""
     side: Literal["left", "right", "ahead", "behind"]
     """Seen from the start of the way toward its goal."""
     by: Quantity = 0.0

@@ -1,4 +1,4 @@
-"""What the reply tells the user, and whether the world agrees."""
+"""Words and claims of the reply, and whether the world agrees."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ class Says(AnswerPredicate):
     none_of: list[str] = []
     """None of these occurs."""
     about: str = ""
-    """What it says, in words, for the evidence."""
+    """Its meaning in words, for the evidence."""
     turn: int | None = None
     """Number of the turn whose reply is meant, from 1 on; default: the last one."""
 
@@ -203,7 +203,7 @@ class States(AnswerPredicate):
     about: str
     """Regular expression for words near the value, ignoring case."""
     factors: list[Quantity] = [1.0]
-    """What is stated may be the value times one of these: 2 allows a diameter for a radius."""
+    """The stated number may be the value times one of these: 2 allows a diameter for a radius."""
 
     @field_validator("about")
     @classmethod
@@ -242,7 +242,7 @@ def _numbers(reply: str, about: str) -> list[float]:
 
 @register("assumptions")
 class Assumptions(AnswerPredicate):
-    """Numbers and names in the reply that are those of the scenario, and none that contradict it."""
+    """Numbers and names in the reply agree with the scenario, and do not contradict it."""
 
     number: Match
     """Accepted numbers of claims that hold."""

@@ -109,7 +109,7 @@ class Comparison(AnswerPredicate):
         return Observation(not problem, expected, problem or "so it is")
 
     def _files(self, material: Material, groups: dict[int, dict[str, Material]]) -> str:
-        """What is wrong with the scenarios, which are sorted by their numbers of robots; empty if nothing is."""
+        """The first problem of the scenarios, which are sorted by their numbers of robots; empty without one."""
         for name in scenario_names(material):
             try:
                 one = material.other(name)
@@ -132,7 +132,7 @@ class Comparison(AnswerPredicate):
         return ""
 
     def _runs(self, material: Material, groups: dict[int, dict[str, Material]]) -> str:
-        """What is wrong with the episodes that programs start, commands plan or, without either, the reply tells."""
+        """The first problem of the episodes that programs start, commands plan or, without either, the reply tells."""
         found = runs_of(material, set(self.behaviors), self.seconds)
         if isinstance(found, str):
             return found
@@ -143,12 +143,12 @@ class Comparison(AnswerPredicate):
         return f"nothing reports the rate of {missing}" if missing else ""
 
     def _started(self, found: Runs, groups: dict[int, dict[str, Material]]) -> str:
-        """What is wrong with the episodes; empty if nothing is."""
+        """The first problem of the episodes; empty without one."""
         numbers = {name: number for number, files in groups.items() for name in files}
         seeds: dict[tuple[int, str], list[int]] = {}
         for one in found.started:
             if one.file not in numbers:
-                return f"{found.by} runs {one.file or 'a text'}, which is no scenario of the answer"
+                return f"{found.by} runs {one.file or 'a text'}, which is not a scenario of the answer"
             steps = one.steps if one.steps is not None else _limit(groups[numbers[one.file]][one.file])
             if steps is None or abs(steps - self.steps) > _ROUNDING:
                 return f"{found.by} gives {one.file} {'no horizon' if steps is None else f'{steps} steps'}"
@@ -166,7 +166,7 @@ class Comparison(AnswerPredicate):
         return ""
 
     def _told(self, words: str, groups: dict[int, dict[str, Material]]) -> str:
-        """What the words lack that tell of a comparison which nothing in the answer runs; empty if nothing."""
+        """The first gap in the words about a comparison that nothing in the answer runs; empty without one."""
         for number, behavior in itertools.product(self.robots, self.behaviors):
             own = any({body.behavior for body in one.scene(0).robots} == {behavior} for one in groups[number].values())
             if not own and not re.search(rf"\b{behavior}\b", words, re.IGNORECASE):
@@ -189,7 +189,7 @@ def _limit(one: Material) -> int | None:
 
 
 def _facts(one: Material, *, layout: bool = False) -> dict[str, Any]:
-    """What must be equal in scenarios that are compared.
+    """Facts that must be equal in scenarios that are compared.
 
     Args:
         one: The scenario.
@@ -226,5 +226,5 @@ def _facts(one: Material, *, layout: bool = False) -> dict[str, Any]:
 
 
 def _differing(a: dict[str, Any], b: dict[str, Any]) -> str:
-    """The first fact that differs; empty if there is none."""
+    """The first fact that differs; empty if all agree."""
     return next((name for name in a if a[name] != b[name]), "")

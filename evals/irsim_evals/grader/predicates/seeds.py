@@ -1,4 +1,4 @@
-"""What differs from seed to seed, and in how many seeds nothing overlaps."""
+"""Differences between seeds, and the share of seeds in which nothing overlaps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the world is: its properties, its map, everything solid in it, and how crowded it is."""
+"""The world: its properties, its map, everything solid in it, and how crowded it is."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ class Plan(ScenePredicate):
     ignore: list[tuple[Quantity, Quantity, Quantity, Quantity]] = []
     """Rectangles in which nothing is compared [m]."""
     tol: Quantity = 0.1
-    """Greatest distance between an outline and that of the drawing [m]."""
+    """Greatest distance between an outline and the drawn one [m]."""
 
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Compare the areas."""

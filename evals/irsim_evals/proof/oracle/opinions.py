@@ -1,4 +1,4 @@
-"""What the naive implementation thinks of the assertions of a case; None where it does not know."""
+"""Opinions of the naive implementation about the assertions of a case, where it understands them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class _Unknown(Exception):
 
 
 def opinions(instance: Instance, answer: Answer) -> dict[str, bool]:
-    """Assertion → whether it holds, for those that the oracle understands.
+    """Assertion → whether it holds, for each one that the oracle understands.
 
     Args:
         instance: The case.

@@ -16,7 +16,7 @@ _MAX_CELLS = 6000
 
 
 class Thing:
-    """What the oracle knows of one object, from the public interface of the simulator alone.
+    """One object, known from the public interface of the simulator alone.
 
     Attributes:
         view: The object of the environment.
@@ -151,7 +151,7 @@ def gets_there(
     """Whether a disc gets from one place to another over cells whose middle is free for it.
 
     Args:
-        solids: What is in the way.
+        solids: The obstacles.
         bounds: x0, y0, x1, y1 of the world [m].
         start, goal: Both ends [m].
         radius: Radius of the disc [m].
