@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from irsim_evals.proof.operators import Change, Data, each_entry, entries, operator, with_entry
+from irsim_evals.proof.operators import Change, Data, each_entry, entries, items_of, operator, with_entry
 
 _KINEMATICS = ("diff", "omni", "omni_angular", "acker")
 _BEHAVIORS = ("dash", "rvo", "orca", "sfm")
@@ -122,7 +122,7 @@ def entry_doubled(data: Data) -> Change:
     """An object too many, somewhere free."""
     for section, number, _ in entries(data):
         made = copy.deepcopy(data)
-        items = made[section] if isinstance(made[section], list) else [made[section]]
+        items = items_of(made, section)
         extra = copy.deepcopy(items[number])
         extra.pop("name", None)
         extra["number"] = 1
@@ -144,11 +144,10 @@ def role_flipped(data: Data) -> Change:
     """A robot among the obstacles, or the other way round."""
     for section, number, _ in entries(data):
         made = copy.deepcopy(data)
-        items = made[section] if isinstance(made[section], list) else [made[section]]
+        items = items_of(made, section)
         entry = items.pop(number)
         other = "obstacle" if section == "robot" else "robot"
-        there = made.get(other) or []
-        made[other] = [*(there if isinstance(there, list) else [there]), entry]
+        made[other] = [*items_of(made, other), entry]
         made[section] = items
         if not items:
             del made[section]
@@ -185,9 +184,8 @@ def plugged(data: Data) -> Change:
         if isinstance(a[0], list) or isinstance(b[0], list):
             continue
         made = copy.deepcopy(data)
-        there = made.get("obstacle") or []
         disc = {"shape": {"name": "circle", "radius": 1.0}, "state": [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0.0]}
-        made["obstacle"] = [*(there if isinstance(there, list) else [there]), disc]
+        made["obstacle"] = [*items_of(made, "obstacle"), disc]
         yield f"a disc between start and goal of {section}[{number}]", made
 
 

@@ -48,21 +48,21 @@ def moved_along(data: Data) -> Change:
 @operator
 def turned_about_the_middle(data: Data) -> Change:
     """Start and goal of one robot turned about the middle of all starts, as if a circle were uneven."""
-    movers = [(s, n, e) for s, n, e in entries(data) if _is_pose(e.get("state")) and _is_pose(e.get("goal"))]
+    movers = [e for *_, e in entries(data) if _is_pose(e.get("state")) and _is_pose(e.get("goal"))]
     if len(movers) < 3:
         return
-    x, y = (sum(entry["state"][k] for _, _, entry in movers) / len(movers) for k in (0, 1))
+    x, y = (sum(entry["state"][k] for entry in movers) / len(movers) for k in (0, 1))
     c, s = math.cos(0.15), math.sin(0.15)
 
     def change(entry: Data) -> Any:
+        if not (_is_pose(entry.get("state")) and _is_pose(entry.get("goal"))):
+            return False
         for value in (entry["state"], entry["goal"]):
             dx, dy = value[0] - x, value[1] - y
             value[0], value[1] = x + c * dx - s * dy, y + s * dx + c * dy
+        return True
 
-    for section, number, _ in movers:
-        made = with_entry(data, section, number, change)
-        if made is not None:
-            yield f"{section}[{number}]: turned about the middle", made
+    yield from each_entry(data, change, "turned about the middle")
 
 
 @operator
@@ -72,22 +72,19 @@ def on_top(data: Data) -> Change:
     places = [entry["state"] for entry in solid if "kinematics" in entry and _is_pose(entry.get("state"))]
     if not places:
         return
-    for section, number, _ in entries(data):
 
-        def change(entry: Data) -> Any:
-            shape = entry.get("shape")
-            own = isinstance(shape, dict) and ("vertices" in shape or "center" in shape)
-            if own or entry.get("number", 1) != 1 or not _is_pose(entry.get("state")) or entry.get("unobstructed"):
-                return False
-            other = next((place for place in places if place != entry["state"]), None)
-            if other is None:
-                return False
-            entry["state"][:2] = [other[0] + 0.02, other[1]]
-            return True
+    def change(entry: Data) -> Any:
+        shape = entry.get("shape")
+        own = isinstance(shape, dict) and ("vertices" in shape or "center" in shape)
+        if own or entry.get("number", 1) != 1 or not _is_pose(entry.get("state")) or entry.get("unobstructed"):
+            return False
+        other = next((place for place in places if place != entry["state"]), None)
+        if other is None:
+            return False
+        entry["state"][:2] = [other[0] + 0.02, other[1]]
+        return True
 
-        made = with_entry(data, section, number, change)
-        if made is not None:
-            yield f"{section}[{number}]: on the start of another", made
+    yield from each_entry(data, change, "on the start of another")
 
 
 @operator
@@ -95,17 +92,14 @@ def goal_outside(data: Data) -> Change:
     """A goal a little outside of the world."""
     world = data.get("world") or {}
     edge = (world.get("offset") or [0.0, 0.0])[0] + world.get("width", 10) + 0.4
-    for section, number, _ in entries(data):
 
-        def change(entry: Data) -> Any:
-            if not _is_pose(entry.get("goal")) or "kinematics" not in entry:
-                return False
-            entry["goal"][0] = edge
-            return True
+    def change(entry: Data) -> Any:
+        if not _is_pose(entry.get("goal")) or "kinematics" not in entry:
+            return False
+        entry["goal"][0] = edge
+        return True
 
-        made = with_entry(data, section, number, change)
-        if made is not None:
-            yield f"{section}[{number}]: goal outside of the world", made
+    yield from each_entry(data, change, "goal outside of the world")
 
 
 @operator

@@ -12,8 +12,8 @@ import yaml
 from irsim_evals.grader.scene import Scene
 
 __all__ = [
-    "OPERATORS", "REWRITES", "Change", "Data", "Mutant", "dump", "each_entry", "entries", "operator", "plain",
-    "rewrite", "scale", "shift", "with_entry",
+    "OPERATORS", "REWRITES", "Change", "Data", "Mutant", "dump", "each_entry", "entries", "items_of", "operator",
+    "plain", "rewrite", "scale", "shift", "with_entry",
 ]  # fmt: skip
 
 Data = dict[str, Any]
@@ -55,12 +55,16 @@ def plain(value: Any) -> Any:
     return [plain(item) for item in value] if isinstance(value, list) else value
 
 
+def items_of(data: Data, section: str) -> list[Any]:
+    """The entries of a section, which a file may write as a list or as a single one."""
+    given = data.get(section)
+    return given if isinstance(given, list) else [given] if isinstance(given, dict) else []
+
+
 def entries(data: Data) -> Iterator[tuple[str, int, Data]]:
     """Section, number and mapping of each entry."""
     for section in ("robot", "obstacle"):
-        found = data.get(section)
-        items = found if isinstance(found, list) else [found] if isinstance(found, dict) else []
-        for number, entry in enumerate(items):
+        for number, entry in enumerate(items_of(data, section)):
             if isinstance(entry, dict):
                 yield section, number, entry
 

@@ -25,6 +25,11 @@ JUDGED = ("count", "each", "world", "inside", "near", "spacing", "line_of_sight"
 """Predicates that have a second implementation."""
 _BORDERLINE = 1e-3
 """Values this near to a limit are not judged."""
+_BUILT_IN: dict[str, dict[str, Any]] = {
+    "all": {}, "robots": {"role": "robot"}, "obstacles": {"role": "obstacle"}, "movers": {"static": False},
+    "statics": {"static": True}, "solids": {"static": True, "passable": False},
+}  # fmt: skip
+"""Selections that every case has."""
 _DRIVES = ("diff", "omni", "omni_angular", "acker")
 
 
@@ -56,12 +61,7 @@ def opinions(instance: Instance, answer: Answer) -> dict[str, bool]:
                 continue
             for item in plan.check:
                 if item.predicate.name in JUDGED:
-                    _add(
-                        judged,
-                        item,
-                        partial(_looks, path, data, plan.seeds, case.select),
-                        plan.seconds,
-                    )
+                    _add(judged, item, partial(_looks, path, data, plan.seeds, case.select), plan.seconds)
     return judged
 
 
@@ -98,17 +98,7 @@ class _Look:
 
     def of(self, name: str) -> list[Thing]:
         """The things of a selection."""
-        built_in: dict[str, dict[str, Any]] = {
-            "all": {},
-            "robots": {"role": "robot"},
-            "obstacles": {"role": "obstacle"},
-        }
-        built_in |= {
-            "movers": {"static": False},
-            "statics": {"static": True},
-            "solids": {"static": True, "passable": False},
-        }
-        selector = self.selectors[name].model_dump(exclude_defaults=True) if name in self.selectors else built_in[name]
+        selector = self.selectors[name].model_dump(exclude_defaults=True) if name in self.selectors else _BUILT_IN[name]
         return [thing for thing in self.things if self._belongs(thing, selector)]
 
     def _belongs(self, thing: Thing, selector: dict[str, Any]) -> bool:
