@@ -16,12 +16,13 @@ import yaml
 
 from irsim.bundled.templates.store import load, names
 from irsim.diagnostics.errors import IrsimError
+from irsim.scenario.read import read
 from irsim.scenario.yaml.comments import places_of_comments
 from irsim.scenario.yaml.document import load_text
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import case_of, golds_of
 from irsim_evals.grader.artefact import Answer, find_scenario
-from irsim_evals.grader.material import open_text, write_files
+from irsim_evals.grader.material import LIMITS, write_files
 from irsim_evals.grader.scene import Scene, open_scene
 from irsim_evals.proof.changes import changed_facts, touches
 from irsim_evals.proof.mutants import mutants_of, mutants_of_answer, mutants_of_text
@@ -90,14 +91,18 @@ def scene_of(text: str, blobs: tuple[tuple[str, bytes], ...], seed: int) -> Scen
 
 
 def _build(text: str, blobs: Mapping[str, bytes], seed: int) -> Scene | None:
-    """The world of a scenario; None if it cannot be built."""
+    """The world of a scenario, read without the reading of the grader, which may be wrong; None if it cannot be built."""
     with tempfile.TemporaryDirectory() as folder:
         write_files(Path(folder), {}, blobs)
-        scenario = open_text(text, Path(folder)).scenario
-        if scenario is None:
+        document = load_text(text, path=f"{folder}/scenario.yaml", limits=replace(LIMITS, root=folder))
+        if document.fatal:
+            return None
+        reading = read(document, limits=document.limits)
+        bad = [item for item in reading.diagnostics if item.severity == "error" or item.code == "unknown-key"]
+        if reading.scenario is None or bad:
             return None
         try:
-            return open_scene(scenario, seed)
+            return open_scene(reading.scenario, seed)
         except IrsimError:
             return None
 
