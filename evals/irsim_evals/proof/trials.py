@@ -91,7 +91,7 @@ def scene_of(text: str, blobs: tuple[tuple[str, bytes], ...], seed: int) -> Scen
 
 
 def _build(text: str, blobs: Mapping[str, bytes], seed: int) -> Scene | None:
-    """The world of a scenario, read without the reading of the grader, which may be wrong; None if it cannot be built."""
+    """The world of a scenario, read without the reading of the grader, which may be wrong; None if that fails."""
     with tempfile.TemporaryDirectory() as folder:
         write_files(Path(folder), {}, blobs)
         document = load_text(text, path=f"{folder}/scenario.yaml", limits=replace(LIMITS, root=folder))
