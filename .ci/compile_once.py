@@ -1,8 +1,8 @@
 """Compiler launcher: what has been compiled before, wherever its files lay, is copied instead of compiled again.
 
 pip builds in folders with random names, which defeats ccache and sccache. Here the key of an object is the preprocessed
-source without line markers, the compiler, and the options that are no paths. What carries source positions (debug
-information, sanitizers) is always compiled.
+source without line markers, the compiler, and the options that are not paths. Objects with source positions (debug
+information, sanitizers) are always compiled.
 
 Usage: ``compile_once.py OBJECTS COMPILER ARGUMENT…``, with the folder the objects are kept in.
 """
@@ -21,7 +21,7 @@ PATHS = {"-o", "-I", "-isystem", "-MF", "-MT", "-MQ"}
 
 
 def split(arguments: list[str]) -> tuple[list[str], dict[str, str]]:
-    """The arguments without those that are paths, and the paths (``-c``: the source)."""
+    """The arguments that are not paths, and the paths (``-c``: the source)."""
     kept, paths = [], {}
     rest = iter(arguments)
     for argument in rest:
