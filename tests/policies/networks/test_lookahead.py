@@ -294,8 +294,8 @@ def test_files_keep_the_lookahead(tmp_path: Path) -> None:
             {"layout": {"parts": [*joint_state_parts(3), {"name": "scan"}]}},
             "no scan, map or extents",
         ),
-        ({"lookahead": {"moves": {"headings": 0}}}, "greater than or equal to 1"),
-        ({"lookahead": {"dt": 0}}, "greater than 0"),
+        ({"lookahead": {"moves": {"headings": 0}}}, "must be ≥ 1"),
+        ({"lookahead": {"dt": 0}}, "must be > 0"),
     ],
 )
 def test_documents_that_cannot_look_ahead_are_refused(changed: dict[str, Any], message: str) -> None:
