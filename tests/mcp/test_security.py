@@ -61,7 +61,7 @@ RULES = {
     ),
     "code: no pickles, no formulas in labels": (
         "runs/test_store.py::test_pickles_and_packed_arrays_are_refused",
-        "render/test_figure.py::test_texts_of_users_are_text",
+        "rendering/test_figure.py::test_texts_of_users_are_text",
     ),
     "process: isolated, few variables, a session of its own": (
         "mcp/test_attacks.py::test_the_environment_of_the_server_is_not_passed_on",

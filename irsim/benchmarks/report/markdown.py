@@ -38,8 +38,8 @@ _DIFFERENCES = (
     ("path_length", "path [m]"),
 )  # fmt: skip
 INTERVALS = (
-    "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Times are those "
-    "of robots that arrived."
+    "Intervals are 95 %: Wilson's for shares, Newcombe's for their differences, bootstrap for means. Times count "
+    "robots that arrived."
 )
 """Notes that a reader needs to judge the numbers."""
 Table = tuple[list[str], list[list[str]]]
