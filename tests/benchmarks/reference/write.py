@@ -95,8 +95,8 @@ def changes(name: str, outcomes: Mapping[tuple[str, str], Counter[str]]) -> list
     equal = " and ".join(f"`{policy}`" for policy, is_same in same.items() if is_same)
     about = (
         "Robots now plan with their limits and with the step, walls are walls however they are written, and ties are "
-        "broken. Contacts between steps, which were not counted before, are counted and still not judged here. Success / "
-        f"collision / timeout in %, where they differ; all shares of {equal} are the same."
+        "broken. Contacts between steps, which were not counted before, are counted and still not judged here. Success "
+        f"/ collision / timeout in %, where they differ; all shares of {equal} are the same."
     )
     return ["## Before and now", "", about, "", "| scenario | policy | before | now |", "|---|---|---|---|", *rows]
 
