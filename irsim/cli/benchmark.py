@@ -13,7 +13,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from irsim.benchmarks.report.rows import labels_of
+from irsim.benchmarks.labels import labels_of
 from irsim.benchmarks.summary import KEYS, is_summary
 from irsim.cli.benchmark_run import Wanted, run_benchmark
 from irsim.cli.findings import import_user_modules

@@ -69,7 +69,7 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
 
 def policy_names(result: Mapping[str, Any]) -> dict[str, str]:
     """Text of each policy → its short name, which a suite may give."""
-    from irsim.benchmarks.report.rows import labels_of
+    from irsim.benchmarks.labels import labels_of
 
     return labels_of(result["behaviors"]) | {text: name for name, text in result.get("policies", {}).items()}
 

@@ -19,7 +19,7 @@ import irsim
 from irsim.benchmarks import AS_WRITTEN
 from irsim.benchmarks import pool as pool_module
 from irsim.benchmarks.episode import Job, scenario_of
-from irsim.benchmarks.report.rows import labels_of
+from irsim.benchmarks.labels import labels_of
 from irsim.cli.app import app
 from irsim.diagnostics.errors import BehaviorError, InputError, OverLimitError, ScenarioNotFoundError
 from irsim.metrics import wilson

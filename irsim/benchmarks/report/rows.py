@@ -2,33 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from irsim.benchmarks.labels import labels_of
 from irsim.policies.catalog import SUFFIXES
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, SuiteResult
-from irsim.scenario.yaml.document import load_text
 
-__all__ = ["families", "labels_of", "policy_labels", "protocols", "series", "worst_episodes"]
-
-MAX_LABEL = 24
-"""Characters of a behavior that is its own label; a longer one is numbered."""
-
-
-def labels_of(behaviors: Sequence[str]) -> dict[str, str]:
-    """Return a label for each behavior: a long one gets its name and its place in the list, as ``orca #2``."""
-    return {
-        text: text if len(text) <= MAX_LABEL else f"{_name(text)} #{place}"
-        for place, text in enumerate(behaviors, start=1)
-    }
-
-
-def _name(text: str) -> str:
-    """Return the name in a behavior that is known to be valid."""
-    if not text.lstrip().startswith("{"):
-        return text.strip()
-    return str(load_text(text).data["name"])
+__all__ = ["families", "policy_labels", "protocols", "series", "worst_episodes"]
 
 
 def policy_labels(result: BenchmarkResult) -> dict[str, str]:

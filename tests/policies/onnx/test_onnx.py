@@ -125,8 +125,8 @@ def test_memory_belongs_to_a_robot_and_ends_with_its_episode(tmp_path: Path) -> 
         ({"drives": ["omni_angular"]}, "omni_angular has 3 controls, given: 2"),
         ({"joined": "obs"}, "obs: the model has no such input"),
         ({"memory": {"goal": "later"}}, "memory.goal: the model has no such output, given: later"),
-        ({"network": []}, "network: there is no such key"),
-        ({"version": 3}, "version: Input should be 1, given: 3"),
+        ({"network": []}, "network: 'network' is not a key of a policy"),
+        ({"version": 3}, "version: 3 is not a valid value of 'version' (allowed: 1)"),
     ],
 )
 def test_documents_that_do_not_fit_the_model(tmp_path: Path, change: dict[str, Any], message: str) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from irsim.common.extras import require
 from irsim.common.text import clean
@@ -40,6 +40,8 @@ class OnnxDocument(PolicyHead):
     an input of that name. `output.input` is the name of an output of the model, which may contain only letters, digits
     and underscores.
     """
+
+    model_config = ConfigDict(title="Policy")
 
     format: Literal["irsim-policy"] = "irsim-policy"
     """Says that this is a policy of irsim."""
