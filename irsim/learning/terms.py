@@ -16,7 +16,7 @@ from irsim.learning.step import Moment, Result
 from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.parts.rvo import RvoCones
 from irsim.policies.observe import Observer
-from irsim.simulation.build import kernel_options
+from irsim.scenario.resolve.kernels import kernel_options
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation

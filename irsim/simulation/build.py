@@ -11,26 +11,13 @@ import numpy as np
 
 import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
-from irsim.components.behaviors.follow import Follow
 from irsim.components.kinematics._handler import handler_class
-from irsim.options.registry import (
-    BEHAVIORS,
-    CUSTOM_GROUP_BEHAVIORS,
-    DISTRIBUTIONS,
-    KINEMATICS,
-    PLANNERS,
-    SENSORS,
-    SHAPES,
-    Feature,
-    Registry,
-)
-from irsim.scenario.resolve.body_size import parts_of
+from irsim.options.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
+from irsim.scenario.resolve.kernels import kernels_of, parts_of, placement_kernel
 from irsim.simulation.fog import build_fog
 from irsim.simulation.watching import build_targets, build_views, build_zones
 
 if TYPE_CHECKING:
-    from pydantic import BaseModel
-
     from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario, Variation
 
 __all__ = [
@@ -88,28 +75,6 @@ def speed_controls(record: ObjectRecord) -> tuple[int, ...]:
     return () if drive is None else tuple(drive.translation_rows)
 
 
-def feature_of(registry: Registry, options: BaseModel) -> Feature:
-    """Return the registered feature that an options model belongs to."""
-    feature = registry.get(str(getattr(options, "name", "")))
-    if feature is None:
-        raise LookupError(f"{type(options).__name__} is not a registered {registry.kind}")
-    return feature
-
-
-def kernel_options(registry: Registry, options: BaseModel, **resolved: Any) -> Any:
-    """Return the options object of the core for an options model; None for features computed in Python.
-
-    Args:
-        registry: Registry of the feature.
-        options: The options model.
-        **resolved: Values of fields that depend on more than this model.
-    """
-    kernel = feature_of(registry, options).kernel
-    if kernel is None:
-        return None
-    return kernel(**{name: resolved[name] if name in resolved else getattr(options, name) for name in kernel.fields})
-
-
 def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOptions]:
     """Return, for each group that a native behavior drives as a whole, the `group_behavior` of its first member.
 
@@ -149,38 +114,13 @@ def build_object(
         contact: Whether the core resolves contacts, which needs the centroid of compounds.
         zones: Names of the zones of the world.
     """
-    if record.is_terrain:
-        parts = record.shape.parts()
-    else:
-        shape = feature_of(SHAPES, record.shape)
-        if shape.function is None:
-            raise LookupError(f"shape {shape.name!r} has no geometry")
-        parts = shape.function(record.shape)
-    drive = None
-    if record.kinematics is not None:
-        psi_max = getattr(record.kinematics, "psi_max", None)
-        drive = kernel_options(
-            KINEMATICS,
-            record.kinematics,
-            wheelbase=record.wheelbase or 1.0,
-            psi_max=float("inf") if psi_max is None else psi_max,
-        )
-    behavior = route = None
-    options: Any = record.behavior if group_behavior is None else group_behavior
-    if isinstance(options, Follow):
-        route, options = build_route(options, zones), options.local
-    if (
-        options is not None
-        and record.kinematics is not None
-        and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None
-    ):
-        behavior = kernel_options(BEHAVIORS, options)
+    kernels = kernels_of(record, group_behavior, zones)
     return core.ObjectSpec(
         number=record.id,
         role=_ROLES[record.role],
         group=record.group if record.joined else -1 - record.id,
-        drive=drive,
-        parts=parts,
+        drive=kernels.drive,
+        parts=kernels.parts,
         static=record.static,
         unobstructed=record.unobstructed,
         wander=record.wander,
@@ -198,11 +138,11 @@ def build_object(
         range_low=padded(record.range_low),
         range_high=padded(record.range_high),
         target_roles=_TARGETS[record.target_roles if group_behavior is None else group_behavior.target_roles],
-        behavior=behavior,
+        behavior=kernels.behavior,
         grouped=group_behavior is not None,
-        route=route,
-        sensors=[kernel_options(SENSORS, sensor) for sensor in record.sensors],
-        centroid=compound_body(parts) if contact and len(parts) > 1 else [],
+        route=kernels.route,
+        sensors=kernels.sensors,
+        centroid=compound_body(kernels.parts) if contact and len(kernels.parts) > 1 else [],
         mass=record.mass,
         friction=record.friction,
         inertia=math.nan if record.inertia is None else record.inertia,
@@ -212,18 +152,6 @@ def build_object(
         start_step=steps_until(max(record.start_time, record.appear_time), step_time),
         appear_step=steps_until(record.appear_time, step_time),
         vanish_step=0 if record.vanish_time is None else 1 + steps_within(record.vanish_time, step_time),
-    )
-
-
-def build_route(options: Follow, zones: Sequence[str]) -> core.RouteOptions:
-    """Build the options of the path of an object with the behavior ``follow`` in a world with these zones."""
-    resolved = {"resolution": getattr(options.planner, "resolution", None) or 0.0}
-    return core.RouteOptions(
-        planner=kernel_options(PLANNERS, options.planner, **resolved),
-        replan=options.replan or 0.0,
-        lookahead=options.lookahead or 0.0,
-        within=[] if options.within is None else options.within.points,
-        avoid=[zones.index(name) for name in dict.fromkeys(options.avoid) if name in zones],
     )
 
 
@@ -242,14 +170,6 @@ def _keeps(placement: Placement, row: dict[int, int]) -> dict[str, Any]:
 
 Built = dict[int, tuple["ObjectRecord", BehaviorOptions | None, core.ObjectSpec, float]]
 """Cache of built objects: identity of the record -> record, behavior of its group, object of the core, step time."""
-
-
-def placement_kernel(placement: Placement) -> type[Any]:
-    """The class of the core that holds a placement."""
-    feature = DISTRIBUTIONS.get(placement.distribution)
-    if feature is None or feature.kernel is None:
-        raise LookupError(f"the distribution {placement.distribution!r} has no kernel")
-    return feature.kernel
 
 
 def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None = None) -> core.World:
@@ -282,7 +202,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
         gravity=scenario.world.gravity,
         objects=[now[id(record)][2] for record in scenario.objects],
         placements=[
-            placement_kernel(placement)(
+            placement_kernel(placement.distribution)(
                 objects=[row[number] for number in placement.objects if number in row],
                 attempts=PLACEMENT_ATTEMPTS,
                 **_keeps(placement, row),

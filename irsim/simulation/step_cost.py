@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
-from irsim.scenario.resolve.body_size import parts_of
+from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.simulation.fog import fog_resolution
 from irsim.simulation.simulation import Simulation

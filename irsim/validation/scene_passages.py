@@ -17,7 +17,8 @@ from irsim.common.outline import outline
 from irsim.episodes.planned_routes import planned_routes
 from irsim.results.picture import ScenePassage
 from irsim.scenario.model.zones import Zone
-from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc
+from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.validation.feasibility.clearance_grid import cells_over
 from irsim.validation.feasibility.gaps import outlines_of

@@ -12,7 +12,8 @@ from irsim.options.units import is_span
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.lookup import at
-from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, reach_of
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, reach_of
+from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _MAX_FOG_CELLS = 16_000_000

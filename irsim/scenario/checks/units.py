@@ -10,7 +10,8 @@ from irsim.common.text import metres
 from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, hint, warning
-from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, reach_of, top_speed
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, reach_of, top_speed
+from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.scenario.yaml.formatting import flow
 

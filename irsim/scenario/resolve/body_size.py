@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import irsim._core as core
 from irsim.components.behaviors._options import CustomOptions
-from irsim.options.registry import SHAPES
+from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ __all__ = [
     "SizedShape",
     "has_fixed_shape",
     "inner_disc",
-    "parts_of",
     "reach_of",
     "segment_gap",
     "thickness",
@@ -45,16 +44,6 @@ def has_fixed_shape(shape: Any) -> bool:
         return bool(shape.fixed)
     parts = shape.parts if shape.name == "compound" else [shape]
     return not any(getattr(part, "random_shape", False) for part in parts)
-
-
-def parts_of(shape: Any) -> list[Any]:
-    """Geometry for the core: in the body frame, or in the world frame for the map and the walls round the world."""
-    if hasattr(shape, "fixed"):
-        return list(shape.parts())
-    feature = SHAPES.get(shape.name)
-    if feature is None or feature.function is None:
-        return []
-    return list(feature.function(shape))
 
 
 def reach_of(shape: Any) -> float:

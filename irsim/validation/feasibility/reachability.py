@@ -10,7 +10,7 @@ import numpy as np
 import irsim._core as core
 from irsim.common.text import metres
 from irsim.scenario.checks import Context
-from irsim.scenario.resolve.body_size import parts_of
+from irsim.scenario.resolve.kernels import parts_of
 from irsim.validation.feasibility.clearance_grid import (
     ClearanceGrid,
     Gap,

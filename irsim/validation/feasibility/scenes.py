@@ -13,7 +13,8 @@ from irsim.common.outline import outline
 from irsim.components.maps._grid import MapCells, MapGrid, Walls
 from irsim.components.maps._site import Raster
 from irsim.scenario.checks import Context
-from irsim.scenario.resolve.body_size import has_fixed_shape, parts_of
+from irsim.scenario.resolve.body_size import has_fixed_shape
+from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.simulation.build import build_world
 
