@@ -1,13 +1,20 @@
-"""Names that are imported when they are first used, and attributes that a function computes."""
+"""Names that are imported when they are first used, modules of a folder, and attributes that a function computes."""
 
 from __future__ import annotations
 
+import pkgutil
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
-__all__ = ["computed", "lazy_names"]
+__all__ = ["computed", "lazy_names", "module_names"]
+
+
+def module_names(package: str) -> tuple[str, ...]:
+    """Names of the modules of a package, sorted; modules that begin with an underscore help the others."""
+    modules = pkgutil.iter_modules(import_module(package).__path__)
+    return tuple(sorted(info.name for info in modules if not info.name.startswith("_")))
 
 
 def lazy_names(

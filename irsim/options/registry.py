@@ -7,12 +7,13 @@ only what it needs. Plug-ins come through decorators or the entry-point group of
 from __future__ import annotations
 
 import importlib
-import pkgutil
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from pydantic import BaseModel
+
+from irsim.common.lazy import module_names
 
 __all__ = [
     "BEHAVIORS",
@@ -133,8 +134,7 @@ class Registry:
             self._import_families()
             builtin = [feature.name for feature in self._features.values() if feature.origin == "built-in"]
         else:
-            modules = pkgutil.iter_modules(importlib.import_module(self.package).__path__)
-            builtin = [info.name for info in modules if not info.name.startswith("_")]
+            builtin = [*module_names(self.package)]
         return sorted({*builtin, *self._plugin_entries()})
 
     def _import_families(self) -> None:

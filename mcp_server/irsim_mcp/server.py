@@ -27,17 +27,7 @@ from irsim_mcp.resources import RUN, add_completions, add_docs, add_resources, a
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.services import Services
 from irsim_mcp.skills import Skills
-from irsim_mcp.tools import (
-    benchmark,
-    export_run,
-    get_job,
-    inspect_run,
-    lookup,
-    render_snapshot,
-    run_episode,
-    validate_scenario,
-    write_scenario,
-)
+from irsim_mcp.tools import make_tools
 from irsim_mcp.worker import Workers
 
 __all__ = ["IrsimServer", "build_server"]
@@ -145,10 +135,6 @@ def build_server(
     limits = limits or ServerLimits()
     folder = Workspace(workspace)
     services = Services(folder, limits, Workers(folder, limits), Jobs(folder, limits))
-    modules = [lookup, validate_scenario, render_snapshot, run_episode, inspect_run, benchmark, get_job]
-    tools = [module.tool(services) for module in modules]
-    if writing:
-        tools += [write_scenario.tool(services), export_run.tool(services)]
     lists = ("tools/list", "prompts/list", "resources/list", "resources/templates/list")
     caching: dict[Any, CacheHint] = {method: CacheHint(ttl_ms=_HOUR_MS, scope="public") for method in lists}
     caching["resources/read"] = CacheHint(
@@ -159,7 +145,7 @@ def build_server(
         title="irsim: 2D robot navigation",
         version=__version__,
         instructions=_INSTRUCTIONS.format(workspace=clean(folder.root, 300), saving=_SAVING[writing]),
-        tools=tools,
+        tools=make_tools(services, writing=writing),
         cache_hints=caching,
         extensions=[Skills(), replay_app()],
         log_level="WARNING",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pkgutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -13,6 +12,7 @@ from typing import Any, TypeAlias, TypeVar, overload
 from pydantic import ValidationError
 
 from irsim.bridges.export.episode import Episode
+from irsim.common.lazy import module_names
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
@@ -100,8 +100,7 @@ class Format:
 @cache
 def format_names() -> tuple[str, ...]:
     """Names of all formats."""
-    modules = pkgutil.iter_modules(import_module(_PACKAGE).__path__)
-    return tuple(sorted(info.name for info in modules if not info.name.startswith("_")))
+    return module_names(_PACKAGE)
 
 
 def find_format(name: str | None, out: Path | None) -> Format:

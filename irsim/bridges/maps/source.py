@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
@@ -16,6 +15,7 @@ from pydantic import Field
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.grid import Grid, Triangles
 from irsim.common.arrays import Floats
+from irsim.common.lazy import module_names
 from irsim.common.text import clean
 from irsim.options.base import Options
 from irsim.options.units import Degrees, Fraction, Meters
@@ -188,9 +188,8 @@ class Kind:
 @cache
 def kinds() -> tuple[Kind, ...]:
     """All kinds, sorted by name."""
-    package = import_module("irsim.bridges.maps.kinds")
-    names = [info.name for info in pkgutil.iter_modules(package.__path__) if not info.name.startswith("_")]
-    return tuple(import_module(f"{package.__name__}.{name}").KIND for name in sorted(names))
+    package = "irsim.bridges.maps.kinds"
+    return tuple(import_module(f"{package}.{name}").KIND for name in module_names(package))
 
 
 def find_kind(path: Path) -> Kind:

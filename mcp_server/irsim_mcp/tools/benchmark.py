@@ -30,7 +30,9 @@ from irsim_mcp.services import RecentTexts, Services, line_of
 from irsim_mcp.suites import suite_of
 from irsim_mcp.tool import StrictTool, reporter, strict
 
-__all__ = ["Benchmark", "answer", "tool"]
+__all__ = ["PLACE", "Benchmark", "answer", "tool"]
+
+PLACE = 6
 
 _DESCRIPTION = """
     Compare policies: every scenario under every policy with the same seeds. Rows have shares of

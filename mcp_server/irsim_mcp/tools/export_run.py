@@ -11,7 +11,10 @@ from irsim.common.text import clean
 from irsim_mcp.services import RunId, Services
 from irsim_mcp.tool import StrictTool, strict
 
-__all__ = ["Exported", "tool"]
+__all__ = ["PLACE", "WRITES", "Exported", "tool"]
+
+PLACE = 9
+WRITES = True
 
 _DESCRIPTION = """
     Write a recorded run as a file of another program to the folder exports of the workspace: a table (csv, npz), ROS

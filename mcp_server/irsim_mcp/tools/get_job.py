@@ -13,7 +13,9 @@ from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, reporter, strict
 from irsim_mcp.tools.benchmark import Benchmark, answer
 
-__all__ = ["tool"]
+__all__ = ["PLACE", "tool"]
+
+PLACE = 7
 
 _CANCEL_SECONDS = 5.0
 """Time for which the call waits for a cancelled job to end [s]."""

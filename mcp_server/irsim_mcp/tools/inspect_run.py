@@ -15,7 +15,9 @@ from irsim_mcp.episodes import check_finished, episodes_table
 from irsim_mcp.services import RunId, Services
 from irsim_mcp.tool import StrictTool, strict
 
-__all__ = ["Table", "tool"]
+__all__ = ["PLACE", "Table", "tool"]
+
+PLACE = 5
 
 _DESCRIPTION = """
     Why did a run fail? view=collisions: which objects touched, where, how fast; closest: closest approaches of each

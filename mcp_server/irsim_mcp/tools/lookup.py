@@ -10,7 +10,9 @@ from pydantic import Field
 from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, strict
 
-__all__ = ["tool"]
+__all__ = ["PLACE", "tool"]
+
+PLACE = 1
 
 _DESCRIPTION = """
     Explain what scenario files may contain, and give templates to start from. Call it first with all topics you need,

@@ -22,7 +22,9 @@ from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, reporter, strict
 from irsim_mcp.tools.validate_scenario import report_of, text_of
 
-__all__ = ["tool"]
+__all__ = ["PLACE", "tool"]
+
+PLACE = 3
 
 _DESCRIPTION = """
     Check a scenario and draw it at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading;

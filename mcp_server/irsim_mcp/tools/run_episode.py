@@ -17,7 +17,9 @@ from irsim_mcp.resources import PAGE, uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, reporter, strict
 
-__all__ = ["tool"]
+__all__ = ["PLACE", "tool"]
+
+PLACE = 4
 
 _DESCRIPTION = """
     Simulate an episode until every robot has arrived or stopped, or time is up. Outcome is success (every robot

@@ -15,7 +15,9 @@ from irsim_mcp.answers import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
 
-__all__ = ["Report", "report_of", "text_of", "tool"]
+__all__ = ["PLACE", "Report", "report_of", "text_of", "tool"]
+
+PLACE = 2
 
 _DESCRIPTION = """
     Check a scenario and try it, without a picture (render_snapshot checks, too). Returns all problems at once; an

@@ -13,7 +13,10 @@ from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, strict
 from irsim_mcp.writing import write_file
 
-__all__ = ["Written", "tool"]
+__all__ = ["PLACE", "WRITES", "Written", "tool"]
+
+PLACE = 8
+WRITES = True
 
 _DESCRIPTION = """
     Save a scenario as a file of the workspace. It is validated first: one with errors is not written. An existing file

@@ -5,10 +5,12 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict
 
+from irsim.common.lazy import module_names
 from irsim_evals.grader.body import Body
 from irsim_evals.grader.matching import show
 from irsim_evals.grader.outcome import Mark, Stage
@@ -153,14 +155,9 @@ def register(name: str) -> Callable[[type[Any]], type[Any]]:
 @functools.cache
 def registered() -> dict[str, type[Predicate]]:
     """Name → predicate, in alphabetical order; imports every file of the folder."""
-    import importlib
-    import pkgutil
-
-    import irsim_evals.grader.predicates as folder
-
-    for module in pkgutil.iter_modules(folder.__path__):
-        if not module.name.startswith("_"):
-            importlib.import_module(f"{folder.__name__}.{module.name}")
+    package = __name__.rpartition(".")[0]
+    for name in module_names(package):
+        import_module(f"{package}.{name}")
     return dict(sorted(_REGISTERED.items()))
 
 
