@@ -6,9 +6,7 @@ import base64
 import html
 import json
 import math
-import re
 import struct
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,10 +21,10 @@ from irsim.bridges.splats.reading import read_splats
 from irsim.bridges.splats.recording import Recording, open_recording
 from irsim.bridges.splats.splats import Splats, moved
 from irsim.common.files import check_suffix, replacing
+from irsim.common.pages import bundle, one_page
 from irsim.common.text import clean
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
-from irsim.runs.replay.page import bundle, fingerprint
 from irsim.scenario.limits import Limits
 
 __all__ = ["MAX_PAGE_SPLATS", "PageFile", "write_page"]
@@ -106,7 +104,8 @@ def write_page(
     if len(kept) < len(scene):
         notes.append(f"the page has {len(kept):,} of {len(scene):,} splats; --max-splats changes that")
     head, columns = _content(moved(kept, inverse(recording.world.transform)), recording, Path(splats).name, where)
-    text = _page(_packed(head, columns), head["title"])
+    content = base64.b64encode(_packed(head, columns)).decode()
+    text = one_page(_SOURCES, bundle(_SOURCES), "worker-src blob:", title=html.escape(head["title"]), data=content)
     try:
         with replacing(target) as temporary:
             temporary.write_text(text, encoding="utf-8")
@@ -192,22 +191,3 @@ def _packed(head: dict[str, Any], columns: dict[str, NDArray[Any]]) -> bytes:
         block[entry["begin"] : entry["begin"] + values.nbytes] = values.tobytes()
     packed: bytes = isal_zlib.compress(bytes(block), 2)
     return packed
-
-
-def _page(data: bytes, title: str) -> str:
-    """The page as text."""
-    style = (_SOURCES / "page.css").read_text(encoding="utf-8")
-    script = f'"use strict";\n(() => {{\n{bundle(_SOURCES)}}})();\n'
-    policy: Sequence[str] = (
-        "default-src 'none'", "base-uri 'none'", "form-action 'none'", "worker-src blob:",
-        f"style-src {fingerprint(style)}", f"script-src {fingerprint(script)}",
-    )  # fmt: skip
-    parts = {
-        "policy": "; ".join(policy),
-        "title": html.escape(title),
-        "style": style,
-        "script": script,
-        "data": base64.b64encode(data).decode(),
-    }
-    frame = (_SOURCES / "page.html").read_text(encoding="utf-8")
-    return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], frame)

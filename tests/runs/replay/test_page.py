@@ -13,8 +13,9 @@ from typer.testing import CliRunner
 import irsim
 from irsim.cli.app import app
 from irsim.common.files import TargetError
+from irsim.common.pages import bundle
 from irsim.runs import Run, RunError, replay
-from irsim.runs.replay.page import bundle, page
+from irsim.runs.replay.page import page
 from tests.runs.replay.conftest import HOSTILE, recorded, scene
 from tests.runs.replay.reading import data_in, unpacked
 
@@ -22,14 +23,14 @@ SOURCES = Path(replay.__file__).with_name("web")
 
 
 def test_modules_share_no_names() -> None:
-    defined = re.findall(r"^(?:async )?(?:function|const|let|class) (\w+)", bundle(), re.MULTILINE)
-    for group in re.findall(r"^const (\w+ = [^;\n]*(?:, \w+ = [^;\n]*)+);", bundle(), re.MULTILINE):
+    defined = re.findall(r"^(?:async )?(?:function|const|let|class) (\w+)", bundle(SOURCES), re.MULTILINE)
+    for group in re.findall(r"^const (\w+ = [^;\n]*(?:, \w+ = [^;\n]*)+);", bundle(SOURCES), re.MULTILINE):
         defined += re.findall(r", (\w+) = ", group)
     assert [name for name, count in Counter(defined).items() if count > 1] == []
 
 
 def test_every_module_is_in_the_page() -> None:
-    text = bundle()
+    text = bundle(SOURCES)
     assert not re.search(r"^(import|export)\b", text, re.MULTILINE)
     modules = sorted(SOURCES.glob("*.js"))
     assert len(modules) > 5
