@@ -22,6 +22,7 @@ from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.runs.recorder import Recorder
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import import_modules
+from irsim.scenario.resolve.randomness import random_parts
 from irsim.validation.scene_table import scene_table
 
 if TYPE_CHECKING:
@@ -120,6 +121,7 @@ def render(
         files, frames = [str(env.save_figure(target.absolute()))], 1
     sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
     sized += [] if driven is None else ["--policy", driven]
+    repeated = seed_to_repeat(scenario, env.seed, random_parts(scenario))
     result = RenderResult(
         scenario=str(path),
         seed=env.seed,
@@ -132,9 +134,7 @@ def render(
         view=None if region is not None else moved_view(env),
         extent=extent_of(env),
         table=scene_table(scenario, env.seed, driven if driver is not None else None),
-        reproduce=reproduce_command(
-            "render", path, seed_to_repeat(scenario, env.seed), steps, strict, imports, extra=[*sized, "-o", str(out)]
-        ),
+        reproduce=reproduce_command("render", path, repeated, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
     env.end(ending_time=0.0)
     return result

@@ -39,6 +39,7 @@ from irsim.simulation.random_streams import fresh_seed
 if TYPE_CHECKING:
     from irsim.bridges.connect import Connection
     from irsim.policies.catalog import PolicySource
+    from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = ["run"]
 
@@ -127,13 +128,13 @@ def run(
         (fresh_seed() for _ in range(MAX_TRIES)) if chosen is None else [chosen],
     )
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
-    added = read_bridges(bridges)
-    opened = _allowed_bridges([*scenario.bridges, *added], limits)
+    added = read_bridges(bridges) if bridges else []
+    opened = _allowed_bridges([*scenario.bridges, *added], limits) if scenario.bridges or added else []
     plan = RunPlan(
         path,
         horizon,
         source,
-        warnings=[*warnings, *(Finding.of(one.diagnostic) for one in driven_without_goal(scenario, added))],
+        warnings=[*warnings, *_goals_missing(scenario, added)],
         strict=strict,
         imports=imports,
         behavior=behavior,
@@ -175,6 +176,11 @@ def run(
                 result.run_id, result.artifacts = None, {}  # of a record that is deleted now
     env.end(ending_time=0.0)
     return result
+
+
+def _goals_missing(scenario: ResolvedScenario, bridges: Sequence[Any]) -> list[Finding]:
+    """Warnings of robots without a goal that added bridges may drive; the checker knows those of the scenario."""
+    return [Finding.of(one.diagnostic) for one in driven_without_goal(scenario, bridges)] if bridges else []
 
 
 def _allowed_bridges(options: Sequence[Any], limits: Limits | None) -> list[Bridge]:

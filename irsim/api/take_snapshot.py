@@ -151,7 +151,7 @@ def snapshot_of(
         warnings = [*warnings, *unopened_findings(scenario, "a picture")]
     options = [*region_options(region), *strip_options(strip), *overlay_options(shown)]
     extra = ["--size", str(size), *options, *([] if driven is None else ["--policy", driven]), "-o", str(out)]
-    repeated = seed_to_repeat(scenario, env.seed)
+    repeated = seed_to_repeat(scenario, env.seed, random_parts(scenario))
     result = snapshot_of_env(
         env,
         path,

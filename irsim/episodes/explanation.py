@@ -36,7 +36,6 @@ from irsim.episodes.watching import sights_message, zones_message
 from irsim.results.episode import Left, RobotResult, ZoneResult
 from irsim.results.run import HorizonSource
 from irsim.simulation.events import Event
-from irsim.simulation.roles import HUMAN, kinds_of
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -93,7 +92,7 @@ def summary_message(
         shunting_message(simulation, robots, facts.parked),
         None if pushes else closeness_message(robots),
         others_arrived_message(scenario, facts.events),
-        "no contacts between people" if not contacts and _people_may_overlap(scenario) else None,
+        "no contacts between people" if not contacts and _people_may_overlap(facts) else None,
         contacts_message(contacts, brief=said),
         others_between_steps_message(facts.between),
         jam_message(simulation, facts.jammed),
@@ -107,14 +106,10 @@ def summary_message(
     return ("" if driven is None else f"with {driven} for all robots: ") + "; ".join(filter(None, parts))
 
 
-def _people_may_overlap(scenario: ResolvedScenario) -> bool:
+def _people_may_overlap(facts: EpisodeFacts) -> bool:
     """Whether several people move who pass through each other where they collide."""
-    people = [
-        record
-        for record, kind in zip(scenario.objects, kinds_of(scenario.objects), strict=True)
-        if kind == HUMAN and not record.static
-    ]
-    return len(people) > 1 and scenario.world.collision_mode == "unobstructed_obstacles"
+    people = sum(not record.static for record in facts.humans)
+    return people > 1 and facts.scenario.world.collision_mode == "unobstructed_obstacles"
 
 
 def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequence[str]) -> str:

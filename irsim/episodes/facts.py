@@ -16,6 +16,7 @@ from irsim.episodes.obstructions import find_jammed
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.simulation.events import Event, passable_names
 from irsim.simulation.outcome import explored_share
+from irsim.simulation.roles import HUMAN, kinds_of
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
@@ -41,6 +42,7 @@ class EpisodeFacts:
         between: Contacts between steps.
         parked: Names of the robots that cannot move and have no goal of their own.
         jammed: Name of each moving obstacle that a collision has stopped -> that collision.
+        humans: Records of the humans (:func:`irsim.simulation.roles.kinds_of`).
         incidents: Incidents besides the outcomes of robots.
         steps: Number of executed steps.
         step_time: Period of a step [s].
@@ -59,6 +61,7 @@ class EpisodeFacts:
     between: BetweenSteps
     parked: list[str]
     jammed: dict[str, Event]
+    humans: list[ObjectRecord]
     incidents: Incidents
     steps: int
     step_time: float
@@ -79,6 +82,8 @@ class EpisodeFacts:
         robots = {row: record for row, record in enumerate(scenario.objects) if record.role == "robot"}
         names, passable = {record.name for record in robots.values()}, passable_names(simulation)
         hits, counts = _collisions(events, names, passable)
+        kinds = kinds_of(scenario.objects)
+        humans = [record for record, kind in zip(scenario.objects, kinds, strict=True) if kind == HUMAN]
         return cls(
             simulation=simulation,
             events=events,
@@ -89,7 +94,8 @@ class EpisodeFacts:
             between=find_between_steps(events, names, passable),
             parked=[record.name for record in robots.values() if scenario.is_parked(record)],
             jammed=find_jammed(simulation, events),
-            incidents=find_incidents(scenario.objects, events),
+            humans=humans,
+            incidents=find_incidents({record.name for record in humans}, events),
             steps=steps,
             step_time=scenario.world.step_time,
             time=steps * scenario.world.step_time,

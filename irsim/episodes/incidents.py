@@ -14,10 +14,8 @@ from irsim.common.arrays import Floats
 from irsim.common.text import listed, metres, quoted, seconds
 from irsim.episodes.progress import has_one_end
 from irsim.results.episode import Left
-from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.simulation.build import steps_until
 from irsim.simulation.events import Event
-from irsim.simulation.roles import HUMAN, kinds_of
 
 if TYPE_CHECKING:
     from irsim.results.episode import RobotResult
@@ -57,7 +55,7 @@ class Incidents(NamedTuple):
     """Incidents of an episode besides outcomes.
 
     Attributes:
-        human_contacts: Events of the contacts that began between two humans (:func:`irsim.simulation.roles.kinds_of`).
+        human_contacts: Events of the contacts that began between two humans .
         jumps: Name of each object that jumped over a goal and has not reached one since -> its last event
             ``overshoot``, in order of time.
         returns: Name of each object that jumped over its last goal, came back and arrived -> these two events.
@@ -68,15 +66,13 @@ class Incidents(NamedTuple):
     returns: dict[str, tuple[Event, Event]]
 
 
-def find_incidents(records: Sequence[ObjectRecord], events: Sequence[Event]) -> Incidents:
+def find_incidents(humans: Collection[str], events: Sequence[Event]) -> Incidents:
     """Find the incidents of an episode.
 
     Args:
-        records: Objects of the scenario.
+        humans: Names of the humans in the scenario.
         events: Events of the episode.
     """
-    kinds = kinds_of(records)
-    humans = {record.name for record, kind in zip(records, kinds, strict=True) if kind == HUMAN}
     incidents = Incidents([], {}, {})
     for event in events:
         if event.kind == "collision":

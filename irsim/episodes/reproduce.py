@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from irsim.scenario.resolve.randomness import random_parts
-
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
@@ -51,9 +49,15 @@ def reproduce_command(
     return text if path is not None else f"{text}  # the text, saved as {_NO_FILE}"
 
 
-def seed_to_repeat(scenario: ResolvedScenario, seed: int) -> int | None:
-    """The seed that a command needs to repeat a run; None if it decides nothing and is the default of the command."""
-    return seed if seed != (scenario.world.seed or 0) or random_parts(scenario) else None
+def seed_to_repeat(scenario: ResolvedScenario, seed: int, random: Sequence[str]) -> int | None:
+    """The seed that a command needs to repeat a run; None if it decides nothing and is the default of the command.
+
+    Args:
+        scenario: The scenario.
+        seed: The seed of the run.
+        random: Names of the parts that the seed decides.
+    """
+    return seed if seed != (scenario.world.seed or 0) or random else None
 
 
 def region_options(region: Sequence[float] | None) -> list[str]:

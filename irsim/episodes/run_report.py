@@ -166,7 +166,7 @@ def run_result(
         warnings=list(plan.warnings),
         files=list(files),
         version=version(),
-        reproduce=plan.reproduce(seed_to_repeat(scenario, seed)),
+        reproduce=plan.reproduce(seed_to_repeat(scenario, seed, facts.random)),
     )
 
 
