@@ -1,4 +1,4 @@
-"""What a bridge to another program implements.
+"""The interface that bridges to other programs implement.
 
 ``irsim/components/bridges/x.py`` has the options, derived from ``BridgeOptions``, and
 ``BRIDGES.register(X)(opened_by("x"))``; its ``driven`` says which robots the program may command.
@@ -27,10 +27,10 @@ Clock: TypeAlias = Literal["irsim", "external", "wall"]
 
 
 class BridgeError(CodedError, ValueError):
-    """A bridge cannot be opened, or failed; the codes are those of :mod:`irsim.diagnostics.codes.tools`.
+    """A bridge cannot be opened, or failed; :mod:`irsim.diagnostics.codes.tools` lists its codes.
 
     Attributes:
-        diagnostics: The problems of options that are not valid; their codes are those of scenarios.
+        diagnostics: The problems of options that are not valid, with the same codes as in scenarios.
     """
 
     diagnostics: Sequence[Diagnostic] = ()
@@ -48,7 +48,7 @@ class Bridge:
 
     ``open``, then in each step ``pull`` (before the decisions), ``exchange`` (after decisions and motion, before
     contacts, collisions and sensors) and ``push`` (after the step); at the end, also after an exception, ``close``.
-    A subclass overrides those that it needs.
+    A subclass overrides the methods that it needs.
 
     Attributes:
         name: Name of the bridge in messages.
@@ -64,7 +64,7 @@ class Bridge:
 
     @property
     def peer(self) -> str:
-        """What it is connected to, in a few words, known after ``open``."""
+        """The program that it is connected to, in a few words, known after ``open``."""
         return self.name
 
     def open(self, scene: SceneDescription, start: WorldState) -> None:
@@ -78,7 +78,7 @@ class Bridge:
         """Take over another scene, which a reset has drawn, or in which a body is another one; ``push`` follows."""
 
     def pull(self) -> Feedback | None:
-        """What has come from outside since the last step: goals, commands, poses; never NaN.
+        """Goals, commands and poses that have come from outside since the last step; never NaN.
 
         A bridge whose clock is ``external`` waits here for the next tick, for a limited time.
         """
@@ -92,7 +92,7 @@ class Bridge:
         """Show the world after a step."""
 
     def notes(self) -> list[str]:
-        """What is worth telling when the run is over, before ``close``; one sentence each."""
+        """Remarks for the user at the end of a run, before ``close``; one sentence each."""
         return []
 
     def close(self) -> None:

@@ -33,7 +33,7 @@ _MAX_NUMBER = 1e7
 _MAX_DELAY_S = 1.0
 """Delay from which on steps in real time are not caught up: the world outside has seen none of them."""
 _CONTENTS = {"commands": "forward and leftward speed and yaw rate", "twists": "vx, vy and yaw rate"}
-"""What the three numbers are; x, y and yaw where nothing is written."""
+"""Meaning of the three numbers; x, y and yaw where nothing is written."""
 
 
 def open_bridges(options: Iterable[Any]) -> list[Bridge]:
@@ -71,7 +71,7 @@ def connect(env: Any, bridges: Sequence[Bridge] | None = None) -> Connection:
 
     Args:
         env: The environment, at the start of an episode.
-        bridges: The bridges; default: those of the key ``bridges`` of its scenario.
+        bridges: The bridges; default: the key ``bridges`` of its scenario.
 
     Raises:
         BridgeError: A program cannot be reached, or the scenario does not fit; all bridges are closed then.
@@ -117,7 +117,7 @@ class Connection:
                 if not isinstance(bridge, Bridge):
                     self.bridges = self.bridges[:number]
                     raise BridgeError("bridge-mismatch", f"{bridge!r} is not a bridge",
-                                      "leave out the bridges to have those of the scenario")  # fmt: skip
+                                      "leave out the bridges to use the scenario's")  # fmt: skip
                 self._guarded(bridge, bridge.open, self.scene, start)
                 self._claim(bridge)
         except BaseException:
@@ -142,7 +142,7 @@ class Connection:
         return " and ".join(f"{clean(bridge.peer, 200)} (mode: {bridge.mode})" for bridge in self.bridges)
 
     def notes(self) -> list[str]:
-        """What the bridges tell when the run is over."""
+        """Remarks of the bridges at the end of a run."""
         result = [note for bridge in self.bridges for note in bridge.notes()]
         if self.late > 0.5 * float(self.simulation.scenario.world.step_time):
             result.append(f"steps came up to {self.late:.2g} s later than the time on the wall asks for")
@@ -232,7 +232,7 @@ class Connection:
                 raise BridgeError("bridge-mismatch", what, "connect again")
 
     def _key_of_scene(self) -> tuple[int, int, int]:
-        """What differs between two scenes: seed, number, and number of changes of bodies."""
+        """The numbers that tell two scenes apart: seed, number, and number of changes of bodies."""
         seed, scene, _ = self.simulation.key()
         return seed, scene, self.simulation.revision
 
@@ -312,7 +312,7 @@ class Connection:
         return result
 
     def _put_ranges(self, simulation: Simulation) -> None:
-        """Replace the scans that irsim has measured by those of others."""
+        """Replace the scans that irsim has measured by scans from other programs."""
         if not self._ranges:
             return
         first = {lidar.key: lidar for agent in self.scene.agents for lidar in agent.lidars}

@@ -16,7 +16,7 @@ def native_control(
 ) -> list[float]:
     """The control that follows a command as well as the drive can.
 
-    A car gets the steering angle whose curvature is that of the command: ``atan(wheelbase * yaw rate / speed)``, and
+    A car gets the steering angle with the curvature of the command: ``atan(wheelbase * yaw rate / speed)``, and
     keeps its steering angle while it stands.
 
     Args:
@@ -27,7 +27,7 @@ def native_control(
         period: Time until the next command [s].
 
     Raises:
-        BridgeError: The drive is that of a plug-in.
+        BridgeError: The drive comes from a plug-in.
     """
     forward, left, rate = (float(value) for value in command)
     if agent.drive == "diff":

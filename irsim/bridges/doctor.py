@@ -52,14 +52,14 @@ class Part:
 
 @dataclass(frozen=True)
 class Health:
-    """What was found out about a bridge, or about one of its backends.
+    """State of a bridge, or of one of its backends.
 
     Attributes:
         bridge: Name of the bridge.
         part: Name of the library; empty for a bridge that needs no library.
         state: ``ready`` (its test passed), ``there`` (it has no test), ``missing`` or ``broken``.
         version: Version of the library, or empty.
-        text: What the test did, what failed, or the command that installs the library.
+        text: A sentence on what the test did or what failed, or the command that installs the library.
     """
 
     bridge: str

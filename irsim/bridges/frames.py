@@ -2,12 +2,12 @@
 
 irsim and ROS (REP-103) are right-handed, x forward, y to the left, z up, yaw counterclockwise in radians. Every other
 convention is a linear map of axes, so that one matrix says all: its columns are the axes of irsim in the other frame.
-What turns by the yaw is the body, whose own axes follow the same convention.
+A yaw turns the body, whose own axes follow the same convention.
 
 - ``carla``: left-handed, x forward, y to the **right**, z up, yaw clockwise seen from above
 - ``usd``: a stage with ``upAxis`` Z; ``usd_yup`` is one with ``upAxis`` Y
 - ``habitat_yup``, ``gltf``: x to the right, y up, z to the back: y of irsim is -z
-- ``colmap``: x to the right, y **down**, z forward: a world whose axes are those of its first camera
+- ``colmap``: x to the right, y **down**, z forward: a world with the axes of its first camera
 
 Cameras have axes of their own. In ``opengl`` a camera looks along -z, with x to its right and y up; in ``colmap`` it
 looks along z, with x to its right and y down.

@@ -38,7 +38,7 @@ def recorded_scene(run: Run, limits: Limits | None = None) -> SceneDescription:
 
 
 def recorded_states(run: Run, every: int = 1, limits: Limits | None = None) -> Iterator[WorldState]:
-    """Yield the states of a recorded run, whose rows are those of :func:`recorded_scene`.
+    """Yield the states of a recorded run, with rows as in :func:`recorded_scene`.
 
     Twists are mean velocities during the step that led to a state; they are zero at the start. Paths were not recorded.
 

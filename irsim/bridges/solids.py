@@ -141,7 +141,7 @@ def solids_of(part: BodyPart, thickness: float) -> list[Solid]:
 
 
 def _box_or_outline(corners: Floats) -> Solid:
-    """A box if the corners are those of a rectangle."""
+    """A box if the corners form a rectangle, else a polygon."""
     sides = np.roll(corners, -1, axis=0) - corners
     lengths = np.hypot(*sides.T)
     if len(corners) == 4 and (lengths > 0).all():
@@ -154,7 +154,7 @@ def _box_or_outline(corners: Floats) -> Solid:
 
 
 def _walls(line: Line, thickness: float) -> list[Solid]:
-    """One box for each segment of a line; those of a closed line, the walls of a room, stand outside of it."""
+    """One box for each segment of a line; the boxes of a closed line, the walls of a room, stand outside of it."""
     points = line.path
     inward = 0.0
     if line.closed:

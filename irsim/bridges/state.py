@@ -1,4 +1,4 @@
-"""What crosses a bridge in a step: the state of the world, the motion that is wanted, and what comes back."""
+"""The data that crosses a bridge in a step: the state of the world, the wanted motion, and the feedback."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Feedback:
-    """What comes from outside; all keys are names of objects.
+    """Input from outside; all keys but lidar keys are names of objects.
 
     Attributes:
         poses: x, y [m], yaw [rad] of objects that the other program moves, world frame.

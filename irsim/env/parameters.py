@@ -328,7 +328,7 @@ class WorldView(_Clock):
 
     @property
     def logger(self) -> Logger:
-        """The logger of the environment; without one, that of the environment used last, or a new logger."""
+        """The logger of the environment; without one, the last used environment's, or a new logger."""
         owner = self._simulation.owner() or last_used()
         if owner is not None:
             found: Logger = owner.logger

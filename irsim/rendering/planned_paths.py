@@ -326,7 +326,7 @@ def _turned_slowly(poses: Floats, record: ObjectRecord) -> Floats:
 
 
 def _limited(poses: Floats, heading: float, curvature: float) -> Floats:
-    """Headings that follow those of poses, from a first one on, by at most a curvature [1/m]."""
+    """Headings that follow the headings of poses, from a first one on, by at most a curvature [1/m]."""
     moved = np.hypot(*np.diff(poses[:, :2], axis=0).T).tolist()
     found = [heading]
     for wanted, length in zip(poses[1:, 2].tolist(), moved, strict=True):

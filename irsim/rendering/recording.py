@@ -95,7 +95,7 @@ class Recording:
         Args:
             path: File to write; default ``<ani_path>/<ani_name><suffix>``.
             ani_name: File name; default ``animation_<world>``.
-            suffix: ``.gif``, ``.apng``, ``.png`` or that of a video: ``.mp4``, ``.webm``, …
+            suffix: ``.gif``, ``.apng``, ``.png`` or a video's: ``.mp4``, ``.webm``, …
             rm_fig_path: False also writes each frame as a PNG file to ``ani_buffer_path``.
             **options: ``fps`` (default 10), ``last_frame_duration`` (default 1 s), ``loop`` (default 0: without end)
                 and the options of the video encoder.

@@ -85,7 +85,7 @@ def _is_hidden(fog: Fog, point: tuple[float, float]) -> bool:
 _SIZE_SHARE = 0.018
 """Half the width of a mark as a share of the longer side of the picture."""
 _HOLE_SHARE = 0.45
-"""Size of the hole of a mark as a share of that of the mark."""
+"""Size of the hole of a mark as a share of the mark's."""
 _HALO_PT = 0.6
 _ZORDER = 9.0
 _MAX_MARKS = 500

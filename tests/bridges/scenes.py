@@ -60,7 +60,7 @@ def state_of(scene: SceneDescription, pose: Any = None, step: int = 0) -> WorldS
 
 
 def motion_of(scene: SceneDescription, state: WorldState, **controls: tuple[float, ...]) -> Motion:
-    """What is wanted in the step after a state, as irsim's drives move; a car has control and steering angle."""
+    """The wanted motion in the step after a state, as irsim's drives move; a car has control and steering angle."""
     control, pose = np.zeros((len(scene.agents), 3)), state.pose.copy()
     for name, given in controls.items():
         one = scene.agent(name)

@@ -133,7 +133,7 @@ def test_a_bridge_needs_the_object_that_it_moves() -> None:
 
 @pytest.mark.parametrize("steps", [0, 3])
 def test_measurements_go_on_in_the_new_scene(steps: int) -> None:
-    """What is seen of a world with a bridge is what is seen of one without."""
+    """A world with a bridge and one without look the same."""
     plain, watched = make(), make()
     with connect(watched, [Renewed()]):
         for env in (plain, watched):

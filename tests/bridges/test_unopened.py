@@ -1,4 +1,4 @@
-"""What simulates without the bridges of a scenario says so, in one line."""
+"""Every command that simulates without the bridges of a scenario says so, in one line."""
 
 from __future__ import annotations
 

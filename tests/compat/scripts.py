@@ -45,7 +45,7 @@ def play(name: str, python: str, start: Callable[[list[str]], list[str]] = list)
 
 
 def recorded(name: str) -> list[str]:
-    """What the reference printed."""
+    """The output of the reference."""
     return (OUTPUTS / f"{name}.txt").read_text(encoding="utf-8").splitlines()
 
 

@@ -86,7 +86,7 @@ def test_dash_of_arrays() -> None:
         (beh_omni_dash, 1, [-0.7282569211, 0.685304207539]),
         (beh_acker_dash, 2, [1.0, -0.578299659005]),
         (beh_omni_angular_dash, 3, [0.722318278264, -0.691560774542, -1.0]),
-        # The corner of the line pushes once and holds nobody back beside a free way, and the turn ends there with
+        # The corner of the line pushes once and blocks no robot beside a free way, and the turn ends there with
         # 1 rad/s^2 (not as in 2.12).
         (beh_diff_sfm, 0, [0.512689629309, 0.795829537608]),
         (beh_omni_sfm, 1, [0.468723987233, 0.58436247764]),
@@ -299,7 +299,7 @@ def test_velocity_obstacles_of_arrays(mode: str, free: list[float], with_line: l
     assert model.cal_vel(mode) == pytest.approx(free, abs=1e-12)
     model.update(EGO, OTHERS, LINES)
     assert model.cal_vel(mode) == pytest.approx(with_line, abs=1e-12)
-    assert reciprocal_vel_obs(EGO).cal_vel() == pytest.approx([0.85, 0.2], abs=1e-12), "nobody is near"
+    assert reciprocal_vel_obs(EGO).cal_vel() == pytest.approx([0.85, 0.2], abs=1e-12), "no neighbor"
     with pytest.raises(ValueError, match="sideways"):
         model.cal_vel("sideways")
 
@@ -322,6 +322,6 @@ def test_velocity_obstacles_in_the_command_frame() -> None:
     ego = [1, 1, 0.477668244562803, 0.14776010333066977, 0.3, 0.9363291775690445, 0.35112344158839165, 0.3]
     assert DiffRVO(ego, [])[:, 0] == pytest.approx([0.989005461439, 0.0], abs=1e-9)
     behind = [0, 0, 0, 0, 0.3, -1.0, 0.0, 0.0]
-    assert DiffRVO(behind, [])[:, 0] == pytest.approx([0.0, 1.5]), "it turns on the spot where nobody is near"
+    assert DiffRVO(behind, [])[:, 0] == pytest.approx([0.0, 1.5]), "it turns on the spot without a neighbor"
     world = OmniRVO(ego, [])[:, 0]
     assert world == pytest.approx(OmniRVO([*ego[:7], 2.0], [])[:, 0]), "world frame, whatever the heading"

@@ -1,4 +1,4 @@
-"""What IR-SIM 2.12.0 answers to calls at the edge of its interface; every answer was compared with the original."""
+"""Answers of IR-SIM 2.12.0 to calls at the edge of its interface; every one was compared with the original."""
 
 from __future__ import annotations
 
@@ -201,7 +201,7 @@ def test_keyboard_control_without_environment_reads_keys(monkeypatch: pytest.Mon
     canvas.callbacks.process("key_press_event", KeyEvent("key_press_event", canvas, "w"))
     assert keyboard.key_vel[:, 0].tolist() == [2, 0, 0]
     for key in ("r", "escape", " ", "x", "y", "c", "alt+1"):
-        keyboard.press(key)  # these act on an environment, of which there is none
+        keyboard.press(key)  # these act on an environment, and there is no environment
     assert (keyboard.key_id, keyboard.key_ang_max) == (1, 1.2)
     keyboard.stop()
     plt.close()

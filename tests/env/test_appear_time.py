@@ -140,7 +140,7 @@ obstacle:
 
 
 def test_crowds_do_not_avoid_who_is_absent(make: Make) -> None:
-    """`orca`, `rvo` and `sfm` drive straight through the place where somebody will appear."""
+    """`orca`, `rvo` and `sfm` drive straight through the place where an object will appear."""
     for behavior in ("orca", "rvo", "sfm"):
         env = make(f"""
 world: {{width: 10, height: 10, step_time: 0.1, collision_mode: unobstructed}}
@@ -167,7 +167,7 @@ def test_metrics_count_from_the_appearance_on_and_only_who_is_there(make: Make, 
     metrics = episode_metrics(trace, env.simulation, env.events)
     first, late = metrics.robots
     assert late["path_length"] == pytest.approx(first["path_length"], abs=0.15)
-    assert late["time_to_goal"] == pytest.approx(first["time_to_goal"] + 1, abs=0.15), "times are those of the run"
+    assert late["time_to_goal"] == pytest.approx(first["time_to_goal"] + 1, abs=0.15), "times count from the start"
     assert first["distance_to_human_min"] == pytest.approx(2.03, abs=0.1)
     assert np.isfinite([late["distance_to_human_min"], late["social_work"], late["pedestrian_velocity_avg"]]).all()
     assert late["pedestrian_velocity_avg"] == pytest.approx(0.8, abs=0.1)

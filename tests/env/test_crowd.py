@@ -1,4 +1,4 @@
-"""What objects know of all others at once: the same as one by one, and fast."""
+"""The knowledge of objects about all others at once: the same as one by one, and fast."""
 
 from __future__ import annotations
 

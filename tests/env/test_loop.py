@@ -166,7 +166,7 @@ def test_actions_find_their_robots(make: Make, action: Any, target: Any, expecte
         ([0.1, 0.1, 0.1], None, ValueError, "takes 2 numbers"),
         ([math.nan, 0.0], None, ValueError, "not finite"),
         ("left", None, TypeError, "action must be"),
-        ({"nobody": [0, 0]}, None, ValueError, "nobody"),
+        ({"missing": [0, 0]}, None, ValueError, "missing"),
     ],
 )
 def test_bad_actions_say_what_is_wrong(make: Make, action: Any, target: Any, error: type[Exception], says: str) -> None:

@@ -101,8 +101,8 @@ def test_nothing_changes_when_a_message_is_wrong(make: Make) -> None:
     with pytest.raises(ValueError, match="must have finite numbers"):
         env.receive_msg(message)
     assert env.robot.state[0, 0] == 1
-    with pytest.raises(ValueError, match="'nobody'"):
-        env.receive_msg(message.objects[0], object_name="nobody")
+    with pytest.raises(ValueError, match="'missing'"):
+        env.receive_msg(message.objects[0], object_name="missing")
     with pytest.raises(TypeError, match="int"):
         env.receive_msg(3)
     with pytest.raises(TypeError):

@@ -1,4 +1,4 @@
-"""What scripts ask single objects, between steps."""
+"""Questions of scripts to single objects, between steps."""
 
 from __future__ import annotations
 

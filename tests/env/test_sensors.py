@@ -1,4 +1,4 @@
-"""What scripts do with sensors: several on an object, those of user code, fields of view, fog."""
+"""Sensors in scripts: several on an object, from user code, fields of view, fog."""
 
 from __future__ import annotations
 

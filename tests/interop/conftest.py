@@ -1,4 +1,4 @@
-"""Tests of bridges against programs of others; in ``nox -s interop`` a test that is skipped fails."""
+"""Tests of bridges against independent programs; in ``nox -s interop`` a test that is skipped fails."""
 
 from __future__ import annotations
 
@@ -31,4 +31,4 @@ def pytest_make_collect_report(collector: pytest.Collector) -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def _can_be_interrupted(interruptible: None) -> None:
-    """Robots and servers of others are stopped with Ctrl-C, in the background as well."""
+    """Other programs' robots and servers are stopped with Ctrl-C, in the background as well."""

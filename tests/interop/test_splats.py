@@ -1,4 +1,4 @@
-"""Gaussian splats against a known room, pycolmap, Chromium, and Spark, a renderer of splats by others."""
+"""Gaussian splats against a known room, pycolmap, Chromium, and Spark, an independent renderer of splats."""
 
 from __future__ import annotations
 
@@ -230,7 +230,7 @@ class Files(http.server.SimpleHTTPRequestHandler):
 
 
 def spark_picture(browser: Any, folder: Path, scene: Path, matrix: np.ndarray) -> np.ndarray:
-    """What Spark draws; the matrix is that of an OpenGL camera in the frame of the scene."""
+    """The picture that Spark draws; the matrix describes an OpenGL camera in the frame of the scene."""
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, folder=folder, scene=scene))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()

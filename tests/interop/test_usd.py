@@ -180,13 +180,13 @@ def test_prims_follow_messages_of_ros(run) -> None:
             transform("robot_1/base_link", 99.0, 0.0, 0.0, parent="odom"),
             transform("robot_1/laser", 3.0, 3.0, 0.0),
             transform("/walker/base_link", 7.25, -1.5, 3.0),
-            transform("nobody/base_link", 0.0, 0.0, 0.0),
+            transform("missing/base_link", 0.0, 0.0, 0.0),
         ]
     )
     follower.transforms(message, parent="world")
     assert place_of(stage, "/World/Pedestrians/walker") == pytest.approx((7.25, -1.5, 0, 3.0))
     assert place_of(stage, "/World/Robots/robot_1")[:2] == (1, 4)
-    assert follower.unknown == {"nobody"}
+    assert follower.unknown == {"missing"}
     follower.transforms(SimpleNamespace(transforms=[transform("walker/base_link", 7.25, -1.5, -3.0)]))
     turned = stage.GetPrimAtPath("/World/Pedestrians/walker").GetAttribute("xformOp:rotateZ").Get()
     assert turned == pytest.approx(math.degrees(math.tau - 3.0)), "the shorter way round"
@@ -208,8 +208,8 @@ def test_prims_of_a_stage_of_ones_own() -> None:
     assert place_of(stage, "/Characters/Bob") == pytest.approx((6, 23, 0.5, math.pi / 2 + 0.1))
     size = UsdGeom.XformCache().GetLocalToWorldTransform(own.GetPrim()).TransformDir(Gf.Vec3d(0, 0, 1))
     assert size.GetLength() == pytest.approx(2)
-    with pytest.raises(ValueError, match="/Nobody"):
-        Follower(stage, {"walker": "/Nobody"})
+    with pytest.raises(ValueError, match="/Missing"):
+        Follower(stage, {"walker": "/Missing"})
 
 
 def test_the_script_for_isaac_sim_follows_and_stops(run, monkeypatch) -> None:

@@ -1,4 +1,4 @@
-"""What scripts write to objects, lidars and the world holds at once, or is an error that says what to do."""
+"""A value that scripts write to objects, lidars or the world holds at once, or is an error that says what to do."""
 
 from pathlib import Path
 

@@ -53,7 +53,7 @@ def test_no_screen_no_window_but_files(tmp_path: Path, display: str, variables: 
 
 
 class FakeWindow:
-    """What the picture needs of a window."""
+    """The parts of a window that the picture needs."""
 
     def __init__(self, size: tuple[float, float], dpi: float) -> None:
         self.figure = Figure(figsize=(size[0] / dpi, size[1] / dpi), dpi=dpi)

@@ -1,4 +1,4 @@
-"""The figure shows the present whoever looks at it, and pyplot knows it."""
+"""The figure shows the present however it is looked at, and pyplot knows it."""
 
 import gc
 import io
@@ -100,7 +100,7 @@ def test_pyplot_finds_the_figure_from_the_start(scenario, display, tmp_path):
 
     env = irsim.make(scenario, display=display, seed=1)
     assert len(plt.get_fignums()) == 1
-    assert not env._env_plot.made  # costs nothing before somebody asks
+    assert not env._env_plot.made  # costs nothing before it is used
     plt.plot([1, 2], [3, 4])
     assert plt.gcf() is env._env_plot.fig
     assert plt.gca() is env._env_plot.ax

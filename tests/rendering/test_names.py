@@ -1,4 +1,4 @@
-"""Names in pictures: those that the user gave, at the things that they name."""
+"""Names in pictures are the user's, at the things that they name."""
 
 from __future__ import annotations
 

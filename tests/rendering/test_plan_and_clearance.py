@@ -1,4 +1,4 @@
-"""What snapshots draw of room and ways."""
+"""Clearance and planned paths in snapshots."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def file(tmp_path: Path) -> Path:
 def test_a_strip_shows_the_episode_of_the_policy(file: Path, tmp_path: Path) -> None:
     still = irsim.render(file, tmp_path / "still.png", strip=2)
     driven = irsim.render(file, tmp_path / "driven.png", strip=2, policy="orca")
-    assert driven.steps < 100 < still.steps  # nobody drives the robot in the first one
+    assert driven.steps < 100 < still.steps  # the first one has no policy, so its robot stands
     assert "--policy orca" in driven.reproduce
     assert "--policy" not in still.reproduce
 

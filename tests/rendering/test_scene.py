@@ -1,4 +1,4 @@
-"""What a scene says about a simulation."""
+"""The content of the scene of a simulation."""
 
 from __future__ import annotations
 
@@ -179,7 +179,7 @@ def test_the_view_follows_an_object_or_a_point(make: Callable[..., Any]) -> None
     env = make(ROBOT % ("diff", "name: anna"))
     assert scene(env, viewpoint="anna").center == (2, 3)
     assert scene(env, viewpoint=[1, 7]).center == (1, 7)
-    assert scene(env, viewpoint="nobody").center is None
+    assert scene(env, viewpoint="missing").center is None
     assert scene(env).center is None
 
 

@@ -157,7 +157,7 @@ class Ground:
         """Height of the ground at a place where nothing stands yet [m].
 
         Raises:
-            BridgeError: There is none.
+            BridgeError: There is no ground or road there.
         """
         road = self.road(x, y)
         if self._choice != "project":
@@ -211,8 +211,8 @@ class Spawner:
 
         Args:
             pattern: Its name, or a pattern.
-            turn: Which of those that fit, counted round.
-            attributes: Attributes to set, those that it has.
+            turn: Index among the blueprints that fit; it wraps around.
+            attributes: Attributes to set; the ones that the blueprint lacks are ignored.
 
         Raises:
             BridgeError: No blueprint fits.
@@ -233,7 +233,7 @@ class Spawner:
         """Spawn an actor a little above the ground, higher if there is no room.
 
         Args:
-            name: What it is, for messages.
+            name: Its name in messages.
             blueprint: Its blueprint.
             at: x, y [m], yaw [deg] of CARLA.
             ground: Height of the ground [m].
@@ -266,7 +266,7 @@ def find_actor(world: Any, wanted: str | int, name: str) -> Any:
     """The existing actor with a role name or an id.
 
     Raises:
-        BridgeError: There is none, or there are several.
+        BridgeError: No actor or several actors match.
     """
     actors = list(world.get_actors())
     if isinstance(wanted, int):

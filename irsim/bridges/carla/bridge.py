@@ -42,7 +42,7 @@ class Puppet:
     """An object and its actor.
 
     Attributes:
-        role: What the object is.
+        role: Role of the object in CARLA.
         actor: The actor; None while the object is not in the world.
         lidars: Its lidars.
         at: x, y [m], yaw [deg] where it should be, frame of CARLA.

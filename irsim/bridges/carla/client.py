@@ -20,7 +20,7 @@ _CALL = b"\x94\x00\x01\xa7version\x91\x91\xc2"
 _ANSWER = b"\x94\x01\x01"
 """How the answer begins."""
 _VALUE = b"\xc0\x91\x92\x01"
-"""What follows if there was no error; the text comes next."""
+"""The bytes that follow if there was no error; the text comes next."""
 _LONGEST = 300
 """Most bytes of an answer, and most characters of an error."""
 _AGAIN = 0.2
@@ -38,7 +38,7 @@ def server_version(host: str, port: int, timeout: float) -> str:
 
     Raises:
         BridgeLostError: Nothing listens or answers in time.
-        BridgeError: What answers is not CARLA.
+        BridgeError: The server that answers is not CARLA.
     """
     deadline = time.monotonic() + timeout
     try:
@@ -88,7 +88,7 @@ def _received(connection: socket.socket, deadline: float) -> bytes:
 
 
 def _text(data: bytes) -> str | None:
-    """A short string of msgpack; None if it is none or incomplete."""
+    """A short string of msgpack; None if it is something else or incomplete."""
     if data and 0xA0 <= data[0] <= 0xBF:
         start, length = 1, data[0] & 0x1F
     elif len(data) > 1 and data[0] == 0xD9:
@@ -109,7 +109,7 @@ def import_client() -> Any:
     """The module ``carla``.
 
     Raises:
-        ExtraError: It is not installed, or there is none for this Python.
+        ExtraError: It is not installed, or does not exist for this Python.
     """
     try:
         require("carla", "carla")
@@ -131,7 +131,7 @@ def server_errors(what: str, address: str, lose: Callable[[], None] | None = Non
     """Turn errors of the client, which all are a ``RuntimeError``, into one that says what failed.
 
     Args:
-        what: What is done.
+        what: The action that is guarded, for messages.
         address: Where the server is.
         lose: Called if the server does not answer.
     """
@@ -156,7 +156,7 @@ def connect(options: Carla) -> tuple[Any, Any, Any]:
     Raises:
         ExtraError: The client library is missing.
         BridgeLostError: No server answers within the timeout.
-        BridgeError: What answers is not CARLA, or has another version or another town.
+        BridgeError: The server that answers is not CARLA, or has another version or another town.
     """
     carla = import_client()
     address = f"{options.host}:{options.port}"

@@ -98,7 +98,7 @@ def vehicle_commands(
     Args:
         carla: The module.
         number: Id of the vehicle.
-        role: What it is.
+        role: Its role.
         how: ``ackermann``, ``velocity`` or ``transform``.
         pose: (3,) x, y [m], yaw [rad] at the end of the step, frame of irsim.
         twist: (3,) vx, vy [m/s], yaw rate [rad/s] during the step, frame of irsim.

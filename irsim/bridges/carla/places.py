@@ -28,7 +28,7 @@ class Places:
 
     @property
     def transform(self) -> Floats:
-        """(4, 4) the motion that is applied after the axes are those of CARLA."""
+        """(4, 4) the motion that is applied after the change to CARLA's axes."""
         return pose_matrix(np.array([self.x, self.y, math.radians(self.yaw)]))
 
     @property

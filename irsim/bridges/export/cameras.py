@@ -74,7 +74,7 @@ class Scene:
     Attributes:
         transform: (4, 4) ``T_scene_from_irsim``.
         frame: Convention of its axes.
-        notes: What the user should know of it.
+        notes: Remarks for the user.
     """
 
     transform: Floats
@@ -105,11 +105,11 @@ class CameraPath:
 
 
 def scene_of(run: Run, options: PoseOptions, limits: Limits | None, default: str) -> Scene:
-    """The world of the cameras: that of the map of the scenario, if it was made from one.
+    """The world of the cameras: the one that the map of the scenario was imported from, if there is one.
 
     Args:
         run: The run.
-        options: What the user wants.
+        options: The user's choices.
         limits: Limits of the reader of the scenario.
         default: Convention of the axes without a sidecar.
 
@@ -140,10 +140,10 @@ def scene_of(run: Run, options: PoseOptions, limits: Limits | None, default: str
 
 
 def run_sidecar(run: Run, limits: Limits | None = None) -> MapSidecar | None:
-    """The sidecar beside the scenario of a run, or beside the map of the scenario; None if there is none.
+    """The sidecar beside the scenario of a run, or beside the map of the scenario; None without a sidecar.
 
     Raises:
-        BridgeError: There is one, but it cannot be used.
+        BridgeError: The sidecar cannot be used.
     """
     scenario, folder = run.meta.get("scenario"), run.meta.get("folder")
     home = Path(folder) if isinstance(folder, str) else None
@@ -169,7 +169,7 @@ def camera_paths(episode: Episode, every: int) -> list[CameraPath]:
     """The chosen objects of a run as carriers of cameras, each in the steps in which it is in the world.
 
     Raises:
-        RunError: There would be too many cameras, or none.
+        RunError: There would be too many cameras, or no camera.
     """
     count = (episode.last_step // every + 1) * len(episode.actors)
     if count > _MAX_CAMERAS:

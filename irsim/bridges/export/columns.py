@@ -21,7 +21,7 @@ class Column:
     Attributes:
         name: Its name.
         kind: Type of its cells; ``ranges`` is a list of numbers in single precision.
-        meaning: What its cells are, in one sentence without the unit.
+        meaning: Meaning of its cells, in one sentence without the unit.
         unit: Unit of its cells; empty for words, flags and numbers of steps.
     """
 

@@ -56,7 +56,7 @@ class Actor:
 
     @property
     def has_goal(self) -> bool:
-        """Whether it has a goal at the start; that of an obstacle which cannot move is only a default."""
+        """Whether it has a goal at the start; the goal of an obstacle which cannot move is only a default."""
         return bool(self.facts["goals"]) and (self.role == "robot" or self.can_move)
 
     @property
@@ -246,7 +246,7 @@ class Episode:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What the run was, as JSON types: everything that reproduces it, its objects and its lidars."""
+        """Facts of the run, as JSON types: everything that reproduces it, its objects and its lidars."""
         meta, result = self.run.meta, self.run.result
         named = ("id", "scenario", "seed", "step_time", "horizon", "options", "irsim", "python", "numpy", "created")
         return {
@@ -331,7 +331,7 @@ def _with_radius(run: Run) -> Iterator[tuple[dict[str, Any], float]]:
 
 
 def _object_facts(item: dict[str, Any], radius: float) -> dict[str, Any]:
-    """What tables leave out of an object because it does not change."""
+    """The facts of an object that do not change, which tables leave out."""
     drive = item.get("kinematics")
     return {
         "name": item["name"],

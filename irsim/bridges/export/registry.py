@@ -36,8 +36,8 @@ def chosen_options(model: type[Options] | None, given: Mapping[str, Any], owner:
 
     Args:
         model: Their model; None without options.
-        given: What was given.
-        owner: What the options are of, as the subject of a sentence.
+        given: The given names and values.
+        owner: Owner of the options as the subject of a sentence, such as ``the format colmap``.
 
     Raises:
         ArgumentError: There is no such option, or a value is not allowed.
@@ -45,7 +45,7 @@ def chosen_options(model: type[Options] | None, given: Mapping[str, Any], owner:
     known = list(model.model_fields) if model is not None else []
     for key in given:
         if key not in known:
-            listed = f"its options are {', '.join(known)}" if known else "it has none: leave it out"
+            listed = f"its options are {', '.join(known)}" if known else "it has no options: leave it out"
             raise ArgumentError(f"{owner} has no option {clean(key)!r}", suggestion(key, known, listed))
     if model is None:
         return None
@@ -67,7 +67,7 @@ class Format:
     """A format that recorded runs are exported to.
 
     Attributes:
-        name: Its name, which is that of its module.
+        name: Its name, which is also the name of its module.
         suffix: How names of its files end; for a folder, how the name of the folder ends.
         write: Writes episodes to a path.
         libraries: Modules that it needs, which an extra installs.

@@ -73,7 +73,7 @@ class JsonLinesBridge(Bridge):
             self._answer()
 
     def pull(self) -> Feedback | None:
-        """What the program has sent since the last step."""
+        """The messages of the program since the last step."""
         if self.options.clock == "external":
             self._send("pull", {})
             return self._answer()

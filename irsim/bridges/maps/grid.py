@@ -88,7 +88,7 @@ def grid_over(low: Floats, high: Floats, resolution: float, max_cells: int, hint
         high: (2,) upper right corner [m].
         resolution: Side of a cell [m].
         max_cells: Largest number of cells.
-        hint: What else the message about too many cells advises.
+        hint: Further advice in the message about too many cells.
 
     Raises:
         BridgeError: There would be too many cells; the message has a resolution that fits.
@@ -146,8 +146,8 @@ def rows_of(corners: Floats, *, at_centers: bool) -> Iterator[tuple[Ints, Ints, 
 
     Args:
         corners: (T, 3, 2) corners in cells from the corner of the grid.
-        at_centers: Whether a cell belongs to a triangle that has its center (each center belongs to one triangle of
-            those that share an edge), rather than to each that touches it.
+        at_centers: Whether a cell belongs to the triangle that has its center (of triangles that share an edge, only
+            one has it), rather than to each that touches it.
 
     Yields:
         Triangle, i and j of each cell, and which row of the pieces it is from.

@@ -53,7 +53,7 @@ def import_map(
         robot: Whether the scenario gets a robot that drives from one end of the map to the other.
         overwrite: Whether to replace existing files.
         limits: How much an import may cost, and the folder that all files must lie in.
-        **options: Those of :class:`~irsim.bridges.maps.source.ImportOptions`.
+        **options: Fields of :class:`~irsim.bridges.maps.source.ImportOptions`.
 
     Returns:
         The files, the size of the map, its levels, and a start and a goal in it.
@@ -101,12 +101,12 @@ def import_map(
 
 
 def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **options: Any) -> MapImportResult:
-    """What :func:`import_map` would make of a file, without writing anything: its levels above all.
+    """The result that :func:`import_map` would have for a file, above all its levels; nothing is written.
 
     Args:
         file: The file.
         limits: How much it may cost.
-        **options: Those of :class:`~irsim.bridges.maps.source.ImportOptions`.
+        **options: Fields of :class:`~irsim.bridges.maps.source.ImportOptions`.
 
     Raises:
         BridgeError: The file cannot be used.

@@ -77,7 +77,7 @@ def _within_bounds(scene: Scene, bounds: tuple[float, float, float, float]) -> S
     """The part of a scene between bounds of x and y [m]."""
     solid, floors, barred = (clipped(part, bounds) for part in (scene.solid, scene.floors, scene.barred))
     if not len(solid) + len(floors) + len(barred):
-        raise _empty("it has nothing within the bounds", "give other --bounds, or none")
+        raise _empty("it has nothing within the bounds", "give other --bounds, or leave them out")
     return replace(scene, solid=solid, floors=floors, barred=barred)
 
 
@@ -190,7 +190,7 @@ def within(marked: Bools, cells: float) -> Bools:
 
 
 def eroded(values: Floats, cells: float) -> Floats:
-    """Values whose free cells keep a distance [cells] from all others; those that are lost are occupied."""
+    """Values whose free cells keep a distance [cells] from all others; free cells that are closer become occupied."""
     if cells <= 0:
         return values
     free = values == FREE

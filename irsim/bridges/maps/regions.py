@@ -29,8 +29,8 @@ class Level:
 
     Attributes:
         height: Height of most of its largest connected surface [m].
-        regions: (M,) number of the connected surface of each surface that belongs to the level; -1 for others. Number
-            0 is the largest one.
+        regions: (M,) number of the connected surface of each surface that belongs to the level; -1 for all other
+            surfaces. Number 0 is the largest one.
         areas: Area of each connected surface [m²], the largest first.
         roof: Whether it lies above another level and has nothing above it: a roof, or the top floor of a file without
             ceilings.
@@ -43,7 +43,7 @@ class Level:
 
 
 def connected(count: int, a: Ints, b: Ints) -> Ints:
-    """Number of the connected part of each node: that of its first node (by hooking and pointer jumping).
+    """Number of the connected part of each node, which is its first node (by hooking and pointer jumping).
 
     Args:
         count: Number of nodes.
@@ -198,7 +198,7 @@ def _level(height: float, members: list[int], region: Ints, areas: np.ndarray) -
 def _is_roof(level: Level, levels: list[Level], surfaces: Surfaces, grid: Grid) -> bool:
     """Whether most of a level's largest surface is under the sky and above another level.
 
-    Cells beside those of the level below count, too: they have walls, which take much of a floor if cells are large.
+    Cells beside the level below count, too: they have walls, which take much of a floor if cells are large.
     """
     own = level.regions == 0
     if np.isfinite(surfaces.ceiling[own]).mean() >= 0.5:

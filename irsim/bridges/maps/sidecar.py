@@ -28,7 +28,7 @@ from irsim.common.version import version
 __all__ = ["FORMAT", "VERSION", "MapSidecar", "read_sidecar", "scene_transform", "sidecar_path"]
 
 FORMAT = "irsim-map"
-"""What the key ``format`` of such a file says."""
+"""Value of the key ``format`` in such a file."""
 VERSION = 1
 """Version of the file; a reader refuses later ones."""
 SUFFIX = ".bridge.json"
@@ -50,7 +50,7 @@ class MapSidecar:
         origin: x, y of the lower left corner of the map [m], frame of irsim.
         size: Number of cells along x and y.
         source: ``file`` (its name), ``kind``, ``bytes`` and ``sha256`` of the file that the map was made from.
-        agent: What the map was made for: ``headroom``, ``climb``, ``radius`` [m] and ``slope`` [deg].
+        agent: The robot that the map was made for: ``headroom``, ``climb``, ``radius`` [m] and ``slope`` [deg].
         level: Number of the level, counted from the lowest.
         unknown: Whether unknown cells count as ``free`` or ``occupied`` in the scenario.
         irsim: Version of irsim that made the map.

@@ -1,4 +1,4 @@
-"""What readers of files hand over: the triangles of a scene, or a map that is ready; and the kinds of files."""
+"""Results of readers of files: the triangles of a scene, or a map that is ready; and the kinds of files."""
 
 from __future__ import annotations
 
@@ -104,9 +104,9 @@ class Scene:
         frame: Convention of the file's axes, see :mod:`irsim.bridges.frames`.
         solid: Surfaces of solid things, counterclockwise seen from outside; empty if the file has floors instead.
         floors: Places where one can walk or drive by what the file says.
-        barred: Surfaces known to be no such places.
+        barred: Places where one cannot walk or drive by what the file says.
         meters_per_unit: Length of a unit of the file [m].
-        headroom, climb: What the floors were made for [m]; None if the file does not say.
+        headroom, climb: Height and step of the robot that the floors were made for [m]; None if the file does not say.
         radius: Distance from walls that the floors keep already [m].
         notes: Remarks for the user.
     """
@@ -137,7 +137,7 @@ class Occupancy:
         regions: Areas of the connected parts of the level [m²], the largest first.
         kept: Number of the part that is free in the map; None if all are.
         radius: Distance from walls that free cells keep already [m].
-        headroom, climb: What the file was made for [m]; None if the options decide.
+        headroom, climb: Height and step of the robot that the file was made for [m]; None if the options decide.
         notes: Remarks for the user.
         parts: Other files that it was read from.
     """
@@ -164,7 +164,7 @@ class Kind:
 
     Attributes:
         name: Its name.
-        title: What such files are, for messages.
+        title: Such a file in messages, as in ``a mesh``.
         suffixes: How names of such files end.
         accepts: Whether a file may be of this kind, by its first bytes.
         read: Reads a file; its errors are :class:`~irsim.bridges.base.BridgeError`.

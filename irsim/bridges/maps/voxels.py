@@ -1,6 +1,6 @@
 """Triangles of a scene become solid spans of columns, whose tops a robot can stand on or not.
 
-The method is that of Recast's height field (Mononen, 2009): each triangle is clipped to each column that it touches.
+The method is Recast's height field (Mononen, 2009): each triangle is clipped to each column that it touches.
 Heights are steps of millimeters instead of voxels, so that nothing depends on where a grid of heights begins.
 """
 
@@ -181,7 +181,7 @@ def walkable_of(spans: Spans, headroom: float, climb: float) -> Surfaces:
     Args:
         spans: Solid parts of columns.
         headroom: Free height that is needed above a floor [m].
-        climb: What lies on a floor and is not higher than this is part of it [m].
+        climb: Height up to which a thing that lies on a floor is part of it [m].
     """
     same = spans.column[1:] == spans.column[:-1]
     flat = spans.walkable.copy()
@@ -193,7 +193,7 @@ def walkable_of(spans: Spans, headroom: float, climb: float) -> Surfaces:
 
 
 def floors_of(triangles: Triangles, grid: Grid, headroom: float) -> Surfaces:
-    """Surfaces of triangles that are floors already: those of the cells whose centers they have.
+    """Surfaces of triangles that are floors already, in each cell whose center a triangle has.
 
     Args:
         triangles: (T, 3, 3) corners x, y, z [m], z up.

@@ -116,7 +116,7 @@ def files_of(
         values: (nx, ny) occupancies, -1 where unknown.
         filled: (nx, ny) the same with unknown cells filled in.
         target: The scenario.
-        sidecar: What goes beside it.
+        sidecar: Content of the sidecar.
         about: A sentence about the source.
         trip: Start and goal of a robot; None for no robot.
         ros_map: YAML file of a map for the ROS map server; None for none.
@@ -180,7 +180,7 @@ def _short(value: float) -> str:
 
 
 def write_all_or_none(contents: list[tuple[Path, bytes]], *, overwrite: bool) -> None:
-    """Write files, in folders that are made if need be; if one cannot be written, those that are new are deleted.
+    """Write files, in folders that are made if need be; if one cannot be written, the new ones are deleted.
 
     Raises:
         TargetError: Two are the same file, or one exists and ``overwrite`` is not set.

@@ -34,7 +34,7 @@ class MujocoBridge(Bridge):
 
     Attributes:
         physics: The model and its state, from ``open`` on.
-        report: What differs from irsim so far; the last one stays after ``close``.
+        report: Differences from irsim so far; the last report stays after ``close``.
     """
 
     name = "mujoco"
@@ -137,7 +137,7 @@ class MujocoBridge(Bridge):
 
     @property
     def report(self) -> MujocoReport:
-        """What differs from irsim so far."""
+        """The differences from irsim so far."""
         if self.physics is None:
             return self._report
         slip = np.array(self._slip) if self._slip else np.zeros(1)

@@ -57,7 +57,7 @@ class Contacts:
     Attributes:
         found: Begins of contacts, the first thousand.
         count: Number of begins of contacts.
-        ghosts: Number of those that irsim does not have.
+        ghosts: Number of begins of contacts that irsim does not have.
     """
 
     def __init__(self, physics: Physics) -> None:
@@ -176,7 +176,7 @@ class MujocoReport:
         step_difference_median_m, step_difference_largest_m: Distance between where irsim would have had a robot at the
             end of a step and where MuJoCo has it [m], over all robots and steps: slip, inertia and contacts.
         lidar_beams: Number of beams that hit something in both simulators.
-        lidar_one_sided: Number of beams that hit something in one of them only, such as those that graze a corner.
+        lidar_one_sided: Number of beams that hit something in one of them only, such as beams that graze a corner.
         lidar_median_m, lidar_p99_m, lidar_largest_m: Difference of the ranges of both simulators [m].
         warnings: Warnings of MuJoCo, and how often they came.
     """
@@ -219,7 +219,7 @@ class MujocoReport:
 
 
 def log_report(report: MujocoReport) -> None:
-    """Write the main numbers to standard error; standard output is that of the command."""
+    """Write the main numbers to standard error; standard output belongs to the command."""
     sys.stderr.write("".join(f"{line}\n" for line in report.lines()))
 
 

@@ -103,7 +103,7 @@ class Driver:
         self._waiting.append((motion.time + self.options.latency, np.array(targets)))
 
     def targets(self, time: float) -> Floats:
-        """Targets at a time [s]: those of the last command that has arrived, zero before the first one."""
+        """Targets at a time [s], from the last command that has arrived; zero before the first one."""
         while self._waiting and self._waiting[0][0] <= time + _SOON:
             self._present = self._waiting.popleft()[1]
         return np.zeros(self.count) if self._present is None else self._present

@@ -103,10 +103,10 @@ class Physics:
         self.place(pose)
 
     def place(self, pose: Floats) -> None:
-        """Place objects where irsim has them: those that it moves, and robots that it has put elsewhere.
+        """Place objects where irsim has them: objects that it moves, and robots that it has put elsewhere.
 
         Args:
-            pose: (N, 3) of all objects; NaN of those that are not in the world.
+            pose: (N, 3) of all objects; NaN for objects that are not in the world.
         """
         self._show_mocaps(pose[self._mocap_rows])
         self._mocap_pose = pose[self._mocap_rows].copy()

@@ -31,7 +31,7 @@ PUSHED = "pushed"
 PLANAR = ("omni", "omni_angular", PUSHED)
 """Drives of bodies that move along the axes of the world, without wheels."""
 TURNING = ("omni_angular", PUSHED)
-"""Those of them that turn."""
+"""Drives of such bodies that also turn."""
 LIDAR_HEIGHT = 0.2
 """Height of the plane of all lidars [m]: every footprint is between its clearance, which is below, and its top."""
 _DEFAULT_MASS = 10.0
@@ -97,7 +97,7 @@ def rig_of(agent: SceneObject, mass: float | None = None) -> Rig:
 
     Args:
         agent: The robot, or an obstacle that can be pushed.
-        mass: Mass of robots [kg]; None: that of the scenario.
+        mass: Mass of robots [kg]; None: as in the scenario.
     """
     points = part_points(agent.parts)
     (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()

@@ -147,7 +147,7 @@ def suite_text(
 
 
 def _starts(tracks: Sequence[Track], length: float) -> tuple[list[float], bool]:
-    """Recorded times at which windows start in which somebody is, one window after the other; at least one.
+    """Recorded times at which windows with a pedestrian start, one window after the other; at least one.
 
     Returns:
         The times [s], and whether the recording is as long as a window.
@@ -163,7 +163,7 @@ def _starts(tracks: Sequence[Track], length: float) -> tuple[list[float], bool]:
 
 
 def _cut(tracks: Sequence[Track], start: float, length: float) -> list[Track]:
-    """What is recorded from a time on; times then count from it."""
+    """The parts of tracks in a window of time; times then count from its start."""
     result = []
     for track in tracks:
         inside = (track.times >= start - 1e-9) & (track.times <= start + length + 1e-9)
@@ -190,7 +190,7 @@ _ON_STEP = 1e-6
 
 @dataclass(frozen=True)
 class ImportedPedestrians:
-    """What was written.
+    """Result of an import.
 
     Attributes:
         file: The scenario; None if only a suite was written.
@@ -199,8 +199,8 @@ class ImportedPedestrians:
         rows: Number of recorded places.
         duration: Time of the last one [s].
         fps: Frames per second that times were computed with.
-        notes: What is worth knowing.
-        suite: The suite; None if there is none.
+        notes: Remarks for the user.
+        suite: The suite; None without a suite.
         windows: Times at which the windows of the suite start [s].
         length: Length of a window [s]; 0 without a suite.
     """
@@ -240,7 +240,7 @@ def import_pedestrians(
         suite: The suite to write.
         form: Format of the file; default: as suffix and columns say.
         fps: Frames per second; default: 25 for ``vsp``, else such that the usual step between frames takes 0.4 s.
-        window: What is kept.
+        window: Part of the recording that is kept.
         homography: File with a 3 x 3 matrix from pixels to metres; for files in pixels.
         scale: Metres of a pixel, instead of a homography.
         image_size: Width and height of the picture, if the homography counts pixels from its upper left corner.
@@ -326,6 +326,6 @@ def import_pedestrians(
 
 
 def _between_steps(tracks: list[Track], step_time: float) -> bool:
-    """Whether a recorded time is not that of the end of a step."""
+    """Whether a recorded time is not at the end of a step."""
     steps = np.concatenate([track.times for track in tracks]) / step_time
     return bool(np.abs(steps - np.round(steps)).max() > _ON_STEP)

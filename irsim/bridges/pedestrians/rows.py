@@ -1,4 +1,4 @@
-"""What data sets of pedestrians recorded, read line by line and within limits: rows of frame, person and place."""
+"""Rows of frame, person and place from data sets of pedestrians, read line by line and within limits."""
 
 from __future__ import annotations
 

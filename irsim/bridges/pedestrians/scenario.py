@@ -44,7 +44,7 @@ _FIX = "choose a window of time or space: --from, --to, --crop"
 
 @dataclass(frozen=True)
 class Layout:
-    """What a scenario has besides pedestrians.
+    """The parts of a scenario besides its pedestrians.
 
     Attributes:
         source: Name of the file, for the comment at the top.
@@ -100,7 +100,7 @@ def scenario_text(tracks: Sequence[Track], layout: Layout) -> str:
 
     Args:
         tracks: The pedestrians, at least one.
-        layout: What else there is.
+        layout: The rest of the scenario.
 
     Raises:
         BridgeError: The scenario would be larger than scenarios may be.

@@ -24,7 +24,7 @@ _MAX_DURATION = 1e6
 
 @dataclass(frozen=True)
 class Window:
-    """What is kept of a recording.
+    """The part of a recording that is kept.
 
     Attributes:
         start: Time from which on, since its first frame [s].
@@ -39,7 +39,7 @@ class Window:
 
 @dataclass(frozen=True)
 class Track:
-    """What is recorded of a person without interruption.
+    """A part of a person's recording without interruption.
 
     Attributes:
         name: ``ped_<id>``; another track of the same person has ``_2``, ``_3``, ... behind it.
@@ -99,7 +99,7 @@ def make_tracks(recording: Recording, places: Floats, rate: float, window: Windo
         recording: The rows.
         places: (N, 2) x, y [m] of the rows.
         rate: Frames per second.
-        window: What is kept.
+        window: Part of the recording that is kept.
 
     Returns:
         The tracks, and how many persons were left out because a single row of them is in the window.

@@ -92,7 +92,7 @@ class RosBridge(Bridge):
         self.push(start)
 
     def renew(self, scene: SceneDescription, start: WorldState) -> None:
-        """Show what does not change in the new scene, instead of that of the old one."""
+        """Show the static things of the new scene instead of the old one's."""
         if gone := {topic.robot for topic in self.topics if topic.robot is not None} - set(scene.names):
             what = f"the scene does not have the robot '{min(gone)}' any more, which has topics"
             raise BridgeError("bridge-mismatch", what, "connect again")
@@ -124,7 +124,7 @@ class RosBridge(Bridge):
             self._publish(topic, message, stamp)
 
     def notes(self) -> list[str]:
-        """What was wrong with messages from outside, and how often robots had to stop."""
+        """Problems of messages from outside, and how often robots had to stop."""
         result = [
             f"{self.name}: {topic}: {count} message(s) ignored: {problem}"
             for (topic, problem), count in self._reports.counts.items()

@@ -39,7 +39,7 @@ ZERO: Velocity = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Limits:
-    """What a real robot may be commanded.
+    """Limits of the commands to a real robot.
 
     Attributes:
         speed: Greatest speed [m/s].
@@ -84,7 +84,7 @@ def limited(target: Sequence[float], before: Velocity, limits: Limits, period: f
 READY = "ready"
 """The line with which the process says that it publishes."""
 LIFE = b"."
-"""What it says each time when it has published."""
+"""The byte that it writes each time when it has published."""
 _ZEROS, _ZERO_PERIOD_S = 20, 0.05
 """How many zero commands are sent at the end, and the time between two of them."""
 

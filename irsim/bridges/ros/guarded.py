@@ -58,7 +58,7 @@ class Guard:
         return self._process.pid
 
     def send(self, commands: Mapping[str, Velocity]) -> None:
-        """Hand over commands; those of robots that are left out are zero.
+        """Hand over commands; robots that are left out get zero.
 
         Raises:
             BridgeLostError: The process has ended or hangs.

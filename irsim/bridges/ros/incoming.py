@@ -1,4 +1,4 @@
-"""What comes from ROS: the newest message of each topic, and its content as irsim has it."""
+"""Input from ROS: the newest message of each topic, and its content as irsim has it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ MAX_BYTES = 8_000_000
 
 @dataclass(frozen=True)
 class Arrival:
-    """What came last on a topic.
+    """The last message of a topic.
 
     Attributes:
         content: CDR, or a message whose fields are attributes.
@@ -84,7 +84,7 @@ class Inbox:
                 self._told.append(sentence)
 
     def told(self) -> list[str]:
-        """What the other program has said since the last call."""
+        """Sentences of the other program about itself since the last call."""
         with self._lock:
             result, self._told = self._told, []
         return result
@@ -206,7 +206,7 @@ def read_scan(message: Any) -> Scan:
 
 
 def fitted_ranges(scan: Scan, lidar: Lidar) -> NDArray[np.float32]:
-    """(beams,) ranges [m] of a lidar of the scenario from a scan with other beams: those of the nearest direction.
+    """(beams,) ranges [m] of a lidar of the scenario from a scan with other beams, each from the nearest direction.
 
     A beam that the scan does not have, or that is out of the range of either, hit nothing.
     """

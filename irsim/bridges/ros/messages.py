@@ -1,4 +1,4 @@
-"""ROS 2 messages made from numbers, and their CDR: the classes are those that rosbags makes from the definitions."""
+"""ROS 2 messages made from numbers, and their CDR; rosbags makes the classes from the definitions."""
 
 from __future__ import annotations
 

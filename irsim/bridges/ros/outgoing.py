@@ -43,7 +43,7 @@ class Outgoing:
     Args:
         messages: Makes messages from numbers.
         scene: The scene.
-        topics: Topics of the scene; those that come in are left out.
+        topics: Topics of the scene; incoming ones are left out.
         frame: The fixed frame, in which irsim's coordinates are.
         mode: Whether irsim moves the robots.
     """

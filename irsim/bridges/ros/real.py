@@ -94,7 +94,7 @@ class RealRobots:
         }
 
     def twists(self, now: float) -> dict[str, Pose]:
-        """Their velocities [m/s, m/s, rad/s] in the world frame; zero of those that are stopped."""
+        """Their velocities [m/s, m/s, rad/s] in the world frame; zero for robots that are stopped."""
         result = {}
         for name, pose in self.poses().items():
             robot = self._robots[name]
@@ -105,7 +105,7 @@ class RealRobots:
         return result
 
     def commands(self, motion: Motion, now: float) -> dict[str, Velocity]:
-        """What the robots are commanded in a step: what they want, or zero while their odometry or scans are old.
+        """Commands to the robots in a step: their wanted ones, or zero while their odometry or scans are old.
 
         Raises:
             BridgeLostError: No odometry has come for so long that the robot counts as lost.

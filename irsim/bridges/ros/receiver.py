@@ -1,4 +1,4 @@
-"""What comes from outside between two steps, as feedback: commands, goals, starts, scans, odometry."""
+"""Messages that come in between two steps, as feedback: commands, goals, starts, scans, odometry."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Reports:
 
     Attributes:
         counts: Topic and problem -> how often it occurred.
-        heard: What the other program has said -> how often.
+        heard: Sentence of the other program -> how often it came.
     """
 
     def __init__(self, name: str, say: Callable[[str], None] = _print) -> None:
@@ -118,7 +118,7 @@ class Receiver:
                 self._reports.add(topic.name, str(error))
 
     def feedback(self) -> Feedback:
-        """What is to be done before a step."""
+        """Commands, goals, starts and ranges to apply before a step."""
         goals, self._goals = self._goals, {}
         starts, self._starts = self._starts, {}
         return Feedback(

@@ -143,7 +143,7 @@ class Topic:
         outgoing: Whether irsim publishes it; else irsim subscribes.
         qos: How it is delivered.
         robot: Name of the robot whose topic it is, None for one of the scene.
-        lidar: Key of the lidar, None for others.
+        lidar: Key of the lidar, None for other topics.
     """
 
     key: str

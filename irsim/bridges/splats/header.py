@@ -1,6 +1,6 @@
 """Headers of PLY files.
 
-The format is that of Turk, "The PLY polygon file format" (1994).
+The format follows Turk, "The PLY polygon file format" (1994).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ __all__ = ["Element", "Header", "Property", "read_header"]
 
 _MAX_HEADER_BYTES = 64 * 1024
 _MAX_DIGITS = 15
-"""Digits of a number of elements; a longer one is no number of anything that fits into a file."""
+"""Most digits of a number of elements; so many elements do not fit into a file."""
 _SIZES = {
     "char": 1, "uchar": 1, "short": 2, "ushort": 2, "int": 4, "uint": 4, "float": 4, "double": 8,
     "int8": 1, "uint8": 1, "int16": 2, "uint16": 2, "int32": 4, "uint32": 4, "float32": 4, "float64": 8,
@@ -77,7 +77,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Header:
-    """What stands at the beginning of a PLY file.
+    """The beginning of a PLY file.
 
     Attributes:
         encoding: How numbers are written.

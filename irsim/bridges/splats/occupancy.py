@@ -32,7 +32,7 @@ _PAIRS = 2_000_000
 
 @dataclass(frozen=True)
 class Footprints:
-    """What M splats are on the ground.
+    """Footprints of M splats on the ground.
 
     Attributes:
         center: (M, 2) x, y [m].
@@ -185,7 +185,7 @@ class PlanOptions:
         low, high: Heights above the floor between which things stand in the way [m].
         opacity: Splats with less opacity are left out.
         occupied: Sum of opacities in a cell from which on the cell is occupied.
-        max_size: Splats whose standard deviation is larger are left out, such as those of a sky [m].
+        max_size: Splats whose standard deviation is larger are left out, such as a sky [m].
         bounds: Left, lower, right and upper bound of the plan [m]; None finds them.
         max_cells: Most cells of the plan.
     """
@@ -289,9 +289,9 @@ def ground_plan(
 
     Args:
         splats: The scene.
-        to_irsim: (4, 4) from the frame of the scene to that of irsim, whose floor is at height 0.
+        to_irsim: (4, 4) from the frame of the scene to irsim's, whose floor is at height 0.
         options: How it is made.
-        progress: Callback with the number of splats done and that of all that stand in the way or show the floor.
+        progress: Callback ``(splats_done, splats_total)``; counts splats that stand in the way or show the floor.
 
     Raises:
         BridgeError: Nothing stands in the way, or the plan would be too large.

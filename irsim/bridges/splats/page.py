@@ -50,7 +50,7 @@ class PageFile:
         of: Number of splats of the scene.
         objects: Number of objects that it shows.
         last_step: Last step that it shows.
-        notes: What it leaves out.
+        notes: Sentences on things that it leaves out.
     """
 
     file: str

@@ -37,11 +37,11 @@ SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", *MOVING_SUFFIXES)
 _KEY_FRAMES = 6
 _COLUMNS, _GAP_PX, _LINE_PX = 3, 8, 20
 _CLOSE_M = 2.6
-"""What is closer to the eye behind a robot is not drawn: it would hide the robot."""
+"""Splats closer to the eye behind a robot are not drawn: they would hide the robot [m]."""
 
 
 class PreviewOptions(CameraOptions):
-    """What a picture or film of a run among splats shows."""
+    """Size and view of a picture or film of a run among splats."""
 
     width: Annotated[Count, Field(ge=16, le=4096)] = 480
     """Pixels of a picture from left to right."""
@@ -64,7 +64,7 @@ class PreviewFile:
         frames: Number of pictures in it.
         splats: Number of splats of the scene.
         steps: First and last step that it shows.
-        notes: What the user should know.
+        notes: Remarks for the user.
     """
 
     file: str
@@ -99,7 +99,7 @@ def write_preview(
         splats: The ``.ply`` file of the scene.
         run: Id of the run, its folder, or ``last``.
         out: File to write; an existing one is replaced.
-        options: What it shows.
+        options: Its size and view.
         robot: Name of the robot that the eye follows; default: the first one.
         step: The step of a single picture.
         workspace: Folder whose ``.irsim/runs`` holds the run.
@@ -159,7 +159,7 @@ def _rows(recording: Recording, moving: bool, every: int, step: int | None) -> l
 
 @dataclass(frozen=True)
 class _Cinema:
-    """What makes the frames."""
+    """Draws the frames."""
 
     scene: Splats
     recording: Recording
@@ -204,7 +204,7 @@ class _Cinema:
         return result
 
     def _visible(self, eye: Floats) -> Splats:
-        """The splats of the scene without those that hide what is to be seen."""
+        """The splats of the scene that do not hide the robot or, from above, the run."""
         if self.options.view == "robot":
             return self.scene
         to_irsim = inverse(self.recording.world.transform)

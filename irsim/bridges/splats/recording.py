@@ -23,7 +23,7 @@ from irsim.simulation.scene import SceneDescription, SceneObject
 __all__ = ["Body", "Recording", "body_of", "body_splats", "open_recording", "path_splats"]
 
 ROBOT_HEIGHT_M, WALKER_HEIGHT_M, THING_HEIGHT_M = 0.5, 1.7, 1.0
-"""Heights that objects of the plane are shown with: robots, other objects that move, and those that stand."""
+"""Heights that objects of the plane are shown with: robots, other objects that move, and static objects."""
 _LINE_WIDTH_M = 0.06
 _CIRCLE_SIDES = 32
 _PATH_WIDTH_M = 0.035
@@ -66,7 +66,7 @@ class Body:
 
 
 def body_of(agent: SceneObject) -> Body | None:
-    """What an object looks like; None if it is nothing that stands in the world.
+    """Shape and color of an object; None if it does not stand in the world.
 
     Args:
         agent: The object.
@@ -162,7 +162,7 @@ def _facing(normal: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Recording:
-    """What a picture of a run shows.
+    """The content of a picture of a run.
 
     Attributes:
         run: The run.

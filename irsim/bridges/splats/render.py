@@ -30,8 +30,8 @@ def colors_seen(color: Singles, harmonics: Singles | None, direction: Singles) -
         (N, 3) colors, not below 0.
 
     References:
-        The constants and signs are those of the real harmonics without the Condon-Shortley phase, with y, z, x as the
-        order of degree 1 and alternating signs, as Kerbl et al. (2023) write them to files.
+        The constants and signs follow the real harmonics without the Condon-Shortley phase, with y, z, x as the order
+        of degree 1 and alternating signs, as Kerbl et al. (2023) write them to files.
     """
     if harmonics is None:
         return np.maximum(color, 0)

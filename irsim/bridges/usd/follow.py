@@ -65,7 +65,7 @@ class Follower:
             x: [m].
             y: [m], frame of irsim.
             yaw: [rad], frame of irsim.
-            z: Height [m]; default: that of the prim.
+            z: Height [m]; default: the prim's.
         """
         path = self.paths.get(name) or self._alike.get(_plain(name))
         if path is None:
@@ -140,7 +140,7 @@ class Follower:
 
 
 def frame_name(frame: str) -> str | None:
-    """The object of a frame ``<name>/base_link``; None for other frames, such as those of lidars."""
+    """The object of a frame ``<name>/base_link``; None for other frames, such as a lidar's."""
     name, _, rest = frame.lstrip("/").rpartition("/")
     return name if name and rest == "base_link" else None
 

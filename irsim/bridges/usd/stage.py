@@ -142,7 +142,7 @@ def author_scene(stage: Any, scene: SceneDescription, heights: Heights | None = 
     """Write the scene at its start, and return the objects that can move.
 
     Args:
-        stage: What :func:`new_stage` returned.
+        stage: The stage from :func:`new_stage`.
         scene: The scene.
         heights: Heights of solids.
     """

@@ -1,4 +1,4 @@
-"""Lets PyInstaller find the old module paths: it reads imports from files, and the old paths have none."""
+"""Lets PyInstaller find the old module paths: it reads imports from files, and the old paths have no files."""
 
 from __future__ import annotations
 

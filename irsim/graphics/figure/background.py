@@ -76,7 +76,7 @@ Sheet = Resting | LineLayer | TrailLayer
 
 
 class Background:
-    """What lies below the moving things, as pixels."""
+    """The picture below the moving things, as pixels."""
 
     def __init__(self) -> None:
         self._pixels: NDArray[np.uint8] | None = None

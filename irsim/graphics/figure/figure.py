@@ -52,7 +52,7 @@ class SceneFigure:
         dpi: Pixels per inch.
         axis: Draw axes, ticks and labels.
         tight: Fit the axes to the figure.
-        figure: Figure to use, such as that of a window; default: a new one without a window.
+        figure: Figure to use, such as a window's; default: a new one without a window.
         pictures: Images drawn in place of bodies.
         halo: Give labels a white outline, so that they can be read on dark ground, and move them away from bodies.
 

@@ -34,7 +34,7 @@ class SceneFigure3D:
         dpi: Pixels per inch.
         depth: Extent along z [m].
         axis: Draw axes, ticks and labels.
-        figure: Figure to use, such as that of a window; default: a new one without a window.
+        figure: Figure to use, such as a window's; default: a new one without a window.
 
     Attributes:
         figure, ax: Matplotlib figure and axes, for drawing more.

@@ -43,7 +43,7 @@ class LabelLayer:
         ax: Its axes.
         glyphs: Drawn letters, which texts share.
         halo: Give labels a white outline, so that they can be read on dark ground, move them away from bodies, and
-            connect those that stand away from their thing with it.
+            connect a label that stands away from its thing with it.
     """
 
     def __init__(self, figure: Figure, ax: Axes, glyphs: Glyphs, *, halo: bool) -> None:

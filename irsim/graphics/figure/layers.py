@@ -151,7 +151,7 @@ class MarkLayer:
         """Show exactly these marks.
 
         Args:
-            marks: The marks; those that are the same Python objects as last time count as unchanged.
+            marks: The marks; the same Python objects as last time count as unchanged.
             points_per_metre: Scale of the view, for line widths given in metres.
         """
         old, artist = self.artist.marks, self.artist

@@ -2,7 +2,7 @@
 
 A layer keeps pixels of its own: trails in one transparent image, to which new snapshots are added in the order of
 time; lines as one mask of coverage each, because a translucent line that crosses itself is nowhere darker. The artist
-of a layer draws the same for every other canvas, such as that of a PDF.
+of a layer draws the same for every other canvas, such as a PDF.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ def free_places(
         things: (N, 4) box of the thing that each label names [px].
         view: (4,) box that labels must not leave [px].
         bodies: Returns the boxes that labels should not cover [px]: (K, 4) of small bodies, (W, 4) of walls.
-        clear: Also move labels that cover one of these boxes, not only those that cover another label.
+        clear: Also move labels that cover one of these boxes, not only labels that cover another one.
 
     Returns:
         (N, 2) shift of each label [px].

@@ -2,7 +2,7 @@
 
 :class:`irsim.objects.drawing.scene_builder.SceneBuilder` makes a :class:`Scene` from the state of one world. The
 Matplotlib figure draws it, and a replay in a web page reads it as JSON (:meth:`Scene.as_dict`). Lengths are in metres,
-angles in radians, and colours as the user wrote them; marks of a higher ``zorder`` cover those of a lower one.
+angles in radians, and colours as the user wrote them; marks of a higher ``zorder`` cover lower ones.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ _FIRST_CAPACITY = 64
 class GrowingLine:
     """The path of an object, one line with a solid stroke of one colour.
 
-    Another path, such as that of the next episode, is another Python object.
+    Another path, such as the next episode's, is another Python object.
     """
 
     object: int

@@ -72,12 +72,12 @@ class Actor:
 
 
 class Server:
-    """What a server has: settings, actors, and all that it was told.
+    """The state of a server: settings, actors, and the log of its calls.
 
     Attributes:
         fail: Name of a call that fails -> text of the error.
         room: How many actors there is room for.
-        done: What it was told, in order.
+        done: Its calls, in order.
     """
 
     def __init__(self) -> None:

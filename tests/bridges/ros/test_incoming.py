@@ -1,4 +1,4 @@
-"""What comes from outside: right values, and wrong ones that are named and ignored."""
+"""Input from outside: right values, and wrong ones that are named and ignored."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ COMMAND = Topic("cmd_vel", "/r/cmd_vel", "geometry_msgs/msg/Twist", False, STATE
 
 
 class Graph:
-    """What the stand-in was asked for."""
+    """The requests to the stand-in."""
 
     def __init__(self) -> None:
         self.published: list[tuple[str, Any]] = []

@@ -1,4 +1,4 @@
-"""What real robots are commanded, and where they are."""
+"""Commands to real robots, and where they are."""
 
 from __future__ import annotations
 

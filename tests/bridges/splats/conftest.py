@@ -39,7 +39,7 @@ class Site:
 
     Attributes:
         folder: Folder of all files.
-        room: What the scene is made of.
+        room: The room that the scene shows.
         scene: File of splats.
         scenario: Scenario with its map and a robot.
         run: A recorded run.

@@ -110,7 +110,7 @@ def room(
     for low, high, color in solids:
         parts += _box(rng, np.array(low, float), np.array(high, float), color, spacing)
     solid = np.concatenate(parts)
-    for low, high, _ in solids:  # nobody sees the floor in them
+    for low, high, _ in solids:  # the floor in them cannot be seen
         hidden = (solid[:, 2] < 0.05) & (solid[:, :2] > np.add(low[:2], 0.01)).all(axis=1)
         solid = solid[~(hidden & (solid[:, :2] < np.subtract(high[:2], 0.01)).all(axis=1))]
     solid[:, :2] += offset

@@ -1,4 +1,4 @@
-"""What the scripts print: one line per fact, the same on every simulator that has the interface."""
+"""Output of the scripts: one line per fact, the same on every simulator that has the interface."""
 
 import numpy as np
 

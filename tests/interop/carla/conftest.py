@@ -48,7 +48,7 @@ class StandIn:
         return False
 
     def events(self, what: str | None = None) -> list[dict[str, Any]]:
-        """What happened so far, all or of one kind."""
+        """The events so far, all or of one kind."""
         lines = self.log.read_text().splitlines()
         found = [json.loads(line) for line in lines if line.endswith("}")]
         return [event for event in found if what is None or event["what"] == what]
@@ -58,7 +58,7 @@ class StandIn:
         return {e["id"] for e in self.events("spawn")} - {e["id"] for e in self.events("destroy")}
 
     def check_clean(self) -> None:
-        """Everything is destroyed, and the settings are those of the start."""
+        """Everything is destroyed, and the settings are as at the start."""
         deadline = time.monotonic() + 5
         while self.left() and time.monotonic() < deadline:
             time.sleep(0.05)

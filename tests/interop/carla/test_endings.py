@@ -155,7 +155,7 @@ def test_another_client_may_tick(stand_in: Callable[..., StandIn], tmp_path: Pat
         for _ in range(10):
             env.step()
         (bridge,) = connection.bridges
-        assert 10 <= bridge.ticks <= 21  # a step has two; those that pass while irsim computes are not waited for
+        assert 10 <= bridge.ticks <= 21  # a step has two; irsim does not wait for ticks that pass while it computes
     assert town.events("settings") == []
     assert town.left() == set()
     walked = [e for e in town.events("batch") if 4 in e["kinds"]]

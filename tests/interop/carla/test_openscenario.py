@@ -1,4 +1,4 @@
-"""Recorded runs as OpenSCENARIO, against its schema and a reader of others."""
+"""Recorded runs as OpenSCENARIO, against its schema and an independent reader."""
 
 from __future__ import annotations
 

@@ -49,10 +49,10 @@ obstacle:
 
 
 class Peer:
-    """A process of others, whose lines are read while it runs.
+    """A process of another program, whose lines are read while it runs.
 
     Attributes:
-        lines: What it has printed.
+        lines: The lines that it has printed.
     """
 
     def __init__(self, *command: str, **options: Any) -> None:
@@ -67,7 +67,7 @@ class Peer:
             self.lines.append(line.rstrip("\n"))
 
     def on(self, topic: str) -> list[str]:
-        """What came on a topic."""
+        """The content of the lines about a topic."""
         return [line.split(" ", 1)[1] for line in list(self.lines) if line.startswith(f"{topic} ")]
 
     def stop(self) -> None:
@@ -89,7 +89,7 @@ def until(holds: Callable[[], object], seconds: float, why: str) -> None:
 
 
 def free_port() -> int:
-    """A port of TCP that nobody listens on."""
+    """A TCP port without a listener."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         return int(server.getsockname()[1])
 

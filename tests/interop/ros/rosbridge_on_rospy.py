@@ -1,7 +1,7 @@
 """A server of the rosbridge protocol on a real ROS 1, not rosbridge_server: `rosbridge_on_rospy.py PORT`.
 
-What clients publish becomes messages of rospy, which go to a real master and real subscribers; what other nodes publish
-goes to the clients that have subscribed. Operations: advertise, unadvertise, publish, subscribe, unsubscribe,
+Publications of clients become messages of rospy, which go to a real master and real subscribers; publications of other
+nodes go to the clients that have subscribed. Operations: advertise, unadvertise, publish, subscribe, unsubscribe,
 call_service, set_level. As the protocol has it, what is wrong is told to the client with the operation status. Lines of
 output: `ready PORT`, `client NUMBER`, `gone NUMBER`, `advertise TOPIC TYPE`, `publish TOPIC`, `error TEXT`.
 """

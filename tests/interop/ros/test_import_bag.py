@@ -1,4 +1,4 @@
-"""Bags become scenarios that drive as recorded; what is no bag is an error, and nothing is written."""
+"""Bags become scenarios that drive as recorded; any other file is an error, and nothing is written."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_the_robot_drives_as_recorded_in_what_its_scans_saw(bag: Path) -> None:
     again = open_run(str(irsim.run("again.yaml", seed=1, record=True).run_id)).trace()
     count = min(len(again.pose), len(before.pose))
     assert np.hypot(*(again.pose[:count, 0, :2] - before.pose[:count, 0, :2]).T).max() < 0.01
-    # the scans of the map are those of the recording, as far as a grid of 5 cm can say
+    # the scans of the map equal the recorded ones, as far as a grid of 5 cm can say
     now, then = again.ranges["robot/0"][:count], before.ranges["rover/0"][:count]
     both = np.isfinite(now) & np.isfinite(then)
     assert both.sum() > 2000

@@ -1,4 +1,4 @@
-"""A robot that somebody else simulates, on Fast DDS, is driven; whatever happens to us, it stops within the timeout."""
+"""A robot that another program simulates, on Fast DDS, is driven; if irsim fails, it stops within the timeout."""
 
 from __future__ import annotations
 

@@ -129,7 +129,7 @@ def test_nodes_of_rospy_see_what_we_publish_and_we_what_they_do(
     assert listener.on("map") == ["20 10"]  # latched
     assert listener.on("markers") == ["3"]
     assert len(rates - {0}) >= 20  # that many of the numbered commands moved the robot
-    assert all(rate % 10 for rate in rates - {0})  # and none that is not a number
+    assert all(rate % 10 for rate in rates - {0})  # and never one that is not a number
     assert any("/robot_0/cmd_vel" in note and "not a number" in note for note in notes)
     assert goal == [3, 0]
     for topic, kind in (("scan", "sensor_msgs/LaserScan"), ("pose", "geometry_msgs/PoseStamped")):

@@ -16,7 +16,7 @@ folder, port, domain, seconds = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]),
 get_registry(folder)
 where: dict[str, Any] = {"domain_id": domain, "router_ip": "127.0.0.1", "router_port": port}
 ZenohSession.get_instance("127.0.0.1", port)
-time.sleep(1)  # until the session has heard of the tokens of others; it asks for them once
+time.sleep(1)  # until the session has heard of other sessions' tokens; it asks for them once
 latched = QosProfile(durability=QosDurability.TRANSIENT_LOCAL, history_depth=1)
 
 

@@ -35,7 +35,7 @@ Flags: TypeAlias = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class _Layout:
-    """Topics and frames of a run; those of actors and lidars in their order, None for obstacles.
+    """Topics and frames of a run; actors and lidars in their order, None for obstacles.
 
     Attributes:
         frames: Frame of each actor.

@@ -2,7 +2,7 @@
 
 Each object is spawned at its first place, goes along its recorded path (`walker GoTo 1 2 0 3 2 0 _`) and stands
 (`walker Idle 4`) where and as long as it stood. Commands have no times: people of Isaac Sim walk at their own speed, so
-this gives their ways, and the format `usd` their exact motion. Coordinates are those of irsim [m], z up. Options are
+this gives their ways, and the format `usd` their exact motion. Coordinates are in irsim's frame [m], z up. Options are
 `tolerance`, `pause` and `z`.
 `--objects` names other objects than the pedestrians, which are the obstacles that can move.
 """

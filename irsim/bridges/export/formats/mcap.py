@@ -83,7 +83,7 @@ class Bag:
             **about: Further metadata of the channel.
 
         Returns:
-            What :meth:`add` takes.
+            The handle that :meth:`add` takes.
         """
         if kind not in self._schemas:
             definition, _ = self._store.generate_msgdef(kind, ros_version=2)

@@ -1,6 +1,6 @@
 """``minari``: a dataset for offline reinforcement learning and imitation, one episode for each run and robot.
 
-It is a folder whose name is that of the dataset and ends with a version, such as ``room-v0``. With its parent as
+It is a folder with the name of the dataset, which ends with a version, such as ``room-v0``. With its parent as
 ``MINARI_DATASETS_PATH``, ``minari.load_dataset("room-v0")`` loads it. All robots must have the same controls and
 lidars; robots without a goal are left out. An episode ends when the robot arrives, unless another goal follows
 (``wander``, ``loop``), or when a collision has stopped it (both terminated), or with the record (truncated).
@@ -70,7 +70,7 @@ class _Learner:
 
 
 def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
-    """Write all episodes, block by block; those of one run side by side."""
+    """Write all episodes, block by block; episodes of one run are written side by side."""
     from minari.dataset.minari_storage import MinariStorage
 
     if not _NAME.fullmatch(name):
@@ -156,7 +156,7 @@ def _spaces(learners: Sequence[_Learner]) -> tuple[Any, Any]:
 
 
 def _buffer(learner: _Learner, block: Block, last: int) -> dict[str, Any] | None:
-    """What a block adds to an episode, up to a last step; None if nothing."""
+    """The rows that a block adds to an episode, up to a last step; None if it adds nothing."""
     trace, column = block.trace, learner.column
     if learner.over or trace.step[0] > last:
         return None

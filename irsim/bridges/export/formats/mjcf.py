@@ -1,7 +1,7 @@
 """``mjcf``: the scene at the start of a run as a model of MuJoCo, with actuators for the robots; needs no library.
 
 Walls, obstacles and the map are boxes, cylinders and prisms. Robots stand on wheels with velocity actuators, or move
-along planar joints; obstacles that moved in irsim are mocap bodies. What it has is what the bridge ``mujoco`` uses.
+along planar joints; obstacles that moved in irsim are mocap bodies. The bridge ``mujoco`` uses the same model.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The folder has `transforms.json`, a dataset whose pictures are still to be made (`images/000120.png` of step 120), and
 `camera_path.json`, the path that `ns-render camera-path` renders, at the speed of the simulation; with several robots
-`camera_path_1.json` and so on are those of the other ones. Options are those of the format `colmap`.
+`camera_path_1.json` and so on belong to the other ones. It has the same options as the format `colmap`.
 
 nerfstudio usually turns, centers and scales a scene while it trains. Paths fit a scene that was trained without:
 `ns-train splatfacto nerfstudio-data --orientation-method none --center-method none --auto-scale-poses False`.

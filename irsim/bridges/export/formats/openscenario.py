@@ -1,8 +1,8 @@
 """``openscenario``: trajectories as an OpenSCENARIO 1.0 file, for esmini and CARLA's ScenarioRunner.
 
 Each object is an entity that is put at its first pose and follows its recorded trajectory in time. Cars (drive
-``acker``) are vehicles, other objects that can move are pedestrians, the rest are obstacles. The frame is that of
-irsim, x forward, y to the left, heading counterclockwise, moved by the options `x`, `y` and `yaw`. Options `roads`,
+``acker``) are vehicles, other objects that can move are pedestrians, the rest are obstacles. The frame is irsim's,
+x forward, y to the left, heading counterclockwise, moved by the options `x`, `y` and `yaw`. Options `roads`,
 `pedestrian` and `car` name the road network and the models.
 """
 
@@ -48,9 +48,9 @@ class OpenScenarioOptions(Options):
     x: Meters = 0.0
     """x of the origin of the scenario."""
     y: Meters = 0.0
-    """y of the origin, to the left of x; that of CARLA has the other sign."""
+    """y of the origin, to the left of x; CARLA's y has the other sign."""
     yaw: Degrees = 0.0
-    """Direction of the x axis of the scenario, counterclockwise; that of CARLA has the other sign."""
+    """Direction of the x axis of the scenario, counterclockwise; CARLA's yaw has the other sign."""
     roads: str = ""
     """OpenDRIVE file, or for ScenarioRunner the town, such as Town03; empty leaves it out."""
     pedestrian: str = "walker.pedestrian.0001"
@@ -107,7 +107,7 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     scene = recorded_scene(episode.run, episode.limits)
     options = episode.options or OpenScenarioOptions()
     assert isinstance(options, OpenScenarioOptions)
-    bodies = tuple(actor for actor in episode.actors if actor.name in scene.names)  # the map is none
+    bodies = tuple(actor for actor in episode.actors if actor.name in scene.names)  # without the map
     maps = len(episode.actors) - len(bodies)
     episode = replace(episode, actors=bodies)
     times, poses = _trajectories(episode)

@@ -7,7 +7,7 @@ something within the step, at neither end of it), and a list of ranges ``ranges_
 Numbers that do not exist are null: velocities and controls at the start, goals of objects without one, controls that
 only other drives have, scans that were not recorded.
 
-The metadata of each field are ``unit`` and ``description``; those of the file are ``irsim`` (version that wrote it) and
+Each field has the metadata ``unit`` and ``description``; the file has ``irsim`` (version that wrote it) and
 ``irsim.runs``, a JSON list with the scenario, seed, versions, step time, options, result and objects of each run.
 """
 

@@ -3,7 +3,7 @@
 A line is `{"frame": 0, "t": 0.0, "position": [x, y, z], "yaw": 0.0, "robot": "robot"}`: the step, the simulated time
 [s], the position of the camera with y up, and the angle [rad] by which a camera that looks along -z is turned about y.
 With several robots their lines follow one after the other. The options are `height`, `every`, `frame` and `sidecar`, as
-for the format `colmap`. The positions are those of the scene that the map was imported from. A scene whose axes have
+for the format `colmap`. The positions are in the scene that the map was imported from. A scene whose axes have
 another convention than y up is turned, as files of glTF turn it: x stays, and y points up.
 """
 

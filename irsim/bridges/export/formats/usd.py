@@ -1,7 +1,7 @@
 """``usd``: a stage of OpenUSD in which robots and pedestrians move, for Isaac Sim, Omniverse and Blender.
 
-``.usda`` is text, ``.usdc`` binary and ``.usdz`` a package. What the stage holds is told by
-:mod:`irsim.bridges.usd.stage`; one time code is one step.
+``.usda`` is text, ``.usdc`` binary and ``.usdz`` a package. :mod:`irsim.bridges.usd.stage` describes the content of
+the stage; one time code is one step.
 """
 
 from __future__ import annotations

@@ -4,5 +4,5 @@ Module ``x`` has ``KIND``: name, suffixes, how its first bytes look, extra and l
 a file. The function returns a ``Scene`` (triangles, from which levels and maps are made) or an ``Occupancy`` (a
 finished map). It checks sizes before it allocates, follows no names of other places, and raises ``BridgeError``
 through ``unusable``. Tests read small made-up files, truncated and hostile ones too, without libraries; tests marked
-``interop`` read files that somebody else's program wrote.
+``interop`` read files that other programs wrote.
 """

@@ -1,4 +1,4 @@
-"""What a glTF file promises, checked against what it has, before a reader allocates anything."""
+"""Checks that a glTF file has the content that it declares, before a reader allocates anything."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _DATA = re.compile(r"data:[^,]{0,200};base64,")
 
 
 class Beside:
-    """Gives a reader the files beside a ``.gltf``: those that were checked, and nothing else."""
+    """Gives a reader the checked files beside a ``.gltf``, and nothing else."""
 
     def __init__(self, folder: Path, names: dict[str, Path]) -> None:
         self.folder, self.names = folder, names
@@ -56,7 +56,7 @@ def check(path: Path, limits: ImportLimits) -> Beside:
     """Check a ``.glb`` or ``.gltf`` file.
 
     Returns:
-        What a reader may read beside the file.
+        The files that a reader may read beside the file.
 
     Raises:
         BridgeError: Something in it does not fit, is compressed, or refers to other places.

@@ -156,7 +156,7 @@ def _placed(corners: Floats, transform: Any) -> Floats:
 
 
 def _corners(prim: Any, time: Any, most: int) -> Floats | None:
-    """(T, 3, 3) triangles of a prim in its own frame; None for those that are not surfaces, or none that are read."""
+    """(T, 3, 3) triangles of a prim in its own frame; None for prims that are not readable surfaces."""
     from pxr import UsdGeom
 
     if prim.IsA(UsdGeom.Mesh):
@@ -297,7 +297,7 @@ def _read(request: dict[str, Any]) -> dict[str, Any]:
 
 
 def _check_layers(path: Path) -> list[str]:
-    """All layers that the stage is made of lie in the folder of the file, or inside of it; those that are missing."""
+    """Check that all layers of the stage lie in or below the folder of the file, and return the missing ones."""
     from pxr import Sdf
 
     root = path.resolve().parent

@@ -123,7 +123,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
     """Triangles of a mesh file.
 
     Raises:
-        BridgeError: The file is damaged, refers to others, or has no triangles.
+        BridgeError: The file is damaged, refers to other files, or has no triangles.
     """
     suffix = path.suffix.lower().lstrip(".")
     resolver = None

@@ -1,6 +1,6 @@
 """``navmesh``: navigation meshes of Habitat, which Detour wrote.
 
-The layout is that of Detour's structures, little endian, without padding. A set begins with ``MSET``, version, number
+The layout follows Detour's structures, little endian, without padding. A set begins with ``MSET``, version, number
 of tiles and the parameters of the mesh; version 2 goes on with the settings of Habitat, whose size has changed over
 time, so that the first tile is found by its magic. Each tile is a reference, a size and Detour's own blob ``DNAV``.
 """
@@ -42,7 +42,7 @@ class Tile:
 
     Attributes:
         triangles: (T, 3, 3) corners in the frame of the file, y up.
-        height, radius, climb: What the mesh was made for [m].
+        height, radius, climb: Size and step height of the agent that the mesh was made for [m].
     """
 
     triangles: Floats

@@ -78,7 +78,7 @@ def _kept(plan: Plan, grid: Grid, options: ImportOptions) -> tuple[Floats, list[
         if kept < 0:
             x, y = options.seed_point
             what = f"there is no floor at the seed point ({x:g}, {y:g})"
-            raise BridgeError("bridge-file", what, "give another point with --seed-point, or none")
+            raise BridgeError("bridge-file", what, "give another point with --seed-point, or leave it out")
     values = np.full(plan.occupied.shape, UNKNOWN)
     values[plan.occupied] = OCCUPIED
     values[numbers == kept] = FREE

@@ -76,7 +76,7 @@ def read(path: Path, options: ImportOptions, limits: ImportLimits) -> Scene:
 
 
 def _answer(text: str) -> dict[str, Any]:
-    """What the process said: its last line of JSON."""
+    """The answer of the process: its last line of JSON."""
     lines = [line for line in text.splitlines() if line.startswith("{")]
     result = json.loads(lines[-1]) if lines else {}
     return result if isinstance(result, dict) else {}

@@ -20,7 +20,7 @@ __all__ = ["BagBackend", "BagFolder", "Storage"]
 
 Storage = Literal["sqlite3", "mcap"]
 _NEWEST = 9
-"""Version of rosbag2's metadata, that of Jazzy, which earlier releases read, too."""
+"""Version of rosbag2's metadata: Jazzy writes it, and earlier releases read it, too."""
 
 
 class BagFolder:
@@ -65,7 +65,7 @@ class BagFolder:
             **about: Further facts, which go into the custom data of the bag.
 
         Returns:
-            What :meth:`add` takes.
+            The handle that :meth:`add` takes.
         """
         for key, value in about.items():
             self._writer.set_custom_data(f"{name} {key}", value)
@@ -96,7 +96,7 @@ class BagBackend(Backend):
 
     Args:
         node: Unused name of a node.
-        topics: Topics of the scene; those that come in are left out.
+        topics: Topics of the scene; incoming ones are left out.
         inbox: Stays empty.
         messages: Makes messages, and their CDR.
         folder: The folder, which must not exist.

@@ -1,4 +1,4 @@
-"""What a backend does."""
+"""The interface of backends."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Backend:
         messages: Makes messages, and their CDR.
 
     Attributes:
-        peer: What it is connected to, in a few words.
+        peer: The program that it is connected to, in a few words.
     """
 
     peer = "ROS"

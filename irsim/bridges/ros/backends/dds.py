@@ -1,6 +1,6 @@
 """``dds``: a node of ROS 2 over DDS with Cyclone DDS, without a ROS installation.
 
-What makes a participant a node: topics are named ``rt/...`` and types ``...::dds_::Twist_``; the user data of endpoints
+These make a participant a node: topics are named ``rt/...`` and types ``...::dds_::Twist_``; the user data of endpoints
 has the hash of the type; and the latched topic ``ros_discovery_info`` says which endpoints belong to which node.
 """
 
@@ -22,7 +22,7 @@ __all__ = ["CdrSample", "DdsBackend", "dds_type", "dds_type_name", "struct_type"
 
 @cache
 def _base() -> dict[str, Any]:
-    """Types of DDS for those that messages are made of."""
+    """Name of a primitive type of messages -> type of DDS."""
     from cyclonedds.idl import types
 
     return {
@@ -43,7 +43,7 @@ class CdrSample:
     cdr: bytes
 
     def serialize(self, buffer: Any = None, endianness: Any = None, use_version_2: Any = None) -> bytes:
-        """What is sent."""
+        """The bytes that are sent."""
         return self.cdr
 
     @classmethod

@@ -30,7 +30,7 @@ class RclpyBackend(Backend):
         topics: Topics to publish and to subscribe to.
         inbox: Where messages from outside are put.
         messages: Makes messages, and their CDR.
-        domain: Number of the domain; None for that of ``ROS_DOMAIN_ID``.
+        domain: Number of the domain; None takes ``ROS_DOMAIN_ID``.
     """
 
     def __init__(

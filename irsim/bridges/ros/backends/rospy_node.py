@@ -24,7 +24,7 @@ _QUEUE = 10
 
 
 def find_rospy() -> bool:
-    """Whether rospy can be imported; that of Debian is found from a virtual environment, too, behind all others."""
+    """Whether rospy can be imported; a virtual environment finds Debian's, too, after all other packages."""
     if find_spec("rospy") is None and (_DEBIAN / "rospy").is_dir() and str(_DEBIAN) not in sys.path:
         sys.path.append(str(_DEBIAN))
     return find_spec("rospy") is not None
@@ -38,7 +38,7 @@ class RospyBackend(Backend):
         topics: Topics to publish and to subscribe to.
         inbox: Where messages from outside are put.
         messages: Makes messages.
-        master: Address of the master; None for that of ``ROS_MASTER_URI``.
+        master: Address of the master; None takes ``ROS_MASTER_URI``.
     """
 
     def __init__(

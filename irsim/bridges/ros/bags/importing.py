@@ -57,7 +57,7 @@ class BagOptions:
 
 @dataclass(frozen=True)
 class ImportedBag:
-    """What was written.
+    """Result of an import.
 
     Attributes:
         file: The scenario.
@@ -65,7 +65,7 @@ class ImportedBag:
         poses: Number of replayed poses.
         scans: Number of scans of which the map was made.
         duration: [s].
-        notes: What else is worth knowing.
+        notes: Remarks for the user.
     """
 
     file: str
@@ -115,7 +115,7 @@ def import_bag(
         at = np.array([composed(_pose_at(result, result.scan_times[index]), mount) for index in chosen])
         grid = map_of_scans(at, scans, poses[:, :2], options.resolution, options.radius, 1.0)
     elif result.scan_topic is None:
-        named = " of this robot, so there is no map; --scan names those of another one"
+        named = " of this robot, so there is no map; --scan names another robot's"
         notes.append(f"the bag has no scans{named if result.elsewhere else ', so there is no map'}")
     text = _text(result, grid, times, poses, scans[0] if scans else None, mount, path.name, out, options)
     contents = [(out, with_modeline(text, out).encode())]

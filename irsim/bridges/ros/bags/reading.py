@@ -28,7 +28,7 @@ MAX_SCANS = 200_000
 
 @dataclass
 class Recorded:
-    """What a bag says of one robot.
+    """Recorded data of one robot in a bag.
 
     Attributes:
         times: (T,) [s] since the first odometry, increasing.
@@ -140,7 +140,7 @@ def _opened(path: Path) -> Iterator[Any]:
 
 
 def _scan_of(reader: Any, odom: str) -> str | None:
-    """The only topic of scans beside that of the odometry, or else the only one that is not beside another odometry."""
+    """The only topic of scans beside the odometry's topic, or else the only one that is not beside another odometry."""
     topics = {kind: sorted({one.topic for one in reader.connections if one.msgtype == kind})
               for kind in (_SCAN, _ODOMETRY)}  # fmt: skip
     own = [name for name in topics[_SCAN] if _space(name) == _space(odom)]
@@ -175,7 +175,7 @@ def _chosen(reader: Any, kind: str, name: str | None, option: str, *, needed: bo
 
 
 def _time(message: Any, stamp: int) -> float:
-    """Time of a message [s]: that of its header, or of the recording if the header has none."""
+    """Time of a message [s], from its header, or from the recording if the header has no time."""
     time = message.header.stamp
     seconds = float(time.sec) + float(time.nanosec) / 1e9
     return seconds if seconds > 0 else stamp / 1e9

@@ -23,10 +23,10 @@ class Actor:
         tag: Semantic tag.
         parent: The actor that a sensor is attached to.
         mount: x, y, z [m], yaw [deg] of a sensor on its parent.
-        stream: Id of the stream of a sensor, 0 of others.
+        stream: Id of the stream of a sensor, 0 for other actors.
         velocity: x, y [m/s], world.
         turn_rate: [deg/s].
-        control: What it was last told: ``("walker", x, y, speed)``, ``("ackermann", steer, speed)`` or
+        control: Its last control: ``("walker", x, y, speed)``, ``("ackermann", steer, speed)`` or
             ``("velocity", x, y)``.
         spin: Turn rate that was asked for [deg/s].
     """

@@ -46,8 +46,8 @@ class Server:
 
     Args:
         facts: Of the town, and ``version``, ``die_after`` (ticks), ``hang_after`` (ticks), ``road`` (OpenDRIVE).
-        port: Of the calls; that of streams is the next one.
-        log: What happened, one JSON object a line.
+        port: Port of the calls; streams use the next one.
+        log: File of events, one JSON object a line.
     """
 
     def __init__(self, facts: Mapping[str, Any], port: int, log: TextIO | None) -> None:
