@@ -98,12 +98,12 @@ class PathPlanner:
         self.end = PathNode(*goal, cost)
         self._nodes = nodes, parents, costs
         self.node_list = _link_nodes(nodes, parents, costs) if self._keeps_nodes else []
-        found = None if path is None else np.ascontiguousarray(path[::-1].T)
+        points = None if path is None else np.ascontiguousarray(path[::-1].T)
         if show_animation:
             from irsim.compat.search_drawing import draw_search
 
-            draw_search(self.map, nodes, parents, found, start, goal)
-        return found
+            draw_search(self.map, nodes, parents, points, start, goal)
+        return points
 
     _keeps_nodes = False
 

@@ -96,7 +96,7 @@ def resolve_message_targets(
 def _named(objects: Sequence[Any], name: str | None, object_id: int | None) -> Any:
     by_name = [view for view in objects if name is not None and view.name == name]
     by_id = [view for view in objects if object_id is not None and view.id == object_id]
-    found = by_name or by_id
-    if not found:
+    matches = by_name or by_id
+    if not matches:
         raise ValueError(f"no object has the name {name!r} or the id {object_id!r} of this message")
-    return found[0]
+    return matches[0]

@@ -36,8 +36,8 @@ def create_obstacle(env: EnvState, kinematics: Any = None, **keys: Any) -> Scrip
 
 def _create(env: EnvState, role: Literal["robot", "obstacle"], kinematics: Any, keys: dict[str, Any]) -> ScriptObject:
     number = next(env.env_param.id_iter)
-    record, found = read_object(role, {"kinematics": kinematics, **keys}, env.scenario.world, number)
-    for item in found:
+    record, findings = read_object(role, {"kinematics": kinematics, **keys}, env.scenario.world, number)
+    for item in findings:
         env.logger.warning(f"{record.name}: {item.message} [{item.code}]")
     simulation = lone_simulation(env._simulation.scenario, record, env._simulation.key()[0])
     (view,) = views(simulation)
@@ -166,9 +166,9 @@ class ObjectList(list[ScriptObject]):
 
     def pop(self, index: Any = -1) -> ScriptObject:
         """Take the object at an index out of the world and return it; it remains usable."""
-        found: ScriptObject = self[index]
+        removed: ScriptObject = self[index]
         del self[index]
-        return found
+        return removed
 
     def clear(self) -> None:
         """Take all objects out of the world."""

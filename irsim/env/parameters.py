@@ -331,8 +331,8 @@ class WorldView(_Clock):
         """The logger of the environment; without one, the last used environment's, or a new logger."""
         owner = self._simulation.owner() or last_used()
         if owner is not None:
-            found: Logger = owner.logger
-            return found
+            result: Logger = owner.logger
+            return result
         if self._logger is None:
             from irsim.common.log import Logger as Own
 

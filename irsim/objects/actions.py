@@ -30,15 +30,15 @@ def _find(objects: Sequence[SimObject], key: Any) -> SimObject:
         index = int(key)
         if 0 <= index < len(objects) and objects[index].id == index:
             return objects[index]  # no earlier object was deleted
-        found = [view for view in objects if view.id == index]
+        matches = [view for view in objects if view.id == index]
     else:
-        found = [view for view in objects if view.name == key]
-    if not found:
+        matches = [view for view in objects if view.name == key]
+    if not matches:
         names = ", ".join(view.name for view in objects[:8])
         ids = [view.id for view in objects]
         known = f"0 to {len(ids) - 1}" if ids == list(range(len(ids))) else ", ".join(map(str, ids[:20]))
         raise ValueError(f"no object with id or name {key!r}; ids are {known}, names {names}")
-    return found[0]
+    return matches[0]
 
 
 def _plain_control(view: SimObject, action: Any) -> Sequence[float] | None:

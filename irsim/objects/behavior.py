@@ -136,9 +136,9 @@ def _set_behavior(view: SimObject, keys: dict[str, Any]) -> None:
         refuse(repr(view.name), "beh_config", "it has no drive, and never moves by itself")
     drive = {"name": str(getattr(record.kinematics, "name", ""))}
     entry = {"kinematics": drive, "behavior": keys or None}
-    made, found = read_object(record.role, entry, world, record.id)
+    made, findings = read_object(record.role, entry, world, record.id)
     env = view._simulation.owner()
-    for item in found if env is not None else ():
+    for item in findings if env is not None else ():
         if "behavior" in item.path:
             env.logger.warning(f"{record.name}: {item.message} [{item.code}]")
     view.amend(replace(record, behavior=made.behavior, **behavior_fields(made.behavior, world.bounds)))

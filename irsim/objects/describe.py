@@ -109,8 +109,8 @@ def _pose(values: Any) -> tuple[float, float, float]:
 
 
 def _parts(state: core.State, row: int) -> tuple[BodyPart, ...]:
-    found = [part for part in outline(state, row).parts if not isinstance(part, Cells)]
-    return tuple(Polygon(_counterclockwise(part.corners)) if isinstance(part, Polygon) else part for part in found)
+    parts = [part for part in outline(state, row).parts if not isinstance(part, Cells)]
+    return tuple(Polygon(_counterclockwise(part.corners)) if isinstance(part, Polygon) else part for part in parts)
 
 
 def _counterclockwise(corners: Floats) -> Floats:
@@ -120,13 +120,13 @@ def _counterclockwise(corners: Floats) -> Floats:
 
 
 def _lidars(simulation: Simulation, row: int) -> tuple[Lidar, ...]:
-    record, found = simulation.scenario.objects[row], []
+    record, lidars = simulation.scenario.objects[row], []
     own = [(first, count) for owner, first, count in simulation.scans if owner == row]
     options = [item for item in record.sensors if hasattr(item, "angle_range") and hasattr(item, "range_max")]
     for number, ((first, count), item) in enumerate(zip(own, options, strict=False)):
         angles = simulation.state.beam_angles[first : first + count]
         chosen: Any = item
-        found.append(
+        lidars.append(
             Lidar(
                 key=f"{record.name}/{number}",
                 number=number,
@@ -141,7 +141,7 @@ def _lidars(simulation: Simulation, row: int) -> tuple[Lidar, ...]:
                 between=chosen.angle_range / max(count - 1 if chosen.endpoint else count, 1) if count > 1 else 0.0,
             )
         )
-    return tuple(found)
+    return tuple(lidars)
 
 
 def _grid(simulation: Simulation) -> Grid | None:

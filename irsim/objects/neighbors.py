@@ -27,8 +27,8 @@ def centres(simulation: Simulation, world: int) -> Floats:
     known: dict[int, tuple[tuple[int, int, int], Floats]] = simulation.__dict__.setdefault("_centres", {})
     if world not in known or known[world][0] != key:
         first = world * simulation.objects
-        found = [_centre(simulation, first + i) for i in range(simulation.objects)]
-        known[world] = key, np.array(found, dtype=np.float64).reshape(-1, 2)
+        points = [_centre(simulation, first + i) for i in range(simulation.objects)]
+        known[world] = key, np.array(points, dtype=np.float64).reshape(-1, 2)
     return known[world][1]
 
 
@@ -37,19 +37,19 @@ def discs(simulation: Simulation, world: int) -> Floats:
     size = simulation.objects
     rows = slice(world * size, (world + 1) * size)
     pose, centre = simulation.pose[rows], centres(simulation, world)
-    found = np.empty((size, 5))
-    found[:, :2] = pose[:, :2]
+    result = np.empty((size, 5))
+    result[:, :2] = pose[:, :2]
     if centre.any():
         c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-        found[:, 0] += c * centre[:, 0] - s * centre[:, 1]
-        found[:, 1] += s * centre[:, 0] + c * centre[:, 1]
-    found[:, 2:4] = simulation.state.velocities_world(world)
+        result[:, 0] += c * centre[:, 0] - s * centre[:, 1]
+        result[:, 1] += s * centre[:, 0] + c * centre[:, 1]
+    result[:, 2:4] = simulation.state.velocities_world(world)
     if simulation.drives is not None:
         objects = simulation.views(world)
         for index in simulation.drives.objects:
-            found[index, 2:4] = objects[index].velocity_xy[:, 0]
-    found[:, 4] = simulation.radius[rows] + AVOIDANCE_MARGIN
-    return found
+            result[index, 2:4] = objects[index].velocity_xy[:, 0]
+    result[:, 4] = simulation.radius[rows] + AVOIDANCE_MARGIN
+    return result
 
 
 def _centre(simulation: Simulation, row: int) -> tuple[float, float]:

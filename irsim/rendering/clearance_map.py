@@ -127,8 +127,8 @@ class FreeSpace:
             return None
         last = target if self.exact_distance(target) >= radius else self._clearance.climb(target, reach)
         min_distance = min(radius, float(self.distance_at(np.array([first, last])).min())) - self.half_diagonal
-        found = np.asarray(self._clearance.way(first, last, min_distance))
-        return np.concatenate([[first], found[1:-1], [last]]) if len(found) else None
+        points = np.asarray(self._clearance.way(first, last, min_distance))
+        return np.concatenate([[first], points[1:-1], [last]]) if len(points) else None
 
 
 def smallest_robot(simulation: Simulation, world: int = 0) -> int | None:

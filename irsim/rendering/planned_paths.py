@@ -88,16 +88,16 @@ def plan_paths(
     """
     legs_left, geodesics = MAX_LEGS, Geodesics(simulation, world)
     spaces: dict[float, FreeSpace] = {}
-    found: list[PlannedPath] = []
+    paths: list[PlannedPath] = []
     for view in _robots(simulation, world):
         if view.goal is None or view.arrive or legs_left <= 0:
             continue
         inner = max(inscribed_radius(simulation, view.row), MIN_RADIUS_M)
         if inner not in spaces:
             spaces[inner] = _free_space(simulation, world, inner)
-        found.append(_plan_path(simulation, view, geodesics, spaces[inner], inner, routes or {}))
+        paths.append(_plan_path(simulation, view, geodesics, spaces[inner], inner, routes or {}))
         legs_left -= len(remaining_goals(view))
-    return found
+    return paths
 
 
 def _plan_path(
@@ -284,12 +284,12 @@ def path_margin(simulation: Simulation, view: ObjectView, line: Floats, space: F
     reach = 2 * float(simulation.radius[view.row]) + 2 * space.half_diagonal
     poses = poses[distances <= distances.min() + reach]
     poses = poses[:: math.ceil(len(poses) / _MAX_POSES)]
-    found, partners = standing_distance(simulation, view, poses)
-    if np.isnan(found).all():
+    clearances, partners = standing_distance(simulation, view, poses)
+    if np.isnan(clearances).all():
         return PathMargin(math.inf, first, None)
-    best = int(np.nanargmin(found))
+    best = int(np.nanargmin(clearances))
     x, y, heading = poses[best].tolist()
-    distance = 0.0 if -_TOUCHING_M < found[best] <= 0 else float(found[best])
+    distance = 0.0 if -_TOUCHING_M < clearances[best] <= 0 else float(clearances[best])
     return PathMargin(distance, (x, y, heading), simulation.scenario.objects[int(partners[best])].name)
 
 
@@ -309,8 +309,8 @@ def poses_along(view: ObjectView, line: Floats, step: float) -> Floats:
         count = max(1, math.ceil(length / step))
         poses += [(*(a + (b - a) * (k / count)), ahead) for k in range(1, count + 1)]
         heading = ahead
-    found = np.asarray(poses, dtype=np.float64)
-    return _turned_slowly(found, view.record) if drive == "acker" else found
+    result = np.asarray(poses, dtype=np.float64)
+    return _turned_slowly(result, view.record) if drive == "acker" else result
 
 
 def _turned_slowly(poses: Floats, record: ObjectRecord) -> Floats:
@@ -328,8 +328,8 @@ def _turned_slowly(poses: Floats, record: ObjectRecord) -> Floats:
 def _limited(poses: Floats, heading: float, curvature: float) -> Floats:
     """Headings that follow the headings of poses, from a first one on, by at most a curvature [1/m]."""
     moved = np.hypot(*np.diff(poses[:, :2], axis=0).T).tolist()
-    found = [heading]
+    headings = [heading]
     for wanted, length in zip(poses[1:, 2].tolist(), moved, strict=True):
         most = length * curvature if length > 0 else 0.0
-        found.append(found[-1] + max(-most, min(most, math.remainder(wanted - found[-1], math.tau))))
-    return np.asarray(found, dtype=np.float64)
+        headings.append(headings[-1] + max(-most, min(most, math.remainder(wanted - headings[-1], math.tau))))
+    return np.asarray(headings, dtype=np.float64)

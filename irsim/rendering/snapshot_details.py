@@ -61,7 +61,7 @@ def _goal_arrows(scene: Scene, simulation: Simulation, world: int) -> list[Mark]
     x0, x1, y0, y1 = scene.extent
     length = _GOAL_ARROW_SHARE * max(x1 - x0, y1 - y0)
     goals = {mark.object: mark for mark in scene.marks if mark.part == "goal"}
-    found = []
+    arrows = []
     for view in views(simulation, world):
         x, y, heading = (float(value) for value in simulation.goal[view.row][:3])
         drawn = goals.get(view.id)
@@ -69,8 +69,8 @@ def _goal_arrows(scene: Scene, simulation: Simulation, world: int) -> list[Mark]
             continue
         pointer = place(arrow(length, _GOAL_ARROW_WIDTH * length), (x, y, heading))
         color = drawn.fill if drawn.fill is not None else _DEFAULT_COLOR
-        found.append(Mark(view.id, "arrow", pointer, color, Stroke(_DEFAULT_COLOR, 0.6), 1.0, drawn.zorder + 0.1))
-    return found
+        arrows.append(Mark(view.id, "arrow", pointer, color, Stroke(_DEFAULT_COLOR, 0.6), 1.0, drawn.zorder + 0.1))
+    return arrows
 
 
 def _is_hidden(fog: Fog, point: tuple[float, float]) -> bool:

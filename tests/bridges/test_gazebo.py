@@ -168,9 +168,9 @@ def model() -> ET.Element:
 
 
 def body(model: ET.Element, name: str) -> ET.Element:
-    found = model.find(f"worldbody/body[@name='{name}']")
-    assert found is not None
-    return found
+    element = model.find(f"worldbody/body[@name='{name}']")
+    assert element is not None
+    return element
 
 
 def test_robots_and_what_can_be_pushed_are_moved_by_mujoco() -> None:

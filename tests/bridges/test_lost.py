@@ -72,14 +72,14 @@ def test_the_result_as_json_has_the_reason(scene: Any) -> None:
 def test_the_record_keeps_the_reason_and_the_notes(scene: Any) -> None:
     with Peer(leaving) as peer:
         call("run", scene(peer), "--record-to", "record")
-    found = irsim.runs.open_run("record")
-    assert found.result is not None
-    assert (found.status, found.result.lost_code, found.result.steps) == ("finished", "bridge-lost", 3)
-    assert LOST in str(found.result.lost)
+    run = irsim.runs.open_run("record")
+    assert run.result is not None
+    assert (run.status, run.result.lost_code, run.result.steps) == ("finished", "bridge-lost", 3)
+    assert LOST in str(run.result.lost)
     shown = call("inspect", "record")
     assert ": lost: the robot did not arrive" in shown.stdout
     assert f"reason: json_lines {peer.address} {LOST}" in shown.stdout
-    assert json.loads(call("inspect", "record", "--json").stdout)["lost"] == found.result.lost
+    assert json.loads(call("inspect", "record", "--json").stdout)["lost"] == run.result.lost
 
 
 def test_runs_are_listed_with_how_they_ended(scene: Any) -> None:

@@ -71,10 +71,10 @@ def test_slip_takes_a_share_of_the_speed_of_each_wheel() -> None:
     for step in range(200):
         drive.command(motion_of(scene, state_of(scene, step=step), rover=(1.0, 0.0)))
         shares.append(drive.targets(step * 0.1)[:2] * drive.rigs[0].wheel_radius)
-    found = np.array(shares)
-    assert ((found >= 0.6) & (found <= 1)).all()
-    assert found.mean() == pytest.approx(0.8, abs=0.02)
-    assert abs(np.corrcoef(found.T)[0, 1]) < 0.2
+    ratios = np.array(shares)
+    assert ((ratios >= 0.6) & (ratios <= 1)).all()
+    assert ratios.mean() == pytest.approx(0.8, abs=0.02)
+    assert abs(np.corrcoef(ratios.T)[0, 1]) < 0.2
 
 
 def test_comparison_of_lidars_counts_what_only_one_has_hit() -> None:

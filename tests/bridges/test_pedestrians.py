@@ -42,25 +42,25 @@ def convert(tmp_path):
 
 def replayed(scene: Path) -> dict[str, dict[int, tuple[float, float]]]:
     """Name -> step -> place of the obstacles, as simulated, while they are in the world."""
-    found: dict[str, dict[int, tuple[float, float]]] = {}
+    places: dict[str, dict[int, tuple[float, float]]] = {}
     env = irsim.make(str(scene), headless=True, log_level="ERROR")
     try:
         for step in range(100):
             for item in env.obstacle_list:
                 x, y = item.state[:2, 0].tolist()
                 if x == x:
-                    found.setdefault(item.name, {})[step] = (x, y)
+                    places.setdefault(item.name, {})[step] = (x, y)
             env.step()
     finally:
         env.end(ending_time=0.0)
-    return found
+    return places
 
 
 def check_places(scene: Path) -> None:
-    found = replayed(scene)
-    assert set(found) == {f"ped_{who}" for who in crowds.walks()}
+    obstacles = replayed(scene)
+    assert set(obstacles) == {f"ped_{who}" for who in crowds.walks()}
     for who, way in crowds.walks().items():
-        places = found[f"ped_{who}"]
+        places = obstacles[f"ped_{who}"]
         assert (min(places), max(places)) == (4 * way[0][0], 4 * way[-1][0]), "it is there as long as it was recorded"
         recorded = np.array([(x, y) for _, x, y in way])
         np.testing.assert_allclose([places[4 * row] for row, _, _ in way], recorded, atol=1e-9)
@@ -69,9 +69,9 @@ def check_places(scene: Path) -> None:
 @pytest.mark.parametrize("smooth", ["linear", "cubic"])
 @pytest.mark.parametrize("name", FILES)
 def test_places_at_recorded_times_are_exact(convert, name: str, smooth: str) -> None:
-    scene, found = convert(FILES[name](), name, layout=Layout(name, interpolation=smooth))
-    assert found.format == ("obsmat" if name == "obsmat.txt" else "trajnet")
-    assert (found.pedestrians, found.fps, found.duration) == (3, 15.0, pytest.approx(7.6))
+    scene, imported = convert(FILES[name](), name, layout=Layout(name, interpolation=smooth))
+    assert imported.format == ("obsmat" if name == "obsmat.txt" else "trajnet")
+    assert (imported.pedestrians, imported.fps, imported.duration) == (3, 15.0, pytest.approx(7.6))
     assert [item.message for item in irsim.validate(str(scene)).findings if item.severity == "error"] == []
     check_places(scene)
 
@@ -85,8 +85,8 @@ def test_splines_in_pixels(convert, tmp_path: Path, mapped: str) -> None:
     options = {"scale": 0.02} if mapped == "scale" else {"homography": tmp_path / "H.txt"}
     if mapped == "corner":
         options["image_size"] = (720, 576)
-    scene, found = convert(crowds.vsp(), "crowd.vsp", **options)
-    assert (found.format, found.pedestrians, found.fps) == ("vsp", 3, 25.0)
+    scene, imported = convert(crowds.vsp(), "crowd.vsp", **options)
+    assert (imported.format, imported.pedestrians, imported.fps) == ("vsp", 3, 25.0)
     places = replayed(scene)
     for number, way in enumerate(crowds.walks().values()):
         for row, x, y in way:
@@ -124,20 +124,20 @@ def test_a_long_time_without_rows_is_told(convert) -> None:
 
 
 def test_windows_of_time_and_space(convert) -> None:
-    scene, found = convert(crowds.trajnet(), window=Window(start=4.0, end=6.0), layout=Layout("x", robot=False))
-    assert found.duration == pytest.approx(2.0)
+    scene, imported = convert(crowds.trajnet(), window=Window(start=4.0, end=6.0), layout=Layout("x", robot=False))
+    assert imported.duration == pytest.approx(2.0)
     places = replayed(scene)
     assert places["ped_1"][0] == pytest.approx(crowds.walks()[1][10][1:], abs=1e-9)
-    scene, found = convert(crowds.trajnet(), window=Window(box=(-10, -10, 2.9, 10)), overwrite=True)
-    assert found.pedestrians == 2, "who leaves the area vanishes"
+    scene, imported = convert(crowds.trajnet(), window=Window(box=(-10, -10, 2.9, 10)), overwrite=True)
+    assert imported.pedestrians == 2, "who leaves the area vanishes"
     assert max(x for x, _ in replayed(scene)["ped_1"].values()) <= 2.9
 
 
 def test_who_comes_back_into_the_area_is_another_obstacle(convert) -> None:
     rows = [f"{10 * k} 5 {x} 0" for k, x in enumerate([0, 1, 5, 5, 1, 0, 5, 0])]
-    scene, found = convert("\n".join(rows), window=Window(box=(-1, -1, 2, 1)))
-    assert found.pedestrians == 2
-    assert "1 with a single row" in " ".join(found.notes)
+    scene, imported = convert("\n".join(rows), window=Window(box=(-1, -1, 2, 1)))
+    assert imported.pedestrians == 2
+    assert "1 with a single row" in " ".join(imported.notes)
     assert set(replayed(scene)) == {"ped_5", "ped_5_2"}
 
 
@@ -239,9 +239,9 @@ def square(tmp_path_factory) -> Path:
 
 
 def test_a_suite_of_windows(square: Path, tmp_path: Path) -> None:
-    found = import_pedestrians(square, suite=tmp_path / "my crowd.yaml", episodes=Episodes(length=20))
-    assert (found.file, found.length, found.notes[1:]) == (None, 20, [])
-    assert found.windows == pytest.approx([0, 20, 40, 60, 80, 100])
+    imported = import_pedestrians(square, suite=tmp_path / "my crowd.yaml", episodes=Episodes(length=20))
+    assert (imported.file, imported.length, imported.notes[1:]) == (None, 20, [])
+    assert imported.windows == pytest.approx([0, 20, 40, 60, 80, 100])
     plan = suite_plan(str(tmp_path / "my crowd.yaml"), policies=["orca", "sfm"], seeds=3)
     result = measure_plan(plan, workers=1)
     assert result.scenarios == [f"from-{start}s" for start in (0, 20, 40, 60, 80, 100)]
@@ -254,11 +254,11 @@ def test_a_suite_of_windows(square: Path, tmp_path: Path) -> None:
 
 def test_windows_have_the_people_of_their_time(square: Path, tmp_path: Path) -> None:
     window = Window(10.0, 110.0)
-    found = import_pedestrians(square, suite=tmp_path / "s.yaml", window=window, episodes=Episodes(length=25))
+    imported = import_pedestrians(square, suite=tmp_path / "s.yaml", window=window, episodes=Episodes(length=25))
     scenarios = yaml.safe_load((tmp_path / "s.yaml").read_text())["scenarios"]
     recorded = np.loadtxt(square)
     assert len(scenarios) == 4
-    for scenario, start in zip(scenarios, found.windows, strict=True):
+    for scenario, start in zip(scenarios, imported.windows, strict=True):
         since = start + 10
         assert scenario["name"] == f"from-{since:g}s"
         (people,) = scenario["scenario"]["obstacle"]
@@ -292,8 +292,8 @@ def test_seeds_draw_free_starts_and_goals_far_apart(square: Path, tmp_path: Path
 def test_a_seed_chooses_the_windows(square: Path, tmp_path: Path) -> None:
     def windows(seed: int, count: int = 3) -> tuple[list[float], str]:
         episodes = Episodes(count, 10.0, seed)
-        found = import_pedestrians(square, suite=tmp_path / "s.yaml", episodes=episodes, overwrite=True)
-        return found.windows, (tmp_path / "s.yaml").read_text()
+        imported = import_pedestrians(square, suite=tmp_path / "s.yaml", episodes=episodes, overwrite=True)
+        return imported.windows, (tmp_path / "s.yaml").read_text()
 
     starts, text = windows(0)
     assert len(starts) == 3
@@ -305,9 +305,9 @@ def test_a_seed_chooses_the_windows(square: Path, tmp_path: Path) -> None:
 
 def test_a_recording_that_is_shorter_than_a_window(square: Path, tmp_path: Path) -> None:
     window = Window(0.0, 10.0)
-    found = import_pedestrians(square, suite=tmp_path / "s.yaml", window=window, episodes=Episodes(length=60))
-    assert found.windows == [0.0]
-    assert "ends before the only window" in found.notes[0]
+    imported = import_pedestrians(square, suite=tmp_path / "s.yaml", window=window, episodes=Episodes(length=60))
+    assert imported.windows == [0.0]
+    assert "ends before the only window" in imported.notes[0]
     assert len(measure_plan(suite_plan(str(tmp_path / "s.yaml"), seeds=2), workers=1).episodes) == 3 * 2
 
 

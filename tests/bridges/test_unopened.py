@@ -80,6 +80,6 @@ def test_training() -> None:
     Path("task.yaml").write_text(TASK)
     report = task_report("task.yaml")
     assert report.valid, report
-    (found,) = [item for item in report.findings if item.code == "bridges-not-opened"]
-    assert (found.severity, found.message) == ("warning", f"training {SAID}")
+    (finding,) = [item for item in report.findings if item.code == "bridges-not-opened"]
+    assert (finding.severity, finding.message) == ("warning", f"training {SAID}")
     assert f"training {SAID}" in " ".join(call("validate", "task.yaml").output.split())

@@ -132,10 +132,10 @@ def test_ground_looks_up_and_the_arrow_forwards() -> None:
 
 def test_names_of_prims() -> None:
     names = ["robot 1", "robot_1", "Robot_1", "7up", "", "héllo/ß", "x" * 500]
-    found = prim_names(names)
-    assert found[:5] == ["robot_1", "robot_1_2", "Robot_1_3", "_7up", "object"]
-    assert len({name.lower() for name in found}) == len(names)
-    assert all(name.isascii() and name.isidentifier() for name in found)
+    result = prim_names(names)
+    assert result[:5] == ["robot_1", "robot_1_2", "Robot_1_3", "_7up", "object"]
+    assert len({name.lower() for name in result}) == len(names)
+    assert all(name.isascii() and name.isidentifier() for name in result)
 
 
 TEXT = """

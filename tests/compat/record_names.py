@@ -53,7 +53,7 @@ def parameters(item: object) -> list[str] | None:
 
 def names_of(item: object) -> dict[str, list[str] | None]:
     """Public attributes of a class, or names made in a module."""
-    found: dict[str, list[str] | None] = {}
+    names: dict[str, list[str] | None] = {}
     for name in sorted(vars(item) if inspect.ismodule(item) else dir(item)):
         value = getattr(item, name, None)
         if name.startswith("_") or inspect.ismodule(value):
@@ -61,8 +61,8 @@ def names_of(item: object) -> dict[str, list[str] | None]:
         home = getattr(value, "__module__", None)
         if inspect.ismodule(item) and not str(home or "irsim").startswith("irsim"):
             continue
-        found[name] = parameters(value) if callable(value) else None
-    return found
+        names[name] = parameters(value) if callable(value) else None
+    return names
 
 
 def main() -> None:

@@ -63,10 +63,10 @@ def _close(a: float, b: float) -> bool:
 
 def differences(ours: list[str], theirs: list[str]) -> list[str]:
     """One line for each fact that differs."""
-    found = [f"{b}\n    here: {a.partition('= ')[2]}" for a, b in zip(ours, theirs, strict=False) if not same(a, b)]
+    lines = [f"{b}\n    here: {a.partition('= ')[2]}" for a, b in zip(ours, theirs, strict=False) if not same(a, b)]
     if len(ours) != len(theirs):
-        found.append(f"{len(ours)} facts instead of {len(theirs)}")
-    return found
+        lines.append(f"{len(ours)} facts instead of {len(theirs)}")
+    return lines
 
 
 def _main() -> int:
@@ -83,10 +83,10 @@ def _main() -> int:
                 sys.exit(f"{name}: {complaint}")
             (OUTPUTS / f"{name}.txt").write_text("\n".join(facts) + "\n", encoding="utf-8")
             continue
-        found = [complaint.strip().splitlines()[-1]] if complaint else []
-        found += [] if complaint else differences(facts, recorded(name))
-        bad += bool(found)
-        for line in found:
+        lines = [complaint.strip().splitlines()[-1]] if complaint else []
+        lines += [] if complaint else differences(facts, recorded(name))
+        bad += bool(lines)
+        for line in lines:
             print(f"{name}: {line}")
     return bad
 

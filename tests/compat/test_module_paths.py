@@ -41,8 +41,8 @@ irsim.lib.handler.geometry_handler:geometry_handler irsim.lib.handler.geometry_h
 def test_the_module_is_there_and_gives_the_same_class(path):
     module, _, name = path.partition(":")
     package = ".".join(module.split(".")[:2])
-    found = getattr(import_module(module), name)
-    assert found is getattr(import_module(package), name, found)
+    imported = getattr(import_module(module), name)
+    assert imported is getattr(import_module(package), name, imported)
 
 
 def listed(statement: str) -> str:

@@ -128,16 +128,16 @@ def test_stubs_have_each_path_and_name_existing_homes() -> None:
         for line in text.splitlines():
             if line.startswith("from "):
                 _, module, _, *names = line.split()
-                found = importlib.import_module(module)
-                assert names[0] == "*" or hasattr(found, names[0]), line
+                target = importlib.import_module(module)
+                assert names[0] == "*" or hasattr(target, names[0]), line
 
 
 def test_freezing_programs_are_told_what_nothing_imports_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     """The hook, with a stand-in for the two functions of PyInstaller that it calls."""
 
     def collect_submodules(package: str, filter: Any = bool) -> list[str]:
-        found = pkgutil.walk_packages(importlib.import_module(package).__path__, f"{package}.", lambda name: None)
-        return [name for _, name, _ in found if filter(name)]
+        modules = pkgutil.walk_packages(importlib.import_module(package).__path__, f"{package}.", lambda name: None)
+        return [name for _, name, _ in modules if filter(name)]
 
     hooks = types.ModuleType("PyInstaller.utils.hooks")
     hooks.collect_submodules, hooks.collect_data_files = collect_submodules, lambda *_, **__: []  # type: ignore[attr-defined]

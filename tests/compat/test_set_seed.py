@@ -74,10 +74,10 @@ def test_set_seed_before_make_seeds_the_scenes_of_unseeded_environments_as_in_2_
 
 
 def test_set_seed_of_a_seeded_environment_leaves_others_to_chance_as_in_2_12(make: Make) -> None:
-    found = []
+    states = []
     for _ in range(2):
         seeded = make(NOISY, seed=3)
         random_numbers.set_seed(7)
-        found.append([view.state[:, 0].tolist() for view in make(NOISY).robot_list])
+        states.append([view.state[:, 0].tolist() for view in make(NOISY).robot_list])
         assert seeded.robot_list[0].state[0, 0] == pytest.approx(7.2, abs=0.1)
-    assert found[0] != found[1]
+    assert states[0] != states[1]

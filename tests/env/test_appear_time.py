@@ -219,15 +219,15 @@ def test_pictures_show_it_only_when_it_is_there_and_snapshots_of_the_start_as_a_
 def test_who_starts_where_another_one_appears_is_no_mistake_but_a_wall_is() -> None:
     assert not [f for f in irsim.validate(text=TEXT).findings if f.code == "initial-overlap"]
     walled = TEXT.replace("state: [5, 6, 0]", "state: [1, 3, 0]").replace("appear_time: 2", "color: red")
-    found = [f for f in irsim.validate(text=walled).findings if f.code == "initial-overlap"]
-    assert [("never appears" in f.message, f.severity) for f in found] == [(True, "warning")] * 2
+    findings = [f for f in irsim.validate(text=walled).findings if f.code == "initial-overlap"]
+    assert [("never appears" in f.message, f.severity) for f in findings] == [(True, "warning")] * 2
 
 
 def test_a_time_limit_before_the_appearance_is_reported() -> None:
-    found = irsim.validate(
+    findings = irsim.validate(
         text=TEXT.replace("time_limit: 30", "time_limit: 8.5").replace("goal: [9, 1]", "goal: [3, 1]")
     ).findings
-    assert any("after its appear_time of 1 s" in f.message for f in found if f.code == "time-too-short")
+    assert any("after its appear_time of 1 s" in f.message for f in findings if f.code == "time-too-short")
 
 
 def test_the_default_time_limit_counts_from_the_appearance(tmp_path: Path) -> None:
@@ -239,5 +239,5 @@ def test_the_default_time_limit_counts_from_the_appearance(tmp_path: Path) -> No
 
 
 def test_delays_by_other_names_lead_to_it() -> None:
-    found = irsim.validate(text=TEXT.replace("appear_time: 2", "spawn_time: 2")).findings
-    assert any("appear_time" in str(f.fix) for f in found if f.code == "unknown-key")
+    findings = irsim.validate(text=TEXT.replace("appear_time: 2", "spawn_time: 2")).findings
+    assert any("appear_time" in str(f.fix) for f in findings if f.code == "unknown-key")

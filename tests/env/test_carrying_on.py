@@ -19,8 +19,8 @@ PAIR = f"number: 2, state: [[1, 1, 0], [5, 5, 0]], {HEAD}"
 
 
 def _errors(text: str) -> list[tuple[str, str]]:
-    found = read(yaml.safe_load(text), strict=True).diagnostics
-    return [(item.code, format_path(item.path)) for item in found if item.severity == "error"]
+    diagnostics = read(yaml.safe_load(text), strict=True).diagnostics
+    return [(item.code, format_path(item.path)) for item in diagnostics if item.severity == "error"]
 
 
 @pytest.mark.parametrize(

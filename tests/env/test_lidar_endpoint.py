@@ -55,7 +55,7 @@ def test_the_key_may_be_written_at_run_time(make: Make) -> None:
 
 def test_the_checker_proposes_the_key() -> None:
     text = TEXT.format(name="lidar2d", number=720, span=6.28318, more="")
-    (found,) = [f for f in irsim.validate(text=text).findings if f.code == "lidar-ends-meet"]
-    assert found.fix == "endpoint: false, for 720 directions"
+    (finding,) = [f for f in irsim.validate(text=text).findings if f.code == "lidar-ends-meet"]
+    assert finding.fix == "endpoint: false, for 720 directions"
     text = TEXT.format(name="lidar2d", number=720, span=6.28318, more=", endpoint: false")
     assert [f for f in irsim.validate(text=text).findings if f.code == "lidar-ends-meet"] == []

@@ -37,9 +37,9 @@ def test_a_circle_begins_at_its_start_angle(make: Make) -> None:
 
 
 def test_the_third_number_of_a_centre_is_reported() -> None:
-    found = irsim.validate(text=CIRCLE.format(keys="center: [5, 5, 1.5708]")).findings
+    findings = irsim.validate(text=CIRCLE.format(keys="center: [5, 5, 1.5708]")).findings
     assert ("ignored-key", "start_angle: 1.5708 turns the objects around the circle") in {
-        (f.code, f.fix) for f in found
+        (f.code, f.fix) for f in findings
     }
     assert "ignored-key" not in {f.code for f in irsim.validate(text=CIRCLE.format(keys="center: [5, 5, 0]")).findings}
 

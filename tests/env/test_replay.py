@@ -104,9 +104,9 @@ robot:
     ],
 )
 def test_recordings_that_are_none_are_refused(old: str, new: str, expected: str) -> None:
-    found = irsim.validate(text=TEXT.replace(old, new))
-    assert not found.valid
-    assert any(expected in finding.message or expected in str(finding.allowed) for finding in found.findings)
+    report = irsim.validate(text=TEXT.replace(old, new))
+    assert not report.valid
+    assert any(expected in finding.message or expected in str(finding.allowed) for finding in report.findings)
 
 
 @settings(max_examples=examples(40), deadline=None)

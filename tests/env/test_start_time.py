@@ -26,13 +26,13 @@ obstacle:
 def first_moves(env: Any, steps: int = 40) -> list[int]:
     """Number of the step in which each object first moved."""
     start = np.array([view.state[:2, 0] for view in env.objects])
-    found = [0] * len(start)
+    first_steps = [0] * len(start)
     for step in range(1, steps + 1):
         env.step()
         for index, view in enumerate(env.objects):
-            if not found[index] and (view.state[:2, 0] != start[index]).any():
-                found[index] = step
-    return found
+            if not first_steps[index] and (view.state[:2, 0] != start[index]).any():
+                first_steps[index] = step
+    return first_steps
 
 
 def test_objects_move_from_their_start_time_on(make: Make) -> None:
@@ -97,8 +97,8 @@ def test_the_time_limit_and_the_summary_know_the_start_time(tmp_path: Path) -> N
     assert "'robot_2' had not started (start_time 100 s)" in short.summary
     assert "'robot_2' still waits 8.00 m from its goal (it starts at 100 s)" in str(short.reason)
     path.write_text(TEXT.replace("2.55", "100").replace("step_time: 0.1", "step_time: 0.1, time_limit: 60"))
-    found = irsim.validate(path).findings
-    assert [(f.code, "start_time" in f.message) for f in found if f.severity != "hint"] == [("time-too-short", True)]
+    findings = irsim.validate(path).findings
+    assert [(f.code, "start_time" in f.message) for f in findings if f.severity != "hint"] == [("time-too-short", True)]
 
 
 def test_waiting_objects_are_drawn_pale_until_they_start(make: Make) -> None:
@@ -118,7 +118,7 @@ def test_waiting_objects_are_drawn_pale_until_they_start(make: Make) -> None:
 
 
 def test_a_negative_start_time_is_an_error() -> None:
-    found = irsim.validate(text=TEXT.replace("start_time: 0.3", "start_time: -1")).findings
-    assert ("error", "obstacle[0].start_time") in {(f.severity, f.path) for f in found}
+    findings = irsim.validate(text=TEXT.replace("start_time: 0.3", "start_time: -1")).findings
+    assert ("error", "obstacle[0].start_time") in {(f.severity, f.path) for f in findings}
     renamed = irsim.validate(text=TEXT.replace("start_time: 0.3", "delay: 0.3")).findings
     assert any("start_time" in str(f.fix) for f in renamed if f.code == "unknown-key")

@@ -54,13 +54,13 @@ def test_blender_reads_a_run(run, tmp_path: Path) -> None:
     command = [os.environ["IRSIM_BPY"], "read.py", "run.usdc", json.dumps(steps), json.dumps(names)]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
     assert "FOUND" in done.stdout, done.stdout + done.stderr
-    found = json.loads(done.stdout.split("FOUND")[1].splitlines()[0])
+    answer = json.loads(done.stdout.split("FOUND")[1].splitlines()[0])
     for state in recorded_states(run):
         for name, index in zip(names, (0, 5), strict=True):
             if state.step in steps and math.isfinite(state.pose[index, 0]):
-                x, y, z, yaw = found[f"{name}/{state.step}"]
+                x, y, z, yaw = answer[f"{name}/{state.step}"]
                 assert (x, y, z) == pytest.approx((*state.pose[index, :2], 0), abs=1e-5)
                 assert math.remainder(yaw - state.pose[index, 2], math.tau) == pytest.approx(0, abs=1e-5)
-    assert "Map" in found["meshes"]
-    assert found["cameras"] == ["Overview", "Top"]
-    assert found["flat"] < 1e-6
+    assert "Map" in answer["meshes"]
+    assert answer["cameras"] == ["Overview", "Top"]
+    assert answer["flat"] < 1e-6

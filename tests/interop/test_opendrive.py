@@ -63,12 +63,12 @@ def generated(folder: Path) -> Path:
 def theirs(file: Path, grid, kind) -> np.ndarray:
     """(nx, ny) whether the center of each cell is in a lane, as the client library of CARLA says, whose y is -y."""
     town = carla.Map("town", file.read_text())
-    found = np.zeros(grid.cells.occupied.shape, bool)
-    for i, j in np.ndindex(found.shape):
+    in_lane = np.zeros(grid.cells.occupied.shape, bool)
+    for i, j in np.ndindex(in_lane.shape):
         x, y = grid.origin[0] + (i + 0.5) * CELL, grid.origin[1] + (j + 0.5) * CELL
         place = carla.Location(x=x, y=-y, z=0.0)
-        found[i, j] = town.get_waypoint(place, project_to_road=False, lane_type=kind) is not None
-    return found
+        in_lane[i, j] = town.get_waypoint(place, project_to_road=False, lane_type=kind) is not None
+    return in_lane
 
 
 @pytest.mark.parametrize(("write", "lanes", "kind"), [

@@ -45,11 +45,11 @@ def recast_cells(file: Path, grid: Grid, height: float) -> np.ndarray:
     """(nx, ny) cells that Recast's height field has as floors near a height."""
     x, y, z = np.fromfile(f"{file}.cells", "<f4").reshape(-1, 3).T
     floor = np.abs(y - height) < 0.3
-    found = np.zeros((grid.nx, grid.ny), bool)
+    cells = np.zeros((grid.nx, grid.ny), bool)
     i = np.floor((x[floor] - grid.x) / grid.resolution + 1e-3).astype(int)
     j = np.floor((-z[floor] - grid.y) / grid.resolution + 1e-3).astype(int)
-    found[i, j] = True
-    return found
+    cells[i, j] = True
+    return cells
 
 
 def free_on(found: Occupancy, grid: Grid) -> np.ndarray:

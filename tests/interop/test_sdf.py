@@ -60,12 +60,12 @@ def test_a_recorded_run_has_no_errors(parser: Parser, tmp_path: Path, monkeypatc
     irsim.export_run("last", "town", to="sdf")
     done = parser(tmp_path / "town" / "world.sdf")
     assert done.stderr == ""
-    found = numbers_of(done.stdout)
-    assert found["errors"] == found["empty"] == 0
-    assert (found["actors"], found["waypoints"]) == (3, 63)
-    assert (found["lidars"], found["beams"]) == (1, 31)
-    assert found["models"] == 5  # ground, walls, map, robot, polygon
-    assert found["visuals"] > 20
+    counts = numbers_of(done.stdout)
+    assert counts["errors"] == counts["empty"] == 0
+    assert (counts["actors"], counts["waypoints"]) == (3, 63)
+    assert (counts["lidars"], counts["beams"]) == (1, 31)
+    assert counts["models"] == 5  # ground, walls, map, robot, polygon
+    assert counts["visuals"] > 20
 
 
 def test_templates_are_worlds_without_errors(parser: Parser, tmp_path: Path) -> None:
@@ -79,9 +79,9 @@ def test_templates_are_worlds_without_errors(parser: Parser, tmp_path: Path) -> 
     done = parser(*files)
     assert done.stderr == ""
     assert done.returncode == 0
-    found = [numbers_of(line) for line in done.stdout.splitlines()]
-    assert len(found) == len(files) >= 14
-    assert all(one["models"] >= 2 and one["empty"] == 0 for one in found)
+    counts = [numbers_of(line) for line in done.stdout.splitlines()]
+    assert len(counts) == len(files) >= 14
+    assert all(one["models"] >= 2 and one["empty"] == 0 for one in counts)
 
 
 @pytest.mark.parametrize(

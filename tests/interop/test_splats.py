@@ -71,12 +71,12 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
 
 
 def test_the_map_is_the_truth_although_one_in_twenty_splats_floats(site: Site) -> None:
-    _, found, _ = read_occupancy(site.scene, ImportOptions(up="-y"), ImportLimits())
-    grid, cell = found.grid, found.grid.resolution
-    truth = site.room.truth((grid.x + 0.5, grid.y + 0.3), cell, found.values.shape)
+    _, plan, _ = read_occupancy(site.scene, ImportOptions(up="-y"), ImportLimits())
+    grid, cell = plan.grid, plan.grid.resolution
+    truth = site.room.truth((grid.x + 0.5, grid.y + 0.3), cell, plan.values.shape)
     x, y = (begin + (np.arange(n) + 0.5) * cell for begin, n in zip((grid.x, grid.y), truth.shape, strict=True))
     inside = ((x > -0.5) & (x < 7.5))[:, None] & ((y > -0.3) & (y < 5.7))[None, :]
-    taken = (found.values != 0) & inside
+    taken = (plan.values != 0) & inside
     share = (taken & truth).sum() / ((taken | truth) & inside).sum()
     print(f"intersection over union {share:.3f}")
     assert share > 0.9
@@ -105,11 +105,11 @@ def test_pycolmap_reads_our_cameras_with_equal_centers_and_directions(site: Site
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     playwright = pytest.importorskip("playwright.sync_api")
-    found = os.environ.get("IRSIM_CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
-    if found is None:
+    program = os.environ.get("IRSIM_CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
+    if program is None:
         pytest.skip("needs Chromium")
     with playwright.sync_playwright() as driver:
-        started = driver.chromium.launch(executable_path=found, args=SWITCHES)
+        started = driver.chromium.launch(executable_path=program, args=SWITCHES)
         yield started
         started.close()
 
@@ -200,9 +200,9 @@ def test_the_page_and_the_picture_of_the_cpu_agree(site: Site, page: Any) -> Non
     page.evaluate("() => document.querySelectorAll('header, footer').forEach(part => part.style.display = 'none')")
     page.wait_for_timeout(500)
     matrix = camera_pose(np.array(EYE), "colmap", EYE_HEIGHT, transform=site.sidecar.T_scene_from_irsim)
-    found = ratio(shot(page), our_picture(site.scene, matrix))
-    print(f"page against CPU: {found:.1f} dB")
-    assert found > 40
+    decibels = ratio(shot(page), our_picture(site.scene, matrix))
+    print(f"page against CPU: {decibels:.1f} dB")
+    assert decibels > 40
 
 
 @pytest.fixture(scope="module")
@@ -267,11 +267,11 @@ def test_the_picture_of_the_cpu_is_that_of_spark(
     pose, transform = np.array(EYE), sidecar.T_scene_from_irsim
     theirs = spark_picture(browser, spark_files, scene, camera_pose(pose, "opengl", EYE_HEIGHT, transform=transform))
     ours = our_picture(scene, camera_pose(pose, "colmap", EYE_HEIGHT, transform=transform))
-    found = ratio(ours, theirs)
-    print(f"CPU against Spark, harmonics {harmonics}: {found:.1f} dB")
-    assert found > 36
+    decibels = ratio(ours, theirs)
+    print(f"CPU against Spark, harmonics {harmonics}: {decibels:.1f} dB")
+    assert decibels > 36
     wrong = camera_pose(pose + np.array([0, 0, 0.03]), "colmap", EYE_HEIGHT, transform=transform)
-    assert ratio(our_picture(scene, wrong), theirs) < found - 5  # the measure sees two degrees
+    assert ratio(our_picture(scene, wrong), theirs) < decibels - 5  # the measure sees two degrees
 
 
 def test_a_mesh_with_y_down_gives_the_map_of_the_same_mesh_with_z_up(tmp_path: Path) -> None:
@@ -281,9 +281,9 @@ def test_a_mesh_with_y_down_gives_the_map_of_the_same_mesh_with_z_up(tmp_path: P
         corners = flat().reshape(-1, 3) @ axes_of(frame).T
         mesh = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), process=False)
         mesh.export(tmp_path / "flat.ply")
-        _, found, source = read_occupancy(tmp_path / "flat.ply", ImportOptions(up=up, resolution=0.1), ImportLimits())
-        assert (source["kind"], found.frame) == ("mesh", frame)
-        values.append(found.values)
+        _, plan, source = read_occupancy(tmp_path / "flat.ply", ImportOptions(up=up, resolution=0.1), ImportLimits())
+        assert (source["kind"], plan.frame) == ("mesh", frame)
+        values.append(plan.values)
     assert (values[0] == 0).sum() > 1000
     for other in values[1:]:
         assert other.shape == values[0].shape

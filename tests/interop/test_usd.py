@@ -32,8 +32,8 @@ def run(tmp_path_factory):
 def validate(stage) -> list[str]:
     validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
     assert len(validators) >= 20
-    found = UsdValidation.ValidationContext(validators).Validate(stage)
-    return [error.GetErrorAsString() for error in found]
+    errors = UsdValidation.ValidationContext(validators).Validate(stage)
+    return [error.GetErrorAsString() for error in errors]
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
@@ -82,8 +82,8 @@ def test_bodies_are_where_they_are_simulated_and_collide(run) -> None:
     cache = UsdGeom.BBoxCache(0, [UsdGeom.Tokens.default_])
 
     def bounds(path: str):
-        found = cache.ComputeWorldBound(stage.GetPrimAtPath(path)).ComputeAlignedRange()
-        return [*found.GetMin(), *found.GetMax()]
+        box = cache.ComputeWorldBound(stage.GetPrimAtPath(path)).ComputeAlignedRange()
+        return [*box.GetMin(), *box.GetMax()]
 
     assert bounds("/World/Obstacles/disc") == pytest.approx([3.8, 6.7, 0, 4.4, 7.3, 1.0], abs=1e-6)
     assert bounds("/World/Obstacles/wall") == pytest.approx([7.975, 0.975, 0, 9.025, 2.025, 1], abs=1e-6)

@@ -127,12 +127,12 @@ def test_shapes_and_instances_of_instancers(tmp_path) -> None:
     crates.CreatePositionsAttr([(-3, 0, 0), (0, 0, 0), (3, 0, 0)])
     crates.CreateInvisibleIdsAttr([8])
     stage.Save()
-    _, found, _ = read_occupancy(file, ImportOptions(), ImportLimits())
-    assert not found.notes
-    assert found.regions[0] == pytest.approx(60 - 2 - 3 * math.pi / 4 - (1 + math.pi / 4), abs=1.2)
+    _, plan, _ = read_occupancy(file, ImportOptions(), ImportLimits())
+    assert not plan.notes
+    assert plan.regions[0] == pytest.approx(60 - 2 - 3 * math.pi / 4 - (1 + math.pi / 4), abs=1.2)
 
     def stands(x: float, y: float) -> bool:
-        return bool(found.values.reshape(-1)[found.grid.column_at(x, y)] != FREE)
+        return bool(plan.values.reshape(-1)[plan.grid.column_at(x, y)] != FREE)
 
     assert all(stands(x, y) for x, y, _ in places.values())
     assert [stands(x, -2) for x in (-3, 0, 3)] == [True, False, True]

@@ -46,29 +46,29 @@ def test_labels_that_cover_nothing_stay() -> None:
 
 
 def test_the_second_of_two_at_one_place_moves_aside() -> None:
-    found = placed([(100, 100), (100, 100)])
-    assert (found[0] == boxes_of([(100, 100)])[0]).all()
-    assert not overlapping(found)
+    boxes = placed([(100, 100), (100, 100)])
+    assert (boxes[0] == boxes_of([(100, 100)])[0]).all()
+    assert not overlapping(boxes)
 
 
 def test_labels_keep_off_bodies_where_they_can() -> None:
     body = [90.0, 105.0, 130.0, 125.0]
-    found = placed([(100, 100)], [body])
-    assert not overlapping([found[0], np.array(body)])
+    boxes = placed([(100, 100)], [body])
+    assert not overlapping([boxes[0], np.array(body)])
 
 
 def test_labels_stay_inside_of_the_picture() -> None:
-    found = placed([(0, 0), (600, 600), (0, 600), (600, 0), (600, 600)])
-    assert (found[:, :2] >= 0).all()
-    assert (found[:, 2:] <= 600).all()
-    assert not overlapping(found)
+    boxes = placed([(0, 0), (600, 600), (0, 600), (600, 0), (600, 600)])
+    assert (boxes[:, :2] >= 0).all()
+    assert (boxes[:, 2:] <= 600).all()
+    assert not overlapping(boxes)
 
 
 def test_a_label_moves_no_farther_than_it_must() -> None:
     above = [80.0, 110.5, 160.0, 120.0]
-    found = placed([(100, 100)], [above])[0]
-    assert not overlapping([found, np.array(above)])
-    assert found.tolist() == [112.0, 94.0, 142.0, 106.0]  # right beside the thing, at its height
+    box = placed([(100, 100)], [above])[0]
+    assert not overlapping([box, np.array(above)])
+    assert box.tolist() == [112.0, 94.0, 142.0, 106.0]  # right beside the thing, at its height
 
 
 def test_labels_keep_off_walls_but_not_off_the_room_around_their_thing() -> None:
@@ -87,9 +87,9 @@ def test_only_a_label_away_from_its_thing_has_a_line_to_it() -> None:
 
 @given(st.lists(st.tuples(st.integers(50, 550), st.integers(50, 550)), min_size=1, max_size=12))
 def test_a_dozen_labels_always_find_room(points: list[tuple[int, int]]) -> None:
-    found = placed(points)
-    assert len(overlapping(found)) <= max(0, len(points) - 6)  # many at one place
-    assert (placed(points) == found).all()
+    boxes = placed(points)
+    assert len(overlapping(boxes)) <= max(0, len(points) - 6)  # many at one place
+    assert (placed(points) == boxes).all()
 
 
 CLOSE = """

@@ -33,8 +33,8 @@ def room(goal: str = "[9, 3]", behavior: str = "dash", middle: float = 2.0) -> s
 
 
 def plan(text: str) -> dict[str, object]:
-    (found,) = snapshot(text=text, overlays=["plan"], draw=False).plans
-    return found.model_dump()
+    (path,) = snapshot(text=text, overlays=["plan"], draw=False).plans
+    return path.model_dump()
 
 
 def scene_of(text: str, tmp_path: Path) -> Scene:
@@ -48,10 +48,10 @@ def scene_of(text: str, tmp_path: Path) -> Scene:
 
 
 def test_shortest_way_of_who_does_not_plan() -> None:
-    found = plan(room())
-    assert (found["own"], found["lost"]) == (False, None)
-    assert found["length"] == pytest.approx(2 * math.hypot(4, 1), abs=0.5)
-    assert 0 <= float(str(found["margin"])) < 0.1
+    path = plan(room())
+    assert (path["own"], path["lost"]) == (False, None)
+    assert path["length"] == pytest.approx(2 * math.hypot(4, 1), abs=0.5)
+    assert 0 <= float(str(path["margin"])) < 0.1
 
 
 def test_own_plan_of_follow_is_the_one_that_it_drives() -> None:
@@ -67,9 +67,9 @@ def test_own_plan_of_follow_is_the_one_that_it_drives() -> None:
 @pytest.mark.parametrize("behavior", ["dash", "follow"])
 def test_no_way(behavior: str) -> None:
     text = room(behavior=behavior).replace("width: 4}", "width: 8}")
-    found = plan(text)
-    assert found["lost"] == (9, 3)
-    assert found["length"] == 0
+    path = plan(text)
+    assert path["lost"] == (9, 3)
+    assert path["length"] == 0
 
 
 @pytest.mark.parametrize("goal", ["[5, 2]", "[5.3, 2]"])
@@ -90,8 +90,8 @@ def test_several_goals() -> None:
 
 
 def test_nothing_in_the_way() -> None:
-    found = plan("world: {width: 5, height: 5}\nrobot: [{state: [1, 1], goal: [4, 1]}]\n")
-    assert (found["length"], found["margin"], found["lost"]) == (3, None, None)
+    path = plan("world: {width: 5, height: 5}\nrobot: [{state: [1, 1], goal: [4, 1]}]\n")
+    assert (path["length"], path["margin"], path["lost"]) == (3, None, None)
 
 
 def test_no_ways_unless_asked_for() -> None:
@@ -148,7 +148,7 @@ def test_nothing_stands_nothing_is_drawn(tmp_path: Path) -> None:
 def test_templates(template: str) -> None:
     overlays = snapshot(str(scenario_file(template)), seed=1, overlays=["names", "clearance", "plan"], size=400)
     assert overlays.png != snapshot(str(scenario_file(template)), seed=1, overlays=["names"], size=400).png
-    assert all(found.lost is None for found in overlays.plans)
+    assert all(path.lost is None for path in overlays.plans)
 
 
 LANE = """\
@@ -163,17 +163,17 @@ obstacle:
 
 
 def test_the_margin_of_a_car_beside_a_wall_is_that_of_its_side() -> None:
-    found = plan(LANE.format(north=5.2))
-    assert found["margin"] == pytest.approx(4.7 - 3 - 0.9, abs=1e-3)
-    assert found["nearest"] == "north"
+    path = plan(LANE.format(north=5.2))
+    assert path["margin"] == pytest.approx(4.7 - 3 - 0.9, abs=1e-3)
+    assert path["nearest"] == "north"
 
 
 def test_the_margin_of_a_car_counts_its_bumper_at_the_goal() -> None:
     wall = "  - {name: end, state: [19.5, 3], shape: {name: rectangle, length: 1, width: 2}}\n"
-    found = plan(LANE.format(north=5.9) + wall)
+    path = plan(LANE.format(north=5.9) + wall)
     front = (4.4 - 2.6) / 2 + 2.6  # from the rear axle, about which the car is placed
-    assert found["nearest"] == "end"
-    assert found["margin"] == pytest.approx(19 - 15 + 0.1 - front, abs=0.08)  # it stops within the goal_threshold
+    assert path["nearest"] == "end"
+    assert path["margin"] == pytest.approx(19 - 15 + 0.1 - front, abs=0.08)  # it stops within the goal_threshold
 
 
 def test_the_outline_of_a_car_is_drawn_where_it_has_the_least_margin(tmp_path: Path) -> None:
@@ -192,10 +192,10 @@ def test_the_outline_of_a_car_is_drawn_where_it_has_the_least_margin(tmp_path: P
 def test_the_least_margin_counts_people_who_stand() -> None:
     ben = "  - {name: ben, state: [5, 5.4], shape: {name: circle, radius: 0.2}, tags: [pedestrian]}\n"
     text = room(middle=1.0).replace("state: [1, 3], goal: [9, 3]", "state: [1, 4.5], goal: [9, 4.5]") + ben
-    found = plan(text)
-    assert found["margin"] == pytest.approx(0.9 - 0.3 - 0.2, abs=1e-3)
-    assert found["nearest"] == "ben"
-    assert found["tightest"] == pytest.approx((5, 4.5), abs=0.1)
+    path = plan(text)
+    assert path["margin"] == pytest.approx(0.9 - 0.3 - 0.2, abs=1e-3)
+    assert path["nearest"] == "ben"
+    assert path["tightest"] == pytest.approx((5, 4.5), abs=0.1)
 
 
 def test_the_room_of_a_car_is_that_of_its_footprint_along_its_path() -> None:

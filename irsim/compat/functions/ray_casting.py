@@ -89,5 +89,5 @@ def cast_ray_segments(
     distance = np.where(hit & (distance > MIN_RANGE_M) & (distance <= max_range), distance, np.inf)
     nearest = distance.argmin(axis=1)
     ranges = distance[np.arange(len(directions)), nearest]
-    found = np.isfinite(ranges)
-    return np.where(found, ranges, float(max_range)), np.where(found, nearest, -1).astype(np.int64)
+    has_hit = np.isfinite(ranges)
+    return np.where(has_hit, ranges, float(max_range)), np.where(has_hit, nearest, -1).astype(np.int64)

@@ -109,8 +109,8 @@ class geometry_handler:
 
     def get_polygon_Gh(self, vertices: Floats | None = None) -> Inequality:
         """Return the matrices of ``G p <= h`` for a convex polygon (2, M): outward normals, cone ``Rpositive``."""
-        found = None if vertices is None else polygon_inequality(np.asarray(vertices, dtype=np.float64).T)
-        return _NOT_CONVEX if found is None else (*found, "Rpositive", True)
+        inequality = None if vertices is None else polygon_inequality(np.asarray(vertices, dtype=np.float64).T)
+        return _NOT_CONVEX if inequality is None else (*inequality, "Rpositive", True)
 
     def get_circle_Gh(self, center: Floats, radius: float) -> Inequality:
         """Return the matrices of ``G p <= h`` for a disc, in the cone ``norm2``."""

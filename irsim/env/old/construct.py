@@ -109,8 +109,8 @@ class ObjectBase(ScriptObject, metaclass=_AnyObject):
         given = dict(shape=shape, kinematics=kinematics, state=state, velocity=velocity, goal=goal, color=color, **keys)
         scenario = _empty() if env is None else env.simulation.scenario
         number = 0 if env is None else next(env.env_param.id_iter)
-        record, found = read_object(role, given, scenario.world, number)
-        for item in found:
+        record, findings = read_object(role, given, scenario.world, number)
+        for item in findings:
             if env is not None:
                 env.logger.warning(f"{record.name}: {item.message} [{item.code}]")
         simulation = lone_simulation(scenario, record, 0 if env is None else env.simulation.key()[0])

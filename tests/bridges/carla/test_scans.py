@@ -77,18 +77,18 @@ def test_a_straight_wall_is_exact_between_points(start: float) -> None:
     with np.errstate(divide="ignore"):
         ranges = np.where(np.cos(angles) > 0, 2 / np.cos(angles), np.inf)
     lidar = _lidar()
-    found = scan_of_points(_points(ranges, angles), lidar, 720, -1, 1)
+    scan = scan_of_points(_points(ranges, angles), lidar, 720, -1, 1)
     wanted = 2 / np.cos(lidar.angles)
     near = wanted < 9.5
-    np.testing.assert_allclose(found[near], wanted[near], atol=1e-6)
-    assert np.isinf(found[wanted > 10.5]).all()
+    np.testing.assert_allclose(scan[near], wanted[near], atol=1e-6)
+    assert np.isinf(scan[wanted > 10.5]).all()
 
 
 def test_left_is_left() -> None:
     angles = _turn(720)
     ranges = np.where((angles > 0.4) & (angles < 0.6), 3.0, np.inf)  # counterclockwise: to the left
-    found = scan_of_points(_points(ranges, angles), _lidar(), 720, -1, 1)
-    seen = np.isfinite(found)
+    scan = scan_of_points(_points(ranges, angles), _lidar(), 720, -1, 1)
+    seen = np.isfinite(scan)
     assert (_lidar().angles[seen] > 0.35).all()
     assert (_lidar().angles[seen] < 0.65).all()
     assert seen.sum() >= 5
@@ -97,8 +97,8 @@ def test_left_is_left() -> None:
 def test_edges_do_not_make_points_in_the_air() -> None:
     angles = _turn(1440)
     ranges = np.where((angles > 6) | (angles < 0.3), 2.0, 7.0)
-    found = scan_of_points(_points(ranges, angles), _lidar(181), 1440, -1, 1)
-    assert set(np.round(found, 2)) == {2.0, 7.0}
+    scan = scan_of_points(_points(ranges, angles), _lidar(181), 1440, -1, 1)
+    assert set(np.round(scan, 2)) == {2.0, 7.0}
 
 
 def test_the_band_and_the_nearest_of_several_channels() -> None:
@@ -117,17 +117,17 @@ def test_missing_points_are_bridged_by_nobody() -> None:
     angles = _turn(720)
     ranges = np.full(720, 5.0)
     ranges[100:200] = np.inf
-    found = scan_of_points(_points(ranges, angles), _lidar(721, 2 * math.pi), 720, -1, 1)
+    scan = scan_of_points(_points(ranges, angles), _lidar(721, 2 * math.pi), 720, -1, 1)
     directions = np.mod(_lidar(721, 2 * math.pi).angles, 2 * math.pi)
     gap = (directions > angles[101]) & (directions < angles[198])
-    assert np.isinf(found[gap]).all()
-    assert np.isfinite(found[~gap]).mean() > 0.98
+    assert np.isinf(scan[gap]).all()
+    assert np.isfinite(scan[~gap]).mean() > 0.98
 
 
 def test_hostile_points() -> None:
     points = np.array([[np.nan, 1, 0, 1], [np.inf, 0, 0, 1], [0, 0, 0, 1], [3, 0, 0, 1]])
-    found = scan_of_points(points, _lidar(1, 0.0), 720, -1, 1)
-    assert not np.isnan(found).any()
+    scan = scan_of_points(points, _lidar(1, 0.0), 720, -1, 1)
+    assert not np.isnan(scan).any()
 
 
 def test_number_of_points() -> None:

@@ -22,12 +22,12 @@ def decoded(file: str) -> dict[str, list[tuple[float, Any]]]:
     from mcap.reader import make_reader
     from mcap_ros2.decoder import DecoderFactory
 
-    found = defaultdict(list)
+    by_topic = defaultdict(list)
     with open(file, "rb") as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])
         for _, channel, message, content in reader.iter_decoded_messages():
-            found[channel.topic].append((message.log_time / 1e9, content))
-    return dict(found)
+            by_topic[channel.topic].append((message.log_time / 1e9, content))
+    return dict(by_topic)
 
 
 def yaw(quaternion: Any) -> float:

@@ -189,9 +189,9 @@ def test_options_are_checked(scene, tmp_path, options) -> None:
 
 
 def test_a_missing_library_is_named(tmp_path, monkeypatch) -> None:
-    found = importlib.util.find_spec
+    find_spec = importlib.util.find_spec
     hidden = ("trimesh", "pxr")
-    monkeypatch.setattr("irsim.common.extras.find_spec", lambda name: None if name in hidden else found(name))
+    monkeypatch.setattr("irsim.common.extras.find_spec", lambda name: None if name in hidden else find_spec(name))
     with pytest.raises(ExtraError, match=r"irsim-mcp\[mesh\]"):
         import_map(write_glb(tmp_path / "a.glb", box([0, 0, 0], [1, 1, 1])), tmp_path / "x.yaml")
     (tmp_path / "a.usda").write_text("#usda 1.0\n")

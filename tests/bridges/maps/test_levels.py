@@ -31,7 +31,7 @@ def area(found: Occupancy) -> float:
 
 
 def test_a_furnished_flat() -> None:
-    found = occupancy(flat())
+    result = occupancy(flat())
     for x, y, value in [
         (3.0, 5.0, FREE),
         (7.0, 1.0, FREE),  # below the shelf
@@ -42,12 +42,12 @@ def test_a_furnished_flat() -> None:
         (5.01, 4.0, OCCUPIED),  # a wall
         (5.7, 5.5, UNKNOWN),  # in the cabinet, which has no bottom
     ]:
-        assert at(found, x, y) == value, (x, y)
+        assert at(result, x, y) == value, (x, y)
     inside = 8 * 6 - (0.12 * 5.1 + 1.6 * 0.9 + 1.6 * 2.0 + 1.2 * 0.5 + 0.6 * 0.7)
-    assert area(found) == pytest.approx(inside, rel=0.04)
-    assert found.height == pytest.approx(0.0, abs=0.01)
-    assert [round(height, 1) for height, _, _ in found.levels] == [0.0, 2.8]
-    assert [roof for _, _, roof in found.levels] == [False, True]
+    assert area(result) == pytest.approx(inside, rel=0.04)
+    assert result.height == pytest.approx(0.0, abs=0.01)
+    assert [round(height, 1) for height, _, _ in result.levels] == [0.0, 2.8]
+    assert [roof for _, _, roof in result.levels] == [False, True]
 
 
 def test_headroom_and_climb_decide() -> None:
@@ -76,17 +76,17 @@ def test_levels_of_a_house() -> None:
 
 @pytest.mark.parametrize("resolution", [0.05, 0.4, 0.5, 0.7, 1.0, 2.0])
 def test_large_cells_do_not_make_a_floor_of_the_roof(resolution: float) -> None:
-    found = occupancy(flat(), resolution=resolution)
-    assert found.height == pytest.approx(0.0, abs=0.03)
-    assert [roof for _, _, roof in found.levels] == [False, True]
-    assert not any("may be a roof" in note for note in found.notes)
+    result = occupancy(flat(), resolution=resolution)
+    assert result.height == pytest.approx(0.0, abs=0.03)
+    assert [roof for _, _, roof in result.levels] == [False, True]
+    assert not any("may be a roof" in note for note in result.notes)
     assert occupancy(house(), resolution=resolution).height < 3
 
 
 def test_cells_in_which_no_floor_is_left_are_told_of() -> None:
-    found = occupancy(flat(), resolution=3.0)
-    assert found.height == pytest.approx(2.8, abs=0.01)
-    assert "this may be a roof; try --resolution 0.1" in found.notes[-1]
+    result = occupancy(flat(), resolution=3.0)
+    assert result.height == pytest.approx(2.8, abs=0.01)
+    assert "this may be a roof; try --resolution 0.1" in result.notes[-1]
     assert occupancy(flat(), resolution=3.0, level=0).notes == []
     assert occupancy(box([0, 0, -0.2], [9, 9, 0.0]), resolution=3.0).notes == [], "a ground without rooms"
 
@@ -94,8 +94,8 @@ def test_cells_in_which_no_floor_is_left_are_told_of() -> None:
 @pytest.mark.parametrize("resolution", [0.1, 0.5, 2.0])
 def test_a_yard_above_a_cellar_is_no_roof(resolution: float) -> None:
     yard, cellar = box([0, 0, -0.2], [30, 30, 0]), box([3, 3, -3.1], [12, 11, -3])
-    found = occupancy(np.concatenate([yard, cellar]), resolution=resolution)
-    assert (found.height, found.levels[-1][2]) == (pytest.approx(0.0, abs=0.01), False)
+    result = occupancy(np.concatenate([yard, cellar]), resolution=resolution)
+    assert (result.height, result.levels[-1][2]) == (pytest.approx(0.0, abs=0.01), False)
 
 
 def test_a_seed_point_picks_a_part() -> None:
@@ -172,10 +172,10 @@ def test_erosion_makes_cells_occupied() -> None:
     values = np.full((9, 9), FREE)
     values[4, 4] = UNKNOWN
     assert (eroded(values, 0.0) == values).all()
-    found = eroded(values, 1.0)
-    assert found[4, 4] == UNKNOWN
-    assert found[3, 4] == OCCUPIED
-    assert found[3, 3] == FREE
+    result = eroded(values, 1.0)
+    assert result[4, 4] == UNKNOWN
+    assert result[3, 4] == OCCUPIED
+    assert result[3, 3] == FREE
 
 
 @given(seed=st.integers(0, 99), share=st.floats(0, 1))
@@ -207,12 +207,12 @@ def test_a_long_chain_is_one_part() -> None:
 
 
 def test_start_and_goal_are_free_and_far_apart() -> None:
-    found = occupancy(flat())
-    trip = suggest_trip(found, np.where(found.values < 0, 100.0, found.values))
+    result = occupancy(flat())
+    trip = suggest_trip(result, np.where(result.values < 0, 100.0, result.values))
     assert math.dist(trip.start[:2], trip.goal[:2]) > 7
     assert trip.clearance >= 0.4
     for x, y, _ in (trip.start, trip.goal):
-        assert at(found, x, y) == FREE
+        assert at(result, x, y) == FREE
     nowhere = occupancy(box([0, 0, -0.1], [0.1, 20, 0]))
     narrow = suggest_trip(nowhere, np.where(nowhere.values < 0, 100.0, nowhere.values))
     assert narrow is None or narrow.clearance <= 0.05

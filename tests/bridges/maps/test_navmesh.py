@@ -120,8 +120,8 @@ CORNERS = st.tuples(*[st.tuples(NUMBER, NUMBER, NUMBER)] * 3)
 
 
 def cells(corners, at_centers: bool) -> set[tuple[int, int]]:
-    found = [np.column_stack([i, j]) for _, i, j, _ in rows_of(np.array([corners], float), at_centers=at_centers)]
-    return {tuple(cell) for cell in np.concatenate([np.zeros((0, 2), int), *found]).tolist()}
+    parts = [np.column_stack([i, j]) for _, i, j, _ in rows_of(np.array([corners], float), at_centers=at_centers)]
+    return {tuple(cell) for cell in np.concatenate([np.zeros((0, 2), int), *parts]).tolist()}
 
 
 @given(corners=CORNERS)
@@ -131,12 +131,12 @@ def test_every_touched_cell_is_found(corners) -> None:
     shape = shapely.MultiPoint(flat).convex_hull
     i, j = (x.ravel() for x in np.meshgrid(np.arange(-5, 12), np.arange(-5, 12)))
     boxes = shapely.box(i, j, i + 1, j + 1)
-    found = cells(flat, at_centers=False)
+    touched = cells(flat, at_centers=False)
     inside = set(
         zip(*(x[shapely.area(shapely.intersection(boxes, shape)) > 1e-9].tolist() for x in (i, j)), strict=True)
     )
     touching = set(zip(*(x[shapely.dwithin(boxes, shape, 1e-9)].tolist() for x in (i, j)), strict=True))
-    assert inside <= found <= touching
+    assert inside <= touched <= touching
 
 
 @given(corners=CORNERS)

@@ -54,12 +54,12 @@ def test_spirals_are_those_of_their_curvature(tmp_path_factory, start, end, leng
     folder = tmp_path_factory.mktemp("roads")
     s = np.linspace(0, length, 2001)
     shape = f'<spiral curvStart="{start!r}" curvEnd="{end!r}"/>'
-    found = line(folder, shape, s, length=length)
+    poses = line(folder, shape, s, length=length)
     turn = start * s + (end - start) / length * s**2 / 2
-    assert found[:, 2] == pytest.approx(turn)
-    steps = np.hypot(*np.diff(found[:, :2], axis=0).T)
+    assert poses[:, 2] == pytest.approx(turn)
+    steps = np.hypot(*np.diff(poses[:, :2], axis=0).T)
     assert steps == pytest.approx(np.full(2000, length / 2000), rel=1e-3)
-    middle = np.arctan2(*np.diff(found[:, :2], axis=0).T[::-1])
+    middle = np.arctan2(*np.diff(poses[:, :2], axis=0).T[::-1])
     assert np.cos(middle - (turn[1:] + turn[:-1]) / 2).min() > 1 - 1e-5
 
 

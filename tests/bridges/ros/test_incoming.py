@@ -45,9 +45,9 @@ def test_values_are_read() -> None:
     assert read_twist(twist(0.5, -1)) == (0.5, 0, -1)
     assert read_twist(N(header=None, twist=twist(0.5))) == (0.5, 0, 0)
     assert read_goal(pose(1.0, 2.5), "map") == pytest.approx((1, 2, 2.5))
-    found = read_odometry(N(pose=N(pose=pose(1.0, -3).pose), twist=N(twist=twist(0.1))))
-    assert found.pose == pytest.approx((1, 2, -3))
-    assert found.velocity == (0.1, 0, 0)
+    odometry = read_odometry(N(pose=N(pose=pose(1.0, -3).pose), twist=N(twist=twist(0.1))))
+    assert odometry.pose == pytest.approx((1, 2, -3))
+    assert odometry.velocity == (0.1, 0, 0)
 
 
 @pytest.mark.parametrize(

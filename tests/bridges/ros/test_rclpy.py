@@ -52,14 +52,14 @@ class Graph:
 
 @pytest.fixture
 def graph(monkeypatch: pytest.MonkeyPatch) -> Graph:
-    found = Graph()
+    stand_in = Graph()
 
     def init(args: Any, context: Any, domain_id: int | None) -> None:
-        found.domain, context.live = domain_id, True
+        stand_in.domain, context.live = domain_id, True
 
     def create_node(name: str, context: Any) -> Graph:
-        found.open += 1
-        return found
+        stand_in.open += 1
+        return stand_in
 
     class Context:
         live = False
@@ -76,14 +76,14 @@ def graph(monkeypatch: pytest.MonkeyPatch) -> Graph:
     put("rclpy", init=init, create_node=create_node, shutdown=lambda context: setattr(context, "live", False))
     put("rclpy.context", Context=Context)
     put("rclpy.executors", SingleThreadedExecutor=lambda context: N(add_node=lambda node: None,
-                                                                   spin_once=found.spin_once))  # fmt: skip
+                                                                   spin_once=stand_in.spin_once))  # fmt: skip
     levels = N(RELIABLE=1, BEST_EFFORT=2, TRANSIENT_LOCAL=1, VOLATILE=2, KEEP_LAST=1)
     put("rclpy.qos", QoSProfile=N, HistoryPolicy=levels, ReliabilityPolicy=levels, DurabilityPolicy=levels)
     put("nav_msgs")
     put("nav_msgs.msg", Odometry=object)
     put("geometry_msgs")
     put("geometry_msgs.msg", Twist=object)
-    return found
+    return stand_in
 
 
 MESSAGES: Any = N(cdr=lambda message, kind: f"{kind}:{message}".encode())

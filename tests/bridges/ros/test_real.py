@@ -68,33 +68,33 @@ def motion(turn: float = 0.0) -> Motion:
 
 
 def test_odometry_begins_at_the_start_in_the_scenario() -> None:
-    found = robots()
-    found.take("robot 0", Odometry((50.0, 0.0, math.pi / 2), (0.2, 0, 0)), 10.0)
-    assert found.poses()["robot 0"] == pytest.approx((1, 2, 0))
-    found.take("robot 0", Odometry((50.0, 1.0, math.pi / 2), (0.2, 0, 0)), 10.0)  # one metre ahead
-    assert found.poses()["robot 0"] == pytest.approx((2, 2, 0))
-    found.relocate("robot 0", (5.0, 5.0, 1.0))
-    assert found.poses()["robot 0"] == pytest.approx((5, 5, 1))
+    fleet = robots()
+    fleet.take("robot 0", Odometry((50.0, 0.0, math.pi / 2), (0.2, 0, 0)), 10.0)
+    assert fleet.poses()["robot 0"] == pytest.approx((1, 2, 0))
+    fleet.take("robot 0", Odometry((50.0, 1.0, math.pi / 2), (0.2, 0, 0)), 10.0)  # one metre ahead
+    assert fleet.poses()["robot 0"] == pytest.approx((2, 2, 0))
+    fleet.relocate("robot 0", (5.0, 5.0, 1.0))
+    assert fleet.poses()["robot 0"] == pytest.approx((5, 5, 1))
     in_world = robots(odom_origin="world")
     in_world.take("robot 0", Odometry((3.0, 4.0, 0.5), (0, 0, 0)), 10.0)
     assert in_world.poses()["robot 0"] == pytest.approx((3, 4, 0.5))
 
 
 def test_old_odometry_is_a_zero_command_and_then_the_end() -> None:
-    found = robots(odom_timeout=0.5, lost_timeout=3)
-    found.take("robot 0", Odometry((0.0, 0.0, 0.0), (0.2, 0, 0)), 10.0)
-    assert found.commands(motion(), 10.4)["robot 0"] == pytest.approx((0.3, 0, 0))
-    assert found.commands(motion(2.0), 10.4)["robot 0"] == pytest.approx((0.3, 0, 2))  # at the heading of the start
-    assert found.commands(motion(), 10.6) == {"robot 0": ZERO}
-    assert found.twists(10.6)["robot 0"] == ZERO
-    assert "zero commands in 1 steps" in found.notes()[0]
-    found.take("robot 0", Odometry((0.0, 0.0, 0.0), (0.2, 0, 0)), 11.0)
-    found.take_scan("robot 0", "robot 0/0", 10.4)
-    assert found.commands(motion(), 11.0) == {"robot 0": ZERO}  # a lidar that measured once has to go on
-    found.take_scan("robot 0", "robot 0/0", 10.9)
-    assert found.commands(motion(), 11.0)["robot 0"] == pytest.approx((0.3, 0, 0))
+    fleet = robots(odom_timeout=0.5, lost_timeout=3)
+    fleet.take("robot 0", Odometry((0.0, 0.0, 0.0), (0.2, 0, 0)), 10.0)
+    assert fleet.commands(motion(), 10.4)["robot 0"] == pytest.approx((0.3, 0, 0))
+    assert fleet.commands(motion(2.0), 10.4)["robot 0"] == pytest.approx((0.3, 0, 2))  # at the heading of the start
+    assert fleet.commands(motion(), 10.6) == {"robot 0": ZERO}
+    assert fleet.twists(10.6)["robot 0"] == ZERO
+    assert "zero commands in 1 steps" in fleet.notes()[0]
+    fleet.take("robot 0", Odometry((0.0, 0.0, 0.0), (0.2, 0, 0)), 11.0)
+    fleet.take_scan("robot 0", "robot 0/0", 10.4)
+    assert fleet.commands(motion(), 11.0) == {"robot 0": ZERO}  # a lidar that measured once has to go on
+    fleet.take_scan("robot 0", "robot 0/0", 10.9)
+    assert fleet.commands(motion(), 11.0)["robot 0"] == pytest.approx((0.3, 0, 0))
     with pytest.raises(BridgeLostError, match=r"no odometry of 'robot 0' for 3\.1 s"):
-        found.commands(motion(), 14.1)
+        fleet.commands(motion(), 14.1)
 
 
 class Pipe(io.StringIO):

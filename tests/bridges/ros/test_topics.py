@@ -38,11 +38,11 @@ def names(mode: str = "sim", **more: object) -> dict[str, str]:
 
 
 def test_each_robot_and_each_lidar_has_its_topics() -> None:
-    found = names()
-    assert found["/robot_0/scan"] == found["/robot_0/scan_1"] == found["/object_7/scan"] == "out LaserScan"
-    assert found["/robot_0/cmd_vel"] == "in Twist"
-    assert found["/clock"] == "out Clock"
-    assert "/ann/odom" not in found
+    topics = names()
+    assert topics["/robot_0/scan"] == topics["/robot_0/scan_1"] == topics["/object_7/scan"] == "out LaserScan"
+    assert topics["/robot_0/cmd_vel"] == "in Twist"
+    assert topics["/clock"] == "out Clock"
+    assert "/ann/odom" not in topics
 
 
 def test_a_name_that_fits_stays_as_it_is() -> None:
@@ -51,11 +51,11 @@ def test_a_name_that_fits_stays_as_it_is() -> None:
 
 
 def test_real_robots_turn_odometry_scans_and_commands_around() -> None:
-    found = names("real", stamped=True)
-    assert found["/robot_0/odom"] == "in Odometry"
-    assert found["/robot_0/scan"] == "in LaserScan"
-    assert found["/robot_0/cmd_vel"] == "out TwistStamped"
-    assert not {"/clock", "/tf_static"} & found.keys()  # the robots' own
+    topics = names("real", stamped=True)
+    assert topics["/robot_0/odom"] == "in Odometry"
+    assert topics["/robot_0/scan"] == "in LaserScan"
+    assert topics["/robot_0/cmd_vel"] == "out TwistStamped"
+    assert not {"/clock", "/tf_static"} & topics.keys()  # the robots' own
 
 
 def test_names_and_qualities_can_be_others() -> None:
@@ -123,7 +123,7 @@ def test_wrong_options_are_named_with_their_line(bridge: str, words: str, tmp_pa
     (tmp_path / "a.yaml").write_text(f"{WORLD}bridges: [{bridge}]\n")
     with pytest.raises(ScenarioError, match=words) as error:
         irsim.make(tmp_path / "a.yaml", display=False)
-    assert [found.path[:2] for found in error.value.diagnostics if found.severity == "error"] == [("bridges", 0)]
+    assert [item.path[:2] for item in error.value.diagnostics if item.severity == "error"] == [("bridges", 0)]
     assert "3:" in str(error.value)
 
 
@@ -160,10 +160,12 @@ def test_a_missing_library_is_an_error_that_names_the_command(
 def test_variables_of_ros_keep_a_node_on_this_computer(
     name: str, value: str, stays: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = []
-    monkeypatch.setattr("irsim.bridges.ros.backends.dds.DdsBackend", lambda *_, loopback, **__: found.append(loopback))
+    loopbacks = []
+    monkeypatch.setattr(
+        "irsim.bridges.ros.backends.dds.DdsBackend", lambda *_, loopback, **__: loopbacks.append(loopback)
+    )
     for variable in ("ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE"):
         monkeypatch.delenv(variable, raising=False)
     monkeypatch.setenv(name, value)
     open_backend(Ros2(backend="dds", domain=3), "node", [], Inbox(), None)  # type: ignore[arg-type]
-    assert found == [stays]
+    assert loopbacks == [stays]

@@ -70,10 +70,10 @@ class Room:
     def truth(self, origin: tuple[float, float], cell: float, shape: tuple[int, int]) -> NDArray[np.bool_]:
         """(nx, ny) cells into which a box reaches."""
         x, y = (origin[axis] + np.arange(shape[axis]) * cell for axis in (0, 1))
-        found = np.zeros(shape, dtype=bool)
+        taken = np.zeros(shape, dtype=bool)
         for left, low, right, high in self.boxes:
-            found |= ((x + cell > left) & (x < right))[:, None] & ((y + cell > low) & (y < high))[None, :]
-        return found
+            taken |= ((x + cell > left) & (x < right))[:, None] & ((y + cell > low) & (y < high))[None, :]
+        return taken
 
 
 _TURN = np.sqrt(0.5)
@@ -131,15 +131,15 @@ def turned(columns: NDArray[np.float64], axes: NDArray[np.float64], shift: NDArr
     """Columns of a file in another frame, by a rotation and a shift."""
     from irsim.bridges.frames import quaternion_of
 
-    found = columns.copy()
-    found[:, :3] = columns[:, :3] @ axes.T + shift
+    result = columns.copy()
+    result[:, :3] = columns[:, :3] @ axes.T + shift
     x, y, z, w = quaternion_of(axes)
     a, b, c, d = columns[:, 13:17].T
-    found[:, 13:17] = np.column_stack([
+    result[:, 13:17] = np.column_stack([
         w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c,
         w * c - x * d + y * a + z * b, w * d + x * c - y * b + z * a,
     ])  # fmt: skip
-    return found
+    return result
 
 
 def _face(
@@ -162,10 +162,10 @@ def _face(
 
 def _box(rng: np.random.Generator, low: Any, high: Any, color: Any, spacing: float) -> list[NDArray[np.float64]]:
     """The sides and the top of a box."""
-    found = []
+    faces = []
     for normal in range(3):
         others = [axis for axis in range(3) if axis != normal]
         for at in (low[normal], high[normal]) if normal < 2 else (high[normal],):
             shade = np.asarray(color) * (1.0, 0.9, 1.1)[normal]
-            found.append(_face(rng, low[others], high[others], normal, at, shade, spacing))
-    return found
+            faces.append(_face(rng, low[others], high[others], normal, at, shade, spacing))
+    return faces

@@ -20,14 +20,14 @@ from tests.bridges.splats.scenes import room, write_ply
 
 def test_the_plan_of_a_room_in_another_frame_is_its_truth(site: Site) -> None:
     options = ImportOptions(up="-y", resolution=0.1)
-    kind, found, _ = read_occupancy(site.scene, options, ImportLimits())
-    assert (kind.name, found.frame, found.height) == ("splats", "colmap", pytest.approx(-1.2, abs=0.01))
-    grid = found.grid
-    truth = site.room.truth((grid.x, grid.y), grid.resolution, found.values.shape)
+    kind, plan, _ = read_occupancy(site.scene, options, ImportLimits())
+    assert (kind.name, plan.frame, plan.height) == ("splats", "colmap", pytest.approx(-1.2, abs=0.01))
+    grid = plan.grid
+    truth = site.room.truth((grid.x, grid.y), grid.resolution, plan.values.shape)
     inside = np.zeros(truth.shape, bool)
     x, y = (begin + (np.arange(n) + 0.5) * 0.1 for begin, n in zip((grid.x, grid.y), truth.shape, strict=True))
     inside[np.ix_((x > 0.05) & (x < 7.95), (y > 0.05) & (y < 5.95))] = True
-    taken = (found.values != 0) & inside
+    taken = (plan.values != 0) & inside
     assert (taken & truth & inside).sum() / ((taken | truth) & inside).sum() > 0.9
 
 
@@ -43,11 +43,11 @@ def test_units_and_bounds(tmp_path: Path) -> None:
     columns[:, :3] *= 4  # a scene whose unit is a quarter of a metre
     columns[:, 10:13] += np.log(4)
     path = write_ply(tmp_path / "big.ply", columns)
-    _, found, _ = read_occupancy(
+    _, plan, _ = read_occupancy(
         path, ImportOptions(meters_per_unit=0.25, resolution=0.1, bounds=(0.0, 0.0, 8.0, 6.0)), ImportLimits()
     )
-    assert found.values.shape == (80, 60)
-    assert (found.values == 0).sum() * 0.01 == pytest.approx(39.5, abs=2.5)
+    assert plan.values.shape == (80, 60)
+    assert (plan.values == 0).sum() * 0.01 == pytest.approx(39.5, abs=2.5)
     result = import_map(path, tmp_path / "big.yaml", meters_per_unit=0.25, resolution=0.1)
     assert read_sidecar(tmp_path / "big.yaml").scale == pytest.approx(4)
     assert result.kind == "splats"

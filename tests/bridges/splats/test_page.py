@@ -24,9 +24,9 @@ from tests.bridges.splats.conftest import Site
 
 def content(page: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Head and arrays of a page."""
-    found = re.search(r'id="data">([^<]*)<', page.read_text(encoding="utf-8"))
-    assert found
-    block = zlib.decompress(base64.b64decode(found[1]))
+    match = re.search(r'id="data">([^<]*)<', page.read_text(encoding="utf-8"))
+    assert match
+    block = zlib.decompress(base64.b64decode(match[1]))
     (length,) = struct.unpack_from("<I", block)
     head = json.loads(block[4 : 4 + length])
     arrays = {

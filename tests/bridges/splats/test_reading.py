@@ -47,9 +47,9 @@ def test_harmonics_are_all_red_ones_first(tmp_path: Path) -> None:
     rest = np.arange(18.0).reshape(2, 9)
     path = write_ply(tmp_path / "a.ply", np.column_stack([ROWS, rest]), fields=fields)
     assert read_splats(path).harmonics is None
-    found = read_splats(path, harmonics=True).harmonics
-    assert found is not None
-    assert found[0].tolist() == [[0, 3, 6], [1, 4, 7], [2, 5, 8]]  # coefficient, then red, green, blue
+    harmonics = read_splats(path, harmonics=True).harmonics
+    assert harmonics is not None
+    assert harmonics[0].tolist() == [[0, 3, 6], [1, 4, 7], [2, 5, 8]]  # coefficient, then red, green, blue
 
 
 def test_an_infinite_logit_is_an_opacity_of_one(tmp_path: Path) -> None:

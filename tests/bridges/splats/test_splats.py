@@ -39,14 +39,14 @@ def test_moved_splats_have_the_moved_covariance(frame: str, factor: float, yaw: 
     turn = np.array([[math.cos(yaw), -math.sin(yaw), 0], [math.sin(yaw), math.cos(yaw), 0], [0, 0, 1]])
     transform[:3, :3] = factor * axes_of(frame) @ turn
     transform[:3, 3] = [1, -2, 3]
-    found = moved(splats, transform)
+    result = moved(splats, transform)
     assert scale_of(transform) == pytest.approx(factor)
     expected = covariance_of(splats.scale, splats.rotation, transform[:3, :3])
     size = float(np.abs(expected).max())
-    np.testing.assert_allclose(covariance_of(found.scale, found.rotation), expected, atol=2e-5 * size)
-    np.testing.assert_allclose(np.linalg.det(rotation_matrices(found.rotation)), 1, atol=1e-5)
+    np.testing.assert_allclose(covariance_of(result.scale, result.rotation), expected, atol=2e-5 * size)
+    np.testing.assert_allclose(np.linalg.det(rotation_matrices(result.rotation)), 1, atol=1e-5)
     shifted = splats.center @ transform[:3, :3].T + transform[:3, 3]
-    np.testing.assert_allclose(found.center, shifted, atol=1e-5 * factor + 1e-5)
+    np.testing.assert_allclose(result.center, shifted, atol=1e-5 * factor + 1e-5)
 
 
 def test_joined_splats_get_harmonics_of_zero() -> None:

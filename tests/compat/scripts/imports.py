@@ -32,8 +32,8 @@ NAMES = {
 }
 for module, names in NAMES.items():
     try:
-        found = importlib.import_module(module)
+        imported = importlib.import_module(module)
     except ImportError as error:
         show(module, type(error).__name__)
         continue
-    show(module, [name for name in names.split() if not hasattr(found, name)])
+    show(module, [name for name in names.split() if not hasattr(imported, name)])

@@ -50,8 +50,8 @@ class StandIn:
     def events(self, what: str | None = None) -> list[dict[str, Any]]:
         """The events so far, all or of one kind."""
         lines = self.log.read_text().splitlines()
-        found = [json.loads(line) for line in lines if line.endswith("}")]
-        return [event for event in found if what is None or event["what"] == what]
+        events = [json.loads(line) for line in lines if line.endswith("}")]
+        return [event for event in events if what is None or event["what"] == what]
 
     def left(self) -> set[int]:
         """Ids of the actors that were spawned and not destroyed."""
@@ -71,8 +71,8 @@ class StandIn:
 
     def actor_of(self, name: str) -> int:
         """Id of the actor with a role name."""
-        (found,) = [e["id"] for e in self.events("spawn") if e["attributes"].get("role_name") == name]
-        return int(found)
+        (actor,) = [e["id"] for e in self.events("spawn") if e["attributes"].get("role_name") == name]
+        return int(actor)
 
     def path_of(self, name: str) -> Any:
         """(T, 3) x, y, yaw [deg] of an actor after each tick since it was spawned."""

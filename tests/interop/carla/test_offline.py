@@ -27,12 +27,12 @@ def test_a_left_curve_has_negative_y_and_negative_yaw_in_carla(carla: Any) -> No
     assert (np.diff(yaw) < 0).all()
     assert at[-1].location.y < -5
     places = Places()
-    found = places.to_irsim(np.array([[one.location.x, one.location.y, one.rotation.yaw] for one in at]))
+    poses = places.to_irsim(np.array([[one.location.x, one.location.y, one.rotation.yaw] for one in at]))
     s = np.arange(1, 20)
     radius = 21.75  # an arc with the radius 20 m, whose right lane is 3.5 m wide
-    np.testing.assert_allclose(found[:, 0], radius * np.sin(s / 20), atol=0.02)
-    np.testing.assert_allclose(found[:, 1], 20 - radius * np.cos(s / 20), atol=0.02)
-    np.testing.assert_allclose(found[:, 2], s / 20, atol=0.01)
+    np.testing.assert_allclose(poses[:, 0], radius * np.sin(s / 20), atol=0.02)
+    np.testing.assert_allclose(poses[:, 1], 20 - radius * np.cos(s / 20), atol=0.02)
+    np.testing.assert_allclose(poses[:, 2], s / 20, atol=0.01)
 
 
 def test_transforms_of_the_client_turn_as_ours(carla: Any) -> None:

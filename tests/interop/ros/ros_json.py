@@ -29,10 +29,10 @@ class UnfitError(ValueError):
 
 def message_class(kind: str) -> Any:
     """The class of a type such as ``nav_msgs/Odometry``."""
-    found = roslib.message.get_message_class(kind)
-    if found is None:
+    result = roslib.message.get_message_class(kind)
+    if result is None:
         raise UnfitError(f"there is no message {kind}")
-    return found
+    return result
 
 
 def message_of(value: Any, made: Any) -> Any:
@@ -77,8 +77,8 @@ def _field(value: Any, kind: str) -> Any:
             return base64.b64decode(value, validate=True)
         if not isinstance(value, list) or (length and len(value) != int(length)):
             raise UnfitError(f"{kind} got {value!r:.60}")
-        found = [_field(one, element) for one in value]
-        return bytes(found) if element in BYTES else found
+        values = [_field(one, element) for one in value]
+        return bytes(values) if element in BYTES else values
     if kind in TIMES:
         if not isinstance(value, dict) or set(value) != {"secs", "nsecs"}:
             raise UnfitError(f"{kind} has secs and nsecs, got {value!r:.60}")

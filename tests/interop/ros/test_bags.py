@@ -20,23 +20,23 @@ pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("ros_others")]
 def by_rosbags(folder: Path) -> dict[str, list[Any]]:
     from rosbags.highlevel import AnyReader
 
-    found = defaultdict(list)
+    by_topic = defaultdict(list)
     with AnyReader([folder]) as reader:
         for connection, _, raw in reader.messages():
-            found[connection.topic].append(reader.deserialize(raw, connection.msgtype))
-    return dict(found)
+            by_topic[connection.topic].append(reader.deserialize(raw, connection.msgtype))
+    return dict(by_topic)
 
 
 def by_mcap(folder: Path) -> dict[str, list[Any]]:
     from mcap.reader import make_reader
     from mcap_ros2.decoder import DecoderFactory
 
-    found = defaultdict(list)
+    by_topic = defaultdict(list)
     [file] = folder.glob("*.mcap")
     with file.open("rb") as stream:
         for _, channel, _, message in make_reader(stream, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
-            found[channel.topic].append(message)
-    return dict(found)
+            by_topic[channel.topic].append(message)
+    return dict(by_topic)
 
 
 @pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
@@ -49,15 +49,15 @@ def test_a_recorded_run_as_a_bag(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         f"bag-rosbag2.{'db3' if storage == 'sqlite3' else 'mcap'}", "metadata.yaml",
     ]  # fmt: skip
     trace = run.trace()
-    found = by_rosbags(folder)
-    for number, message in enumerate(found["/robot_0/odom"]):
+    by_topic = by_rosbags(folder)
+    for number, message in enumerate(by_topic["/robot_0/odom"]):
         assert message.pose.pose.position.x == trace.pose[number, 0, 0]
-    np.testing.assert_array_equal(found["/robot_0/scan"][7].ranges, trace.ranges["robot_0/0"][7])
+    np.testing.assert_array_equal(by_topic["/robot_0/scan"][7].ranges, trace.ranges["robot_0/0"][7])
     assert "robot_0" in (folder / "metadata.yaml").read_text()  # the scenario
     if storage == "mcap":
         again = by_mcap(folder)
         assert {topic: len(messages) for topic, messages in again.items()} == {
-            topic: len(messages) for topic, messages in found.items()
+            topic: len(messages) for topic, messages in by_topic.items()
         }
         assert again["/robot_0/odom"][5].pose.pose.position.x == trace.pose[5, 0, 0]
 
@@ -73,10 +73,10 @@ def test_a_bag_that_is_recorded_while_running(
             env.step()
             xs.append(float(env.robot.state[0, 0]))
         assert not (tmp_path / "lab").exists()  # only a complete bag has its name
-    for found in (by_rosbags(tmp_path / "lab"), by_mcap(tmp_path / "lab")):
-        assert [one.pose.position.x for one in found["/robot_0/pose"][1:]] == xs
-        assert len(found["/clock"]) == 21
-        assert len(found["/map"]) == 1
+    for by_topic in (by_rosbags(tmp_path / "lab"), by_mcap(tmp_path / "lab")):
+        assert [one.pose.position.x for one in by_topic["/robot_0/pose"][1:]] == xs
+        assert len(by_topic["/clock"]) == 21
+        assert len(by_topic["/map"]) == 1
     assert [path.name for path in (tmp_path / "lab").iterdir() if path.name.startswith(".")] == []
 
 

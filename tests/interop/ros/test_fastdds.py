@@ -35,15 +35,15 @@ def published(monkeypatch: pytest.MonkeyPatch) -> dict[str, set[str]]:
     """CDR of all that we publish, by topic."""
     from irsim.bridges.ros.backends.dds import DdsBackend
 
-    found: dict[str, set[str]] = {}
+    samples: dict[str, set[str]] = {}
     publish = DdsBackend.publish
 
     def recorded(self: Backend, topic: Any, message: Any) -> None:
-        found.setdefault(topic.name, set()).add(self.messages.cdr(message, topic.kind).hex())
+        samples.setdefault(topic.name, set()).add(self.messages.cdr(message, topic.kind).hex())
         publish(self, topic, message)  # type: ignore[arg-type]
 
     monkeypatch.setattr(DdsBackend, "publish", recorded)
-    return found
+    return samples
 
 
 def test_both_ways_and_the_same_bytes(

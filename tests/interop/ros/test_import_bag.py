@@ -46,8 +46,8 @@ def bag(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_robot_drives_as_recorded_in_what_its_scans_saw(bag: Path) -> None:
     done = CliRunner().invoke(app, ["bridge", "import-bag", str(bag), "-o", "again.yaml", "--json"])
     assert done.exit_code == 0, done.output
-    found = json.loads(done.stdout)
-    assert found["notes"] == []  # the mount of the lidar came from /tf_static
+    answer = json.loads(done.stdout)
+    assert answer["notes"] == []  # the mount of the lidar came from /tf_static
     [recorded] = [one for one in Path(".irsim/runs").iterdir() if one.is_dir()]
     before = open_run(str(recorded)).trace()
     again = open_run(str(irsim.run("again.yaml", seed=1, record=True).run_id)).trace()
@@ -75,9 +75,9 @@ def test_scans_of_another_robot_make_no_map(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_windows_and_options(bag: Path) -> None:
-    found = import_bag(bag, "part.yaml", BagOptions(start=2.0, end=4.0, resolution=0.1, mount=(0.0, 0.0, 0.0)))
-    assert found.duration == pytest.approx(2.0)
-    assert found.poses == 21
+    imported = import_bag(bag, "part.yaml", BagOptions(start=2.0, end=4.0, resolution=0.1, mount=(0.0, 0.0, 0.0)))
+    assert imported.duration == pytest.approx(2.0)
+    assert imported.poses == 21
     assert irsim.validate("part.yaml").valid
     with pytest.raises(BridgeError, match="the window of time has 0 poses"):
         import_bag(bag, "none.yaml", BagOptions(start=100.0))
@@ -115,9 +115,9 @@ def test_odometry_that_is_not_finite_is_left_out(tmp_path: Path, monkeypatch: py
             x = math.nan if step == 7 else 0.1 * step
             stamp = 100_000_000 * (step + 1)
             bag.add(topic, stamp, messages.odometry(stamp, "odom", "base_link", (x, 0.0, 0.0), (1.0, 0.0, 0.0)))
-    found = import_bag("b", "s.yaml")
-    assert found.poses == 29
-    assert found.notes == ["1 messages were not usable and left out", "the bag has no scans, so there is no map"]
+    imported = import_bag("b", "s.yaml")
+    assert imported.poses == 29
+    assert imported.notes == ["1 messages were not usable and left out", "the bag has no scans, so there is no map"]
     assert irsim.run("s.yaml").outcome == "success"
 
 
@@ -154,9 +154,9 @@ def test_a_robot_that_comes_back_drives_its_whole_way(tmp_path: Path, monkeypatc
             pose = (math.cos(turn), math.sin(turn), 0.0)
             bag.add(topic, stamp, messages.odometry(stamp, "odom", "base_link", pose, (0.0, 0.0, 0.0)))
     import_bag("b", "s.yaml")
-    found = irsim.run("s.yaml")
-    assert found.outcome == "success"
-    assert found.robots[0].path_length == pytest.approx(2 * math.pi, rel=0.01)
+    result = irsim.run("s.yaml")
+    assert result.outcome == "success"
+    assert result.robots[0].path_length == pytest.approx(2 * math.pi, rel=0.01)
 
 
 def test_a_bag_of_ros_1(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -179,6 +179,6 @@ def test_a_bag_of_ros_1(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
                 types["TwistWithCovariance"](types["Twist"](zero, zero), np.zeros(36)),
             )  # fmt: skip
             bag.write(topic, 10**9 + 50_000_000 * step, store.serialize_ros1(message, kind))
-    found = import_bag("drive.bag", "s.yaml", BagOptions(step_time=0.05))
-    assert (found.poses, found.duration) == (20, pytest.approx(0.95))
+    imported = import_bag("drive.bag", "s.yaml", BagOptions(step_time=0.05))
+    assert (imported.poses, imported.duration) == (20, pytest.approx(0.95))
     assert irsim.run("s.yaml").robots[0].path_length == pytest.approx(0.95, abs=0.06)

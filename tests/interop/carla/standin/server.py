@@ -131,12 +131,12 @@ class Server:
 
     def call(self, method: str, values: list[Any]) -> Any:
         """The answer to a call: ``[[1, value]]``, ``[[False]]`` without one, ``[[0, [message]]]`` for an error."""
-        found = getattr(self, f"call_{method}", None)
-        if found is None:
+        handler = getattr(self, f"call_{method}", None)
+        if handler is None:
             self.note("unknown", method=method, values=repr(values)[:200])
             return [[0, [f"the stand-in has no call {method}"]]]
         try:
-            value = found(*values)
+            value = handler(*values)
         except (ValueError, KeyError) as error:
             self.note("refused", method=method, why=str(error))
             return [[0, [str(error)]]]

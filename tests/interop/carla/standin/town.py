@@ -96,14 +96,14 @@ class Town:
         angles = np.arange(count) * (2 * math.pi * turn / count)
         low, high = float(facts["lower_fov"]), float(facts["upper_fov"])
         ranges = self.cast(sensor, angles)
-        found = []
+        points = []
         for tilt in np.radians([high] if channels == 1 else np.linspace(high, low, channels)):
             down = (sensor.location[2] - self.ground) / -math.tan(tilt) if tilt < -1e-9 else math.inf
             flat = np.minimum(ranges, down)
             seen = flat / math.cos(tilt) < longest
             x, y = flat[seen] * np.cos(angles[seen]), flat[seen] * np.sin(angles[seen])
-            found.append(np.stack([x, y, flat[seen] * math.tan(tilt), np.full(len(x), 0.9)], axis=1))
-        return found
+            points.append(np.stack([x, y, flat[seen] * math.tan(tilt), np.full(len(x), 0.9)], axis=1))
+        return points
 
     def cast(self, sensor: Actor, angles: Floats) -> Floats:
         """(n,) horizontal distances to walls and actors, infinite without one; the parent is not seen."""
@@ -111,12 +111,14 @@ class Town:
         course = angles + math.radians(sensor.yaw)
         rays = np.stack([np.cos(course), np.sin(course)], axis=1)
         starts, ends = [self.starts], [self.ends]
-        found = np.full(len(rays), np.inf)
+        distances = np.full(len(rays), np.inf)
         for actor in self.actors.values():
             if actor.parent is not None or actor.id == sensor.parent:
                 continue
             if actor.kind == "walker":
-                found = np.minimum(found, _to_disk(origin, rays, np.array(actor.location[:2]), actor.size[0] / 2))
+                distances = np.minimum(
+                    distances, _to_disk(origin, rays, np.array(actor.location[:2]), actor.size[0] / 2)
+                )
                 continue
             length, width, _ = actor.size
             cosine, sine = math.cos(math.radians(actor.yaw)), math.sin(math.radians(actor.yaw))
@@ -124,7 +126,7 @@ class Town:
             corners = box @ np.array([[cosine, sine], [-sine, cosine]]) + actor.location[:2]
             starts.append(corners)
             ends.append(np.roll(corners, -1, axis=0))
-        return np.minimum(found, _to_segments(origin, rays, np.concatenate(starts), np.concatenate(ends)))
+        return np.minimum(distances, _to_segments(origin, rays, np.concatenate(starts), np.concatenate(ends)))
 
 
 def _to_disk(origin: Floats, rays: Floats, center: Floats, radius: float) -> Floats:
