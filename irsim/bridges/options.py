@@ -60,13 +60,13 @@ def read_bridge(given: str | Mapping[str, Any]) -> Any:
         raise _invalid(option_problems(error, whole, Scenario, ("bridges", 0), called), called, name) from None
 
 
-def _invalid(found: list[Diagnostic], called: str, name: Any) -> BridgeError:
+def _invalid(diagnostics: list[Diagnostic], called: str, name: Any) -> BridgeError:
     """The error of options that are not valid, with their problems as data."""
-    message, fix = option_message(found)
+    message, fix = option_message(diagnostics)
     fix = fix or (f"irsim describe bridge.{name} lists the keys" if isinstance(name, str) else None)
     text = message if called in message else f"{called}: {message}"
-    error = BridgeError(found[0].code, text, fix, where="bridges")
-    error.diagnostics = found
+    error = BridgeError(diagnostics[0].code, text, fix, where="bridges")
+    error.diagnostics = diagnostics
     return error
 
 

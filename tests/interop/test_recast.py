@@ -52,11 +52,11 @@ def recast_cells(file: Path, grid: Grid, height: float) -> np.ndarray:
     return cells
 
 
-def free_on(found: Occupancy, grid: Grid) -> np.ndarray:
+def free_on(result: Occupancy, grid: Grid) -> np.ndarray:
     """(nx, ny) the free cells of a map on another grid with the same lines."""
     cells = np.zeros((grid.nx, grid.ny), bool)
-    i, j = np.nonzero(found.values == FREE)
-    shift = [round((a - b) / grid.resolution) for a, b in ((found.grid.x, grid.x), (found.grid.y, grid.y))]
+    i, j = np.nonzero(result.values == FREE)
+    shift = [round((a - b) / grid.resolution) for a, b in ((result.grid.x, grid.x), (result.grid.y, grid.y))]
     cells[i + shift[0], j + shift[1]] = True
     return cells
 

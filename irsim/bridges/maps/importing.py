@@ -200,37 +200,37 @@ def _check_used(kind: Kind, options: ImportOptions) -> None:
 
 
 def _result(
-    kind: Kind, found: Occupancy, values: Floats, filled: Floats, unknown: str, trip: Trip | None, files: list[str]
+    kind: Kind, occupancy: Occupancy, values: Floats, filled: Floats, unknown: str, trip: Trip | None, files: list[str]
 ) -> MapImportResult:
     free = filled <= _HALF
     return MapImportResult(
         kind=kind.name,
         files=files,
-        columns=found.grid.nx,
-        rows=found.grid.ny,
-        resolution=found.grid.resolution,
-        origin=(found.grid.x, found.grid.y),
-        free_area=round(float(free.sum()) * found.grid.resolution**2, 4),
+        columns=occupancy.grid.nx,
+        rows=occupancy.grid.ny,
+        resolution=occupancy.grid.resolution,
+        origin=(occupancy.grid.x, occupancy.grid.y),
+        free_area=round(float(free.sum()) * occupancy.grid.resolution**2, 4),
         occupied=int((~free).sum()),
         unknown=int((values < 0).sum()),
         unknown_as=unknown,
-        level=found.level,
-        height=round(found.height, 4),
+        level=occupancy.level,
+        height=round(occupancy.height, 4),
         levels=[
             MapLevel(level=k, height=round(height, 4), area=round(area, 4), roof=roof)
-            for k, (height, area, roof) in enumerate(found.levels)
+            for k, (height, area, roof) in enumerate(occupancy.levels)
         ],
-        components=[round(area, 4) for area in found.regions[:_MAX_COMPONENTS]],
-        kept=found.kept,
+        components=[round(area, 4) for area in occupancy.regions[:_MAX_COMPONENTS]],
+        kept=occupancy.kept,
         trip=None if trip is None else MapTrip(start=trip.start, goal=trip.goal, clearance=trip.clearance),
-        notes=[*found.notes, *_smaller_part(found), *([] if free.any() else ["no cell is free"])],
+        notes=[*occupancy.notes, *_smaller_part(occupancy), *([] if free.any() else ["no cell is free"])],
     )
 
 
-def _smaller_part(found: Occupancy) -> list[str]:
+def _smaller_part(occupancy: Occupancy) -> list[str]:
     """A note if the part that is free is not the largest one, as the top of a table at the seed point."""
-    if not found.kept:
+    if not occupancy.kept:
         return []
-    area, largest = found.regions[found.kept], found.regions[0]
+    area, largest = occupancy.regions[occupancy.kept], occupancy.regions[0]
     what = f"only what is connected to the seed point is free, {area:.1f} m²; the largest part has {largest:.1f} m²"
     return [f"{what} and is taken without --seed-point: tops and insides of furniture are parts, too"]

@@ -197,18 +197,18 @@ def eroded(values: Floats, cells: float) -> Floats:
     return np.where(free & within(~free, cells), OCCUPIED, values)
 
 
-def cropped(found: Occupancy) -> Occupancy:
+def cropped(occupancy: Occupancy) -> Occupancy:
     """The part of a map around its free cells."""
-    i, j = np.nonzero(found.values == FREE)
+    i, j = np.nonzero(occupancy.values == FREE)
     if not len(i):
-        return found
+        return occupancy
     first = max(int(i.min()) - _MARGIN, 0), max(int(j.min()) - _MARGIN, 0)
-    last = min(int(i.max()) + _MARGIN + 1, found.grid.nx), min(int(j.max()) + _MARGIN + 1, found.grid.ny)
-    grid, side = found.grid, found.grid.resolution
+    last = min(int(i.max()) + _MARGIN + 1, occupancy.grid.nx), min(int(j.max()) + _MARGIN + 1, occupancy.grid.ny)
+    grid, side = occupancy.grid, occupancy.grid.resolution
     x, y = (round(start / side + k) * side for start, k in zip((grid.x, grid.y), first, strict=True))
-    found.values = np.ascontiguousarray(found.values[first[0] : last[0], first[1] : last[1]])
-    found.grid = Grid(round(x, 9), round(y, 9), side, *found.values.shape)
-    return found
+    occupancy.values = np.ascontiguousarray(occupancy.values[first[0] : last[0], first[1] : last[1]])
+    occupancy.grid = Grid(round(x, 9), round(y, 9), side, *occupancy.values.shape)
+    return occupancy
 
 
 def _empty(what: str, fix: str) -> BridgeError:

@@ -49,15 +49,15 @@ class Trip:
     clearance: float
 
 
-def suggest_trip(found: Occupancy, values: Floats) -> Trip | None:
+def suggest_trip(occupancy: Occupancy, values: Floats) -> Trip | None:
     """Two places far apart in a map, both connected with as much room as most of the map has; None if it has no room.
 
     Args:
-        found: The map.
+        occupancy: The map.
         values: (nx, ny) its occupancies, unknown cells filled in.
     """
     free = values <= _HALF
-    side = found.grid.resolution
+    side = occupancy.grid.resolution
     if not free.any():
         return None
     needed = _SHARE * _diagonal(masked_regions(free)[0] == 0)
@@ -66,7 +66,7 @@ def suggest_trip(found: Occupancy, values: Floats) -> Trip | None:
         if roomy.any():
             places = masked_regions(roomy)[0] == 0
             if _diagonal(places) >= needed or clearance <= side:
-                return _trip(found, places, clearance)
+                return _trip(occupancy, places, clearance)
     return None
 
 
@@ -76,9 +76,9 @@ def _diagonal(places: Bools) -> float:
     return math.hypot(float(i.max() - i.min()), float(j.max() - j.min()))
 
 
-def _trip(found: Occupancy, places: Bools, clearance: float) -> Trip:
+def _trip(occupancy: Occupancy, places: Bools, clearance: float) -> Trip:
     columns = np.flatnonzero(places)
-    points = found.grid.centers(columns)
+    points = occupancy.grid.centers(columns)
     first = _farthest(points, points.mean(axis=0))
     second = _farthest(points, first)
     start, goal = sorted([first.tolist(), second.tolist()])
@@ -100,7 +100,7 @@ _SPEED = 0.5
 
 
 def files_of(
-    found: Occupancy,
+    occupancy: Occupancy,
     values: Floats,
     filled: Floats,
     target: Path,
@@ -112,17 +112,17 @@ def files_of(
     """Paths and contents of all files of an imported map.
 
     Args:
-        found: Where the map is.
+        occupancy: Values and place of the map.
         values: (nx, ny) occupancies, -1 where unknown.
         filled: (nx, ny) the same with unknown cells filled in.
         target: The scenario.
         sidecar: Content of the sidecar.
         about: A sentence about the source.
         trip: Start and goal of a robot; None for no robot.
-        ros_map: YAML file of a map for the ROS map server; None for none.
+        ros_map: YAML file of a map for the ROS map server; None for no such file.
     """
     picture = target.with_suffix(".png")
-    grid = found.grid
+    grid = occupancy.grid
     width, height = grid.nx * grid.resolution, grid.ny * grid.resolution
     lines = [f"# {about}; {sidecar_path(target).name} says where it is in the world of that file.", "world:"]
     if trip is not None:

@@ -149,7 +149,7 @@ class MujocoBridge(Bridge):
             objects=sorted(self.agents),
             contacts=self._contacts.count,
             ghost_contacts=self._contacts.ghosts,
-            first_contacts=[vars(contact) for contact in self._contacts.found],
+            first_contacts=[vars(contact) for contact in self._contacts.begins],
             step_difference_median_m=float(np.median(slip)),
             step_difference_largest_m=float(slip.max()),
             lidar_beams=comparison.beams,

@@ -55,13 +55,13 @@ class Contacts:
         physics: The model.
 
     Attributes:
-        found: Begins of contacts, the first thousand.
+        begins: Begins of contacts, the first thousand.
         count: Number of begins of contacts.
         ghosts: Number of begins of contacts that irsim does not have.
     """
 
     def __init__(self, physics: Physics) -> None:
-        self.found: list[Contact] = []
+        self.begins: list[Contact] = []
         self.count = self.ghosts = 0
         self.follow(physics)
 
@@ -105,9 +105,9 @@ class Contacts:
         ghost = gap > _GHOST
         self.count += 1
         self.ghosts += ghost
-        if len(self.found) < _MAX_LISTED:
+        if len(self.begins) < _MAX_LISTED:
             one, other = map(self._name, pair)
-            self.found.append(Contact(round(time, 6), (one, other), gap, ghost))
+            self.begins.append(Contact(round(time, 6), (one, other), gap, ghost))
 
     def _name(self, row: int) -> str:
         names = self._scene.names

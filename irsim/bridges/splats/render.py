@@ -178,7 +178,7 @@ def _project(splats: Splats, view: View) -> _Ellipses:
 
 
 def _blend(
-    found: _Ellipses, first: int, last: int, areas: NDArray[np.int64], width: int, color: Floats, through: Floats
+    ellipses: _Ellipses, first: int, last: int, areas: NDArray[np.int64], width: int, color: Floats, through: Floats
 ) -> None:
     """Blend some ellipses, which are behind all that were blended before.
 
@@ -187,16 +187,16 @@ def _blend(
     """
     which = np.repeat(np.arange(first, last, dtype=np.int32), areas)
     within = np.arange(len(which), dtype=np.int64) - np.repeat(np.cumsum(areas) - areas, areas)
-    columns = (found.box[which, 1] - found.box[which, 0] + 1).astype(np.int64)
+    columns = (ellipses.box[which, 1] - ellipses.box[which, 0] + 1).astype(np.int64)
     down = within // columns
-    x = found.box[which, 0] + (within - down * columns).astype(np.int32)
-    y = found.box[which, 2] + down.astype(np.int32)
+    x = ellipses.box[which, 0] + (within - down * columns).astype(np.int32)
+    y = ellipses.box[which, 2] + down.astype(np.int32)
     pixel = y.astype(np.int32) * np.int32(width) + x
-    dx = x.astype(np.float32) + np.float32(0.5) - found.center[which, 0]
-    dy = y.astype(np.float32) + np.float32(0.5) - found.center[which, 1]
-    form = found.form[which]
+    dx = x.astype(np.float32) + np.float32(0.5) - ellipses.center[which, 0]
+    dy = y.astype(np.float32) + np.float32(0.5) - ellipses.center[which, 1]
+    form = ellipses.form[which]
     power = -0.5 * (form[:, 0] * dx * dx + form[:, 2] * dy * dy) - form[:, 1] * dx * dy
-    alpha = found.opacity[which] * np.exp(np.minimum(power, 0))
+    alpha = ellipses.opacity[which] * np.exp(np.minimum(power, 0))
     kept = np.flatnonzero((alpha >= _LEAST) & (through[pixel] > _FULL))
     if not len(kept):
         return
@@ -208,7 +208,7 @@ def _blend(
     total = np.cumsum(shade)
     start = np.repeat((total - shade)[begins], lengths)
     light = through[pixel] * np.exp(total - shade - start)
-    hues = found.color[which[kept]]
+    hues = ellipses.color[which[kept]]
     at = pixel[begins]
     for channel in range(3):
         color[at, channel] += np.add.reduceat(light * alpha * hues[:, channel], begins)

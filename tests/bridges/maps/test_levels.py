@@ -21,13 +21,13 @@ def occupancy(triangles: np.ndarray, **options) -> Occupancy:
     return occupancy_of(Scene("irsim", triangles), ImportOptions(**options), ImportLimits())
 
 
-def at(found: Occupancy, x: float, y: float) -> float:
-    grid = found.grid
-    return float(found.values[int((x - grid.x) / grid.resolution), int((y - grid.y) / grid.resolution)])
+def at(result: Occupancy, x: float, y: float) -> float:
+    grid = result.grid
+    return float(result.values[int((x - grid.x) / grid.resolution), int((y - grid.y) / grid.resolution)])
 
 
-def area(found: Occupancy) -> float:
-    return float((found.values == FREE).sum()) * found.grid.resolution**2
+def area(result: Occupancy) -> float:
+    return float((result.values == FREE).sum()) * result.grid.resolution**2
 
 
 def test_a_furnished_flat() -> None:

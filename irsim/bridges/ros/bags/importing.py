@@ -127,39 +127,39 @@ def import_bag(
     return ImportedBag(str(out), shown, len(times), len(scans), float(times[-1]), notes)
 
 
-def _rows(found: Recorded, options: BagOptions) -> list[int]:
+def _rows(recorded: Recorded, options: BagOptions) -> list[int]:
     """Rows in the window, at least one step apart; the last one is among them."""
-    inside = np.flatnonzero((found.times >= options.start) & (found.times <= options.end))
+    inside = np.flatnonzero((recorded.times >= options.start) & (recorded.times <= options.end))
     if len(inside) < 2:
-        what = f"the window of time has {len(inside)} poses; the odometry lasts {found.times[-1]:.1f} s"
+        what = f"the window of time has {len(inside)} poses; the odometry lasts {recorded.times[-1]:.1f} s"
         raise BridgeError("bridge-file", what, "--from 0")
     kept = [int(inside[0])]
     for row in inside.tolist():
-        if found.times[row] - found.times[kept[-1]] >= options.step_time * (1 - 1e-6):
+        if recorded.times[row] - recorded.times[kept[-1]] >= options.step_time * (1 - 1e-6):
             kept.append(row)
     return kept if len(kept) > 1 else [int(inside[0]), int(inside[-1])]
 
 
-def _chosen_scans(found: Recorded, times: Floats) -> list[int]:
-    inside = np.flatnonzero((found.scan_times >= times[0]) & (found.scan_times <= times[-1]))
+def _chosen_scans(recorded: Recorded, times: Floats) -> list[int]:
+    inside = np.flatnonzero((recorded.scan_times >= times[0]) & (recorded.scan_times <= times[-1]))
     if len(inside) <= _MAX_MAPPED:
         return [int(index) for index in inside]
     return [int(index) for index in inside[np.linspace(0, len(inside) - 1, _MAX_MAPPED).astype(np.int64)]]
 
 
-def _pose_at(found: Recorded, time: float) -> tuple[float, float, float]:
+def _pose_at(recorded: Recorded, time: float) -> tuple[float, float, float]:
     """The pose at a time, between two recorded ones."""
-    after = int(np.clip(np.searchsorted(found.times, time), 1, len(found.times) - 1))
-    before = found.poses[after - 1]
-    share = (time - found.times[after - 1]) / (found.times[after] - found.times[after - 1])
-    step = found.poses[after] - before
+    after = int(np.clip(np.searchsorted(recorded.times, time), 1, len(recorded.times) - 1))
+    before = recorded.poses[after - 1]
+    share = (time - recorded.times[after - 1]) / (recorded.times[after] - recorded.times[after - 1])
+    step = recorded.poses[after] - before
     step[2] = math.remainder(step[2], 2 * math.pi)
     x, y, yaw = (before + float(np.clip(share, 0, 1)) * step).tolist()
     return x, y, yaw
 
 
 def _text(
-    found: Recorded, grid: BagMap | None, times: Floats, poses: Floats, scan: Scan | None,
+    recorded: Recorded, grid: BagMap | None, times: Floats, poses: Floats, scan: Scan | None,
     mount: tuple[float, float, float], name: str, out: Path, options: BagOptions,
 ) -> str:  # fmt: skip
     if grid is not None:
@@ -168,7 +168,7 @@ def _text(
         corner = np.floor(poses[:, :2].min(axis=0) - 1)
         low, size = (float(corner[0]), float(corner[1])), (np.ceil(poses[:, :2].max(axis=0) + 1) - corner).tolist()
     lines = [
-        f"# The robot of {json.dumps(name)} drives as {json.dumps(found.odom_topic)} says, for {times[-1]:.1f} s.",
+        f"# The robot of {json.dumps(name)} drives as {json.dumps(recorded.odom_topic)} says, for {times[-1]:.1f} s.",
         "# Written by `irsim bridge import-bag`.",
         "world:",
         f"  width: {size[0]:.6g}",
