@@ -17,7 +17,7 @@ __all__ = ["Element", "Header", "Property", "read_header"]
 
 _MAX_HEADER_BYTES = 64 * 1024
 _MAX_DIGITS = 15
-"""Most digits of a number of elements; so many elements do not fit into a file."""
+"""Most digits of a number of elements; more elements do not fit into a file."""
 _SIZES = {
     "char": 1, "uchar": 1, "short": 2, "ushort": 2, "int": 4, "uint": 4, "float": 4, "double": 8,
     "int8": 1, "uint8": 1, "int16": 2, "uint16": 2, "int32": 4, "uint32": 4, "float32": 4, "float64": 8,

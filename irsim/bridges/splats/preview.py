@@ -37,7 +37,7 @@ SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", *MOVING_SUFFIXES)
 _KEY_FRAMES = 6
 _COLUMNS, _GAP_PX, _LINE_PX = 3, 8, 20
 _CLOSE_M = 2.6
-"""Splats closer to the eye behind a robot are not drawn: they would hide the robot [m]."""
+"""Distance from the eye behind a robot [m]; closer splats would hide the robot and are not drawn."""
 
 
 class PreviewOptions(CameraOptions):
