@@ -22,8 +22,8 @@ def assumptions_of(scenarios: Mapping[str, ResolvedScenario]) -> list[str]:
         scenarios: The scenarios of the benchmark, by name.
     """
     told = [(name, (_contacts(scenario), _limits(scenario))) for name, scenario in scenarios.items()]
-    found = [_joined((name, facts[column]) for name, facts in told) for column in range(2)]
-    return [*found, "behaviors know the poses and velocities of all objects exactly"] if told else []
+    sentences = [_joined((name, facts[column]) for name, facts in told) for column in range(2)]
+    return [*sentences, "behaviors know the poses and velocities of all objects exactly"] if told else []
 
 
 def _joined(facts: Iterable[tuple[str, str]]) -> str:
@@ -33,7 +33,7 @@ def _joined(facts: Iterable[tuple[str, str]]) -> str:
         names.setdefault(fact, []).append(name)
     if len(names) == 1:
         return next(iter(names))
-    return ", ".join(f"in {listed(found, _NAMED)} {fact}" for fact, found in names.items())
+    return ", ".join(f"in {listed(scenarios, _NAMED)} {fact}" for fact, scenarios in names.items())
 
 
 def _contacts(scenario: ResolvedScenario) -> str:
@@ -104,22 +104,22 @@ def unequal_note(limits: Mapping[str, Mapping[str, Limit]]) -> str | None:
         The sentence; None if the limits are equal.
     """
     of_robot: dict[str, dict[str, Limit]] = {}
-    for policy, found in limits.items():
-        for name, limit in found.items():
+    for policy, robots in limits.items():
+        for name, limit in robots.items():
             of_robot.setdefault(name, {})[policy] = limit
-    ratios = {name: max(_ratio(found, 0), _ratio(found, 1)) for name, found in of_robot.items()}
+    ratios = {name: max(_ratio(by_policy, 0), _ratio(by_policy, 1)) for name, by_policy in of_robot.items()}
     name = max(ratios, key=lambda robot: ratios[robot], default="")
     if not name or ratios[name] <= 1 + _EQUAL_SHARE:
         return None
-    found, parts, fixes = of_robot[name], list[str](), dict[str, None]()
-    if _ratio(found, 0) > 1 + _EQUAL_SHARE:
-        most = max(limit.speed for limit in found.values())
-        parts.append("drives at most " + _by_policy({key: one.speed for key, one in found.items()}, "m/s"))
-        slower = [one.behavior for one in found.values() if one.speed * (1 + _EQUAL_SHARE) < most]
+    unequal, parts, fixes = of_robot[name], list[str](), dict[str, None]()
+    if _ratio(unequal, 0) > 1 + _EQUAL_SHARE:
+        most = max(limit.speed for limit in unequal.values())
+        parts.append("drives at most " + _by_policy({key: one.speed for key, one in unequal.items()}, "m/s"))
+        slower = [one.behavior for one in unequal.values() if one.speed * (1 + _EQUAL_SHARE) < most]
         fixes = dict.fromkeys(_FIXES[behavior] for behavior in slower if behavior in _FIXES)
-    if _ratio(found, 1) > 1 + _EQUAL_SHARE:
-        free = " (rvo: while it avoids nothing)" if any(one.behavior == "rvo" for one in found.values()) else ""
-        parts.append("turns at most " + _by_policy({key: one.turn for key, one in found.items()}, "rad/s") + free)
+    if _ratio(unequal, 1) > 1 + _EQUAL_SHARE:
+        free = " (rvo: while it avoids nothing)" if any(one.behavior == "rvo" for one in unequal.values()) else ""
+        parts.append("turns at most " + _by_policy({key: one.turn for key, one in unequal.items()}, "rad/s") + free)
     equal = f"; equal speeds need {' and '.join(fixes)} or a lower vel_max" if fixes else ""
     return f"limits are unequal, so times are not fair: '{clean(name)}' {' and '.join(parts)}{equal}"
 
@@ -132,9 +132,9 @@ def _by_policy(values: Mapping[str, float], unit: str) -> str:
     return ", ".join(f"{value} under {' and '.join(names)}" for value, names in policies.items())
 
 
-def _ratio(found: Mapping[str, Limit], column: int) -> float:
+def _ratio(limits: Mapping[str, Limit], column: int) -> float:
     """Largest divided by smallest limit of one robot; column 0 is the speed, 1 the turn rate."""
-    values = [float(limit[column]) for limit in found.values()]
+    values = [float(limit[column]) for limit in limits.values()]
     return 1.0 if math.isinf(max(values)) else max(values) / max(min(values), 1e-9)
 
 

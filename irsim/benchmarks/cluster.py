@@ -204,7 +204,7 @@ class _Size:
 def _shared(ray: Any, jobs: Sequence[Job]) -> dict[str, Any]:
     """Data that all chunks share: the jobs as data, and the contents of their maps and networks, each sent once."""
     files: dict[str, Any] = {}
-    found = []
+    job_data = []
 
     def sent(path: Path) -> str:
         content = path.read_bytes()
@@ -219,7 +219,7 @@ def _shared(ray: Any, jobs: Sequence[Job]) -> dict[str, Any]:
             raise ClusterError("cluster-differs", what, "make it a plug-in or a file, or run without the cluster")
         network = None if job.policy is None else file_of(job.policy)
         beside = [] if network is None else [path for path in files_beside(network) if path.is_file()]
-        found.append(
+        job_data.append(
             asdict(job)
             | {
                 "maps": [(name, sent(Path(path))) for name, path in job.maps],
@@ -227,7 +227,7 @@ def _shared(ray: Any, jobs: Sequence[Job]) -> dict[str, Any]:
                 "beside": [(path.suffix, sent(path)) for path in beside],
             }
         )
-    return {"jobs": found, "files": files}
+    return {"jobs": job_data, "files": files}
 
 
 def _remote_function() -> Callable[..., Mapping[str, Any]]:
@@ -333,10 +333,10 @@ def check_jobs(shared: Mapping[str, Any], numbers: Sequence[int], fetch: Fetch) 
 
 def _answers(job: Job, seeds: Sequence[int]) -> list[Data]:
     """The answers of episodes that run together; after an error the others run one by one, so that it is one's own."""
-    found, answers = run_together(job, seeds), list[Data]()
+    results, answers = run_together(job, seeds), list[Data]()
     for place in range(len(seeds)):
         try:
-            answers.append({"result": next(found)})
+            answers.append({"result": next(results)})
         except Exception as error:
             if len(seeds) == 1:
                 return [{"error": _text_of(error)}]

@@ -235,12 +235,12 @@ def benchmark(
         turns = [number for number in turns if number not in known]
         ordered, report = [plan[number][2] for number in turns], _after(progress, len(known))
         if cluster is None:
-            found = run_tasks(ordered, workers=workers or cores(), progress=report, kept=keep)
+            results = run_tasks(ordered, workers=workers or cores(), progress=report, kept=keep)
         else:
-            found = run_on_cluster(ordered, address=cluster, workers=workers, progress=report, kept=keep)
+            results = run_on_cluster(ordered, address=cluster, workers=workers, progress=report, kept=keep)
     if timing is not None:
-        timing.update(_timing(opened, plan, dict(zip(turns, found, strict=True))))
-    episodes = known | {number: row(number, result) for number, result in zip(turns, found, strict=True)}
+        timing.update(_timing(opened, plan, dict(zip(turns, results, strict=True))))
+    episodes = known | {number: row(number, result) for number, result in zip(turns, results, strict=True)}
     return with_episodes(head, [episodes[number] for number in range(len(plan))])
 
 
@@ -266,14 +266,14 @@ def _sources(files: Any) -> list[str]:
 
 
 def _timing(
-    opened: Sequence[Policy], plan: Sequence[tuple[str, str, Task]], found: Mapping[int, Mapping[str, Any]]
+    opened: Sequence[Policy], plan: Sequence[tuple[str, str, Task]], results: Mapping[int, Mapping[str, Any]]
 ) -> dict[str, Any]:
     """The times of decisions in the episodes that were run now; of behaviors, in the first one of each scenario."""
     labels = [behavior for _, behavior, _ in plan]
     times: dict[str, dict[str, Any]] = {label_of(policy): {} for policy in opened}
     engine = {label_of(policy) for policy in opened if isinstance(policy, BehaviorPolicy)}
     timed: set[tuple[str, str]] = set()
-    for number, result in sorted(found.items()):
+    for number, result in sorted(results.items()):
         scenario, behavior, task = plan[number]
         if "decisions" in result:
             times[behavior][str(number)] = result["decisions"]
@@ -308,8 +308,8 @@ def _document(source: str | Document, limits: Limits) -> Document:
         return source
     if "\n" in source:
         return load_text(source, limits=limits)
-    found = source_of(source, None, limits)
-    return found if isinstance(found, Document) else load_path(found, limits)
+    located = source_of(source, None, limits)
+    return located if isinstance(located, Document) else load_path(located, limits)
 
 
 def _check_names(names: list[str], policies: list[str]) -> None:

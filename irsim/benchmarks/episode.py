@@ -351,8 +351,8 @@ def _arrivals(simulation: Simulation, world: int, names: Collection[str], last: 
 
 def _failures(measured: EpisodeMetrics) -> dict[str, str]:
     """Outcome of the first robots without success, by name."""
-    found: dict[str, str] = {}
+    failures: dict[str, str] = {}
     for name, robot, hit in zip(measured.names, measured.robots, measured.hits, strict=True):
-        if not robot["success"] and len(found) < _MAX_FAILURES:
-            found[name] = "timeout" if robot["timeout"] else f"collision with {hit!r}"
-    return found
+        if not robot["success"] and len(failures) < _MAX_FAILURES:
+            failures[name] = "timeout" if robot["timeout"] else f"collision with {hit!r}"
+    return failures

@@ -129,8 +129,8 @@ def _read(file: str | Path) -> tuple[BenchmarkResult, dict[int, EpisodeRow]]:
     try:
         lines = Path(file).read_bytes().split(b"\n")[:-1]  # a killed process may have left half a line
         head = BenchmarkResult.model_validate_json(lines[0])
-        found = [json.loads(line) for line in lines[1:]]
-        return head, {int(item["number"]): EpisodeRow.model_validate(item["episode"]) for item in found}
+        episodes = [json.loads(line) for line in lines[1:]]
+        return head, {int(item["number"]): EpisodeRow.model_validate(item["episode"]) for item in episodes}
     except OSError as error:
         raise refusal(file, error) from None
     except (ValueError, LookupError, TypeError):
@@ -147,8 +147,8 @@ def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> Benc
     notes = perturbation_notes(head.perturbed) + notes_of(episodes, head.random, head.seeds)
     notes += [f"{name}: {note}" for name, note in head.unequal.items()]
     unopened = {
-        name: found.message for name in head.warnings for found in head.warnings[name] if found.code == UNOPENED
+        name: finding.message for name in head.warnings for finding in head.warnings[name] if finding.code == UNOPENED
     }
     notes += [f"{name}: {message}" for name, message in unopened.items()]
-    found = {"episodes": list(episodes), "rows": rows, "notes": notes, "incidents": incident_messages(episodes)}
-    return head.model_copy(update=found)
+    changes = {"episodes": list(episodes), "rows": rows, "notes": notes, "incidents": incident_messages(episodes)}
+    return head.model_copy(update=changes)

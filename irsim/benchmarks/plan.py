@@ -131,9 +131,9 @@ def _hashes(document: Document) -> dict[str, str]:
     scenario = read(document, limits=document.limits).scenario
     if scenario is None:
         return {}
-    found = {name: Path(path) for name, path in scenario.map_files.items()}
+    maps = {name: Path(path) for name, path in scenario.map_files.items()}
     return {
-        name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in sorted(found.items()) if path.is_file()
+        name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in sorted(maps.items()) if path.is_file()
     }
 
 
@@ -179,5 +179,5 @@ def file_plan(
 
 
 def _document(file: str) -> Document:
-    found = source_of(file, None, None)
-    return found if isinstance(found, Document) else load_path(found)
+    located = source_of(file, None, None)
+    return located if isinstance(located, Document) else load_path(located)

@@ -56,12 +56,12 @@ def opened_policies(given: Sequence[Any], where: str, root: str | None = None) -
         InputError: One of them is not a policy; the error names its place.
         UnknownPolicyError: There are no such policies; the error names all of them.
     """
-    found: list[Policy] = []
+    opened: list[Policy] = []
     unknown: list[UnknownPolicyError] = []
     for number, policy in enumerate(given):
         try:
             with naming(where, number):
-                found.append(open_policy(policy, root=root))
+                opened.append(open_policy(policy, root=root))
         except UnknownPolicyError as error:
             unknown.append(error)
     if len(unknown) == 1:
@@ -69,7 +69,7 @@ def opened_policies(given: Sequence[Any], where: str, root: str | None = None) -
     if unknown:
         fixes = dict.fromkeys(error.fix or "" for error in unknown)
         raise UnknownPolicyError("; ".join(error.message for error in unknown), "; ".join(fixes), where=where)
-    return found
+    return opened
 
 
 @contextmanager
@@ -113,9 +113,9 @@ def files_of(policies: Mapping[str, str], folders: Mapping[str, Path]) -> tuple[
     Returns:
         Name → text that opens it from any folder, and name → SHA-256 of its file (only for policies that are files).
     """
-    found = {name: open_policy(text, folder=folders.get(name)) for name, text in policies.items() if is_network(text)}
-    return {name: str(one.source) for name, one in found.items()}, {
-        name: str(one.digest) for name, one in found.items()
+    opened = {name: open_policy(text, folder=folders.get(name)) for name, text in policies.items() if is_network(text)}
+    return {name: str(one.source) for name, one in opened.items()}, {
+        name: str(one.digest) for name, one in opened.items()
     }
 
 
@@ -130,15 +130,15 @@ def open_planned(policies: Mapping[str, str], sources: Mapping[str, str], digest
     Raises:
         PolicyError: The file of one has changed since.
     """
-    found = []
+    opened = []
     for name, text in policies.items():
         policy = open_policy(sources.get(name, text))
         if policy.digest != digests.get(name):
             what = f"the file of policy {name!r} has changed since the benchmark was started"
             raise PolicyError("other-benchmark", what, "restore the file, or start again in another folder")
         policy.text = text
-        found.append(policy)
-    return found
+        opened.append(policy)
+    return opened
 
 
 def job_keys(policy: Policy) -> dict[str, Any]:

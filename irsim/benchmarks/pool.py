@@ -98,12 +98,12 @@ def _run_here(shared: _Shared, group: list[int], done: Callable[[int, dict[str, 
         IrsimError: The group is a single task, the first one that fails.
     """
     rest = list(group)
-    found = run_together(shared.tasks[group[0]].job, [shared.tasks[index].seed for index in group])
+    results = run_together(shared.tasks[group[0]].job, [shared.tasks[index].seed for index in group])
     try:
         while rest:
             try:
                 shared.check(group[0])
-                result = next(found)
+                result = next(results)
             except Exception:
                 if len(group) > 1:
                     shared.back(rest)

@@ -26,19 +26,19 @@ def seeds_from(given: Any) -> list[int]:
     Raises:
         InputError: ``given`` is neither, or there are no seeds or too many.
     """
-    found: Iterable[Any]
+    values: Iterable[Any]
     if isinstance(given, str):
-        found = _read(given.replace(" ", ""))
+        values = _read(given.replace(" ", ""))
     elif is_whole_number(given):
-        found = range(_checked_number(int(given)))
+        values = range(_checked_number(int(given)))
     elif isinstance(given, Iterable) and not isinstance(given, (Mapping, bytes, bytearray)):
-        found = list(given)
+        values = list(given)
     else:
         raise _wrong(given)
-    for seed in found:
+    for seed in values:
         if not is_whole_number(seed):
             raise _wrong(seed)
-    seeds = list(dict.fromkeys(int(seed) for seed in found))
+    seeds = list(dict.fromkeys(int(seed) for seed in values))
     if not seeds:
         raise InputError("there must be at least one seed, got none", "give at least one seed", "seeds")
     if min(seeds) < 0 or max(seeds) >= 2**64:
@@ -50,14 +50,14 @@ def _read(text: str) -> Iterable[int]:
     """The seeds of a text, as the command line has them."""
     if text.isdecimal() and len(text) < 20:
         return range(_checked_number(int(text)))
-    found: list[int] = []
+    seeds: list[int] = []
     for part in text.strip(",").split(","):
         ends = re.fullmatch(r"(\d{1,20})(?:-(\d{1,20}))?", part)
         low, high = (0, -1) if ends is None else (int(ends[1]), int(ends[2] or ends[1]))
         if ends is None or not 0 <= high - low < _MAX_SEEDS:
             raise _wrong(text)
-        found += range(low, high + 1)
-    return found
+        seeds += range(low, high + 1)
+    return seeds
 
 
 def _checked_number(number: int) -> int:

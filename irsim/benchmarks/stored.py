@@ -130,7 +130,7 @@ def measure_plan(plan: Plan, **options: Any) -> BenchmarkResult:
     Raises:
         Others: as :func:`irsim.benchmark`.
     """
-    found = benchmark(
+    result = benchmark(
         {scenario.name: scenario.document() for scenario in plan.scenarios},
         plan.opened(),
         plan.seeds,
@@ -141,7 +141,7 @@ def measure_plan(plan: Plan, **options: Any) -> BenchmarkResult:
         until=plan.until,
         **options,
     )
-    return result_of_plan(plan, found)
+    return result_of_plan(plan, result)
 
 
 def resume_benchmark(
@@ -250,10 +250,10 @@ def _write(path: Path, text: str) -> None:
         ) from None
 
 
-def result_of_plan(plan: Plan, found: BenchmarkResult) -> BenchmarkResult:
+def result_of_plan(plan: Plan, result: BenchmarkResult) -> BenchmarkResult:
     """The result of a plan, with what its suite says."""
-    fields: dict[str, Any] = {name: getattr(found, name) for name in BenchmarkResult.model_fields}
-    fields["reproduce"] = plan.reproduce or found.reproduce
+    fields: dict[str, Any] = {name: getattr(result, name) for name in BenchmarkResult.model_fields}
+    fields["reproduce"] = plan.reproduce or result.reproduce
     if plan.suite is None:
         return BenchmarkResult(**fields)
     own: Mapping[str, Any] = {

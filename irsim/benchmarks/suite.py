@@ -205,20 +205,20 @@ class SuiteError(CodedError, ValueError):
         super().__init__(code, message, fix)
 
 
-def suite_error(path: Path | str, found: Sequence[Diagnostic]) -> SuiteError:
+def suite_error(path: Path | str, problems: Sequence[Diagnostic]) -> SuiteError:
     """The error of a suite file with these problems.
 
     Args:
         path: The suite file.
-        found: At least one problem.
+        problems: At least one problem.
     """
-    texts = [_text(item, str(path), alone=len(found) == 1) for item in found[:MOST_PROBLEMS]]
-    texts += [f"and {len(found) - MOST_PROBLEMS} more"] if len(found) > MOST_PROBLEMS else []
-    fix = found[0].fix if len(found) == 1 else None
+    texts = [_text(item, str(path), alone=len(problems) == 1) for item in problems[:MOST_PROBLEMS]]
+    texts += [f"and {len(problems) - MOST_PROBLEMS} more"] if len(problems) > MOST_PROBLEMS else []
+    fix = problems[0].fix if len(problems) == 1 else None
     return SuiteError(
         f"{clean(path, 200)} is not a valid suite: {'; '.join(texts)}",
         _FIX if not fix or _is_guess(fix) else fix,
-        diagnostics=found,
+        diagnostics=problems,
     )
 
 
@@ -266,14 +266,14 @@ def _is_guess(fix: str) -> bool:
 
 def _explain(failure: ValidationError, document: Document, model: type[BaseModel]) -> list[Diagnostic]:
     """The problems of a validation, one for each key; a key with several forms is explained with these forms."""
-    found: dict[Path_, Diagnostic] = {}
+    problems: dict[Path_, Diagnostic] = {}
     for item in failure.errors(include_url=False):
         if (special := _special(tuple(item["loc"]), document.data)) is not None:
-            found.setdefault(special.path, special)
+            problems.setdefault(special.path, special)
     for problem in explained(failure, document, model):
         if _special(tuple(problem.path), document.data) is None:
-            found.setdefault(problem.path, problem)
-    return list(found.values())
+            problems.setdefault(problem.path, problem)
+    return list(problems.values())
 
 
 def _special(path: Path_, data: Any) -> Diagnostic | None:
@@ -310,7 +310,7 @@ SUITES = FileKind(
     key="suite",
     model=Suite,
     folder=Path(__file__).with_name("suites"),
-    error=lambda document, found: suite_error(document.name or "the suite", found),
+    error=lambda document, problems: suite_error(document.name or "the suite", problems),
     explain=_explain,
 )
 """Suite files."""

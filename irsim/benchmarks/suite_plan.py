@@ -43,39 +43,39 @@ def suite_plan(
     Raises:
         SuiteError: There is no such suite, or it is not valid; or a protocol or scenario is not in it.
     """
-    found, file = (suite, Path("suite.yaml")) if isinstance(suite, Suite) else load_suite(suite)
-    kept = _chosen("protocol", protocols or found.protocols, found.protocols)
-    every = expand(found, file)
+    loaded, file = (suite, Path("suite.yaml")) if isinstance(suite, Suite) else load_suite(suite)
+    kept = _chosen("protocol", protocols or loaded.protocols, loaded.protocols)
+    every = expand(loaded, file)
     planned = dict(zip((one.name for one in every), _planned(every), strict=True))
     made = [one for one in every if one.protocol in kept]
-    words = ["irsim", "benchmark", suite if isinstance(suite, str) else found.suite]
+    words = ["irsim", "benchmark", suite if isinstance(suite, str) else loaded.suite]
     if policies is not None:
         words += ["--policies", ",".join(policies)]
-    if list(kept) != list(found.protocols):
+    if list(kept) != list(loaded.protocols):
         words += [word for name in kept for word in ("--protocol", name)]
     if scenarios is not None:
         names = _chosen("scenario", scenarios, sorted({name for one in made for name in _names(one)}))
         made = [one for one in made if not _names(one).isdisjoint(names)]
         words += [word for name in names for word in ("--scenario", name)]
-    perturbations = read_perturbations(perturb) or tuple(found.perturb)
+    perturbations = read_perturbations(perturb) or tuple(loaded.perturb)
     words += [word for item in perturb for word in ("--perturb", item)]
-    texts = _policies(found, policies)
-    sources, digests = files_of(texts, {name: file.parent for name in texts if name in found.known_policies})
-    chosen = _seeds(found, seeds, full)
+    texts = _policies(loaded, policies)
+    sources, digests = files_of(texts, {name: file.parent for name in texts if name in loaded.known_policies})
+    chosen = _seeds(loaded, seeds, full)
     if isinstance(seeds, Sequence):
         words += ["--seeds", _listed(chosen)]
-    elif len(chosen) != found.seeds.count:
+    elif len(chosen) != loaded.seeds.count:
         words += ["--seeds", str(len(chosen))]
     return Plan(
-        name=found.suite,
-        suite=found,
+        name=loaded.suite,
+        suite=loaded,
         scenarios=[planned[one.name] for one in made],
         policies=texts,
         sources=sources,
         digests=digests,
         seeds=chosen,
-        suite_hash=_hash(found, list(planned.values())),
-        until=found.until,
+        suite_hash=_hash(loaded, list(planned.values())),
+        until=loaded.until,
         perturb=[perturbation_text(item) for item in perturbations],
         reproduce=shlex.join(words),
     )
@@ -158,8 +158,8 @@ def suite_scene(name: str | Path) -> PlannedScenario | None:
     Raises:
         SuiteError: The suite is not valid, has no such scenario, or no scenario is named.
     """
-    found = _split(name)
-    return None if found is None else _scene(*found)
+    parts = _split(name)
+    return None if parts is None else _scene(*parts)
 
 
 def suite_policy(name: str | Path, policy: str) -> str:
@@ -172,8 +172,8 @@ def suite_policy(name: str | Path, policy: str) -> str:
     Raises:
         SuiteError: The suite is not valid.
     """
-    found = _split(name)
-    suite = None if found is None else load_suite(found[0])[0]
+    parts = _split(name)
+    suite = None if parts is None else load_suite(parts[0])[0]
     own = {} if suite is None else suite.known_policies
     return behavior_text(own[policy]) if policy in own else policy
 

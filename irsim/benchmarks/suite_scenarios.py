@@ -144,15 +144,15 @@ def check_scenarios(suite: Suite, made: Sequence[Expanded], file: Path) -> None:
     Raises:
         SuiteError: A scenario has errors, or what IR-SIM 2.12 would ignore.
     """
-    found: dict[tuple[Any, ...], Diagnostic] = {}
+    problems: dict[tuple[Any, ...], Diagnostic] = {}
     for one in made:
         text = yaml.safe_dump(one.data, sort_keys=False, allow_unicode=True)
         document = load_text(text, name=one.name, path=str(one.folder / "scenario.yaml"))
         for item in read(document, strict=True).errors:
-            found.setdefault((one.family, item.code, item.path, item.message), _of_suite(item, one, suite))
-    if found:
+            problems.setdefault((one.family, item.code, item.path, item.message), _of_suite(item, one, suite))
+    if problems:
         written = load_path(file) if file.is_file() else Document(None)
-        raise suite_error(file, [_placed(item, suite, written, file) for item in found.values()])
+        raise suite_error(file, [_placed(item, suite, written, file) for item in problems.values()])
 
 
 def _of_suite(item: Diagnostic, one: Expanded, suite: Suite) -> Diagnostic:

@@ -64,12 +64,12 @@ def estimates(columns: Mapping[str, Sequence[float | None]], shares: Collection[
     known = {name: [value for value in values if value is not None] for name, values in columns.items()}
     others = [name for name in known if name not in shares]
     intervals = dict(zip(others, bootstraps([known[name] for name in others]), strict=True))
-    found = {}
+    result = {}
     for name, values in known.items():
         n, mean, std = spread(values)
         low, high = intervals[name] if name in intervals else wilson(sum(value > 0 for value in values), n)
-        found[name] = Estimate(n=n, mean=_known(mean), std=_known(std), low=_known(low), high=_known(high))
-    return found
+        result[name] = Estimate(n=n, mean=_known(mean), std=_known(std), low=_known(low), high=_known(high))
+    return result
 
 
 def is_summary(name: str) -> bool:
@@ -216,12 +216,12 @@ def _paired_differences(pairs: Sequence[tuple[EpisodeRow, EpisodeRow]], shares: 
     """Estimates of the differences of pairs; for shares with an interval that is not empty if all pairs agree."""
     values = {key: [(a.metrics[key], b.metrics[key]) for a, b in pairs] for key in KEYS}
     known = {key: [(a, b) for a, b in both if a is not None and b is not None] for key, both in values.items()}
-    found = estimates({key: [a - b for a, b in both] for key, both in known.items()})
+    differences = estimates({key: [a - b for a, b in both] for key, both in known.items()})
     for key in shares:
         if known[key]:
             count = Counter((a > 0, b > 0) for a, b in known[key])
-            found[key].low, found[key].high = newcombe(*(count[pair] for pair in _TABLE))
-    return found
+            differences[key].low, differences[key].high = newcombe(*(count[pair] for pair in _TABLE))
+    return differences
 
 
 def _pair(episode: EpisodeRow) -> tuple[str, int]:
@@ -245,12 +245,16 @@ def placed(episodes: Sequence[EpisodeRow]) -> list[EpisodeRow]:
 
 def incident_counts(episodes: Sequence[EpisodeRow]) -> dict[str, int]:
     """Number of episodes by incident; incidents that did not occur are left out."""
-    return {key: len(found) for key, found in _episodes_with(episodes).items() if found}
+    return {key: len(affected) for key, affected in _episodes_with(episodes).items() if affected}
 
 
 def incident_seeds(episodes: Sequence[EpisodeRow]) -> dict[str, list[int]]:
     """Seeds of the episodes of one row by incident; incidents that did not occur are left out."""
-    return {key: sorted(episode.seed for episode in found) for key, found in _episodes_with(episodes).items() if found}
+    return {
+        key: sorted(episode.seed for episode in affected)
+        for key, affected in _episodes_with(episodes).items()
+        if affected
+    }
 
 
 def _episodes_with(episodes: Sequence[EpisodeRow]) -> dict[str, list[EpisodeRow]]:
@@ -280,7 +284,7 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
     Args:
         episodes: The episodes of all scenarios and behaviors.
     """
-    found, seeds_of = list[str](), incident_seeds(episodes)
+    messages, seeds_of = list[str](), incident_seeds(episodes)
     words = {
         "contacts_between_steps": "robots touched something between steps in",
         "human_contacts": "contacts between people in",
@@ -293,11 +297,11 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
             contacts = sum(episode.human_contacts for episode in episodes) if key == "human_contacts" else 0
             count = f"{plural(contacts, 'contact')}; " if contacts else ""
             where = f"({count}{_seeds(seeds_of[key])})"
-            found.append(f"{what} {len(seeds_of[key])} of {len(placed(episodes))} episodes {where}")
+            messages.append(f"{what} {len(seeds_of[key])} of {len(placed(episodes))} episodes {where}")
     if LOST in seeds_of:
         why = next(episode.lost for episode in episodes if episode.lost)
         many = f"{len(seeds_of[LOST])} of {len(placed(episodes))} episodes"
-        found.append(f"the policy was lost in {many} ({_seeds(seeds_of[LOST])}), which ended there: {why}")
+        messages.append(f"the policy was lost in {many} ({_seeds(seeds_of[LOST])}), which ended there: {why}")
     for name in dict.fromkeys(episode.scenario for episode in episodes):
         mine = [episode for episode in episodes if episode.scenario == name]
         crowded = sorted({episode.seed for episode in mine if episode.outcome == CROWDED})
@@ -305,5 +309,5 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
             where = f" of {name}" if len({episode.scenario for episode in episodes}) > 1 else ""
             count = f"{len(crowded)} of {len({episode.seed for episode in mine})} seeds{where}"
             seeds = listed([str(seed) for seed in crowded], _MAX_SEEDS)
-            found.append(f"{count} had no room and do not count ({CROWDED}): {seeds}")
-    return found
+            messages.append(f"{count} had no room and do not count ({CROWDED}): {seeds}")
+    return messages

@@ -30,7 +30,7 @@ def timing_report(policies: Mapping[str, Mapping[str, Decisions]], episodes: Map
     Returns:
         For each policy ``mean_ms`` and ``p95_ms`` per decision and per robot, or the reason why they are missing.
     """
-    return {"policies": {name: _summary(found, episodes[name]) for name, found in policies.items()}}
+    return {"policies": {name: _summary(timed, episodes[name]) for name, timed in policies.items()}}
 
 
 def was_timed(report: Mapping[str, Any]) -> bool:
@@ -38,13 +38,13 @@ def was_timed(report: Mapping[str, Any]) -> bool:
     return any("per_decision" in policy for policy in report["policies"].values())
 
 
-def _summary(found: Mapping[str, Decisions], episodes: int) -> dict[str, Any]:
-    pairs = np.array([pair for decisions in found.values() for pair in decisions], dtype=np.float64).reshape(-1, 2)
+def _summary(timed: Mapping[str, Decisions], episodes: int) -> dict[str, Any]:
+    pairs = np.array([pair for decisions in timed.values() for pair in decisions], dtype=np.float64).reshape(-1, 2)
     if not len(pairs):
-        return {"reason": _NONE if found else _EARLIER}
+        return {"reason": _NONE if timed else _EARLIER}
     each = np.repeat(pairs[:, 0] / pairs[:, 1], pairs[:, 1].astype(np.int64))
     return {
-        "episodes": len(found),
+        "episodes": len(timed),
         "episodes_in_all": episodes,
         "decisions": len(pairs),
         "robots_per_decision": round(float(pairs[:, 1].mean()), 3),

@@ -77,5 +77,5 @@ class Latency:
             self._sent = np.zeros((self._most + 1, *numbers.shape))
         self._now = (self._now + 1) % len(self._sent)
         self._sent[self._now] = numbers
-        found = self._sent[(self._now - self.steps) % len(self._sent), self._slots]
-        return found, np.repeat(count, self._learners) < self.steps
+        delayed = self._sent[(self._now - self.steps) % len(self._sent), self._slots]
+        return delayed, np.repeat(count, self._learners) < self.steps

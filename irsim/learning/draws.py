@@ -64,18 +64,18 @@ class Draws:
         - ``parameters.NAME``: (n,) value of a parameter of the template
         - ``variant``: (n,) number of the variant
         """
-        found: dict[str, NDArray[Any]] = {}
+        drawn: dict[str, NDArray[Any]] = {}
         for (quantity, word), objects in self._objects.items():
             if quantity == "number":
-                found[f"number.{word}"] = self._count(word)
+                drawn[f"number.{word}"] = self._count(word)
             else:
                 chosen = objects[0] if self._together[quantity, word] else objects
-                found[f"{quantity}.{word}"] = self._array(quantity)[:, chosen].copy()
+                drawn[f"{quantity}.{word}"] = self._array(quantity)[:, chosen].copy()
         for name, values in self._parameters.items():
-            found[f"parameters.{name}"] = values[self._simulation.state.variant]
+            drawn[f"parameters.{name}"] = values[self._simulation.state.variant]
         if self._parameters:
-            found["variant"] = self._simulation.state.variant.copy()
-        return found
+            drawn["variant"] = self._simulation.state.variant.copy()
+        return drawn
 
     def latencies(self) -> NDArray[np.int64]:
         """(n * A,) latency of each learner [steps]."""

@@ -116,10 +116,10 @@ class Eyes:
         there = self._simulation.appeared[rows] >= 0
         rows = rows[there]
         first, world = np.zeros(len(rows), dtype=bool), rows // self._simulation.objects
-        found = observe(self._layout, self._observer.observe(rows, first, world)) if len(rows) else {}
+        observed = observe(self._layout, self._observer.observe(rows, first, world)) if len(rows) else {}
         for label, (columns, _) in self.parts.items():
             if columns.start in done:
                 continue
             seen[~there, columns] = 0.0
-            if found:
-                seen[there, columns] = found[label].flat()
+            if observed:
+                seen[there, columns] = observed[label].flat()

@@ -133,8 +133,8 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
 
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
         """What a method of this object returns, once for each slot."""
-        found = getattr(self, method_name)(*method_args, **method_kwargs)
-        return [found] * len(list(self._get_indices(indices)))
+        result = getattr(self, method_name)(*method_args, **method_kwargs)
+        return [result] * len(list(self._get_indices(indices)))
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
         """Slots are never wrapped one by one."""

@@ -71,10 +71,10 @@ class Moment:
         distance = self.distance_before
         far = distance > 0  # not for NaN either
         length = np.where(far, distance, 1.0)
-        found = np.empty((*far.shape, 2))
+        direction = np.empty((*far.shape, 2))
         for k in range(2):
-            found[..., k] = np.where(far, (self.goal[..., k] - self.pose_before[..., k]) / length, 0.0)
-        return found
+            direction[..., k] = np.where(far, (self.goal[..., k] - self.pose_before[..., k]) / length, 0.0)
+        return direction
 
 
 def _distance(pose: Floats, goal: Floats) -> Floats:

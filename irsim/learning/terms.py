@@ -112,8 +112,8 @@ class PythonTerms:
         def gaps(reach: float) -> Floats:
             if reach not in known:
                 world, state = self._simulation.world, self._simulation.state
-                found = core.gaps(world, state, self._rows, self._kinds, reach, self._threads)
-                known[reach] = found.reshape(*self._shape, 3)
+                measured = core.gaps(world, state, self._rows, self._kinds, reach, self._threads)
+                known[reach] = measured.reshape(*self._shape, 3)
             return known[reach]
 
         return gaps
@@ -146,7 +146,7 @@ class Threats:
 
     def urgency(self, rows: NDArray[np.int64]) -> Floats:
         """(B,) 1 / (t + 0.2 s), with the time t to the first touch; 0 without a touch within 5 s."""
-        found = np.empty((len(rows), _URGENCY + 1), dtype=np.float32)
+        observed = np.empty((len(rows), _URGENCY + 1), dtype=np.float32)
         world, state = self._simulation.world, self._simulation.state
-        core.observe_rows(world, state, self._looking, [(self._kernel, 0)], rows, found, self._threads)
-        return found[:, _URGENCY].astype(np.float64)
+        core.observe_rows(world, state, self._looking, [(self._kernel, 0)], rows, observed, self._threads)
+        return observed[:, _URGENCY].astype(np.float64)

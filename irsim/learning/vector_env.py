@@ -197,11 +197,11 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         """(n,) worlds of the slots of a mask."""
         if mask is None:
             return None
-        found = np.asarray(mask)
-        if found.shape != (self.num_envs,) or found.dtype != np.bool_ or not found.any():
+        flags = np.asarray(mask)
+        if flags.shape != (self.num_envs,) or flags.dtype != np.bool_ or not flags.any():
             what = f"reset_mask is {as_given(mask)}"
             raise ArgumentError(what, f"give an array of bool of shape ({self.num_envs},) with at least one True")
-        return np.asarray(found.reshape(self.worlds.n, self.worlds.learners).any(axis=1))
+        return np.asarray(flags.reshape(self.worlds.n, self.worlds.learners).any(axis=1))
 
 
 def _worlds(task: TaskSource, slots: int, seed: int | None, threads: int, workers: int) -> AnyWorlds:
@@ -233,8 +233,8 @@ def _info(result: Result) -> dict[str, Any]:
 
 def _final(seen: NDArray[np.float32], slots: NDArray[np.int64]) -> dict[str, Any]:
     """What slots observed last in an episode, as Gymnasium has it: an array of objects, and which of them there are."""
-    found, there = np.full(len(seen), None, dtype=object), np.zeros(len(seen), dtype=bool)
+    final, there = np.full(len(seen), None, dtype=object), np.zeros(len(seen), dtype=bool)
     there[slots] = True
     for slot, row in zip(slots.tolist(), seen[slots], strict=True):
-        found[slot] = row
-    return {"final_obs": found, "_final_obs": there}
+        final[slot] = row
+    return {"final_obs": final, "_final_obs": there}

@@ -289,15 +289,15 @@ class Worlds:
         world, state, velocities = simulation.world, simulation.state, self._meaning.returns == "velocity"
         wanted = None if numbers is None else self._wanted(numbers)
         if seen is not None and not terms and not simulation.in_python:  # all in one loop of the core
-            found = stepper.step(world, state, wanted, velocities, eyes.looking, eyes.native, seen, self._threads)
-            result = Result(*(*found, self._contacts_between_steps()))
+            outcome = stepper.step(world, state, wanted, velocities, eyes.looking, eyes.native, seen, self._threads)
+            result = Result(*(*outcome, self._contacts_between_steps()))
             eyes.complete(self.rows, seen)
             return result
         stepper.begin(world, state, wanted, velocities)
         terms.look()
         simulation.step()
-        found = stepper.end(world, state, self._threads)
-        result = Result(*(*found, self._contacts_between_steps()))
+        outcome = stepper.end(world, state, self._threads)
+        result = Result(*(*outcome, self._contacts_between_steps()))
         if terms:
             result = terms.add(result, self.present)
         if seen is not None:

@@ -106,11 +106,11 @@ def episode_metrics(
         watched["goal_visible_ratio"] = goal_visible_ratio(track.position, track.goal, simulation)
         made, odd = progress_metrics(track, geodesics, inscribed_radius(simulation, track.index))
         near, apart = proximity_metrics(track)
-        found = outcome_metrics(track) | motion_metrics(track) | near | social_metrics(track) | made | watched
-        found |= reward_metrics(track)
-        if missing := [key for key in order if key not in found]:
+        metrics = outcome_metrics(track) | motion_metrics(track) | near | social_metrics(track) | made | watched
+        metrics |= reward_metrics(track)
+        if missing := [key for key in order if key not in metrics]:
             raise LookupError(f"no module of irsim/metrics computes {', '.join(missing)}")
-        values.append({key: _without_rounding_error(found[key]) for key in order})
+        values.append({key: _without_rounding_error(metrics[key]) for key in order})
         flags.append(odd + apart)
     names = [track.name for track in cut]
     hits = [_partner(track) for track in cut]
@@ -139,15 +139,15 @@ def _partner(track: Track) -> str | None:
 
 
 def _of_episode(robots: list[dict[str, float]]) -> dict[str, float]:
-    found = {metric.key: episode_value(metric.key, [robot[metric.key] for robot in robots]) for metric in METRICS}
+    values = {metric.key: episode_value(metric.key, [robot[metric.key] for robot in robots]) for metric in METRICS}
     collided = any(not robot["success"] and not robot["timeout"] for robot in robots)
-    found["timeout"] = float(not collided and not found["success"]) if robots else math.nan
-    found["collision"] = float(collided) if robots else math.nan
-    found["pedestrian_delay"] = math.nan  # needs a second run without robots, which irsim.benchmark makes
+    values["timeout"] = float(not collided and not values["success"]) if robots else math.nan
+    values["collision"] = float(collided) if robots else math.nan
+    values["pedestrian_delay"] = math.nan  # needs a second run without robots, which irsim.benchmark makes
     times = [robot["time_to_goal"] for robot in robots]
-    found["aggregated_time"] = max(times) if times and not any(map(math.isnan, times)) else math.nan
-    found["explored"] = math.nan  # needs the fog at the end of the run, which irsim.benchmark has
-    return found
+    values["aggregated_time"] = max(times) if times and not any(map(math.isnan, times)) else math.nan
+    values["explored"] = math.nan  # needs the fog at the end of the run, which irsim.benchmark has
+    return values
 
 
 def _of_zones(robots: list[dict[str, dict[str, float]]]) -> dict[str, dict[str, float]]:

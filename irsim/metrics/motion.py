@@ -40,7 +40,7 @@ def motion_metrics(track: Track) -> dict[str, float]:
     turned = float(np.abs(track.bends).sum())
     length = track.path_length
     bends = curvatures(track.position)
-    found = {
+    metrics = {
         "stalled_time": float(stalled.sum() * dt),
         "path_length": length,
         "velocity_min": _or_nan(speed, np.min),
@@ -49,12 +49,12 @@ def motion_metrics(track: Track) -> dict[str, float]:
     }
     for name, order in (("acceleration", 2), ("jerk", 3)):
         change = np.linalg.norm(np.diff(track.position, n=order, axis=0), axis=1) / dt**order
-        found |= {
+        metrics |= {
             f"{name}_min": _or_nan(change, np.min),
             f"{name}_avg": _or_nan(change, np.mean),
             f"{name}_max": _or_nan(change, np.max),
         }
-    return found | {
+    return metrics | {
         "cumulative_heading_change": turned,
         "curvature": _or_nan(bends, np.mean),
         "roughness": _or_nan(np.abs(np.diff(bends)), np.mean),

@@ -44,7 +44,7 @@ def progress_metrics(track: Track, geodesics: Geodesics, radius: float) -> tuple
     nan = math.nan
     straight = np.linalg.norm(track.goal[:, :2] - track.position, axis=1)
     known = straight[~np.isnan(straight)]
-    found = {
+    metrics = {
         "failure_to_progress": float(_without_progress(track, geodesics, radius)),
         "spl": 0.0,
         "stl": 0.0,
@@ -56,24 +56,24 @@ def progress_metrics(track: Track, geodesics: Geodesics, radius: float) -> tuple
     }
     goals = _goals(track)
     if not len(goals):
-        return found | dict.fromkeys(("spl", "stl", "barn_score", "failure_to_progress"), nan), []
+        return metrics | dict.fromkeys(("spl", "stl", "barn_score", "failure_to_progress"), nan), []
     ways = [geodesics.path(a, b, radius) for a, b in zip([track.position[0], *goals[:-1]], goals, strict=True)]
     if any(way is None for way in ways):
-        return found | dict.fromkeys(("spl", "stl", "barn_score"), nan), [UNREACHABLE]
+        return metrics | dict.fromkeys(("spl", "stl", "barn_score"), nan), [UNREACHABLE]
     if track.arrival is None:
-        return found, []
+        return metrics, []
     way = np.concatenate([w for w in ways if w is not None])
     shortest = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
     path, time = track.path_length, track.arrival * track.step_time
-    found["path_efficiency"] = path / shortest if shortest > 0 else nan
-    found["path_irregularity"] = float(np.abs(track.bends).sum()) - _turns(way, track)
+    metrics["path_efficiency"] = path / shortest if shortest > 0 else nan
+    metrics["path_irregularity"] = float(np.abs(track.bends).sum()) - _turns(way, track)
     if track.success:
-        found["spl"] = shortest / max(path, shortest) if shortest > 0 else 1.0
+        metrics["spl"] = shortest / max(path, shortest) if shortest > 0 else 1.0
         ideal = shortest / track.top_speed if 0 < track.top_speed < math.inf else nan
-        found["stl"] = ideal / max(time, ideal) if time > 0 else 1.0
+        metrics["stl"] = ideal / max(time, ideal) if time > 0 else 1.0
         ideal = shortest / 2.0
-        found["barn_score"] = ideal / min(max(time, 2 * ideal), 8 * ideal) if ideal > 0 else nan
-    return found, []
+        metrics["barn_score"] = ideal / min(max(time, 2 * ideal), 8 * ideal) if ideal > 0 else nan
+    return metrics, []
 
 
 def _goals(track: Track) -> list[NDArray[np.float64]]:

@@ -38,7 +38,7 @@ def proximity_metrics(track: Track) -> tuple[dict[str, float], list[str]]:
     """
     _, humans, static = track.distance.T
     nan = float("nan")
-    found = {
+    metrics = {
         "min_clearance": _least(track.distance),
         "clearing_distance_min": _least(static),
         "clearing_distance_avg": _mean(static),
@@ -47,18 +47,18 @@ def proximity_metrics(track: Track) -> tuple[dict[str, float], list[str]]:
     }
     there = humans[~np.isnan(humans)]
     share = float((there >= _PERSONAL_M).mean()) if len(there) else nan
-    found |= {"space_compliance": share, "personal_space_intrusion_ratio": 1.0 - share}
+    metrics |= {"space_compliance": share, "personal_space_intrusion_ratio": 1.0 - share}
     for zone, (low, high) in _ZONES.items():
-        found[f"proxemics_{zone}_ratio"] = float(((there >= low) & (there < high)).mean()) if len(there) else nan
+        metrics[f"proxemics_{zone}_ratio"] = float(((there >= low) & (there < high)).mean()) if len(there) else nan
     close = there[(there > 0) & (there < _NEAR_M)]
-    found |= {
+    metrics |= {
         "discomfort_ratio": len(close) / len(there) if len(there) else nan,
         "discomfort_min_dist": _mean(close),
         "near_misses": float(_near_misses(humans)) if len(there) else nan,
     }
     soonest = _least(time_to_contact(track))
     flags = [NO_APPROACH] if track.people and math.isnan(soonest) else []
-    return found | {"time_to_collision_min": soonest}, flags
+    return metrics | {"time_to_collision_min": soonest}, flags
 
 
 def time_to_contact(track: Track) -> NDArray[np.float64]:

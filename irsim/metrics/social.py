@@ -47,7 +47,7 @@ def social_metrics(track: Track) -> dict[str, float]:
     """
     nan = math.nan
     causes = [_causes(track, event) for event, kind in track.collisions if kind == HUMAN]
-    found = {
+    metrics = {
         "human_collisions_by_robot": float(sum(mine for mine, _ in causes)),
         "human_collisions_by_human": float(sum(theirs for _, theirs in causes)),
         "group_space_intrusion_ratio": nan,
@@ -62,7 +62,7 @@ def social_metrics(track: Track) -> dict[str, float]:
     if track.groups:
         gaps = [group_gaps(track.position, track.others[:, list(group), :2]) for group in track.groups]
         within = (np.array(gaps) <= _GROUP_MARGIN_M + track.reach).any(axis=0)
-        found |= {"group_space_intrusion_ratio": float(within.mean()), "group_collision_rate": float(within.any())}
+        metrics |= {"group_space_intrusion_ratio": float(within.mean()), "group_collision_rate": float(within.any())}
     if track.people and len(track.pose) > 1:
         steps = np.diff(track.others[:, :, :2], axis=0)
         on_it, by_it = social_forces(
@@ -72,10 +72,10 @@ def social_metrics(track: Track) -> dict[str, float]:
         on_it[absent] = by_it[absent] = 0.0
         robot = float(np.linalg.norm(on_it.sum(axis=1), axis=1).sum() * track.step_time)
         agents = float(np.linalg.norm(by_it, axis=2).sum() * track.step_time)
-        found |= {"social_force_robot": robot, "social_force_agents": agents, "social_work": robot + agents}
+        metrics |= {"social_force_robot": robot, "social_force_agents": agents, "social_work": robot + agents}
         if not absent.all():
-            found["pedestrian_velocity_avg"] = float(np.linalg.norm(steps[~absent], axis=1).mean() / track.step_time)
-    return found
+            metrics["pedestrian_velocity_avg"] = float(np.linalg.norm(steps[~absent], axis=1).mean() / track.step_time)
+    return metrics
 
 
 def social_forces(position: Floats, velocity: Floats, others: Floats, velocities: Floats) -> tuple[Floats, Floats]:

@@ -72,11 +72,11 @@ def bootstraps(samples: Sequence[Sequence[float] | NDArray[np.float64]]) -> list
     """The intervals of :func:`bootstrap` of several samples; those with as many values share the draws."""
     columns = [np.asarray(values, dtype=np.float64) for values in samples]
     columns = [column[~np.isnan(column)] for column in columns]
-    found = [(math.nan, math.nan)] * len(columns)
+    intervals = [(math.nan, math.nan)] * len(columns)
     by_count: dict[int, list[int]] = {}
     for place, known in enumerate(columns):
         if len(known) >= 2 and (known == known[0]).all():
-            found[place] = float(known[0]), float(known[0])
+            intervals[place] = float(known[0]), float(known[0])
         elif len(known) >= 2:
             by_count.setdefault(len(known), []).append(place)
     for count, places in by_count.items():
@@ -86,8 +86,8 @@ def bootstraps(samples: Sequence[Sequence[float] | NDArray[np.float64]]) -> list
                 parts.append(weights @ columns[place])
         for parts, place in zip(means, places, strict=True):
             low, high = np.percentile(np.concatenate(parts) / count, [2.5, 97.5])
-            found[place] = float(low), float(high)
-    return found
+            intervals[place] = float(low), float(high)
+    return intervals
 
 
 def _resamples(count: int) -> Iterator[NDArray[np.float64]]:

@@ -163,7 +163,7 @@ def tracks(
     humans = np.flatnonzero(kinds == HUMAN)
     beside = static_distance(trace.pose, simulation, humans.tolist())
     first = int(trace.step[0])
-    found = []
+    result = []
     for place, robot in enumerate(distances.robots.tolist()):
         name = trace.names[robot]
         arrival = arrivals[name].step if name in arrivals else None
@@ -182,7 +182,7 @@ def tracks(
         record = records[robot]
         x, y = trace.pose[rows, robot, 0], trace.pose[rows, robot, 1]
         x0, y0, x1, y1 = scenario.world.bounds
-        found.append(
+        result.append(
             Track(
                 name=name,
                 index=robot,
@@ -212,4 +212,4 @@ def tracks(
                 holonomic=getattr(record.kinematics, "speeds", 0) == 2,
             )
         )
-    return found
+    return result

@@ -122,18 +122,18 @@ def zone_metrics(watching: Watching, name: str, rows: Rows) -> dict[str, dict[st
 
     For a line there are ``left_to_right`` and ``right_to_left`` too, of which ``zone_crossings`` is the difference.
     """
-    found: dict[str, dict[str, float]] = {}
+    metrics: dict[str, dict[str, float]] = {}
     for zone in watching.zones:
         mine = [e for e in watching.of_object.get(name, ()) if e.zone == zone.name and rows.includes(e)]
         if zone.is_line:
             right = float(sum(event.direction == "left_to_right" for event in mine))
             left = float(sum(event.direction == "right_to_left" for event in mine))
-            found[zone.name] = {"zone_crossings": right - left, "left_to_right": right, "right_to_left": left}
+            metrics[zone.name] = {"zone_crossings": right - left, "left_to_right": right, "right_to_left": left}
         else:
             entries = float(sum(event.kind == "zone_entry" for event in mine))
             seconds = rows.seconds(_inside(watching, name, zone.name, rows))
-            found[zone.name] = {"time_in_zone": seconds, "zone_crossings": entries}
-    return found
+            metrics[zone.name] = {"time_in_zone": seconds, "zone_crossings": entries}
+    return metrics
 
 
 def goal_visible_ratio(positions: Floats, goals: Floats, simulation: Simulation, world: int = 0) -> float:

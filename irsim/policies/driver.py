@@ -251,20 +251,20 @@ class PolicyDriver:
             ) from error
 
     def _checked(
-        self, simulation: Simulation, group: _Group, rows: NDArray[np.int64], found: Any
+        self, simulation: Simulation, group: _Group, rows: NDArray[np.int64], answer: Any
     ) -> NDArray[np.float64]:
         """What a policy returned, as one row of finite numbers for each robot."""
         count, columns = len(rows), group.columns
         what = "velocities in the world frame" if self.policy.output == "velocity" else f"controls of {group.drive}"
         advice = f"return an array of shape ({count}, {columns}): {what}, one row for each robot"
         try:
-            values = np.asarray(found, dtype=np.float64)
+            values = np.asarray(answer, dtype=np.float64)
         except (TypeError, ValueError):
             values = np.zeros(0)
         exact = self.policy.output == "velocity"
         fits = values.ndim == 2 and values.shape[0] == count and values.shape[1] >= columns
         if not fits or (exact and values.shape[1] != columns):
-            given = "None" if found is None else type(found).__name__ if not values.size else f"shape {values.shape}"
+            given = "None" if answer is None else type(answer).__name__ if not values.size else f"shape {values.shape}"
             raise PolicyError("policy-failed", f"policy {self.policy.name!r} returned {given}", advice)
         values = values[:, :columns]
         wrong = np.flatnonzero(~np.isfinite(values).all(axis=1))

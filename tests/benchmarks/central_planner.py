@@ -83,8 +83,8 @@ def share(robots: int, seeds: Sequence[int], *, steps: int = 500, most: int = 30
         The index of the plan of each solved seed, and the seeds without a plan.
     """
     text = scene(robots)
-    found = {seed: plan(text, robots, seed, steps, most) for seed in seeds}
-    solved = {seed: index for seed, index in found.items() if index is not None}
+    plans = {seed: plan(text, robots, seed, steps, most) for seed in seeds}
+    solved = {seed: index for seed, index in plans.items() if index is not None}
     return solved, [seed for seed in seeds if seed not in solved]
 
 

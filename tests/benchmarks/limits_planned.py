@@ -129,9 +129,9 @@ def run(cell: Cell, seeds: list[int], threads: int, *, sampled: bool) -> Result:
     """Run one episode for each seed."""
     simulation = Simulation(or_raise(read(cell.text(), strict=False))[0], seeds, threads=threads)
     steps = round(DURATION / cell.step_time)
-    found = Result()
+    result = Result()
     if sampled:
-        found.sampled = int(_sampled(simulation, cell, steps).sum())
+        result.sampled = int(_sampled(simulation, cell, steps).sum())
     else:
         simulation.advance(steps, until_done=True)
     arrived = simulation.arrived.reshape(simulation.copies, -1)[:, simulation.robots[: simulation.objects]]
@@ -139,11 +139,11 @@ def run(cell: Cell, seeds: list[int], threads: int, *, sampled: bool) -> Result:
         kinds = [event.kind for event in read_events(simulation, w)]
         touched = "collision" in kinds
         within = any(kind in BETWEEN_STEPS for kind in kinds)
-        found.between += within
-        found.collided += touched
-        found.late += not touched and not arrived[w].all()
-        found.success += bool(arrived[w].all()) and not touched and not within
-    return found
+        result.between += within
+        result.collided += touched
+        result.late += not touched and not arrived[w].all()
+        result.success += bool(arrived[w].all()) and not touched and not within
+    return result
 
 
 def _sampled(simulation: Simulation, cell: Cell, steps: int) -> NDArray[np.bool_]:
@@ -240,10 +240,10 @@ def main(arguments: list[str] | None = None) -> int:
             continue
         start = time.perf_counter()
         cell = replace(cell, behavior=given.behavior, limited=cell.limited and not given.unlimited)
-        found = run(cell, seeds, given.threads, sampled=given.sampled)
+        result = run(cell, seeds, given.threads, sampled=given.sampled)
         row = [cell.group, cell.robots, cell.protocol, cell.drive, cell.integration, f"{cell.step_time:g} s"]
-        row += [f"{100 * found.success / len(seeds):.1f} %", found.collided, found.late, found.between]
-        row += [found.sampled] * given.sampled
+        row += [f"{100 * result.success / len(seeds):.1f} %", result.collided, result.late, result.between]
+        row += [result.sampled] * given.sampled
         print(f"| {' | '.join(map(str, row))} | {time.perf_counter() - start:.0f} s |", flush=True)
     return 0
 

@@ -50,9 +50,9 @@ def files(tmp_path):
 
 
 def test_each_episode_equals_a_run_with_its_seed(files) -> None:
-    found = irsim.benchmark(files, seeds=[4, 7])
-    assert [(e.scenario, e.seed) for e in found.episodes] == [(files[0], 4), (files[0], 7), (files[1], 4)]
-    for episode in found.episodes:
+    result = irsim.benchmark(files, seeds=[4, 7])
+    assert [(e.scenario, e.seed) for e in result.episodes] == [(files[0], 4), (files[0], 7), (files[1], 4)]
+    for episode in result.episodes:
         alone = irsim.run(episode.scenario, seed=episode.seed)
         assert (episode.outcome, episode.steps) == (alone.outcome, alone.steps)
         assert (episode.time_limit, episode.sim_time) == (alone.time_limit, alone.sim_time)
@@ -130,14 +130,14 @@ def test_a_file_that_is_not_a_log_is_an_error(files, tmp_path) -> None:
 
 
 def test_behaviors_meet_the_same_scenes_and_are_compared_pair_by_pair(files) -> None:
-    found = irsim.benchmark(files[0], ["dash", "{name: rvo, neighbor_threshold: 2}"], 5)
-    dash, rvo = found.rows
+    result = irsim.benchmark(files[0], ["dash", "{name: rvo, neighbor_threshold: 2}"], 5)
+    dash, rvo = result.rows
     assert (dash.paired, dash.success.n, rvo.episodes) == ({}, 5, 5)
-    assert found.behaviors == ["dash", "{name: rvo, neighbor_threshold: 2}"]
-    by = {(e.behavior, e.seed): e for e in found.episodes}
+    assert result.behaviors == ["dash", "{name: rvo, neighbor_threshold: 2}"]
+    by = {(e.behavior, e.seed): e for e in result.episodes}
     differences = []
     for seed in range(5):
-        a, b = (by[name, seed].metrics["path_length"] for name in reversed(found.behaviors))
+        a, b = (by[name, seed].metrics["path_length"] for name in reversed(result.behaviors))
         differences.append(a - b)
     assert rvo.paired["path_length"].mean == pytest.approx(math.fsum(differences) / 5)
     assert rvo.paired["path_length"].low <= rvo.paired["path_length"].mean <= rvo.paired["path_length"].high
@@ -150,8 +150,8 @@ def test_noise_that_no_policy_reads_is_not_chance(tmp_path: Path) -> None:
     robot = {"kinematics": {"name": "diff"}, "state": [1, 5, 0], "goal": [4, 5], "sensors": [sensor]}
     file = tmp_path / "noisy.yaml"
     file.write_text(yaml.safe_dump({"world": {"width": 10, "height": 10}, "robot": [robot]}))
-    found = irsim.benchmark(file, ["dash", "orca"], seeds=5)
-    assert [len(found.episodes), "nothing is random that these policies notice" in found.notes[0]] == [2, True]
+    result = irsim.benchmark(file, ["dash", "orca"], seeds=5)
+    assert [len(result.episodes), "nothing is random that these policies notice" in result.notes[0]] == [2, True]
 
     def drive(seen: Observations) -> np.ndarray:
         return np.tile([1.0, 0.0], (len(seen), 1))
@@ -164,15 +164,15 @@ def test_noise_that_no_policy_reads_is_not_chance(tmp_path: Path) -> None:
 
 
 def test_a_behavior_that_draws_random_numbers_runs_with_every_seed(files) -> None:
-    found = irsim.benchmark(files[1], ["dash", "avocado"], seeds=3)
-    assert [len(found.episodes), found.notes] == [6, []]
+    result = irsim.benchmark(files[1], ["dash", "avocado"], seeds=3)
+    assert [len(result.episodes), result.notes] == [6, []]
 
 
 def test_a_scenario_without_randomness_runs_once_and_a_note_says_so(files) -> None:
-    found = irsim.benchmark(files[1], seeds=20)
-    assert len(found.episodes) == 1
-    assert "nothing is random" in found.notes[0]
-    [row] = found.rows
+    result = irsim.benchmark(files[1], seeds=20)
+    assert len(result.episodes) == 1
+    assert "nothing is random" in result.notes[0]
+    [row] = result.rows
     assert (row.success.rate, row.success.low, row.success.high) == (1.0, None, None)  # it can't come out differently
     [_, other] = irsim.benchmark(files[1], ["dash", "rvo"], 20).rows
     assert (other.paired["success"].mean, other.paired["success"].low) == (0.0, None)
@@ -181,8 +181,8 @@ def test_a_scenario_without_randomness_runs_once_and_a_note_says_so(files) -> No
 def test_scenarios_that_weigh_the_same_are_also_taken_together(files, tmp_path) -> None:
     (tmp_path / "other.yaml").write_text(CROWD.replace("number: 3", "number: 2"))
     both = [files[0], str(tmp_path / "other.yaml")]
-    found = irsim.benchmark(both, seeds=3)
-    assert [(row.scenario, row.episodes) for row in found.rows] == [(both[0], 3), (both[1], 3), ("(all)", 6)]
+    result = irsim.benchmark(both, seeds=3)
+    assert [(row.scenario, row.episodes) for row in result.rows] == [(both[0], 3), (both[1], 3), ("(all)", 6)]
     assert [row.scenario for row in irsim.benchmark(files, seeds=3).rows] == files  # three episodes and one
     fixed = []
     for number in range(10):
@@ -193,13 +193,13 @@ def test_scenarios_that_weigh_the_same_are_also_taken_together(files, tmp_path) 
 
 
 def test_rows_name_the_seeds_and_robots_that_failed(files) -> None:
-    found = irsim.benchmark(files[0], seeds=range(100, 110))
-    [row] = found.rows
-    ends = {e.seed: e.outcome for e in found.episodes}
+    result = irsim.benchmark(files[0], seeds=range(100, 110))
+    [row] = result.rows
+    ends = {e.seed: e.outcome for e in result.episodes}
     for outcome in ("collision", "timeout"):
         assert row.failed.get(outcome, []) == [seed for seed, end in ends.items() if end == outcome]
     assert row.collision.count  # dash drives into others
-    for episode in found.episodes:
+    for episode in result.episodes:
         assert bool(episode.failures) == (episode.outcome != "success")
         told = irsim.run(files[0], seed=episode.seed).robots
         assert set(episode.failures) == {robot.name for robot in told if robot.outcome != "success"}
@@ -208,13 +208,13 @@ def test_rows_name_the_seeds_and_robots_that_failed(files) -> None:
 
 
 def test_pairs_that_all_agree_are_no_certainty(files) -> None:
-    found = irsim.benchmark(files[0], ["dash", "{name: dash, wander: false}"], 10)
+    result = irsim.benchmark(files[0], ["dash", "{name: dash, wander: false}"], 10)
     for key in ("success", "collision", "timeout"):
-        both = found.rows[1].paired[key]
+        both = result.rows[1].paired[key]
         assert both.mean == 0.0
         assert both.low < -0.05
         assert both.high > 0.05
-    assert found.rows[1].paired["path_length"].low == 0.0
+    assert result.rows[1].paired["path_length"].low == 0.0
 
 
 def test_metrics_that_are_zero_or_one_have_intervals_of_shares(files) -> None:
@@ -222,8 +222,8 @@ def test_metrics_that_are_zero_or_one_have_intervals_of_shares(files) -> None:
     for key, share in (("success", row.success), ("timeout", row.timeout), ("collision", row.collision)):
         assert (row.metrics[key].low, row.metrics[key].high) == (share.low, share.high)
     for key in ("goal_reached", "left_world"):
-        found = row.metrics[key]
-        assert (found.low, found.high) == pytest.approx(wilson(round(found.mean * 10), 10))
+        estimate = row.metrics[key]
+        assert (estimate.low, estimate.high) == pytest.approx(wilson(round(estimate.mean * 10), 10))
     [fixed] = irsim.benchmark(files[1], seeds=20).rows
     assert (fixed.metrics["goal_reached"].low, fixed.metrics["goal_reached"].high) == (None, None)
 
@@ -252,14 +252,14 @@ def test_where_there_is_no_way_spl_is_undefined_and_said(tmp_path) -> None:
 
 def test_the_table_says_of_how_many_episodes_a_mean_is(files) -> None:
     arguments = ["benchmark", files[0], "--behaviors", "dash,rvo", "--seeds", "10"]
-    found = irsim.benchmark(files[0], ["dash", "rvo"], 10).rows
-    times = [row.metrics["time_to_goal"].n for row in found]
+    rows = irsim.benchmark(files[0], ["dash", "rvo"], 10).rows
+    times = [row.metrics["time_to_goal"].n for row in rows]
     assert 0 < times[0] < 10
     shown = CliRunner().invoke(app, arguments).output
     lines = [line for line in shown.splitlines() if re.search(r"(dash|rvo) +10 ", line)]
     assert [f"({n})" in line for n, line in zip(times, lines, strict=True)] == [n < 10 for n in times]
     assert "only 5 of the n episodes have this value" in shown
-    pairs = found[1].paired["time_to_goal"].n
+    pairs = rows[1].paired["time_to_goal"].n
     assert f"] ({pairs})" in next(line for line in shown.splitlines() if "same seeds" in line)
 
 
@@ -338,9 +338,9 @@ def test_a_behavior_that_only_this_program_knows(files, monkeypatch) -> None:
     def creep(ego_object, external_objects, **kwargs):
         return [[0.1], [0.0]]
 
-    found = irsim.benchmark(files[0], "creep_along_here", 4, workers=2)
-    assert [episode.seed for episode in found.episodes] == [0, 1, 2, 3]
-    assert [episode.metrics["velocity_max"] for episode in found.episodes] == pytest.approx([0.1] * 4)
+    result = irsim.benchmark(files[0], "creep_along_here", 4, workers=2)
+    assert [episode.seed for episode in result.episodes] == [0, 1, 2, 3]
+    assert [episode.metrics["velocity_max"] for episode in result.episodes] == pytest.approx([0.1] * 4)
 
 
 def test_a_job_crosses_a_process_unchanged() -> None:
@@ -387,9 +387,9 @@ def test_a_note_says_in_one_sentence_which_limits_of_the_policies_are_unequal(tm
     file = tmp_path / "fast.yaml"
     fast = ALONE.replace("behavior:", "vel_max: [2, 3], vel_min: [-2, -3], name: scout, behavior:")
     file.write_text("world: {time_limit: 1}\n" + fast)
-    found = irsim.benchmark([str(file)], policies, seeds=1)
-    (*_, note) = [*found.notes, ""] if said is None else found.notes
-    assert found.unequal == ({} if said is None else {str(file): note.removeprefix(f"{file}: ")})
+    result = irsim.benchmark([str(file)], policies, seeds=1)
+    (*_, note) = [*result.notes, ""] if said is None else result.notes
+    assert result.unequal == ({} if said is None else {str(file): note.removeprefix(f"{file}: ")})
     if said is not None:
         assert note.startswith(f"{file}: limits are unequal, so times are not fair: 'scout' ")
         assert said in note

@@ -92,10 +92,10 @@ def test_results_are_those_of_a_local_run_in_whatever_order_they_come(use: Calla
     local = irsim.benchmark("scene.yaml", ["dash", "orca"], 8, steps=60, workers=1)
     ray = use(Ray())
     counts: list[tuple[int, int]] = []
-    found = irsim.benchmark(
+    result = irsim.benchmark(
         "scene.yaml", ["dash", "orca"], 8, steps=60, cluster="auto", progress=lambda *now: counts.append(now)
     )
-    assert found.model_dump_json() == local.model_dump_json()
+    assert result.model_dump_json() == local.model_dump_json()
     assert counts[-1] == (16, 16)
     assert sorted(task for chunk in ray.sent for task in chunk) == [(job, seed) for job in (0, 1) for seed in range(8)]
 

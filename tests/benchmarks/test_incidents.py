@@ -41,8 +41,8 @@ robot:
 
 
 def test_contacts_between_people_are_in_the_summary_of_a_run() -> None:
-    found = irsim.run(text=PEOPLE % "unobstructed_obstacles", steps=80)
-    assert (found.outcome, found.human_contacts) == ("success", 0)  # it ended before they met
+    result = irsim.run(text=PEOPLE % "unobstructed_obstacles", steps=80)
+    assert (result.outcome, result.human_contacts) == ("success", 0)  # it ended before they met
     late = irsim.run(text=(PEOPLE % "unobstructed_obstacles").replace("goal: [3, 1]", "goal: [9, 1]"))
     assert late.human_contacts == 1
     assert "; 1 contact between people ('ann' hit 'bob' at 2.8 s)" in late.summary
@@ -56,60 +56,60 @@ def test_contacts_between_people_are_in_the_summary_of_a_run() -> None:
 def test_the_first_contact_is_said_once() -> None:
     """Robots can be people, too: their collisions are in the summary already."""
     both = (PEOPLE % "stop").replace("goal: [3, 1]", "goal: [9, 1], tags: [pedestrian]")
-    found = irsim.run(
+    result = irsim.run(
         text=both.replace("state: [2, 5, 0]", "state: [9, 1, 3.14]").replace("goal: [9, 5]", "goal: [1, 1]")
     )
-    assert found.human_contacts == 1
-    assert found.summary.count("hit 'ann' at") == 1
-    assert "; 1 contact between people" in found.summary
+    assert result.human_contacts == 1
+    assert result.summary.count("hit 'ann' at") == 1
+    assert "; 1 contact between people" in result.summary
 
 
 def test_robots_that_left_or_jumped_are_in_the_summary_of_a_run() -> None:
-    found = irsim.run(text=AWAY)
-    assert [item.name for item in found.left] == ["stray"]
-    assert found.jumped == ["fast"]
-    [jump] = [event for event in found.events if event.kind == "overshoot" and event.object == "fast"][:1]
-    assert f"'fast' jumped over its goal at {round(jump.time, 2):g} s, at no step nearer than 0.3 m " in found.summary
-    assert "(raise goal_threshold above that or lower step_time)" in found.summary
-    assert "'stray' left the world at" in found.summary
+    result = irsim.run(text=AWAY)
+    assert [item.name for item in result.left] == ["stray"]
+    assert result.jumped == ["fast"]
+    [jump] = [event for event in result.events if event.kind == "overshoot" and event.object == "fast"][:1]
+    assert f"'fast' jumped over its goal at {round(jump.time, 2):g} s, at no step nearer than 0.3 m " in result.summary
+    assert "(raise goal_threshold above that or lower step_time)" in result.summary
+    assert "'stray' left the world at" in result.summary
 
 
 def test_who_arrives_after_a_jump_is_not_in_the_summary() -> None:
     """A robot that passes its goal at first and comes back has arrived."""
     text = AWAY.replace("step_time: 0.1", "").replace("vel_max: [10, 1]", "vel_max: [10, 1], acce: [4, 9]")
-    found = irsim.run(text=text.replace("goal: [3, 3]", "goal: [3, 3], goal_threshold: 0.3"))
-    robots = {robot.name: robot.outcome for robot in found.robots}
+    result = irsim.run(text=text.replace("goal: [3, 3]", "goal: [3, 3], goal_threshold: 0.3"))
+    robots = {robot.name: robot.outcome for robot in result.robots}
     assert robots["fast"] == "success"
-    assert found.jumped == []
-    assert "jumped" not in found.summary
+    assert result.jumped == []
+    assert "jumped" not in result.summary
 
 
 def test_incidents_of_a_benchmark_are_counted_and_come_first(tmp_path: Path) -> None:
     (tmp_path / "people.yaml").write_text((PEOPLE % "unobstructed_obstacles").replace("goal: [3, 1]", "goal: [9, 1]"))
     (tmp_path / "away.yaml").write_text(AWAY)
     files = [str(tmp_path / "people.yaml"), str(tmp_path / "away.yaml")]
-    found = irsim.benchmark(files, seeds=3, perturb="speed=5%")
-    people, away = found.episodes[:3], found.episodes[3:]
+    result = irsim.benchmark(files, seeds=3, perturb="speed=5%")
+    people, away = result.episodes[:3], result.episodes[3:]
     assert [episode.human_contacts for episode in people] == [1, 1, 1]
     assert [episode.left for episode in away] == [["stray"]] * 3
     assert [episode.jumped for episode in people] == [[]] * 3
     jumped = sum(bool(episode.jumped) for episode in away)
     assert jumped == 3
-    assert found.rows[0].incidents == {"human_contacts": 3}
-    assert found.rows[1].incidents == {"left": 3, "jumped": jumped}
-    assert found.incidents == [
+    assert result.rows[0].incidents == {"human_contacts": 3}
+    assert result.rows[1].incidents == {"left": 3, "jumped": jumped}
+    assert result.incidents == [
         "contacts between people in 3 of 6 episodes (3 contacts; seeds 0, 1, 2)",
         "objects left the world in 3 of 6 episodes (seeds 0, 1, 2)",
         "objects jumped over their goal in 3 of 6 episodes (seeds 0, 1, 2)",
     ]
     shown = CliRunner().invoke(app, ["benchmark", *files, "--seeds", "3", "--perturb", "speed=5%"]).output
-    assert shown.splitlines()[0] == "; ".join(found.incidents)
+    assert shown.splitlines()[0] == "; ".join(result.incidents)
 
 
 def test_where_nothing_happened_nothing_is_said(tmp_path: Path) -> None:
     (tmp_path / "calm.yaml").write_text(PEOPLE % "stop")
-    found = irsim.benchmark(str(tmp_path / "calm.yaml"))
-    assert (found.incidents, found.rows[0].incidents) == ([], {})
+    result = irsim.benchmark(str(tmp_path / "calm.yaml"))
+    assert (result.incidents, result.rows[0].incidents) == ([], {})
     shown = CliRunner().invoke(app, ["benchmark", str(tmp_path / "calm.yaml")]).output
     assert shown.splitlines()[0].startswith("scenario ")
 
@@ -122,46 +122,46 @@ def crowded(tmp_path: Path) -> str:
 
 def test_a_seed_without_room_is_an_outcome_of_its_own(crowded: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pool_module, "_START_DELAY_S", 0.0)
-    found = irsim.benchmark(crowded, ["orca", "rvo"], 12, workers=1)
-    without = [episode.seed for episode in found.episodes[:12] if episode.outcome == "placement-crowded"]
+    result = irsim.benchmark(crowded, ["orca", "rvo"], 12, workers=1)
+    without = [episode.seed for episode in result.episodes[:12] if episode.outcome == "placement-crowded"]
     assert 0 < len(without) < 12
     for seed in range(12):
         if seed in without:
             with pytest.raises(irsim.PlacementError, match=f"with seed {seed}"):
                 irsim.run(crowded, seed=seed)
-    for row in found.rows:
-        ends = [e.outcome for e in found.episodes if e.behavior == row.behavior and e.seed not in without]
+    for row in result.rows:
+        ends = [e.outcome for e in result.episodes if e.behavior == row.behavior and e.seed not in without]
         assert row.episodes == row.success.n == row.collision.n == row.timeout.n == len(ends)
         assert row.success.count + row.collision.count + row.timeout.count == len(ends)
         assert row.incidents["placement-crowded"] == len(without)
         assert not set(without) & {seed for seeds in row.failed.values() for seed in seeds}
-    assert found.rows[1].paired["success"].n == 12 - len(without)
+    assert result.rows[1].paired["success"].n == 12 - len(without)
     listed = ", ".join(map(str, without[:5])) + (f" and {len(without) - 5} more" if len(without) > 5 else "")
-    assert found.incidents[-1] == (
+    assert result.incidents[-1] == (
         f"{len(without)} of 12 seeds had no room and do not count (placement-crowded): {listed}"
     )
     many = irsim.benchmark(crowded, ["orca", "rvo"], 12, workers=3)
-    assert many.model_dump_json() == found.model_dump_json()
-    empty = next(episode for episode in found.episodes if episode.seed in without)
+    assert many.model_dump_json() == result.model_dump_json()
+    empty = next(episode for episode in result.episodes if episode.seed in without)
     assert (empty.steps, empty.failures, set(empty.metrics.values())) == (0, {}, {None})
 
 
 def test_the_table_counts_seeds_without_room_beside_n(crowded: str) -> None:
-    found = irsim.benchmark(crowded, seeds=12)
+    result = irsim.benchmark(crowded, seeds=12)
     shown = CliRunner().invoke(app, ["benchmark", crowded, "--seeds", "12"]).output.splitlines()
     assert "seeds had no room and do not count (placement-crowded)" in shown[0]
     [line] = [line.split() for line in shown if line.startswith("crowded ")]
-    assert line[2] == str(found.rows[0].episodes)
+    assert line[2] == str(result.rows[0].episodes)
     table = CliRunner().invoke(app, ["benchmark", crowded, "--seeds", "12", "--csv"]).stdout
     rows = list(csv.DictReader(io.StringIO(table)))
-    assert [row["outcome"] for row in rows] == [episode.outcome for episode in found.episodes]
+    assert [row["outcome"] for row in rows] == [episode.outcome for episode in result.episodes]
 
 
 def test_where_no_seed_has_room_there_is_no_row(tmp_path: Path) -> None:
     (tmp_path / "full.yaml").write_text(CROWDED % 25)
-    found = irsim.benchmark(str(tmp_path / "full.yaml"), seeds=3)
-    assert found.rows == []
-    assert found.incidents == ["3 of 3 seeds had no room and do not count (placement-crowded): 0, 1, 2"]
+    result = irsim.benchmark(str(tmp_path / "full.yaml"), seeds=3)
+    assert result.rows == []
+    assert result.incidents == ["3 of 3 seeds had no room and do not count (placement-crowded): 0, 1, 2"]
     done = CliRunner().invoke(app, ["benchmark", str(tmp_path / "full.yaml"), "--seeds", "3"])
     assert done.exit_code == 0
     assert done.output.startswith("3 of 3 seeds had no room")
@@ -176,9 +176,9 @@ robot: {name: train, kinematics: {name: diff}, state: [10, 10, 0], goal: [18, 10
 obstacle:
   - {number: 2, shape: {name: rectangle, length: 18, width: 1}, state: [[10, 11, 0], [10, 9, 0]]}
 """)
-    found = irsim.benchmark(str(tmp_path / "gap.yaml"), seeds=5, perturb="heading=90deg")
-    assert "placement-crowded" in {episode.outcome for episode in found.episodes}
-    seed = next(episode.seed for episode in found.episodes if episode.outcome == "placement-crowded")
+    result = irsim.benchmark(str(tmp_path / "gap.yaml"), seeds=5, perturb="heading=90deg")
+    assert "placement-crowded" in {episode.outcome for episode in result.episodes}
+    seed = next(episode.seed for episode in result.episodes if episode.outcome == "placement-crowded")
     with pytest.raises(irsim.PlacementError) as error:
         irsim.run(tmp_path / "gap.yaml", seed=seed, perturb="heading=90deg")
     [item] = error.value.diagnostics

@@ -38,16 +38,16 @@ def test_a_fixed_scene_becomes_random(crossing: str) -> None:
     plain = irsim.benchmark(crossing, seeds=8)
     assert (len(plain.episodes), plain.rows[0].success.low) == (1, None)
     assert "perturb would make seeds differ" in plain.notes[0]
-    found = irsim.benchmark(crossing, seeds=8, perturb={"position": 0.5, "delay": 3})
-    assert [episode.seed for episode in found.episodes] == list(range(8))
-    assert len({episode.metrics["path_length"] for episode in found.episodes}) == 8
-    assert {episode.outcome for episode in found.episodes} == {"success", "collision"}
-    assert found.rows[0].success.low is not None
-    assert found.random[crossing] == ["start positions", "start delays"]
+    result = irsim.benchmark(crossing, seeds=8, perturb={"position": 0.5, "delay": 3})
+    assert [episode.seed for episode in result.episodes] == list(range(8))
+    assert len({episode.metrics["path_length"] for episode in result.episodes}) == 8
+    assert {episode.outcome for episode in result.episodes} == {"success", "collision"}
+    assert result.rows[0].success.low is not None
+    assert result.random[crossing] == ["start positions", "start delays"]
     said = "start ±0.5 m in x and in y, start delayed by 0 to 3 s of 'scout', 'walker'"
-    assert (found.perturb, found.perturbed) == (["position=0.5,delay=3"], {crossing: [said]})
-    assert found.notes == [f"perturbed, drawn uniformly for each seed: {said}"]
-    assert found.reproduce == f"irsim benchmark {crossing} --seeds 8 --perturb position=0.5,delay=3"
+    assert (result.perturb, result.perturbed) == (["position=0.5,delay=3"], {crossing: [said]})
+    assert result.notes == [f"perturbed, drawn uniformly for each seed: {said}"]
+    assert result.reproduce == f"irsim benchmark {crossing} --seeds 8 --perturb position=0.5,delay=3"
 
 
 def test_spread_zero_is_the_scenario_as_written(crossing: str) -> None:
@@ -66,15 +66,15 @@ def test_results_do_not_depend_on_the_number_of_processes(crossing: str, monkeyp
 
 
 def test_behaviors_meet_the_same_starts(crossing: str) -> None:
-    found = irsim.benchmark(crossing, ["dash", "{name: dash, wander: false}"], 6, perturb="position=0.5,speed=0.2")
-    assert [e.metrics for e in found.episodes[:6]] == [e.metrics for e in found.episodes[6:]]
-    assert found.rows[1].paired["time_to_goal"].mean == 0.0
+    result = irsim.benchmark(crossing, ["dash", "{name: dash, wander: false}"], 6, perturb="position=0.5,speed=0.2")
+    assert [e.metrics for e in result.episodes[:6]] == [e.metrics for e in result.episodes[6:]]
+    assert result.rows[1].paired["time_to_goal"].mean == 0.0
 
 
 def test_each_episode_is_what_the_command_for_one_run_gives(crossing: str, tmp_path: Path) -> None:
     spreads = ["position=0.5,heading=0.2", "speed=10%,delay=3,objects=walker"]
-    found = irsim.benchmark(crossing, ["as-written", "orca"], [3, 7], perturb=spreads)
-    for episode in found.episodes:
+    result = irsim.benchmark(crossing, ["as-written", "orca"], [3, 7], perturb=spreads)
+    for episode in result.episodes:
         changed = None if episode.behavior == "as-written" else episode.behavior
         alone = irsim.run(crossing, seed=episode.seed, behavior=changed, perturb=spreads)
         assert (alone.outcome, alone.steps) == (episode.outcome, episode.steps)
@@ -83,15 +83,15 @@ def test_each_episode_is_what_the_command_for_one_run_gives(crossing: str, tmp_p
         assert words[2:5] == [crossing, "--seed", str(episode.seed)]
         again = CliRunner().invoke(app, [*words[1:], "--json"])
         assert json.loads(again.stdout) == json.loads(alone.model_dump_json())
-    again = CliRunner().invoke(app, [*shlex.split(found.reproduce)[1:], "--json"])
-    assert again.stdout.rstrip("\n") == found.model_dump_json()
+    again = CliRunner().invoke(app, [*shlex.split(result.reproduce)[1:], "--json"])
+    assert again.stdout.rstrip("\n") == result.model_dump_json()
 
 
 def test_a_seed_without_a_given_one_is_drawn_and_reported(crossing: str) -> None:
     assert irsim.run(crossing).random == []
-    found = irsim.run(crossing, perturb="position=0.5")
-    assert found.random == ["start positions"]
-    assert f"--seed {found.seed} --perturb position=0.5" in found.reproduce
+    result = irsim.run(crossing, perturb="position=0.5")
+    assert result.random == ["start positions"]
+    assert f"--seed {result.seed} --perturb position=0.5" in result.reproduce
 
 
 def test_a_recorded_run_is_simulated_again_as_it_was(crossing: str, tmp_path: Path) -> None:
@@ -110,16 +110,16 @@ def test_the_default_time_limit_leaves_time_for_the_delay(tmp_path: Path) -> Non
 
 
 def test_what_still_waits_at_the_end_is_said(crossing: str) -> None:
-    found = irsim.run(crossing, seed=1, steps=20, perturb="delay=20,objects=scout")
-    assert found.reason is not None
-    assert "'scout' still waits 8.00 m from its goal (its start is delayed to " in found.reason
+    result = irsim.run(crossing, seed=1, steps=20, perturb="delay=20,objects=scout")
+    assert result.reason is not None
+    assert "'scout' still waits 8.00 m from its goal (its start is delayed to " in result.reason
 
 
 def test_pedestrians_without_robots_start_as_late(crossing: str) -> None:
     """The delay of people compares the same starts with and without the robot: here nobody is in the way."""
     (Path(crossing)).write_text(CROSSING.replace("goal: [9, 5]", "goal: [2, 5]"))
-    found = irsim.benchmark(crossing, seeds=5, perturb="position=0.3,speed=0.3,delay=4")
-    assert [episode.metrics["pedestrian_delay"] for episode in found.episodes] == [0.0] * 5
+    result = irsim.benchmark(crossing, seeds=5, perturb="position=0.3,speed=0.3,delay=4")
+    assert [episode.metrics["pedestrian_delay"] for episode in result.episodes] == [0.0] * 5
 
 
 def test_the_command_says_what_was_perturbed(crossing: str) -> None:
@@ -149,6 +149,6 @@ def test_wrong_perturbations_are_errors_as_data(crossing: str, tmp_path: Path) -
 
 
 def test_the_result_reads_back(crossing: str, tmp_path: Path) -> None:
-    found = irsim.benchmark(crossing, seeds=3, perturb="position=0.1", log=tmp_path / "log")
-    assert irsim.benchmarks.logged(tmp_path / "log").model_dump_json() == found.model_dump_json()
-    assert BenchmarkResult.model_validate_json(found.model_dump_json()) == found
+    result = irsim.benchmark(crossing, seeds=3, perturb="position=0.1", log=tmp_path / "log")
+    assert irsim.benchmarks.logged(tmp_path / "log").model_dump_json() == result.model_dump_json()
+    assert BenchmarkResult.model_validate_json(result.model_dump_json()) == result

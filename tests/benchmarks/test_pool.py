@@ -59,11 +59,11 @@ def test_a_process_that_is_killed_is_replaced(tmp_path: Path, monkeypatch: pytes
     undisturbed = irsim.benchmark(SCENE, ["dash", "orca"], 12, workers=1)
     fragile(monkeypatch, tmp_path, range(4, 12, 2), always=False)
     counts: list[tuple[int, int]] = []
-    found = irsim.benchmark(
+    result = irsim.benchmark(
         SCENE, ["dash", "orca"], 12, workers=3, imports=["fragile"], progress=lambda *now: counts.append(now)
     )
-    assert found.episodes == undisturbed.episodes
-    assert found.rows == undisturbed.rows
+    assert result.episodes == undisturbed.episodes
+    assert result.rows == undisturbed.rows
     assert len(list(tmp_path.glob("*-*"))) >= 3
     assert counts[-1] == (24, 24)
 

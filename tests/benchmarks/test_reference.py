@@ -20,9 +20,9 @@ def rerun(name: str, folder: Path, seeds: int) -> None:
     assert isinstance(result, SuiteResult)
     labels = {text: name for name, text in result.policies.items()}
     kept = set((FOLDER / f"{name}.csv").read_text(encoding="utf-8").splitlines())
-    found = lines_of(result.episodes, labels)
-    assert len(found) == len(result.scenarios) * len(result.behaviors) * seeds
-    assert [line for line in found if line not in kept] == []
+    lines = lines_of(result.episodes, labels)
+    assert len(lines) == len(result.scenarios) * len(result.behaviors) * seeds
+    assert [line for line in lines if line not in kept] == []
 
 
 def test_each_kept_file_is_of_a_table() -> None:
@@ -52,10 +52,10 @@ def test_the_table_counts_the_kept_episodes(name: str) -> None:
         shares, *_ = re.findall(rf"^\| {re.escape(scenario)} \| {re.escape(policy)} \| (.*)$", page, re.MULTILINE)
         cells = shares.split(" | ")
         n = int(cells[0])
-        found = [int(cell.split("%")[0]) for cell in cells[1:4]]
+        shown = [int(cell.split("%")[0]) for cell in cells[1:4]]
         placed = sum(count.values()) - count["placement-crowded"]
         wanted = [float(f"{100 * count[name] / n:.0f}") for name in ("success", "collision", "timeout")]
-        assert (n, found) == (placed, wanted), (scenario, policy)
+        assert (n, shown) == (placed, wanted), (scenario, policy)
     assert page.endswith("\n" + "\n".join(changes(name, outcomes)) + "\n")
     assert (
         "Taken for granted: contacts count at the ends of steps of 0.1 s only; robots change their speed at once"

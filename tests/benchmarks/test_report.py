@@ -100,8 +100,8 @@ def test_csv_of_a_suite_names_policy_family_protocol_and_values(made: tuple[Path
     rows = list(csv.DictReader(io.StringIO(done.stdout)))
     assert len(rows) == len(made[1].episodes)
     row = next(row for row in rows if row["scenario"] == "square-3/yield" and row["behavior"] == "dash")
-    found = [row[key] for key in ("policy", "family", "protocol", "values.robot[0].number")]
-    assert found == ["dash", "square", "yield", "3"]
+    cells = [row[key] for key in ("policy", "family", "protocol", "values.robot[0].number")]
+    assert cells == ["dash", "square", "yield", "3"]
     assert {row["policy"] for row in rows} == {"orca", "dash"}
 
 

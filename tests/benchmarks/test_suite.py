@@ -187,13 +187,13 @@ obstacle:
 
 @pytest.mark.parametrize(("goal", "step"), [([9, 2], 38), ([2, 2], 66)], ids=["under way", "after arrival"])
 def test_the_first_collision_of_an_episode_decides_it(goal: list[int], step: int) -> None:
-    found = irsim.benchmark(DASHES.replace("GOALS", str([goal, [19, 8]])), until="first_collision", steps=400)
-    [episode] = found.episodes
+    result = irsim.benchmark(DASHES.replace("GOALS", str([goal, [19, 8]])), until="first_collision", steps=400)
+    [episode] = result.episodes
     assert (episode.outcome, episode.steps) == ("collision", step)
     assert episode.failures == {"robot_0": "collision with 'obstacle_2'"}
     metrics = episode.metrics
     assert (metrics["success"], metrics["collision"], metrics["timeout"]) == (0, 1, 0)
-    assert not any("ended early" in note for note in found.notes)
+    assert not any("ended early" in note for note in result.notes)
 
 
 def test_a_scenario_is_named_with_or_without_its_protocol(tmp_path: Path) -> None:

@@ -99,8 +99,8 @@ def test_validate_checks_a_suite_as_a_suite(tmp_path: Path) -> None:
 
 
 def test_a_misspelt_name_of_a_suite_is_named() -> None:
-    found = CliRunner().invoke(app, ["benchmark", "circle_swop_v1"])
-    assert (found.exit_code, "did you mean circle_swap_v1?" in found.output) == (2, True)
+    done = CliRunner().invoke(app, ["benchmark", "circle_swop_v1"])
+    assert (done.exit_code, "did you mean circle_swap_v1?" in done.output) == (2, True)
 
 
 @pytest.mark.parametrize(
@@ -139,5 +139,5 @@ def test_a_scenario_in_which_nothing_can_be_perturbed_is_named(tmp_path: Path) -
     text = FIELD.replace("height: 10}", "height: 10, obstacle_map: hall.png}")
     (tmp_path / "field.yaml").write_text(f"{text}perturb: [{{position: 0.1}}]\n", encoding="utf-8")
     arguments = ["benchmark", str(tmp_path / "field.yaml"), "--seeds", "1", "-o", str(tmp_path / "out")]
-    found = CliRunner().invoke(app, arguments)
-    assert (found.exit_code, "nothing to perturb in 'field-2'" in found.output) == (2, True)
+    done = CliRunner().invoke(app, arguments)
+    assert (done.exit_code, "nothing to perturb in 'field-2'" in done.output) == (2, True)

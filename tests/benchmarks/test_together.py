@@ -93,7 +93,7 @@ def test_policies_in_python_decide_for_many_worlds_as_they_do_for_one(policy: st
     made = replace(job(behavior="as-written"), policy=opened.source, digest=opened.digest)
     alone = [run_task(Task(made, seed)) for seed in range(5)]
     decided = [len(result.pop("decisions")) for result in alone]
-    found = list(run_together(made, list(range(5))))
-    assert ["decisions" in result for result in found] == [True, False, False, False, False], "one alone, to be timed"
-    assert len(found[0].pop("decisions")) == decided[0]
-    assert [json.dumps(result) for result in found] == [json.dumps(result) for result in alone]
+    results = list(run_together(made, list(range(5))))
+    assert ["decisions" in result for result in results] == [True, False, False, False, False], "one alone, to be timed"
+    assert len(results[0].pop("decisions")) == decided[0]
+    assert [json.dumps(result) for result in results] == [json.dumps(result) for result in alone]

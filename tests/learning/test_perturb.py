@@ -56,5 +56,5 @@ def test_what_has_no_effect_in_the_scenario_of_a_task_is_told(tmp_path: Path) ->
     report = task_report(str(path))
     assert report.valid
     assert report.summary == "valid: task test, 1 learner (diff); 2 warnings"
-    found = {(finding.code, finding.path) for finding in report.findings}
-    assert found == {("ignored-key", f"scenario.robot[0].{key}") for key in ("state", "goal")}
+    findings = {(finding.code, finding.path) for finding in report.findings}
+    assert findings == {("ignored-key", f"scenario.robot[0].{key}") for key in ("state", "goal")}

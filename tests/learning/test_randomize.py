@@ -43,36 +43,36 @@ def rich(**keys: Any) -> dict[str, Any]:
 
 def drawn_over(worlds: Worlds, episodes: int) -> dict[str, Any]:
     """(episodes * n, ...) of everything that is drawn."""
-    found = []
+    drawn = []
     for _ in range(episodes):
-        found.append(dict(worlds.drawn))
+        drawn.append(dict(worlds.drawn))
         worlds.reset()
-    return {name: np.concatenate([one[name] for one in found]) for name in found[0]}
+    return {name: np.concatenate([one[name] for one in drawn]) for name in drawn[0]}
 
 
 # draws ----------------------------------------------------------------------------------------------------------------
 def test_draws_keep_to_their_ranges_and_reach_both_ends() -> None:
-    found = drawn_over(Worlds(rich(), 100, seed=1), 10)
-    counts = np.bincount(found["number.obstacle[0]"], minlength=5)
+    drawn = drawn_over(Worlds(rich(), 100, seed=1), 10)
+    counts = np.bincount(drawn["number.obstacle[0]"], minlength=5)
     assert len(counts) == 5
     assert counts.min() > 150
-    assert np.bincount(found["latency.learners"].ravel()).min() > 200
+    assert np.bincount(drawn["latency.learners"].ravel()).min() > 200
     for name, low, high in (
         ("size.obstacle[0]", 0.5, 1.5),
         ("speed.learners", 0.5, 1.5),
         ("acceleration.learners", 0.5, 1.5),
         ("sensor_noise.learners", 0.0, 2.0),
     ):
-        values = found[name]
+        values = drawn[name]
         assert low <= values.min() < low + 0.02 * (high - low)
         assert high - 0.02 * (high - low) < values.max() <= high
         assert values.mean() == pytest.approx((low + high) / 2, abs=0.05 * (high - low))
 
 
 def test_draws_of_quantities_and_objects_are_independent() -> None:
-    found = drawn_over(Worlds(rich(), 200, seed=3), 5)
-    columns = [found["number.obstacle[0]"], *found["size.obstacle[0]"].T]
-    columns += [found[f"{name}.learners"][:, 0] for name in ("speed", "acceleration", "sensor_noise", "latency")]
+    drawn = drawn_over(Worlds(rich(), 200, seed=3), 5)
+    columns = [drawn["number.obstacle[0]"], *drawn["size.obstacle[0]"].T]
+    columns += [drawn[f"{name}.learners"][:, 0] for name in ("speed", "acceleration", "sensor_noise", "latency")]
     assert np.abs(np.corrcoef(np.array(columns, dtype=float)) - np.eye(len(columns))).max() < 0.12
 
 

@@ -103,5 +103,5 @@ def test_an_unknown_key_is_marked_itself(tmp_path: Path) -> None:
     path.write_text(TASKS.bundled(TASKS.names()[0]).read_text(encoding="utf-8") + "\nnumbr: 5\n")
     with pytest.raises(TaskError) as refused:
         open_task(path)
-    [found] = refused.value.diagnostics
-    assert (found.code, found.column, found.length) == ("unknown-key", 1, len("numbr"))
+    [diagnostic] = refused.value.diagnostics
+    assert (diagnostic.code, diagnostic.column, diagnostic.length) == ("unknown-key", 1, len("numbr"))

@@ -207,9 +207,9 @@ def test_an_error_in_another_process_is_the_same_error_here() -> None:
     env = VectorEnv(of_python("picky"), 3, workers=2)
     env.reset(seed=0)
     for _ in range(2):  # the processes are still in step with each other
-        with pytest.raises(ZeroDivisionError, match="there are two worlds") as found:
+        with pytest.raises(ZeroDivisionError, match="there are two worlds") as failed:
             env.step(np.zeros((3, 2)))
-        assert found.value.args[1] == {"number": 2}
+        assert failed.value.args[1] == {"number": 2}
     env.close()
     wrong = VectorEnv(of_python("nothing"), 3, workers=2)
     with pytest.raises(ArgumentError, match="cannot be imported") as refused:

@@ -20,12 +20,12 @@ AHEAD = np.array([[1.0, 0.0]])
 
 def drive(worlds: Worlds, steps: int, seed: int = 0) -> list[tuple[Any, ...]]:
     """Random actions with resets: observations, rewards and flags of each step."""
-    rng, found = np.random.default_rng(seed), []
+    rng, results = np.random.default_rng(seed), []
     for _ in range(steps):
         actions = rng.uniform(-1, 1, (worlds.n, worlds.learners, worlds.width))
         actions[..., 0] = np.abs(actions[..., 0])
-        found.append(one_step(worlds, actions.reshape(-1, worlds.width)))
-    return found
+        results.append(one_step(worlds, actions.reshape(-1, worlds.width)))
+    return results
 
 
 def one_step(worlds: Worlds, actions: Any) -> tuple[Any, ...]:
@@ -120,10 +120,10 @@ def test_learners_observe_what_a_network_with_the_same_layout_does() -> None:
     first = np.zeros(len(worlds.rows), dtype=bool)
     seen = observe(layout, observer.observe(worlds.rows, first, worlds.rows // worlds.simulation.objects))
     expected = np.concatenate([seen[part["name"]].flat() for part in parts], axis=1).astype(np.float32)
-    found = worlds.observe()
-    assert np.array_equal(found, expected)
-    assert (found >= worlds.eyes.low).all()
-    assert (found <= worlds.eyes.high).all()
+    observed = worlds.observe()
+    assert np.array_equal(observed, expected)
+    assert (observed >= worlds.eyes.low).all()
+    assert (observed <= worlds.eyes.high).all()
 
 
 # rewards -------------------------------------------------------------------------------------------------------------

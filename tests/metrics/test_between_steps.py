@@ -21,7 +21,7 @@ def test_contacts_between_steps_count_until_it_arrives_and_are_no_collisions() -
         event("arrival", 30, robot),
         event("contact_between_steps", 33, robot, wall),
     ]
-    found = episode_metrics(trace(resolved, pose, [[4, 5]]), resolved, events)
+    metrics = episode_metrics(trace(resolved, pose, [[4, 5]]), resolved, events)
     keys = ("contacts_between_steps", "collision_count", "collision_steps", "success")
-    assert [found.robots[0][key] for key in keys] == [2, 0, 0, 1]
-    assert found.episode["contacts_between_steps"] == 2
+    assert [metrics.robots[0][key] for key in keys] == [2, 0, 0, 1]
+    assert metrics.episode["contacts_between_steps"] == 2

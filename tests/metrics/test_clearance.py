@@ -43,23 +43,23 @@ def test_distances_over_an_episode_and_the_closest_moment() -> None:
     start = simulation.pose.copy()
     trace = record_rollout(simulation, 100, until_done=False)
     poses = np.concatenate([start[None], trace.pose])
-    found = clearance(poses, scenario, seed=3)
-    assert found.distance.tobytes() == clearance(poses, simulation).distance.tobytes()
-    assert found.distance.shape == (101, 2, 3)
+    distances = clearance(poses, scenario, seed=3)
+    assert distances.distance.tobytes() == clearance(poses, simulation).distance.tobytes()
+    assert distances.distance.shape == (101, 2, 3)
     x, y = poses[:, :, 0], poses[:, :, 1]
     first, walker, sitter = 0, 2, 3
-    np.testing.assert_allclose(found.robot[:, 0], np.hypot(x[:, 0] - x[:, 1], y[:, 0] - y[:, 1]) - 0.5)
-    np.testing.assert_array_equal(found.robot[:, 0], found.robot[:, 1])
+    np.testing.assert_allclose(distances.robot[:, 0], np.hypot(x[:, 0] - x[:, 1], y[:, 0] - y[:, 1]) - 0.5)
+    np.testing.assert_array_equal(distances.robot[:, 0], distances.robot[:, 1])
     people = np.stack(
         [
             np.hypot(x[:, first] - x[:, walker], y[:, first] - y[:, walker]) - 0.5,
             np.hypot(x[:, first] - x[:, sitter], y[:, first] - y[:, sitter]) - 0.7,
         ]
     )
-    np.testing.assert_allclose(found.human[:, 0], people.min(axis=0), atol=1e-12)
-    assert {found.names[i] for i in found.partner[:, 0, HUMAN]} == {scenario.objects[i].name for i in (2, 3)}
-    assert found.static[0, 0] == pytest.approx(0.8)  # the wall behind it
-    nearest = closest(found)[1]
+    np.testing.assert_allclose(distances.human[:, 0], people.min(axis=0), atol=1e-12)
+    assert {distances.names[i] for i in distances.partner[:, 0, HUMAN]} == {scenario.objects[i].name for i in (2, 3)}
+    assert distances.static[0, 0] == pytest.approx(0.8)  # the wall behind it
+    nearest = closest(distances)[1]
     assert nearest is not None
     assert (nearest.row, nearest.kind, nearest.partner) == (0, "human", scenario.objects[2].name)
     assert nearest.distance == pytest.approx(1.4)

@@ -71,7 +71,7 @@ def test_a_straight_drive_to_the_goal() -> None:
     resolved = scenario(([1, 5], [5, 5]))
     done = trace(resolved, straight(40)[:, None], [[5, 5]])
     name = resolved.objects[0].name
-    found = robot_metrics(done, resolved, [event("arrival", 40, name)])[0]
+    metrics = robot_metrics(done, resolved, [event("arrival", 40, name)])[0]
     expected = {
         "success": 1,
         "goal_reached": 1,
@@ -99,14 +99,14 @@ def test_a_straight_drive_to_the_goal() -> None:
         "clearing_distance_min": NAN,
         "time_to_collision_min": NAN,
     }
-    assert {key: found[key] for key in expected} == pytest.approx(expected, nan_ok=True, abs=1e-9)
+    assert {key: metrics[key] for key in expected} == pytest.approx(expected, nan_ok=True, abs=1e-9)
 
 
 def test_every_key_and_no_other() -> None:
     resolved = scenario(([1, 5], [5, 5]))
-    found = episode_metrics(trace(resolved, straight(3)[:, None], [[5, 5]]), resolved, [])
-    assert list(found.robots[0]) == [metric.key for metric in METRICS]
-    assert list(found.episode) == [*found.robots[0], *(metric.key for metric in EPISODE_METRICS)]
+    metrics = episode_metrics(trace(resolved, straight(3)[:, None], [[5, 5]]), resolved, [])
+    assert list(metrics.robots[0]) == [metric.key for metric in METRICS]
+    assert list(metrics.episode) == [*metrics.robots[0], *(metric.key for metric in EPISODE_METRICS)]
     assert len({metric.key for metric in METRICS}) == len(METRICS)
 
 
@@ -116,12 +116,12 @@ def test_after_the_arrival_nothing_counts() -> None:
     path = np.stack([straight(60), straight(60) + np.array([0, 4])], axis=1)
     path[41:, 0] = path[40, 0] + np.array([0, 3])  # pushed away
     events = [event("arrival", 40, one), event("collision", 50, one, other)]
-    found = robot_metrics(trace(resolved, path, [[5, 5], [9, 9]], stopped=[(60, 1)]), resolved, events)
-    assert found[0]["success"] == 1
-    assert found[0]["collision_count"] == 0
-    assert found[0]["path_length"] == pytest.approx(4.0)
-    assert found[1]["agent_collisions"] == found[1]["collision_count"] == 1
-    assert (found[1]["success"], found[1]["goal_reached"], found[1]["timeout"]) == (0, 0, 0)
+    robots = robot_metrics(trace(resolved, path, [[5, 5], [9, 9]], stopped=[(60, 1)]), resolved, events)
+    assert robots[0]["success"] == 1
+    assert robots[0]["collision_count"] == 0
+    assert robots[0]["path_length"] == pytest.approx(4.0)
+    assert robots[1]["agent_collisions"] == robots[1]["collision_count"] == 1
+    assert (robots[1]["success"], robots[1]["goal_reached"], robots[1]["timeout"]) == (0, 0, 0)
 
 
 def test_contacts_by_partner_and_steps_in_contact() -> None:
@@ -138,10 +138,10 @@ def test_contacts_by_partner_and_steps_in_contact() -> None:
         event("collision", 14, robot, ghost),
     ]
     hits = [(3, 0), (4, 0), (9, 0), (12, 0)]
-    found = robot_metrics(trace(resolved, pose, [[9, 5]], collided=hits), resolved, events)[0]
+    metrics = robot_metrics(trace(resolved, pose, [[9, 5]], collided=hits), resolved, events)[0]
     keys = ("collision_count", "collision_steps", "wall_collisions", "agent_collisions", "human_collisions")
-    assert [found[key] for key in keys] == [3, 4, 2, 0, 1]
-    assert (found["success"], found["timeout"], found["spl"]) == (0, 1, 0)  # it drove on
+    assert [metrics[key] for key in keys] == [3, 4, 2, 0, 1]
+    assert (metrics["success"], metrics["timeout"], metrics["spl"]) == (0, 1, 0)  # it drove on
     made = trace(resolved, pose, [[9, 5]], collided=hits, stopped=[(30, 0)])
     assert robot_metrics(made, resolved, events)[0]["timeout"] == 0
 
@@ -150,17 +150,17 @@ def test_speeds_accelerations_and_jerks() -> None:
     resolved = scenario(([1, 5], [15, 5]))
     time = 0.1 * np.arange(31)
     x = 1 + 0.5 * 0.4 * time**2  # constant acceleration
-    found = robot_metrics(trace(resolved, np.stack([x, 0 * x + 5], 1)[:, None], [[15, 5]]), resolved, [])[0]
-    assert found["acceleration_min"] == pytest.approx(0.4)
-    assert found["acceleration_max"] == pytest.approx(0.4)
-    assert found["jerk_max"] == pytest.approx(0.0, abs=1e-9)
-    assert found["velocity_max"] == pytest.approx(0.4 * 2.95)
-    assert found["velocity_avg"] == pytest.approx(0.5 * 0.4 * 3.0)
-    assert found["timeout"] == 1
-    assert math.isnan(found["time_to_goal"])
+    metrics = robot_metrics(trace(resolved, np.stack([x, 0 * x + 5], 1)[:, None], [[15, 5]]), resolved, [])[0]
+    assert metrics["acceleration_min"] == pytest.approx(0.4)
+    assert metrics["acceleration_max"] == pytest.approx(0.4)
+    assert metrics["jerk_max"] == pytest.approx(0.0, abs=1e-9)
+    assert metrics["velocity_max"] == pytest.approx(0.4 * 2.95)
+    assert metrics["velocity_avg"] == pytest.approx(0.5 * 0.4 * 3.0)
+    assert metrics["timeout"] == 1
+    assert math.isnan(metrics["time_to_goal"])
     cubic = 1 + time**3 / 6  # constant jerk
-    found = robot_metrics(trace(resolved, np.stack([cubic, 0 * x + 5], 1)[:, None], [[15, 5]]), resolved, [])[0]
-    assert found["jerk_avg"] == pytest.approx(1.0)
+    metrics = robot_metrics(trace(resolved, np.stack([cubic, 0 * x + 5], 1)[:, None], [[15, 5]]), resolved, [])[0]
+    assert metrics["jerk_avg"] == pytest.approx(1.0)
     for rows, unknown in ((1, "velocity_avg"), (2, "acceleration_avg"), (3, "jerk_avg")):
         short = robot_metrics(trace(resolved, straight(rows - 1)[:, None], [[15, 5]]), resolved, [])[0]
         assert math.isnan(short[unknown])
@@ -171,20 +171,20 @@ def test_stalls_freezing_and_no_progress() -> None:
     part = straight(50)
     path = np.concatenate([part, np.repeat(part[-1:], 120, 0), part[-1:] + straight(30)[1:] - straight(0)])
     path = np.concatenate([path, np.repeat(path[-1:], 10, 0)])
-    found = robot_metrics(trace(resolved, path[:, None], [[15, 5]]), resolved, [])[0]
-    assert found["stalled_time"] == pytest.approx(13.0)
-    assert found["freezing_count"] == 1
-    assert found["freezing_time"] == pytest.approx(12.0)
-    assert found["failure_to_progress"] == 2  # of the windows from 0, 5, 10, 15 s those from 5 and 10
+    metrics = robot_metrics(trace(resolved, path[:, None], [[15, 5]]), resolved, [])[0]
+    assert metrics["stalled_time"] == pytest.approx(13.0)
+    assert metrics["freezing_count"] == 1
+    assert metrics["freezing_time"] == pytest.approx(12.0)
+    assert metrics["failure_to_progress"] == 2  # of the windows from 0, 5, 10, 15 s those from 5 and 10
     turning = np.zeros((21, 1, 3))
     turning[:, 0] = 1, 5, 0
     turning[:, 0, 2] = 0.1 * np.arange(21)
-    found = robot_metrics(trace(resolved, turning, [[15, 5]]), resolved, [])[0]
-    assert found["stalled_time"] == 0
-    assert found["cumulative_heading_change"] == 0  # an omni that turns where it stands goes no other way
+    metrics = robot_metrics(trace(resolved, turning, [[15, 5]]), resolved, [])[0]
+    assert metrics["stalled_time"] == 0
+    assert metrics["cumulative_heading_change"] == 0  # an omni that turns where it stands goes no other way
     resolved = scenario(([1, 5], [15, 5]), drive="diff")
-    found = robot_metrics(trace(resolved, turning, [[15, 5]]), resolved, [])[0]
-    assert found["cumulative_heading_change"] == pytest.approx(2.0)
+    metrics = robot_metrics(trace(resolved, turning, [[15, 5]]), resolved, [])[0]
+    assert metrics["cumulative_heading_change"] == pytest.approx(2.0)
 
 
 ARC = 0.05 * np.arange(31)  # of a circle of radius 2, 1.5 rad of it in 3 s
@@ -201,28 +201,28 @@ def on_an_arc(drive: str, heading: np.ndarray) -> dict[str, float]:
 @pytest.mark.parametrize("drive", ["omni", "omni_angular"])
 @pytest.mark.parametrize("looking", [0.0, 0.3])
 def test_who_need_not_turn_to_move_turns_where_its_path_does(drive: str, looking: float) -> None:
-    found = on_an_arc(drive, looking * np.arange(31))
+    metrics = on_an_arc(drive, looking * np.arange(31))
     length = 30 * 4 * math.sin(0.025)
-    assert found["path_length"] == pytest.approx(length)
-    assert found["cumulative_heading_change"] == pytest.approx(29 * 0.05)  # from chord to chord
-    assert found["angle_over_length"] == pytest.approx(29 * 0.05 / length)
-    assert found["curvature"] == pytest.approx(0.5)
-    assert found["path_irregularity"] == pytest.approx(29 * 0.05)  # the shortest way is straight
+    assert metrics["path_length"] == pytest.approx(length)
+    assert metrics["cumulative_heading_change"] == pytest.approx(29 * 0.05)  # from chord to chord
+    assert metrics["angle_over_length"] == pytest.approx(29 * 0.05 / length)
+    assert metrics["curvature"] == pytest.approx(0.5)
+    assert metrics["path_irregularity"] == pytest.approx(29 * 0.05)  # the shortest way is straight
 
 
 def test_who_must_turn_to_move_is_measured_by_its_heading() -> None:
-    found = on_an_arc("diff", ARC + math.pi / 2)
-    assert found["cumulative_heading_change"] == pytest.approx(1.5)
+    metrics = on_an_arc("diff", ARC + math.pi / 2)
+    assert metrics["cumulative_heading_change"] == pytest.approx(1.5)
     # the chord leads 0.75 rad to the left of the first heading
-    assert found["path_irregularity"] == pytest.approx(1.5 - 0.75)
+    assert metrics["path_irregularity"] == pytest.approx(1.5 - 0.75)
 
 
 @pytest.mark.parametrize("heading", [0.0, 1.0, math.pi])
 def test_a_straight_drive_sideways_or_backwards_is_not_irregular(heading: float) -> None:
     resolved = scenario(([9, 5, heading], [1, 5]))
     done = trace(resolved, np.insert(straight(80)[::-1, None], 2, heading, axis=2), [[1, 5]])
-    found = robot_metrics(done, resolved, [event("arrival", 80, resolved.objects[0].name)])[0]
-    assert (found["path_irregularity"], found["cumulative_heading_change"]) == (0, 0)
+    metrics = robot_metrics(done, resolved, [event("arrival", 80, resolved.objects[0].name)])[0]
+    assert (metrics["path_irregularity"], metrics["cumulative_heading_change"]) == (0, 0)
 
 
 @pytest.mark.parametrize("drive", ["omni", "omni_angular", "diff"])
@@ -231,22 +231,22 @@ def test_a_straight_run_at_full_speed_is_perfect(drive: str, goal: list[float]) 
     heading = math.atan2(goal[1] - 5, goal[0] - 9) if drive == "diff" else 0.0
     robot = f"{{kinematics: {{name: {drive}}}, state: [9, 5, {heading}], goal: {goal}, behavior: {{name: dash}}}}"
     result = irsim.benchmark(f"world: {{width: 20, height: 20}}\nrobot: {robot}\n", "as-written", 1, workers=1)
-    found = result.rows[0].metrics
+    metrics = result.rows[0].metrics
     expected = {"stl": 1.0, "spl": 1.0, "path_irregularity": 0.0, "velocity_max": 1.0}
-    assert {key: found[key].mean for key in expected} == pytest.approx(expected, abs=1e-6)
+    assert {key: metrics[key].mean for key in expected} == pytest.approx(expected, abs=1e-6)
 
 
 def test_a_detour_costs_what_it_is_longer() -> None:
     resolved = scenario(([1, 5], [4, 9]))
     corner = np.concatenate([straight(30), [[4.0, 5 + 0.1 * k] for k in range(1, 41)]])
-    found = robot_metrics(
+    metrics = robot_metrics(
         trace(resolved, corner[:, None], [[4, 9]]), resolved, [event("arrival", 70, resolved.objects[0].name)]
     )[0]
-    assert found["path_length"] == pytest.approx(7.0)
-    assert found["spl"] == pytest.approx(5 / 7)
-    assert found["path_efficiency"] == pytest.approx(7 / 5)
-    assert found["stl"] == pytest.approx(5 / 7)
-    assert found["barn_score"] == pytest.approx(2.5 / 7)
+    assert metrics["path_length"] == pytest.approx(7.0)
+    assert metrics["spl"] == pytest.approx(5 / 7)
+    assert metrics["path_efficiency"] == pytest.approx(7 / 5)
+    assert metrics["stl"] == pytest.approx(5 / 7)
+    assert metrics["barn_score"] == pytest.approx(2.5 / 7)
 
 
 @pytest.mark.parametrize(
@@ -260,16 +260,16 @@ def test_the_score_of_barn_is_the_time_at_2_metres_a_second_over_one_between_2_a
     steps = round(seconds / 0.1)
     path = straight(steps, speed=4 / seconds)[:, None]
     arrival = event("arrival", steps, resolved.objects[0].name)
-    found = robot_metrics(trace(resolved, path, [[5, 5]]), resolved, [arrival])[0]
-    assert found["barn_score"] == pytest.approx(score)
-    found = robot_metrics(trace(resolved, path, [[5, 5]]), resolved, [])[0]
-    assert found["barn_score"] == 0.0
+    metrics = robot_metrics(trace(resolved, path, [[5, 5]]), resolved, [arrival])[0]
+    assert metrics["barn_score"] == pytest.approx(score)
+    metrics = robot_metrics(trace(resolved, path, [[5, 5]]), resolved, [])[0]
+    assert metrics["barn_score"] == 0.0
     walled = scenario(([1, 5], [5, 5]), world="width: 20, height: 20, boundary: walls")
     names = [record.name for record in walled.objects]
     both = np.concatenate([path, np.zeros_like(path)], axis=1)
     contact = event("collision", 1, *names)
-    found = robot_metrics(trace(walled, both, [[5, 5]]), walled, [contact, arrival])[0]
-    assert found["barn_score"] == 0.0
+    metrics = robot_metrics(trace(walled, both, [[5, 5]]), walled, [contact, arrival])[0]
+    assert metrics["barn_score"] == 0.0
 
 
 WALL = "obstacle:\n  - {shape: {name: rectangle, length: 0.5, width: 6}, state: [10, 10, 0]}\n"
@@ -281,13 +281,13 @@ def test_the_shortest_way_goes_round_walls() -> None:
     y = 10 + 4 * np.sin((x - 6) / 8 * np.pi)
     path = np.stack([x, y], axis=1)
     done = trace(resolved, np.stack([path, np.full((81, 2), 10.0)], axis=1), [[14, 10]])
-    found = robot_metrics(done, resolved, [event("arrival", 80, resolved.objects[0].name)])[0]
+    metrics = robot_metrics(done, resolved, [event("arrival", 80, resolved.objects[0].name)])[0]
     # tangents to the corners grown by the radius
     ideal = 2 * math.hypot(4 - 0.25, 3.2) + 0.5
     length = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
-    assert found["spl"] == pytest.approx(ideal / length, rel=0.02)
-    assert found["path_efficiency"] == pytest.approx(length / ideal, rel=0.02)
-    assert found["clearing_distance_min"] == pytest.approx(
+    assert metrics["spl"] == pytest.approx(ideal / length, rel=0.02)
+    assert metrics["path_efficiency"] == pytest.approx(length / ideal, rel=0.02)
+    assert metrics["clearing_distance_min"] == pytest.approx(
         np.hypot(np.maximum(abs(x - 10) - 0.25, 0), np.maximum(abs(y - 10) - 3, 0)).min() - 0.2
     )
 
@@ -301,10 +301,10 @@ def test_a_goal_walled_in_is_flagged() -> None:
     pose = np.concatenate([path[:, None], np.zeros((81, 4, 2))], axis=1)
     arrival = event("arrival", 80, resolved.objects[0].name)
     for events in ([arrival], []):
-        found = episode_metrics(trace(resolved, pose, [[14, 10]]), resolved, events)
-        assert found.flags == [["unreachable"]]
+        metrics = episode_metrics(trace(resolved, pose, [[14, 10]]), resolved, events)
+        assert metrics.flags == [["unreachable"]]
         for key in ("spl", "stl", "barn_score", "path_efficiency", "path_irregularity"):
-            assert math.isnan(found.robots[0][key])
+            assert math.isnan(metrics.robots[0][key])
 
 
 HUMAN = "obstacle:\n  - {shape: {name: circle, radius: 0.3}, kinematics: {name: omni}, state: [5, 5]}\n"
@@ -320,18 +320,18 @@ def passing(gap: float) -> dict[str, float]:
 
 
 def test_distance_to_a_human_is_that_of_the_surfaces() -> None:
-    found = passing(0.4)
+    metrics = passing(0.4)
     x = 1 + 0.1 * np.arange(81)
     away = np.hypot(x - 5, 0.9) - 0.5
-    assert found["distance_to_human_min"] == pytest.approx(0.4)
-    assert found["distance_to_human_avg"] == pytest.approx(away.mean())
-    assert found["personal_space_intrusion_ratio"] == pytest.approx((away < 0.5).mean())
-    assert found["space_compliance"] == pytest.approx((away >= 0.5).mean())
-    shares = [found[f"proxemics_{zone}_ratio"] for zone in ("intimate", "personal", "social", "public")]
+    assert metrics["distance_to_human_min"] == pytest.approx(0.4)
+    assert metrics["distance_to_human_avg"] == pytest.approx(away.mean())
+    assert metrics["personal_space_intrusion_ratio"] == pytest.approx((away < 0.5).mean())
+    assert metrics["space_compliance"] == pytest.approx((away >= 0.5).mean())
+    shares = [metrics[f"proxemics_{zone}_ratio"] for zone in ("intimate", "personal", "social", "public")]
     assert sum(shares) == pytest.approx(1.0)
     assert shares[0] == pytest.approx((away < 0.45).mean())
-    assert found["near_misses"] == 0
-    assert math.isnan(found["time_to_collision_min"])  # it would never meet him
+    assert metrics["near_misses"] == 0
+    assert math.isnan(metrics["time_to_collision_min"])  # it would never meet him
 
 
 def test_a_time_to_collision_that_never_was_is_flagged() -> None:
@@ -344,30 +344,30 @@ def test_a_time_to_collision_that_never_was_is_flagged() -> None:
 
 
 def test_a_near_miss_and_discomfort() -> None:
-    found = passing(0.1)
+    metrics = passing(0.1)
     x = 1 + 0.1 * np.arange(81)
     away = np.hypot(x - 5, 0.6) - 0.5
     close = away[away < 0.2]
-    assert found["near_misses"] == 1
-    assert found["discomfort_ratio"] == pytest.approx(len(close) / 81)
-    assert found["discomfort_min_dist"] == pytest.approx(close.mean())
+    assert metrics["near_misses"] == 1
+    assert metrics["discomfort_ratio"] == pytest.approx(len(close) / 81)
+    assert metrics["discomfort_min_dist"] == pytest.approx(close.mean())
     assert passing(-0.1)["near_misses"] == 0  # a contact is none
 
 
 def test_near_misses_are_of_humans() -> None:
     resolved = scenario(([1, 5], [9, 5]), ([9, 5.5], [1, 5.5]))
     path = np.stack([straight(80), straight(80)[::-1] + np.array([0, 0.5])], axis=1)
-    found = robot_metrics(trace(resolved, path, [[9, 5], [1, 5.5]]), resolved, [])
-    assert found[0]["min_clearance"] == pytest.approx(0.1)
-    assert all(math.isnan(robot["near_misses"]) for robot in found)
+    robots = robot_metrics(trace(resolved, path, [[9, 5], [1, 5.5]]), resolved, [])
+    assert robots[0]["min_clearance"] == pytest.approx(0.1)
+    assert all(math.isnan(robot["near_misses"]) for robot in robots)
 
 
 def test_time_to_collision_head_on() -> None:
     resolved = scenario(([1, 5], [9, 5]), rest=HUMAN)
     human = np.stack([9 - 0.1 * 0.5 * np.arange(31), np.full(31, 5.0)], axis=1)
-    found = robot_metrics(trace(resolved, np.stack([straight(30), human], 1), [[9, 5]]), resolved, [])[0]
+    metrics = robot_metrics(trace(resolved, np.stack([straight(30), human], 1), [[9, 5]]), resolved, [])[0]
     # after the last step: 3.5 m between centres, 0.5 m of radii, closing at 1.5 m/s
-    assert found["time_to_collision_min"] == pytest.approx((3.5 - 0.5) / 1.5)
+    assert metrics["time_to_collision_min"] == pytest.approx((3.5 - 0.5) / 1.5)
 
 
 def test_robots_of_an_episode_together() -> None:
@@ -375,13 +375,13 @@ def test_robots_of_an_episode_together() -> None:
     one, other = (record.name for record in resolved.objects)
     path = np.stack([straight(40), straight(40, 0.5) + np.array([0, 4])], axis=1)
     done = trace(resolved, path, [[5, 5], [9, 9]])
-    found = episode_metrics(done, resolved, [event("arrival", 40, one)]).episode
-    assert found["success"] == 0
-    assert found["timeout"] == 1
-    assert found["path_length"] == pytest.approx(3.0)
-    assert (found["velocity_min"], found["velocity_max"]) == pytest.approx((0.5, 1.0))
-    assert found["time_to_goal"] == pytest.approx(4.0)  # of those that have one
-    assert math.isnan(found["aggregated_time"])
+    metrics = episode_metrics(done, resolved, [event("arrival", 40, one)]).episode
+    assert metrics["success"] == 0
+    assert metrics["timeout"] == 1
+    assert metrics["path_length"] == pytest.approx(3.0)
+    assert (metrics["velocity_min"], metrics["velocity_max"]) == pytest.approx((0.5, 1.0))
+    assert metrics["time_to_goal"] == pytest.approx(4.0)  # of those that have one
+    assert math.isnan(metrics["aggregated_time"])
     both = episode_metrics(done, resolved, [event("arrival", 40, one), event("arrival", 30, other)]).episode
     assert (both["success"], both["aggregated_time"]) == (1, pytest.approx(4.0))
     hit = episode_metrics(done, resolved, [event("collision", 20, one, other), event("arrival", 40, one)]).episode

@@ -48,15 +48,15 @@ def with_human(robot: np.ndarray, human: np.ndarray, contact: tuple[float, float
 def test_who_is_to_blame(robot: float, human: float, mine: int, theirs: int) -> None:
     a = straight(10, robot, start=2.25 - robot)
     b = straight(10, -human, start=2.75 + human)
-    found = with_human(a, b, (2.5, 5.0), 10)
-    assert found["human_collisions"] == 1
-    assert (found["human_collisions_by_robot"], found["human_collisions_by_human"]) == (mine, theirs)
+    metrics = with_human(a, b, (2.5, 5.0), 10)
+    assert metrics["human_collisions"] == 1
+    assert (metrics["human_collisions_by_robot"], metrics["human_collisions_by_human"]) == (mine, theirs)
 
 
 def test_blame_is_of_the_way_to_the_contact() -> None:
     past = np.stack([np.full(11, 2.7), 4.0 + 0.1 * np.arange(11)], axis=1)  # faster, but not towards it
-    found = with_human(straight(10, 0.3, start=1.9), past, (2.4, 4.9), 10)
-    assert (found["human_collisions_by_robot"], found["human_collisions_by_human"]) == (1, 0)
+    metrics = with_human(straight(10, 0.3, start=1.9), past, (2.4, 4.9), 10)
+    assert (metrics["human_collisions_by_robot"], metrics["human_collisions_by_human"]) == (1, 0)
 
 
 def groups(members: str) -> str:
@@ -73,10 +73,10 @@ def test_the_space_of_a_group() -> None:
     robot = straight(50)  # x = 1 + 0.1 t, radius 0.2: in the space of (5, 5) and (6, 5) from 4.35 on
     people = np.stack([resting((x, 5), 50) for x in (5, 6, 9)], axis=1)
     poses = np.concatenate([robot[:, None], people], axis=1)
-    found = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
+    metrics = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
     inside = np.count_nonzero(robot[:, 0] >= 5 - 0.65)
-    assert found["group_space_intrusion_ratio"] == pytest.approx(inside / 51)
-    assert found["group_collision_rate"] == 1
+    assert metrics["group_space_intrusion_ratio"] == pytest.approx(inside / 51)
+    assert metrics["group_collision_rate"] == 1
     alone = scenario(([1, 5], [9, 5]), rest=groups("[]"))
     assert math.isnan(robot_metrics(trace(alone, poses, [[9, 5]]), alone, [])[0]["group_space_intrusion_ratio"])
 
@@ -113,25 +113,25 @@ def test_social_forces_are_those_of_the_model() -> None:
 def test_social_work_of_two_who_stand() -> None:
     resolved = scenario(([1, 5], [9, 5]), rest=PAIR)
     poses = np.stack([resting((5, 7), 20), resting((5, 5), 20), resting((5, 9), 20)], axis=1)
-    found = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
+    metrics = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
     each = 2.1 * math.exp(-2 / 0.35)  # standing: the interaction is the unit vector to the other
-    assert found["social_force_robot"] == pytest.approx(0.0, abs=1e-12)  # from both sides
-    assert found["social_force_agents"] == pytest.approx(2 * each * 2.0)
-    assert found["social_work"] == pytest.approx(2 * each * 2.0)
-    assert found["pedestrian_velocity_avg"] == 0.0
+    assert metrics["social_force_robot"] == pytest.approx(0.0, abs=1e-12)  # from both sides
+    assert metrics["social_force_agents"] == pytest.approx(2 * each * 2.0)
+    assert metrics["social_work"] == pytest.approx(2 * each * 2.0)
+    assert metrics["pedestrian_velocity_avg"] == 0.0
 
 
 def test_forces_of_obstacles_are_those_of_the_model() -> None:
     wall = "  - {shape: {name: rectangle, length: 40, width: 1}, state: [10, 4, 0]}\n"
     resolved = scenario(([1, 5.3], [9, 5.3]), rest=f"obstacle:\n{wall}{HUMAN}")
     poses = np.stack([straight(20) + np.array([0, 0.3]), resting((10, 4), 20), resting((5, 6.3), 20)], axis=1)
-    found = robot_metrics(trace(resolved, poses, [[9, 5.3]]), resolved, [])[0]
+    metrics = robot_metrics(trace(resolved, poses, [[9, 5.3]]), resolved, [])[0]
     model = SocialForceModelBatch(
         [[1, 5.3, 0, 0, 0.2, 0, 0, 0], [5, 6.3, 0, 0, 0.3, 0, 0, 0]], line_obs_list=[[-10, 4.5, 30, 4.5]]
     )
     robot, human = 10.0 * np.linalg.norm(model.obstacle_force(), axis=1) * 2.0
-    assert found["obstacle_force_robot"] == pytest.approx(robot)
-    assert found["obstacle_force_agents"] == pytest.approx(human)
+    assert metrics["obstacle_force_robot"] == pytest.approx(robot)
+    assert metrics["obstacle_force_agents"] == pytest.approx(human)
 
 
 def test_forces_of_obstacles_end_and_are_unknown_where_there_are_none() -> None:
@@ -140,16 +140,16 @@ def test_forces_of_obstacles_end_and_are_unknown_where_there_are_none() -> None:
     )
     resolved = scenario(([1, 5], [9, 5]), rest=PAIR)
     poses = np.stack([straight(20), resting((5, 5), 20), resting((5, 9), 20)], axis=1)
-    found = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
-    assert math.isnan(found["obstacle_force_robot"])
-    assert math.isnan(found["obstacle_force_agents"])
+    metrics = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
+    assert math.isnan(metrics["obstacle_force_robot"])
+    assert math.isnan(metrics["obstacle_force_agents"])
 
 
 def test_speed_of_the_people() -> None:
     resolved = scenario(([1, 5], [9, 5]), rest=PAIR)
     poses = np.stack([straight(10), straight(10, 0.5) + np.array([0, 3]), resting((5, 9), 10)], axis=1)
-    found = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
-    assert found["pedestrian_velocity_avg"] == pytest.approx(0.25)
+    metrics = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
+    assert metrics["pedestrian_velocity_avg"] == pytest.approx(0.25)
 
 
 def test_effort_clearance_and_leaving_the_world() -> None:
@@ -158,10 +158,10 @@ def test_effort_clearance_and_leaving_the_world() -> None:
     made = trace(resolved, poses, [[5, 5]])
     control = made.control.copy()
     control[1:, 0, 0] = 0.5  # vel_max [1, 0]: the second can't move
-    found = robot_metrics(dataclasses.replace(made, control=control), resolved, [])[0]
-    assert found["control_effort"] == pytest.approx(0.25 * 2.0)
-    assert found["min_clearance"] == pytest.approx(2 - 0.2 - 0.5)
-    assert found["left_world"] == 0
+    metrics = robot_metrics(dataclasses.replace(made, control=control), resolved, [])[0]
+    assert metrics["control_effort"] == pytest.approx(0.25 * 2.0)
+    assert metrics["min_clearance"] == pytest.approx(2 - 0.2 - 0.5)
+    assert metrics["left_world"] == 0
     out = np.stack([straight(20) - np.array([1.5, 0]), resting((3, 7), 20)], axis=1)
     assert robot_metrics(trace(resolved, out, [[5, 5]]), resolved, [])[0]["left_world"] == 1
 

@@ -48,28 +48,28 @@ def measured(scenario: str) -> tuple[Env, Any]:
 
 
 def test_zones() -> None:
-    _, found = measured(text(ZONES))
-    (rover,) = found.robots
+    _, metrics = measured(text(ZONES))
+    (rover,) = metrics.robots
     # box: the disc touches it from x = 2.75 (step 7) to 4.25 (step 13), so it is inside for 7 steps of 0.25 s
-    assert found.zones["box"] == {"time_in_zone": 1.75, "zone_crossings": 1}
-    assert found.zones["door"] == {"zone_crossings": 1, "left_to_right": 1, "right_to_left": 0}
-    assert found.zones["back"] == {"zone_crossings": -1, "left_to_right": 0, "right_to_left": 1}
-    assert found.zones["late"] == {"time_in_zone": 0.75, "zone_crossings": 1}  # until it arrives, three steps later
-    assert found.zones["wide"] == {"time_in_zone": 2.25, "zone_crossings": 1}
+    assert metrics.zones["box"] == {"time_in_zone": 1.75, "zone_crossings": 1}
+    assert metrics.zones["door"] == {"zone_crossings": 1, "left_to_right": 1, "right_to_left": 0}
+    assert metrics.zones["back"] == {"zone_crossings": -1, "left_to_right": 0, "right_to_left": 1}
+    assert metrics.zones["late"] == {"time_in_zone": 0.75, "zone_crossings": 1}  # until it arrives, three steps later
+    assert metrics.zones["wide"] == {"time_in_zone": 2.25, "zone_crossings": 1}
     # box and wide overlap: from step 7 to step 18, when it leaves x = 5.25, and then late
     assert rover["time_in_zone"] == 11 * 0.25 + 0.75
     assert rover["zone_crossings"] == 3 + 1 - 1
 
 
 def test_a_start_in_a_region_counts_as_time_and_not_as_an_entry() -> None:
-    _, found = measured(text(", zones: [{name: home, rectangle: [0, 4, 2, 6]}]"))
-    assert found.zones["home"] == {"time_in_zone": 6 * 0.25, "zone_crossings": 0}
+    _, metrics = measured(text(", zones: [{name: home, rectangle: [0, 4, 2, 6]}]"))
+    assert metrics.zones["home"] == {"time_in_zone": 6 * 0.25, "zone_crossings": 0}
 
 
 def test_seen() -> None:
     # the camera, 4 m above the path, sees half a radian of atan(1/2) to each side: x from 2 to 6 on the path
-    _, found = measured(text(rest=f"obstacle:\n  - {CAMERA}}}"))
-    (rover,) = found.robots
+    _, metrics = measured(text(rest=f"obstacle:\n  - {CAMERA}}}"))
+    (rover,) = metrics.robots
     # the disc meets the edges as long as its centre is less than 0.25 * sqrt(5) / 2 = 0.28 m beyond them
     rows = 1 + (6.25 - 1.75) / 0.25
     assert rover["seen_ratio"] == pytest.approx(rows / 30)
@@ -78,8 +78,8 @@ def test_seen() -> None:
 def test_a_wall_hides_from_a_view_with_occlusion_only() -> None:
     wall = "\n  - {shape: {name: rectangle, length: 8, width: 0.2}, state: [4, 7, 0]}"
     for occlusion, seen in (("true", 0.0), ("false", 19 / 30)):
-        _, found = measured(text(rest=f"obstacle:\n  - {CAMERA}, fov_occlusion: {occlusion}}}{wall}"))
-        assert found.robots[0]["seen_ratio"] == pytest.approx(seen)
+        _, metrics = measured(text(rest=f"obstacle:\n  - {CAMERA}, fov_occlusion: {occlusion}}}{wall}"))
+        assert metrics.robots[0]["seen_ratio"] == pytest.approx(seen)
 
 
 def test_who_has_only_a_lidar_does_not_watch_and_nobody_sees_oneself() -> None:
@@ -117,9 +117,9 @@ def test_maps_and_goals_inside_of_things_block_the_line() -> None:
 
 
 def test_undefined_is_nan_and_none_never_0() -> None:
-    _, found = measured(text())
-    assert [key for key in KEYS if math.isnan(found.robots[0][key])] == list(KEYS[:3])
-    assert found.zones == {}
+    _, metrics = measured(text())
+    assert [key for key in KEYS if math.isnan(metrics.robots[0][key])] == list(KEYS[:3])
+    assert metrics.zones == {}
     lines = measured(text(", zones: [{name: door, line: [[6, 4], [6, 6]]}]"))[1].robots[0]
     assert math.isnan(lines["time_in_zone"])
     assert lines["zone_crossings"] == 1
@@ -132,15 +132,15 @@ def test_undefined_is_nan_and_none_never_0() -> None:
 def test_a_run_a_benchmark_and_a_trace_say_the_same() -> None:
     scenario = text(ZONES, rest=f"obstacle:\n  - {CAMERA}, fov_occlusion: true}}\n  - {{shape: {{name: rectangle, "
                     "length: 1, width: 0.2}, state: [4, 7, 0]}")  # fmt: skip
-    _, found = measured(scenario)
+    _, metrics = measured(scenario)
     robot = irsim.run(text=scenario).robots[0]
-    assert {key: getattr(robot, key) for key in KEYS} == {key: found.robots[0][key] for key in KEYS}
+    assert {key: getattr(robot, key) for key in KEYS} == {key: metrics.robots[0][key] for key in KEYS}
     compared = irsim.benchmark(scenario, seeds=1)
     (episode,), (row,) = compared.episodes, compared.rows
-    assert {key: episode.metrics[key] for key in KEYS} == {key: found.robots[0][key] for key in KEYS}
+    assert {key: episode.metrics[key] for key in KEYS} == {key: metrics.robots[0][key] for key in KEYS}
     assert (row.incidents["seen"], compared.incidents) == (1, ["robots were seen in 1 of 1 episodes (seed 0)"])
-    assert episode.zones == found.zones
-    assert {zone: {key: e.mean for key, e in values.items()} for zone, values in row.zones.items()} == found.zones
+    assert episode.zones == metrics.zones
+    assert {zone: {key: e.mean for key, e in values.items()} for zone, values in row.zones.items()} == metrics.zones
     assert rows_of([episode], compared.scenarios, compared.behaviors, compared.random)[0].zones == row.zones
 
 

@@ -62,11 +62,11 @@ def to_goal(observations: Observations) -> Any:
 
 def test_every_kind_of_policy_is_compared() -> None:
     function = irsim.policies.FunctionPolicy(to_goal, output="velocity")
-    found = irsim.benchmark(SCENE, ["dash", "random", "net.npz", function], 3, workers=1)
-    assert found.behaviors == ["dash", "random", "net.npz", "to_goal"]
-    assert list(found.digests) == ["net.npz"]
-    assert found.reproduce == "irsim benchmark scenario.yaml --policies dash,random,net.npz,to_goal --seeds 3"
-    by_policy = {row.behavior: row for row in found.rows}
+    result = irsim.benchmark(SCENE, ["dash", "random", "net.npz", function], 3, workers=1)
+    assert result.behaviors == ["dash", "random", "net.npz", "to_goal"]
+    assert list(result.digests) == ["net.npz"]
+    assert result.reproduce == "irsim benchmark scenario.yaml --policies dash,random,net.npz,to_goal --seeds 3"
+    by_policy = {row.behavior: row for row in result.rows}
     assert by_policy["random"].success.count == 0
     assert by_policy["net.npz"].metrics["path_length"] == by_policy["to_goal"].metrics["path_length"]
 
@@ -81,11 +81,11 @@ def test_behaviors_is_another_name_of_policies() -> None:
 
 
 def test_a_policy_that_draws_runs_with_every_seed() -> None:
-    found = irsim.benchmark(FIXED, ["dash", "net.npz"], 4)
-    assert (found.random, len(found.episodes)) == ({"(text)": []}, 2)
-    found = irsim.benchmark(FIXED, ["dash", "random"], 4)
-    assert (found.random, len(found.episodes)) == ({"(text)": ["policy"]}, 8)
-    assert len({episode.metrics["path_length"] for episode in found.episodes if episode.behavior == "random"}) == 4
+    result = irsim.benchmark(FIXED, ["dash", "net.npz"], 4)
+    assert (result.random, len(result.episodes)) == ({"(text)": []}, 2)
+    result = irsim.benchmark(FIXED, ["dash", "random"], 4)
+    assert (result.random, len(result.episodes)) == ({"(text)": ["policy"]}, 8)
+    assert len({episode.metrics["path_length"] for episode in result.episodes if episode.behavior == "random"}) == 4
 
 
 def test_what_does_not_fit_is_refused_before_any_episode() -> None:
@@ -112,8 +112,8 @@ def test_times_are_in_a_file_of_their_own() -> None:
 
 
 def test_times_are_summarised_by_decision_and_by_robot() -> None:
-    found = timing_report({"net": {"0": [(0.001, 1), (0.004, 2)]}, "later": {}}, dict.fromkeys(["net", "later"], 3))
-    assert found["policies"]["net"] == {
+    report = timing_report({"net": {"0": [(0.001, 1), (0.004, 2)]}, "later": {}}, dict.fromkeys(["net", "later"], 3))
+    assert report["policies"]["net"] == {
         "episodes": 1,
         "episodes_in_all": 3,
         "decisions": 2,
@@ -121,7 +121,7 @@ def test_times_are_summarised_by_decision_and_by_robot() -> None:
         "per_decision": {"mean_ms": 2.5, "p95_ms": 3.85},
         "per_robot": {"mean_ms": 1.66667, "p95_ms": 2.0},
     }
-    assert "resumed" in found["policies"]["later"]["reason"]
+    assert "resumed" in report["policies"]["later"]["reason"]
 
 
 def test_a_changed_file_is_another_benchmark() -> None:

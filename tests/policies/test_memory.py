@@ -49,9 +49,9 @@ def test_it_reaches_its_goals_in_a_benchmark_whatever_the_number_of_processes() 
 def test_it_is_described() -> None:
     from irsim.policies.description import describe_policy
 
-    found = describe_policy("net.npz")
-    assert (found.kind, found.drives, found.output) == ("file", ["diff"], "control")
-    assert found.digest == irsim.open_policy("net.npz").digest
+    description = describe_policy("net.npz")
+    assert (description.kind, description.drives, description.output) == ("file", ["diff"], "control")
+    assert description.digest == irsim.open_policy("net.npz").digest
 
 
 FAR = """

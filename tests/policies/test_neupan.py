@@ -96,8 +96,8 @@ def scene(folder: Path, **robot: Any) -> Path:
 def test_each_robot_has_a_planner_with_its_footprint_and_arrives(package: list[StandIn], tmp_path: Path) -> None:
     (tmp_path / "model.pth").touch()
     policy = open_policy({"name": "neupan", "config": config(tmp_path)})
-    found = irsim.run(scene(tmp_path, number=2, state=[[1, 5, 0.3], [1, 8, 0]], goal=[[5, 5], [5, 8]]), policy=policy)
-    assert found.outcome == "success"
+    result = irsim.run(scene(tmp_path, number=2, state=[[1, 5, 0.3], [1, 8, 0]], goal=[[5, 5], [5, 8]]), policy=policy)
+    assert result.outcome == "success"
     assert len(package) == 2
     given = package[0].config
     corners = sorted(given["robot_kwargs"]["vertices"])
@@ -139,8 +139,8 @@ def test_nothing_in_sight_and_no_goal(package: list[StandIn], tmp_path: Path) ->
 def test_an_omni_robot_follows_velocities_of_the_world(package: list[StandIn], tmp_path: Path) -> None:
     policy = open_policy({"name": "neupan", "config": config(tmp_path, kinematics="omni")})
     assert policy.output == "velocity"
-    found = irsim.run(scene(tmp_path, kinematics={"name": "omni"}, state=[1, 5, 1.2]), policy=policy)
-    assert found.outcome == "success"
+    result = irsim.run(scene(tmp_path, kinematics={"name": "omni"}, state=[1, 5, 1.2]), policy=policy)
+    assert result.outcome == "success"
 
 
 def test_a_new_episode_resets_the_planner_and_the_path(package: list[StandIn], tmp_path: Path) -> None:

@@ -76,13 +76,13 @@ def test_the_program_of_the_guide_drives_as_the_same_function_here(tmp_path: Pat
 )
 def test_a_process_that_fails_ends_the_run_with_a_reason(before: str, why: str, tmp_path: Path) -> None:
     began = time.monotonic()
-    found = irsim.run(text=FREE, policy=program(tmp_path, before=before))
-    assert found.outcome == "timeout"
-    assert found.lost is not None
-    assert why in found.lost
-    assert found.reason == f"{found.lost}; the run ended"
-    assert found.steps == 0
-    assert "the policy was lost" in found.summary
+    result = irsim.run(text=FREE, policy=program(tmp_path, before=before))
+    assert result.outcome == "timeout"
+    assert result.lost is not None
+    assert why in result.lost
+    assert result.reason == f"{result.lost}; the run ended"
+    assert result.steps == 0
+    assert "the policy was lost" in result.summary
     assert time.monotonic() - began < 20
 
 
@@ -122,18 +122,18 @@ def test_lost_episodes_of_a_benchmark_are_counted_and_the_others_go_on(tmp_path:
     text = PROGRAM.replace('answer = {"type": "ready"}', 'answer, seed = {"type": "ready"}, asked["seed"]')
     script = tmp_path / "sometimes.py"
     script.write_text(text.replace("    print(json", f"    {before}\n    print(json"))
-    found = irsim.benchmark(
+    result = irsim.benchmark(
         file, ["dash", f"{{name: process, command: [{sys.executable}, {script}]}}"], 8, perturb="position=0.1"
     )
-    mine = [episode for episode in found.episodes if episode.behavior != "dash"]
+    mine = [episode for episode in result.episodes if episode.behavior != "dash"]
     lost = [episode for episode in mine if episode.lost]
     assert 0 < len(lost) < 8
     assert {episode.steps for episode in lost} == {11}
     assert all("has ended with exit code 0" in episode.lost for episode in lost)
     assert {episode.outcome for episode in mine if not episode.lost} == {"success"}
-    assert found.rows[1].incidents["policy-lost"] == len(lost)
-    assert any(f"the policy was lost in {len(lost)} of 16 episodes" in text for text in found.incidents)
-    [again] = [irsim.benchmark(file, [found.behaviors[1]], 8, perturb="position=0.1")]
+    assert result.rows[1].incidents["policy-lost"] == len(lost)
+    assert any(f"the policy was lost in {len(lost)} of 16 episodes" in text for text in result.incidents)
+    [again] = [irsim.benchmark(file, [result.behaviors[1]], 8, perturb="position=0.1")]
     assert [episode.lost for episode in again.episodes] == [episode.lost for episode in mine]  # seeds decide
 
 
@@ -174,8 +174,8 @@ def test_one_that_listens_on_a_socket_is_asked_the_same(family: str, tmp_path: P
     thread = threading.Thread(target=_serve, args=(server, asked), daemon=True)
     thread.start()
     policy = open_policy({"name": "process", "address": address})
-    found = irsim.run(text=FREE, policy=policy)
-    assert found.outcome == "success"
+    result = irsim.run(text=FREE, policy=policy)
+    assert result.outcome == "success"
     kinds = [one["type"] for one in asked]
     assert (kinds[0], kinds[1], set(kinds[2:])) == ("hello", "reset", {"act"})
     assert asked[1]["robots"] == [0, 1]

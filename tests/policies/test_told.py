@@ -76,9 +76,9 @@ def rows(text: str, start: str) -> list[list[str]]:
 
 @pytest.mark.parametrize("topic", ["which policy", "results", "table 2", "policies_of_the_paper"])
 def test_the_measured_tables_are_found(topic: str) -> None:
-    found = lookup(topic)
-    assert found.topic == "which-policy"
-    assert RESULTS.as_posix() in found.text
+    answer = lookup(topic)
+    assert answer.topic == "which-policy"
+    assert RESULTS.as_posix() in answer.text
     assert (skills_directory() / RESULTS).is_file()
 
 
@@ -99,8 +99,8 @@ def test_what_is_said_of_the_tables_is_what_they_say() -> None:
     units = {"µs": 1.0, "ms": 1000.0}
     costs: dict[str, list[float]] = {}
     for policy, *cells in rows(text, "| policy | 10 robots | 25 robots |"):
-        found = [re.match(r"([\d.]+) (µs|ms)", cell) for cell in cells]
-        costs[policy.strip("`")] = [float(one[1]) * units[one[2]] for one in found if one]
+        matches = [re.match(r"([\d.]+) (µs|ms)", cell) for cell in cells]
+        costs[policy.strip("`")] = [float(one[1]) * units[one[2]] for one in matches if one]
     ratios = {name: [a / b for a, b in zip(cost, costs["orca"], strict=True)] for name, cost in costs.items()}
     assert all(2.5 < ratio < 5.5 for ratio in ratios["footprint_orca"]), "3 to 5 times as long as orca"
     networks = [ratio for name, both in ratios.items() if not name.endswith(("orca", "avocado")) for ratio in both]
@@ -121,9 +121,9 @@ def test_common_names_are_those_of_the_suites() -> None:
 
 
 def test_converters_and_their_options_are_explained() -> None:
-    found = lookup("convert")
+    answer = lookup("convert")
     for name in CONVERTERS.names():
-        assert f"{name}: " in found.text
+        assert f"{name}: " in answer.text
         assert lookup(f"convert {name}").topic == f"convert {name}"
     [options] = lookup("convert sarl").groups.values()
     assert {"license", "headings", "gamma"} <= {key.name for key in options}
@@ -136,6 +136,6 @@ def test_policy_is_the_list_of_policies() -> None:
 def test_a_picture_says_which_policy_drives(tmp_path: Path) -> None:
     file = tmp_path / "scene.yaml"
     file.write_text("robot:\n  - {kinematics: {name: diff}, goal: [5, 5, 0], behavior: {name: dash}}\n")
-    found = irsim.render(file, tmp_path / "scene.png", policy="sarl")
-    assert [row.behavior for row in found.table.rows] == ["policy sarl"]
+    picture = irsim.render(file, tmp_path / "scene.png", policy="sarl")
+    assert [row.behavior for row in picture.table.rows] == ["policy sarl"]
     assert irsim.render(file, tmp_path / "scene.png").table.rows[0].behavior == "dash"

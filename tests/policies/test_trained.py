@@ -41,8 +41,8 @@ def test_it_reaches_its_success_in_scenes_of_its_task(name: str, tmp_path: Path)
     task, folder = open_task(TRAINED_ON.get(name, name))
     (tmp_path / "scene.yaml").write_text(scenario_text(task, folder))
     spreads = "; ".join(perturbation_text(one) for one in task.perturb) or None
-    found = irsim.benchmark(tmp_path / "scene.yaml", policies=[name], seeds=20, perturb=spreads, workers=1)
-    [row] = found.rows
+    result = irsim.benchmark(tmp_path / "scene.yaml", policies=[name], seeds=20, perturb=spreads, workers=1)
+    [row] = result.rows
     assert row.success.rate >= LEAST[name]
 
 
@@ -89,13 +89,13 @@ robot:
 
 
 def test_it_says_what_it_is() -> None:
-    found = describe_policy("sarl")
-    assert (found.kind, found.output, found.needs, found.drives) == (
+    description = describe_policy("sarl")
+    assert (description.kind, description.output, description.needs, description.drives) == (
         "trained", "velocity", ["5 nearest neighbors"], ["any"]
     )  # fmt: skip
-    assert found.decision_dt == 0.25
-    assert found.facts["parameters"] == 96_502
-    assert found.facts["card"]["license"] == "MIT"
+    assert description.decision_dt == 0.25
+    assert description.facts["parameters"] == 96_502
+    assert description.facts["card"]["license"] == "MIT"
     shown = CliRunner().invoke(app, ["policies", "sarl"])
     assert shown.exit_code == 0
     assert "the best of 81 velocities, 0.25 s ahead" in " ".join(shown.output.split())
@@ -113,8 +113,8 @@ def test_benchmarks_have_a_row_of_it(tmp_path: Path) -> None:
     scene = tmp_path / "scene.yaml"
     scene.write_text(scenario_text(*open_task("sarl_circle")))
     orca = "{name: orca, timeHorizon: 5, safe_radius: 0.01, responsibility: 0.5, approach_time: 1}"
-    found = irsim.benchmark(scene, policies=["sarl", orca], seeds="1000-1003", workers=1)
-    mine, theirs = found.rows
+    result = irsim.benchmark(scene, policies=["sarl", orca], seeds="1000-1003", workers=1)
+    mine, theirs = result.rows
     assert mine.behavior == "sarl"
     assert (mine.success.count, theirs.success.count) == (4, 0)
 

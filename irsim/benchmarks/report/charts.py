@@ -123,6 +123,10 @@ def _paired(ax: Axes, result: BenchmarkResult) -> None:
 
 
 def _difference(row: BenchmarkRow) -> tuple[float, float, float]:
-    found = row.paired["success"]
-    mean = found.mean or 0.0
-    return mean, mean if found.low is None else found.low, mean if found.high is None else found.high
+    difference = row.paired["success"]
+    mean = difference.mean or 0.0
+    return (
+        mean,
+        mean if difference.low is None else difference.low,
+        mean if difference.high is None else difference.high,
+    )

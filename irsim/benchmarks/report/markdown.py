@@ -163,23 +163,23 @@ def cells_of(row: BenchmarkRow, columns: Sequence[tuple[str, str]] = _COLUMNS) -
     return cells
 
 
-def _has(found: Estimate | None) -> bool:
-    return found is not None and found.n > 0
+def _has(estimate: Estimate | None) -> bool:
+    return estimate is not None and estimate.n > 0
 
 
-def _is_above_zero(found: Estimate | None) -> bool:
-    return found is not None and bool(found.mean)
+def _is_above_zero(estimate: Estimate | None) -> bool:
+    return estimate is not None and bool(estimate.mean)
 
 
-def _share(found: Proportion) -> str:
-    if found.low is None or found.high is None:
-        return f"{found.rate:.0%}"
-    return f"{found.rate:.0%} ({found.low:.0%} to {found.high:.0%})"
+def _share(proportion: Proportion) -> str:
+    if proportion.low is None or proportion.high is None:
+        return f"{proportion.rate:.0%}"
+    return f"{proportion.rate:.0%} ({proportion.low:.0%} to {proportion.high:.0%})"
 
 
-def _mean(found: Estimate | None, form: str = ".2f") -> str:
-    if found is None or found.mean is None:
+def _mean(estimate: Estimate | None, form: str = ".2f") -> str:
+    if estimate is None or estimate.mean is None:
         return ""
-    if found.low is None or found.high is None:
-        return f"{found.mean:{form}}"
-    return f"{found.mean:{form}} ({found.low:{form}} to {found.high:{form}})"
+    if estimate.low is None or estimate.high is None:
+        return f"{estimate.mean:{form}}"
+    return f"{estimate.mean:{form}} ({estimate.low:{form}} to {estimate.high:{form}})"

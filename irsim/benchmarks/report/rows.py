@@ -45,16 +45,16 @@ def families(result: BenchmarkResult) -> Iterator[tuple[str, str, list[tuple[dic
 
 def protocols(result: BenchmarkResult) -> dict[str, set[str]]:
     """Protocol → its scenarios, of a suite with several protocols; otherwise all scenarios without a name."""
-    found = dict[str, set[str]]()
+    of_protocol = dict[str, set[str]]()
     for fact in result.facts if isinstance(result, SuiteResult) else ():
-        found.setdefault(fact.protocol, set()).add(fact.name)
-    return found if len(found) > 1 else {"": set(result.scenarios)}
+        of_protocol.setdefault(fact.protocol, set()).add(fact.name)
+    return of_protocol if len(of_protocol) > 1 else {"": set(result.scenarios)}
 
 
 def series(result: BenchmarkResult, names: list[str], behavior: str) -> list[BenchmarkRow]:
     """The rows of a policy on some scenarios, in the order of the names."""
-    found = {row.scenario: row for row in result.rows if row.behavior == behavior}
-    return [found[name] for name in names if name in found]
+    of_scenario = {row.scenario: row for row in result.rows if row.behavior == behavior}
+    return [of_scenario[name] for name in names if name in of_scenario]
 
 
 MAX_WORST = 2

@@ -40,9 +40,9 @@ def python(moment: Moment, options: Python) -> Floats:
     except (ImportError, AttributeError) as error:
         what = f"the reward function {options.function!r} cannot be imported: {error}"
         raise ArgumentError(what, "give MODULE:FUNCTION of a module that Python finds") from error
-    found = np.asarray(function(moment), dtype=np.float64)
-    if found.shape != moment.arrived.shape or not np.isfinite(found).all():
-        given = f"shape {found.shape}" if found.shape != moment.arrived.shape else "numbers that are not finite"
+    rewards = np.asarray(function(moment), dtype=np.float64)
+    if rewards.shape != moment.arrived.shape or not np.isfinite(rewards).all():
+        given = f"shape {rewards.shape}" if rewards.shape != moment.arrived.shape else "numbers that are not finite"
         what = f"the reward function {options.function!r} returned {given}"
         raise ArgumentError(what, f"return finite numbers of shape {moment.arrived.shape}: worlds x learners")
-    return found
+    return rewards

@@ -68,10 +68,10 @@ def open_task(source: TaskSource) -> tuple[Task, Path]:
     return TASKS.read(load_path(path)), path.parent
 
 
-def _error(document: Document, found: Sequence[Diagnostic]) -> TaskError:
+def _error(document: Document, problems: Sequence[Diagnostic]) -> TaskError:
     name = clean(document.name or "the task", 200)
-    text = format_diagnostics(found, document.text)
-    return TaskError(f"{name} is not a valid task\n{text}", "`irsim describe task` lists the keys of a task", found)
+    text = format_diagnostics(problems, document.text)
+    return TaskError(f"{name} is not a valid task\n{text}", "`irsim describe task` lists the keys of a task", problems)
 
 
 TASKS = FileKind(key="task", model=Task, folder=Path(__file__).with_name("bundled"), error=_error)

@@ -150,13 +150,13 @@ def _resolved(
 ) -> tuple[ResolvedScenario, tuple[Diagnostic, ...]]:
     """The scenario with some parameters and values, and its warnings."""
     document = _changed(task, folder, parameters, values, level)
-    scenario, found = or_raise(read(document, strict=True))
+    scenario, diagnostics = or_raise(read(document, strict=True))
     try:
         scenario = perturbed(scenario, task.perturb, called=task.task)
     except InputError as error:
         raise task_error(("perturb",), error.message, error.fix or "") from None
-    found = [*found, *unopened_bridges(scenario, "training")]
-    return scenario, tuple(item for item in found if item.severity == "warning")
+    diagnostics = [*diagnostics, *unopened_bridges(scenario, "training")]
+    return scenario, tuple(item for item in diagnostics if item.severity == "warning")
 
 
 def scenario_text(task: Task, folder: Path) -> str:

@@ -63,15 +63,15 @@ def team_of(task: Task, scenario: ResolvedScenario) -> Team:
 
 
 def _named(words: list[str], records: Sequence[ObjectRecord], able: list[int]) -> list[int]:
-    found: list[int] = []
+    chosen: list[int] = []
     for word in words:
         these = [i for i in able if records[i].name == word or word in records[i].tags]
         if not these:
             known = sorted({records[i].name for i in able})
             fix = suggestion(word, known, f"choose from {listed(known, 8)}")
             raise TaskError(f"no robot that can move has the name or the tag {clean(word)!r}", fix)
-        found += [i for i in these if i not in found]
-    return sorted(found)
+        chosen += [i for i in these if i not in chosen]
+    return sorted(chosen)
 
 
 def _action_width(task: Task, record: ObjectRecord) -> int:

@@ -53,7 +53,7 @@ def level_draws(task: Task, scenario: ResolvedScenario) -> tuple[LevelDraws, ...
         return tuple(LevelDraws((), {}, 0) for _ in own)
     learners = team_of(task, scenario).indices.tolist()
     selection = _Selection(scenario, learners)
-    found = []
+    draws = []
     for number, change in enumerate(own):
         where = randomize_path(task, number)
         whole = merged(task.randomize, change)
@@ -61,8 +61,8 @@ def level_draws(task: Task, scenario: ResolvedScenario) -> tuple[LevelDraws, ...
         drawn = _quantities(whole, changed, where, selection)
         fixed = set(task.levels[number].parameters) - set(change.parameters)
         parameters = {name: values for name, values in whole.parameters.items() if name not in fixed}
-        found.append(LevelDraws(drawn, parameters, whole.variants))
-    return tuple(found)
+        draws.append(LevelDraws(drawn, parameters, whole.variants))
+    return tuple(draws)
 
 
 def randomize_path(task: Task, level: int) -> Where:
@@ -126,7 +126,7 @@ class _Selection:
 
 def _quantities(whole: Randomize, changed: Randomize, where: Where, selection: _Selection) -> tuple[DrawnQuantity, ...]:
     """The draws of a level for objects, checked."""
-    found = []
+    quantities = []
     for quantity in QUANTITIES:
         taken: dict[int, str] = {}
         for word, (low, high) in getattr(whole, quantity).items():
@@ -139,9 +139,9 @@ def _quantities(whole: Randomize, changed: Randomize, where: Where, selection: _
                 taken[record.id] = word
             _check(quantity, word, records, high, here, selection)
             ids = tuple(record.id for record in records)
-            found.append(DrawnQuantity(quantity, word, ids, float(low), float(high), quantity in whole.same))
-    _check_learners(found, where, selection)
-    return tuple(found)
+            quantities.append(DrawnQuantity(quantity, word, ids, float(low), float(high), quantity in whole.same))
+    _check_learners(quantities, where, selection)
+    return tuple(quantities)
 
 
 def _check(

@@ -49,17 +49,17 @@ def columns_of(eyes: Eyes, parts: Sequence[Any]) -> tuple[PartColumns, ...]:
         eyes: What its learners observe.
         parts: The options of its parts.
     """
-    found = []
+    result = []
     for part in parts:
         columns, shape = eyes.parts[part.key]
         members = shape[0] if len(shape) == 2 else None
         features = list(getattr(part, "features", []))
         present = features.index("present") if members is not None and "present" in features else None
         zero_row = members is not None and bool(getattr(part, "zero_row", False))
-        found.append(PartColumns(part.key, columns.start, columns.stop, members, present, zero_row))
+        result.append(PartColumns(part.key, columns.start, columns.stop, members, present, zero_row))
     if eyes.drawn.start < eyes.drawn.stop:
-        found.append(PartColumns("drawn", eyes.drawn.start, eyes.drawn.stop, None, None))
-    return tuple(found)
+        result.append(PartColumns("drawn", eyes.drawn.start, eyes.drawn.stop, None, None))
+    return tuple(result)
 
 
 class PartsExtractor(BaseFeaturesExtractor):  # type: ignore[misc] # types of an extra are not read
@@ -122,14 +122,14 @@ class GruExtractor(BaseFeaturesExtractor):  # type: ignore[misc] # types of an e
 
     def forward(self, observations: torch.Tensor) -> torch.Tensor:
         """(B, F) features of (B, D) observations."""
-        found = [observations[:, part.start : part.stop] for part in self.vectors]
+        features = [observations[:, part.start : part.stop] for part in self.vectors]
         for part in self.sets:
             members, present = _members(part, observations)
             if part.zero_row:
                 nobody = ~present.any(dim=1, keepdim=True)
                 present = torch.cat([present[:, :-1], present[:, -1:] | nobody], dim=1)
-            found.append(_last_states(self.readers[part.label], members, present))
-        return self.norm(torch.cat(found, dim=1))
+            features.append(_last_states(self.readers[part.label], members, present))
+        return self.norm(torch.cat(features, dim=1))
 
 
 def _last_states(reader: nn.GRU, members: torch.Tensor, present: torch.Tensor) -> torch.Tensor:

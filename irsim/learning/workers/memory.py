@@ -66,11 +66,11 @@ class SharedMemory:
         """The arrays of a layout, by name; zeros in new memory."""
         size = sum(one.size for one in layout)
         memory = self._map(size)
-        found, start = {}, 0
+        arrays, start = {}, 0
         for one in layout:
-            found[one.name] = np.ndarray(one.shape, one.dtype, memory, start)
+            arrays[one.name] = np.ndarray(one.shape, one.dtype, memory, start)
             start += one.size
-        return found
+        return arrays
 
     def _map(self, size: int) -> mmap.mmap:
         if sys.platform == "win32":

@@ -75,9 +75,9 @@ def files_of(
     """Hash of each file of a run with its report."""
     plan = file_plan(["scene.yaml"], ["dash", "orca"], str(SEEDS), steps=150)
     run_plan(plan, Path(run), cluster=cluster, workers=workers, progress=then, finish=write_report)
-    found = [path for path in sorted(Path(run).rglob("*")) if path.is_file()]
+    paths = [path for path in sorted(Path(run).rglob("*")) if path.is_file()]
     assert Path(run, "timing.json").is_file()  # wall-clock times differ from run to run
-    kept = [path for path in found if path.name != "timing.json"]
+    kept = [path for path in paths if path.name != "timing.json"]
     return {str(path.relative_to(run)): hashlib.sha256(path.read_bytes()).hexdigest() for path in kept}
 
 
@@ -97,10 +97,10 @@ def test_a_node_that_is_killed_in_the_middle_changes_nothing(folder: Path, clust
             cluster.cluster.remove_node(cluster.nodes.pop(), allow_graceful=False)
         counts.append((done, total))
 
-    found = files_of("run", cluster.address, then=kill)
+    files = files_of("run", cluster.address, then=kill)
     cluster.nodes.append(cluster.cluster.add_node(num_cpus=2))
     assert 0 < counts[0][0] < counts[-1][0] == 2 * SEEDS
-    assert found == files_of("local", workers=1)
+    assert files == files_of("local", workers=1)
 
 
 def test_processes_that_are_killed_in_the_middle_change_nothing(
@@ -108,12 +108,12 @@ def test_processes_that_are_killed_in_the_middle_change_nothing(
 ) -> None:
     local = irsim.benchmark("scene.yaml", ["dash", "orca"], SEEDS, workers=1, steps=100)
     fragile(folder, "fragile", range(3, SEEDS, 9), always=False)
-    found = irsim.benchmark(
+    result = irsim.benchmark(
         "scene.yaml", ["dash", "orca"], SEEDS, cluster=cluster.address, steps=100, imports=["fragile"]
     )
     assert list(folder.glob("seed-*"))
     assert capfd.readouterr() == ("", "")  # Ray would print that they died
-    assert (found.episodes, found.rows) == (local.episodes, local.rows)
+    assert (result.episodes, result.rows) == (local.episodes, local.rows)
 
 
 def test_an_episode_in_which_every_process_dies_is_given_up_and_the_others_are_kept(
@@ -195,8 +195,8 @@ def test_auto_takes_the_cluster_that_the_environment_names(
     folder: Path, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("RAY_ADDRESS", cluster.address)
-    found = irsim.benchmark("scene.yaml", "dash", 3, steps=20, cluster="auto")
-    assert found == irsim.benchmark("scene.yaml", "dash", 3, steps=20, workers=1)
+    result = irsim.benchmark("scene.yaml", "dash", 3, steps=20, cluster="auto")
+    assert result == irsim.benchmark("scene.yaml", "dash", 3, steps=20, workers=1)
     assert capfd.readouterr() == ("", "")  # Ray is quiet
     assert os.environ["RAY_ADDRESS"] == cluster.address
 

@@ -27,10 +27,10 @@ def rows(seeds: int = SEEDS, scenarios: Sequence[str] | None = None) -> list[str
     for one in plan.scenarios:
         job = Job(one.text, None, plan.policies[POLICY], None, True, (), (), plan.until)
         for seed in plan.seeds[:seeds]:
-            found = run_task(Task(job, seed))
-            values = [found["metrics"][key] for key in METRICS]
+            result = run_task(Task(job, seed))
+            values = [result["metrics"][key] for key in METRICS]
             text = ["" if math.isnan(value) else f"{value:.9g}" for value in values]
-            lines.append(_line([one.name, str(seed), found["outcome"], str(found["steps"]), *text]))
+            lines.append(_line([one.name, str(seed), result["outcome"], str(result["steps"]), *text]))
     return lines
 
 

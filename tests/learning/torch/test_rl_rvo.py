@@ -66,14 +66,14 @@ def test_a_converted_policy_decides_as_torch_does(form: str, tmp_path: Path) -> 
     convert_policy("rl_rvo", tmp_path / "net.pt", tmp_path / "net.npz")
     policy = open_network(tmp_path / "net.npz")
     seen = observations(60, neighbors=32)
-    found, parts = policy.act(seen), observe(policy.head.layout, seen)
+    velocities, parts = policy.act(seen), observe(policy.head.layout, seen)
     mask = parts["rvo_cones"].mask
     assert mask is not None
     for b in range(60):
         own, cones = (torch.tensor(parts[name].array[b], dtype=torch.float32) for name in ("rvo_self", "rvo_cones"))
         with torch.no_grad():
             change = net.pi.net_out(net.pi.rnn_reader(own, cones[torch.tensor(mask[b])])).numpy()
-        np.testing.assert_allclose(found[b] - seen.velocity[b], change, atol=1e-5)
+        np.testing.assert_allclose(velocities[b] - seen.velocity[b], change, atol=1e-5)
 
 
 def test_an_exported_gru_decides_as_in_its_training(tmp_path: Path) -> None:

@@ -53,21 +53,23 @@ def test_torch_and_layers_have_the_same_values(tmp_path: Path, global_state: boo
     observed = observe(policy.head.layout, seen)
     states = np.concatenate([value.flat() for value in observed.values()], axis=1).astype(np.float32)
     with torch.no_grad():
-        found = net(torch.from_numpy(states)).numpy()
-    np.testing.assert_allclose(found, policy.compute(observed, seen)[:, 0], rtol=1e-5, atol=1e-5)
+        values = net(torch.from_numpy(states)).numpy()
+    np.testing.assert_allclose(values, policy.compute(observed, seen)[:, 0], rtol=1e-5, atol=1e-5)
     own, people = observed["self"].array, observed["people"]
     assert people.mask is not None
     for b in range(30):
-        assert found[b] == pytest.approx(value_of(weights, own[b], people.array[b, people.mask[b]]), rel=1e-5, abs=1e-5)
+        assert values[b] == pytest.approx(
+            value_of(weights, own[b], people.array[b, people.mask[b]]), rel=1e-5, abs=1e-5
+        )
 
 
 def test_returns_are_discounted_sums_of_rewards() -> None:
     settings = SarlSettings()
     task, _ = open_task("sarl_circle")
     worlds = Worlds("sarl_circle", 6)
-    found = play(worlds, plan_of(task, settings), None, 0.0, np.random.default_rng(0))
-    one = found.experience
-    assert 0 < found.success.learners <= 1
+    played = play(worlds, plan_of(task, settings), None, 0.0, np.random.default_rng(0))
+    one = played.experience
+    assert 0 < played.success.learners <= 1
     ends = np.flatnonzero(one.discount == 0)
     assert len(ends) == 6  # each episode ends once, by an arrival or a collision
     for k in ends:

@@ -36,7 +36,7 @@ def test_weights_are_read_as_they_were_saved(zipped: bool, dtype: torch.dtype) -
     for saved, before in forms:
         target = io.BytesIO()
         torch.save(saved, target, _use_new_zipfile_serialization=zipped)
-        found = parse_torch(target.getvalue(), "net.pth")
-        assert found.keys() == {before + name for name in net.state_dict()}
+        arrays = parse_torch(target.getvalue(), "net.pth")
+        assert arrays.keys() == {before + name for name in net.state_dict()}
         for name, tensor in net.state_dict().items():
-            assert (found[before + name] == tensor.float().numpy()).all()
+            assert (arrays[before + name] == tensor.float().numpy()).all()

@@ -70,14 +70,14 @@ def test_decisions_are_those_of_the_equations(file: Path, tmp_path: Path) -> Non
     policy = open_network(tmp_path / "out.npz")
     assert policy.output == "velocity"
     seen = observations(40, neighbors=32)
-    found = policy.act(seen)
+    velocities = policy.act(seen)
     parts = observe(policy.head.layout, seen)
     mask = parts["rvo_cones"].mask
     assert mask is not None
     assert len(set(mask.sum(axis=1).tolist())) > 2
     for b in range(40):
         change = decided(rl_rvo_weights(), parts["rvo_self"].array[b], parts["rvo_cones"].array[b][mask[b]], 0.5)
-        np.testing.assert_allclose(found[b], seen.velocity[b] + change, atol=1e-6)
+        np.testing.assert_allclose(velocities[b], seen.velocity[b] + change, atol=1e-6)
 
 
 def test_the_card_says_where_weights_come_from(file: Path, tmp_path: Path) -> None:

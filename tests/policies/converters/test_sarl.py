@@ -116,8 +116,8 @@ def test_a_converted_file_has_the_values_of_its_weights(
     expected = [value_of(weights, own[b], people.array[b, people.mask[b]]) for b in range(20)]
     np.testing.assert_allclose(policy.compute(observed, seen)[:, 0], expected, rtol=1e-5, atol=1e-5)
     (tmp_path / "scene.yaml").write_text(SCENE)
-    found = irsim.benchmark(tmp_path / "scene.yaml", policies=[str(tmp_path / "net.npz")], seeds=2, workers=1)
-    assert found.rows[0].episodes == 2
+    result = irsim.benchmark(tmp_path / "scene.yaml", policies=[str(tmp_path / "net.npz")], seeds=2, workers=1)
+    assert result.rows[0].episodes == 2
 
 
 def test_names_of_a_wrapping_module_do_not_matter(tmp_path: Path) -> None:

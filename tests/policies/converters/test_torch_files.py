@@ -66,11 +66,11 @@ def both(body: bytes, raw: bytes = SIX, count: int = 6) -> list[bytes]:
     ids=FORMATS,
 )
 def test_a_state_dictionary_becomes_arrays_by_name(content: bytes) -> None:
-    found = parse_torch(content, "net.pth")
-    assert list(found) == ["a.weight", "a.bias"]
-    assert found["a.weight"].dtype == np.float32
-    assert found["a.weight"].tolist() == [[0, 1, 2], [3, 4, 5]]
-    assert found["a.bias"].tolist() == [0.5, -1.0]
+    arrays = parse_torch(content, "net.pth")
+    assert list(arrays) == ["a.weight", "a.bias"]
+    assert arrays["a.weight"].dtype == np.float32
+    assert arrays["a.weight"].tolist() == [[0, 1, 2], [3, 4, 5]]
+    assert arrays["a.bias"].tolist() == [0.5, -1.0]
 
 
 _INNER = module("Net", {"weight": parameter("0", [2, 2], offset=2, count=6)}, {})
@@ -80,8 +80,8 @@ _INNER = module("Net", {"weight": parameter("0", [2, 2], offset=2, count=6)}, {}
     "content", both(module("Actor", {"log_std": parameter("0", [2], count=6)}, {"pi": _INNER})), ids=FORMATS
 )
 def test_a_whole_module_of_a_class_that_exists_nowhere_has_the_names_of_its_state_dictionary(content: bytes) -> None:
-    found = parse_torch(content, "net.pth")
-    assert {key: array.tolist() for key, array in found.items()} == {"log_std": [0, 1], "pi.weight": [[2, 3], [4, 5]]}
+    arrays = parse_torch(content, "net.pth")
+    assert {key: array.tolist() for key, array in arrays.items()} == {"log_std": [0, 1], "pi.weight": [[2, 3], [4, 5]]}
 
 
 def test_mappings_around_a_state_dictionary_and_steps_of_a_storage_are_followed() -> None:
@@ -232,8 +232,8 @@ def test_a_file_with_changed_bytes_is_read_or_refused(data: st.DataObject) -> No
     for _ in range(data.draw(st.integers(1, 4))):
         content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
     with suppress(PolicyFileError):
-        found = parse_torch(bytes(content), "net.pth")
-        assert all(np.isfinite(array).all() for array in found.values())
+        arrays = parse_torch(bytes(content), "net.pth")
+        assert all(np.isfinite(array).all() for array in arrays.values())
 
 
 @settings(max_examples=examples(400), deadline=None)

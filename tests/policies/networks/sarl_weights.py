@@ -23,13 +23,13 @@ def sarl_weights(global_state: bool = True, seed: int = 0) -> Arrays:
         "attention": [200 if global_state else 100, 100, 100, 1],
         "mlp3": [56, 150, 100, 100, 1],
     }
-    found: Arrays = {}
+    weights: Arrays = {}
     for name, widths in units.items():
         for k, (inputs, outputs) in enumerate(pairwise(widths)):
             scale = np.sqrt(2 / inputs)
-            found[f"{name}.{2 * k}.weight"] = (rng.normal(size=(outputs, inputs)) * scale).astype(np.float32)
-            found[f"{name}.{2 * k}.bias"] = (rng.normal(size=outputs) * 0.1).astype(np.float32)
-    return found
+            weights[f"{name}.{2 * k}.weight"] = (rng.normal(size=(outputs, inputs)) * scale).astype(np.float32)
+            weights[f"{name}.{2 * k}.bias"] = (rng.normal(size=outputs) * 0.1).astype(np.float32)
+    return weights
 
 
 def sarl_file(kind: str = "holonomic", seed: int = 0, frame: str = "world", people: int = 5) -> Network:

@@ -248,8 +248,8 @@ def test_every_drive_reaches_its_goal_beside_a_person(tmp_path: Path, drive: str
     save_network(tmp_path / "net.npz", greedy(ahead, slope=-0.1, **unicycle))
     text = SCENE.format(drive=drive, most=1 if drive == "omni" else 3)
     (tmp_path / "scene.yaml").write_text(text)
-    found = irsim.benchmark(tmp_path / "scene.yaml", policies=[str(tmp_path / "net.npz")], seeds=1, workers=1)
-    assert found.rows[0].success.rate == 1
+    result = irsim.benchmark(tmp_path / "scene.yaml", policies=[str(tmp_path / "net.npz")], seeds=1, workers=1)
+    assert result.rows[0].success.rate == 1
 
 
 def test_a_unicycle_turns_by_the_angle_until_its_next_decision(opened: Any) -> None:

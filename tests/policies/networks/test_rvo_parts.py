@@ -37,12 +37,12 @@ def cones(what: Observations, **options: Any) -> Value:
 
 def test_a_robot_ahead_that_comes_closer() -> None:
     ahead = seen([(1.0, 0.0, -1.0, 0.0, 0.2)], velocity=np.array([[0.5, 0.0]]), commanded=np.array([[0.75, 0.0]]))
-    found = cones(ahead)
+    observed = cones(ahead)
     # 2 (0.75, 0) - (-1, 0) - (0.5, 0) = (2, 0) closes the gap of 1 - (0.2 + 0.1 + 0.2) m in 0.25 s; asin(0.5) = 30 deg
-    assert found.array[0, :4].tolist() == [[0] * 8] * 4
-    np.testing.assert_array_equal(found.array[0, 4], [-0.25, 0, 0.87, 0.5, 0.87, -0.5, 0.8, 2.22])
-    assert found.mask is not None
-    assert found.mask.tolist() == [[False, False, False, False, True]]
+    assert observed.array[0, :4].tolist() == [[0] * 8] * 4
+    np.testing.assert_array_equal(observed.array[0, 4], [-0.25, 0, 0.87, 0.5, 0.87, -0.5, 0.8, 2.22])
+    assert observed.mask is not None
+    assert observed.mask.tolist() == [[False, False, False, False, True]]
     exact = cones(ahead, decimals=None).array[0, 4]
     root = math.sqrt(0.75)
     np.testing.assert_allclose(exact, [-0.25, 0, root, 0.5, root, -0.5, 0.8, 1 / 0.45], rtol=1e-15)
@@ -70,11 +70,11 @@ def test_discs_that_overlap_collide_now_and_their_cone_is_a_half_plane() -> None
 
 def test_a_robot_that_sees_nobody_sees_one_member_of_zeros() -> None:
     far = seen([(5.0, 0.0, -1.0, 0.0, 0.2)])
-    found, without = cones(far), cones(far, zero_row=False)
-    assert found.mask is not None
+    padded, without = cones(far), cones(far, zero_row=False)
+    assert padded.mask is not None
     assert without.mask is not None
-    assert not found.array.any()
-    assert found.mask.tolist() == [[False, False, False, False, True]]
+    assert not padded.array.any()
+    assert padded.mask.tolist() == [[False, False, False, False, True]]
     assert not without.mask.any()
     assert cones(far, range=5.0).array[0, 4, 6] == 4.8  # between centers, not between discs
 
@@ -83,8 +83,8 @@ def test_the_most_urgent_ones_are_kept_and_come_last() -> None:
     wanted = np.array([[1.0, 0.0]])
     several = seen([(0.0, 1.0, 0, 0, 0.2), (1.5, 0.0, 0, 0, 0.2), (2.5, 0.0, 0, 0, 0.2), (0.0, -3.0, 0, 0, 0.2)],
                    commanded=wanted)  # fmt: skip
-    found = cones(several, count=3)
-    assert found.array[0, :, 6].tolist() == [
+    observed = cones(several, count=3)
+    assert observed.array[0, :, 6].tolist() == [
         0.8,
         2.3,
         1.3,
@@ -115,7 +115,7 @@ def reference(what: Observations, b: int, margin: float, decimals: int | None) -
     """The members that are present, from the formulas of the paper, with angles."""
     assert what.neighbors is not None
     assert what.commanded is not None
-    n, found = what.neighbors, []
+    n, members = what.neighbors, []
     (x, y), (vx, vy), (ax, ay) = what.pose[b, :2], what.velocity[b], what.commanded[b]
     for k in np.flatnonzero(n.mask[b]):
         (mx, my), (mvx, mvy), mr = n.position[b, k], n.velocity[b, k], n.radius[b, k]
@@ -138,9 +138,9 @@ def reference(what: Observations, b: int, margin: float, decimals: int | None) -
                 time = (-b2 - math.sqrt(b2 * b2 - a * c)) / a
         urgency = 1 / ((time if time < 5 else math.inf) + 0.2)
         legs = [math.cos(left), math.sin(left), math.cos(right), math.sin(right)]
-        found.append([px, py, *legs, distance - mr, urgency])
-    found.sort(key=lambda cone: (cone[7], -cone[6]))
-    kept = found[-5:]
+        members.append([px, py, *legs, distance - mr, urgency])
+    members.sort(key=lambda cone: (cone[7], -cone[6]))
+    kept = members[-5:]
     return kept if decimals is None else np.round(kept, decimals).tolist()
 
 
@@ -152,16 +152,16 @@ def test_many_scenes_agree_with_the_reference(decimals: int | None) -> None:
         assert whole.neighbors is not None
         velocity = np.where(whole.neighbors.index[:, :, None] % 3 == 0, 0.0, whole.neighbors.velocity)
         whole = replace(whole, neighbors=replace(whole.neighbors, velocity=velocity))
-        found = cones(whole, decimals=decimals)
-        assert found.mask is not None
+        observed = cones(whole, decimals=decimals)
+        assert observed.mask is not None
         for b in range(len(whole)):
             expected = reference(whole, b, 0.1, decimals)
-            present = found.array[b][found.mask[b]]
+            present = observed.array[b][observed.mask[b]]
             if expected:
                 np.testing.assert_allclose(present, expected, atol=1e-12)
             else:
                 assert present.tolist() == [[0] * 8]
-            assert cones(rows(whole, [b]), decimals=decimals).array.tobytes() == found.array[b : b + 1].tobytes()
+            assert cones(rows(whole, [b]), decimals=decimals).array.tobytes() == observed.array[b : b + 1].tobytes()
             tried += len(expected)
             timed += sum(cone[7] > 0 for cone in expected)
     assert tried > 1000

@@ -60,15 +60,15 @@ class Memory:
     def __len__(self) -> int:
         return self.count
 
-    def add(self, found: Experience) -> None:
+    def add(self, experience: Experience) -> None:
         """Remember decisions, instead of the oldest ones."""
         size = len(self.state)
-        kept = np.arange(max(0, len(found) - size), len(found))
+        kept = np.arange(max(0, len(experience) - size), len(experience))
         places = (self.place + kept) % size
         for name in ("state", "following", "reward", "discount"):
-            getattr(self, name)[places] = getattr(found, name)[kept]
-        self.place = (self.place + len(found)) % size
-        self.count = min(self.count + len(found), size)
+            getattr(self, name)[places] = getattr(experience, name)[kept]
+        self.place = (self.place + len(experience)) % size
+        self.count = min(self.count + len(experience), size)
 
     def contents(self) -> dict[str, Any]:
         """Everything, as arrays and numbers."""

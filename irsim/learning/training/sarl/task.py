@@ -83,16 +83,16 @@ def plan_of(task: Task, settings: SarlSettings) -> Plan:
 
 def _reward(task: Task, gap: str) -> dict[str, Any]:
     """The reward that is predicted, which is that of the task."""
-    found: dict[str, Any] = {"goal": 0.0, "collision": 0.0, "discomfort": 0.0, "gap": gap}
+    reward: dict[str, Any] = {"goal": 0.0, "collision": 0.0, "discomfort": 0.0, "gap": gap}
     for term in task.reward:
         if isinstance(term, Arrival):
-            found["goal"] = term.weight
+            reward["goal"] = term.weight
         elif isinstance(term, Collision):
-            found["collision"] = term.weight
-        elif isinstance(term, (Social, Clearance)) and found["discomfort"] == 0.0:
+            reward["collision"] = term.weight
+        elif isinstance(term, (Social, Clearance)) and reward["discomfort"] == 0.0:
             reach = term.distance if isinstance(term, Social) else term.margin
-            found |= {"discomfort": -term.weight / reach, "distance": reach}
+            reward |= {"discomfort": -term.weight / reach, "distance": reach}
         else:
             what = f"the reward {term.name} cannot be predicted for a move"
             raise TaskError(what, "reward arrival and collision, and one of social and clearance")
-    return found
+    return reward

@@ -69,8 +69,8 @@ class _Model:
     def values(self, states: NDArray[np.float32]) -> Floats:
         """(N,) values of the present network."""
         with torch.no_grad():
-            found: Floats = self.net(torch.from_numpy(states)).numpy().astype(np.float64)
-        return found
+            values: Floats = self.net(torch.from_numpy(states)).numpy().astype(np.float64)
+        return values
 
     def rate(self, share: float) -> None:
         """Set the learning rate after a share of the training."""
@@ -110,13 +110,13 @@ class _Model:
 
     def load(self, file: Path) -> None:
         """Read what :meth:`save` has written."""
-        found = torch.load(file, weights_only=True)
-        self.net.load_state_dict(found["net"])
-        self.target.load_state_dict(found["target"])
-        self.optimizer.load_state_dict(found["optimizer"])
-        memory = found["memory"]
+        stored = torch.load(file, weights_only=True)
+        self.net.load_state_dict(stored["net"])
+        self.target.load_state_dict(stored["target"])
+        self.optimizer.load_state_dict(stored["optimizer"])
+        memory = stored["memory"]
         self.memory.restore({key: x.numpy() if isinstance(x, torch.Tensor) else x for key, x in memory.items()})
-        self.updates = int(found["updates"])
+        self.updates = int(stored["updates"])
 
 
 def train_sarl(
@@ -212,13 +212,13 @@ class _Trainer:
         """Learn values from episodes that the behaviors of the scenario drive."""
         settings, worlds, model = self._settings, self._worlds, self.model
         worlds.reset(seeds=self._seeds(1))
-        found: list[Experience] = []
+        experiences: list[Experience] = []
         for number in range(-(-settings.demonstrations // worlds.n)):
             if number:
                 worlds.reset()
-            found.append(play(worlds, self._plan, None, 0.0, rng).experience)
-            model.memory.add(found[-1])
-        state, gain = (np.concatenate([getattr(one, name) for one in found]) for name in ("state", "gain"))
+            experiences.append(play(worlds, self._plan, None, 0.0, rng).experience)
+            model.memory.add(experiences[-1])
+        state, gain = (np.concatenate([getattr(one, name) for one in experiences]) for name in ("state", "gain"))
         for epoch in range(settings.demonstration_epochs):
             model.rate(epoch / settings.demonstration_epochs)
             order = rng.permutation(len(state))
@@ -240,9 +240,9 @@ class _Trainer:
             model.rate(share)
             fallen = min(1.0, share / max(settings.explore_until, 1e-9))
             chance = settings.explore + (settings.explore_end - settings.explore) * fallen
-            found = play(worlds, self._plan, driver, chance, rng).experience
-            made += len(found)
-            model.memory.add(found)
+            experience = play(worlds, self._plan, driver, chance, rng).experience
+            made += len(experience)
+            model.memory.add(experience)
             for _ in range(settings.updates):
                 model.update(rng)
         return made
