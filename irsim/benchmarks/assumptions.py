@@ -1,4 +1,4 @@
-"""What a reader must know before trusting the numbers of a benchmark: contacts, limits, what behaviors know."""
+"""Assumptions behind the numbers of a benchmark: how contacts count, which limits hold, what behaviors know."""
 
 from __future__ import annotations
 

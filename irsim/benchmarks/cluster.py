@@ -1,4 +1,4 @@
-"""Run many episodes on a Ray cluster; results come in the order of the tasks and equal those of a local run.
+"""Run many episodes on a Ray cluster; results come in the order of the tasks and equal a local run's.
 
 Tasks are sent in chunks whose size follows from how long episodes take: large enough that sending them costs little,
 small enough that little is lost with a process. Scenarios and maps travel once, so that machines need no common files.

@@ -98,13 +98,13 @@ def benchmark(
     Args:
         files: Scenario files; a string with a line break is the text of a scenario, called ``(text)`` in the result. A
             mapping gives them other names in the result.
-        policies: What drives all robots, as :func:`irsim.open_policy` takes it: names of behaviors (``orca``) or of
+        policies: Policies of all robots, as :func:`irsim.open_policy` takes them: names of behaviors (``orca``) or of
             plug-ins, with options as mappings in Python or as YAML text (``{name: orca, timeHorizon: 5}``), files
             (``model.npz``), functions, policies, or ``as-written`` for the behaviors of the scenario (default).
             Differences are to the first one.
         behaviors: Another name of ``policies``.
         seeds: The number of seeds (0, 1, 2, …), or the seeds: a list, or text such as ``5-9`` or ``1,4,7``.
-        perturb: What each seed changes, to see whether a scenario still works when things start slightly differently:
+        perturb: Changes by each seed, to see whether a scenario still works when things start slightly differently:
             one or several of a mapping such as ``{"position": 0.1, "heading": 0.2, "speed": 0.1, "delay": 2}``, text
             as on the command line (``position=0.1,heading=10deg,objects=scout``), or a
             :class:`irsim.scenario.perturbation.Perturbation`, which describes the keys. Draws are uniform.
@@ -113,7 +113,7 @@ def benchmark(
         imports: Modules to import first, for behaviors that they register.
         workers: Greatest number of processes; default: the number of cores of this machine, or of the cluster.
         cluster: Address of a Ray cluster that runs the episodes: ``auto`` (the one of RAY_ADDRESS or of this machine,
-            started if there is none), ``ray://host:port``, or ``host:port`` on a machine of the cluster. Its machines
+            started if missing), ``ray://host:port``, or ``host:port`` on a machine of the cluster. Its machines
             need this version of irsim, and the modules of ``imports``; scenarios and maps are sent to them.
         limits: Limits of the loader and of each run.
         most_episodes: Greatest number of episodes; more are refused.

@@ -244,8 +244,8 @@ def measure(
     """Measure an episode.
 
     Args:
-        task: What was run.
-        episode: What happened.
+        task: The task that was run.
+        episode: Its episode.
         scene: An environment with the scene of the episode.
         simulation: The simulation that ran it, and can go on.
         ways: Shortest paths in a world with the same static objects, if they are known.

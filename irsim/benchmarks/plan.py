@@ -32,7 +32,7 @@ class PlannedScenario(BaseModel):
 
     Attributes:
         name: Name in the results.
-        family, protocol, values: What a suite says about it.
+        family, protocol, values: Its entries in the suite.
         folder: Folder relative to which it names map files; None where it names none.
         text: The scenario as YAML.
         maps: Name of each map file → SHA-256 of its content.

@@ -125,7 +125,7 @@ def open_planned(policies: Mapping[str, str], sources: Mapping[str, str], digest
     Args:
         policies: Name in the results → text.
         sources: Name → text that opens the policy from any folder, where it differs.
-        digests: Name → SHA-256 of the file, of those that are files.
+        digests: Name → SHA-256 of the file (only for policies that are files).
 
     Raises:
         PolicyError: The file of one has changed since.

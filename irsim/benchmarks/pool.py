@@ -186,7 +186,7 @@ class _Shared:
             self._changed.notify_all()
 
     def join(self, helpers: int) -> None:
-        """Count further processes, or with a negative number those that have ended; the last one leaves its tasks."""
+        """Add helpers, or with a negative number remove ended ones; this process gets the tasks of the last one."""
         with self._changed:
             self._helpers += helpers
             if not self._helpers:

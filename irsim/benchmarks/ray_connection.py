@@ -21,7 +21,7 @@ from irsim.diagnostics.errors import ArgumentError, CodedError
 __all__ = ["ClusterError", "connected"]
 
 AUTO = "auto"
-"""Address of the cluster that RAY_ADDRESS names, else of the one on this machine, which is started if there is none."""
+"""Address of the cluster that RAY_ADDRESS names, else of the one on this machine, which is started if missing."""
 _CLIENT = "ray://"
 _CONNECT_S = 10.0
 """Time within which the port of a cluster must answer [s]."""

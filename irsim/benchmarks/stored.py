@@ -1,7 +1,7 @@
 """Runs a benchmark in a folder, where it can go on after any interruption as if there had been none.
 
 Every episode is written as soon as it is done (``episodes.jsonl``). At the end the result is written, and the episodes
-again in their order: the files of a run that was interrupted and resumed equal those of one that was not.
+again in their order: a run that was interrupted and resumed has the same files as an undisturbed one.
 """
 
 from __future__ import annotations
@@ -89,8 +89,8 @@ def run_plan(
         The result; a :class:`irsim.results.benchmark.SuiteResult` of a suite.
 
     Raises:
-        RunError: The folder holds episodes already and ``resume`` is not given, or those of another plan; or it cannot
-            be written, or another process is running a benchmark there.
+        RunError: The folder holds episodes already and ``resume`` is not given, or episodes of another plan; or it
+            cannot be written, or another process is running a benchmark there.
         Others: as :func:`irsim.benchmark`.
     """
     _make(folder)

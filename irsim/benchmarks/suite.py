@@ -133,7 +133,7 @@ class Suite(_Part):
     title: Annotated[str, Field(min_length=1, max_length=100)]
     """Its subject, in one line."""
     about: str = ""
-    """What it measures, where it comes from, and how to read its results."""
+    """Its purpose and origin, and how to read its results."""
     sources: list[str] = []
     """Papers and pages that the suite follows."""
     scenarios: Annotated[list[SuiteScenario], Field(min_length=1)]
@@ -143,8 +143,8 @@ class Suite(_Part):
     steps: Annotated[int, Field(ge=1)]
     """Horizon in steps; in seconds it is this number times the ``step_time`` of the scenario, 0.1 s by default."""
     protocols: Annotated[list[Protocol], Field(min_length=1)] = ["as-written"]
-    """What robots do that have arrived: stand still (``freeze``), stay controlled so that they can make room
-    (``yield``), or what the scenario says (``as-written``). Each protocol is run on its own."""
+    """Robots that have arrived stand still (``freeze``), stay controlled so that they can make room (``yield``), or do
+    what the scenario says (``as-written``). Each protocol is run on its own."""
     until: Literal["done", "first_collision"] = "done"
     """When an episode ends before its horizon: when every robot has arrived or stopped, or already when one collides,
     which fails the episode in both cases."""
@@ -153,7 +153,7 @@ class Suite(_Part):
     timeHorizon: 2}``), ``as-written``, ``random``, a plug-in, or a file (``.npz``, ``.onnx``) relative to the suite
     file. Differences are to the first one."""
     others: dict[Name, str | dict[str, Any]] = {}
-    """Further policies in the same form, which are run only where they are named. They are no part of what identifies
+    """Further policies in the same form, which are run only where they are named. They are not part of the hash of
     the suite."""
     perturb: list[Perturbation] = []
     """How far starts, headings, speeds and departures may differ from the scenarios, drawn per seed, such as

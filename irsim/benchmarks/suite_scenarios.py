@@ -117,7 +117,7 @@ class Expanded:
     Attributes:
         name: Name in the results.
         family: Name in the suite.
-        protocol: What robots do that have arrived.
+        protocol: Behavior of robots that have arrived.
         values: The values that vary in its family.
         steps: Horizon in steps.
         data: The scenario.

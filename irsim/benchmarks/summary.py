@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 ALL = "(all)"
-"""Name of the rows over all scenarios; with several protocols those of one protocol are ``(all)/PROTOCOL``."""
+"""Name of the rows over all scenarios; with several protocols the rows of one are ``(all)/PROTOCOL``."""
 KEYS = tuple(metric.key for metric in (*METRICS, *EPISODE_METRICS))
 """Keys of the metrics of an episode."""
 _PROPORTIONS = frozenset(metric.key for metric in (*METRICS, *EPISODE_METRICS) if metric.unit == "0/1")
@@ -59,7 +59,7 @@ def estimates(columns: Mapping[str, Sequence[float | None]], shares: Collection[
 
     Args:
         columns: Name → values.
-        shares: Names of columns whose values are all 0 or 1, so that the interval is that of a proportion.
+        shares: Names of columns whose values are all 0 or 1: they get the interval of a proportion.
     """
     known = {name: [value for value in values if value is not None] for name, values in columns.items()}
     others = [name for name in known if name not in shares]
@@ -133,7 +133,7 @@ def perturbation_notes(changes: Mapping[str, Sequence[str]]) -> list[str]:
     """Notes about what each seed changes in each scenario; one note if it is the same in all.
 
     Args:
-        changes: What each seed changes in each scenario, in words.
+        changes: The changes by each seed in each scenario, in words.
     """
     notes = {name: f"perturbed, drawn uniformly for each seed: {'; '.join(parts)}" for name, parts in changes.items()}
     if len(set(notes.values())) == 1:
@@ -279,7 +279,7 @@ def _seeds(seeds: Sequence[int]) -> str:
 
 
 def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
-    """What happened besides outcomes, with the number of episodes; empty if nothing did.
+    """Incidents besides outcomes, with the number of episodes; empty without incidents.
 
     Args:
         episodes: The episodes of all scenarios and behaviors.

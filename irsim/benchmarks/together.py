@@ -26,7 +26,7 @@ _BYTES_PER_ROW = 75
 
 
 def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) -> Iterator[dict[str, Any]]:
-    """Run one episode for each seed; the results equal those of :func:`irsim.benchmarks.episode.run_task`.
+    """Run one episode for each seed; the results equal the results of :func:`irsim.benchmarks.episode.run_task`.
 
     A scenario in which Python code takes part runs one episode after another, unless that is a policy which decides in
     a batch as it does for single robots. Its first episode then runs alone, to time its decisions.

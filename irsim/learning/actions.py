@@ -19,7 +19,7 @@ def read_actions(actions: Any, choices: Sequence[Any] | None, slots: int, width:
 
     Args:
         actions: (slots, width) numbers from -1 to 1, or (slots,) numbers of choices.
-        choices: What can be chosen from; None: actions are numbers.
+        choices: The actions to choose from; None: actions are numbers.
         slots: Number of learners.
         width: Number of numbers of an action.
 

@@ -57,7 +57,7 @@ class Draws:
         self.size = len(self._observed)
 
     def values(self) -> dict[str, NDArray[Any]]:
-        """What was drawn, for all n worlds.
+        """The drawn values, for all n worlds.
 
         - ``number.WORD``: (n,) objects that take part
         - ``size.WORD`` and the like: (n, k) values of the k objects of a word, or (n,) if they share one draw

@@ -133,7 +133,7 @@ def begin(worlds: Worlds, seed: int | None, options: dict[str, Any] | None, *, f
 
 
 def drawn_facts(worlds: Worlds) -> dict[str, Any]:
-    """What was drawn for the episode of one world, and its level, for the info of a step; empty if nothing is drawn."""
+    """Draws of the episode of one world, and its level, for the info of a step; empty if nothing is drawn."""
     if not worlds.varies:
         return {}
     return {"drawn": {name: values[0] for name, values in worlds.drawn.items()}, "level": int(worlds.level[0])}
@@ -155,9 +155,9 @@ def frames_per_second(worlds: AnyWorlds) -> int:
 
 
 def facts(result: Result, slot: int) -> dict[str, Any]:
-    """What a step has led to for one learner: whether it arrived, which is its success, and whether it collided.
+    """Outcome of a step for one learner: whether it arrived, which is its success, and whether it collided.
 
-    ``contacts_between_steps`` is the number of those of its episode so far, see :class:`irsim.learning.step.Result`.
+    ``contacts_between_steps`` is their number in its episode so far, see :class:`irsim.learning.step.Result`.
     """
     arrived, collided = bool(result.arrived.reshape(-1)[slot]), bool(result.collided.reshape(-1)[slot])
     between = int(result.contacts_between_steps.reshape(-1)[slot])

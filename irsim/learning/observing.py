@@ -1,4 +1,4 @@
-"""What learners observe, as one row of numbers each."""
+"""Observations of learners, as one row of numbers each."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ class ParallelEnv(pettingzoo.ParallelEnv[Agent, NDArray[np.float32], Any]):  # t
     """A task with any number of learners; each robot is an agent, by its name.
 
     An agent whose episode is over leaves ``agents`` after the step that says so; its robot stays in the world. When the
-    last one leaves, or the world is over, ``agents`` is empty. Infos are those of :class:`irsim.learning.Env`.
+    last one leaves, or the world is over, ``agents`` is empty. Infos are as in :class:`irsim.learning.Env`.
 
     Args:
         task: The task: its file, its data, or a task that was read.

@@ -25,7 +25,7 @@ __all__ = ["SB3VecEnv"]
 class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
     """Each learner of each world is a slot, so that all share one policy.
 
-    A slot waits when its episode is over before that of its world: it earns nothing, and :attr:`active` is False.
+    A slot waits when its episode is over before its world's: it earns nothing, and :attr:`active` is False.
     Facts of whole episodes come in ``infos[slot]["episode"]``: ``r``, ``l`` and ``is_success``, as
     :class:`stable_baselines3.common.monitor.Monitor` has them, and in ``infos[slot]["contacts_between_steps"]``: the
     number of contacts of the episode that began and ended within one step.
@@ -40,7 +40,7 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
 
     Attributes:
         worlds: The worlds behind it.
-        active: (num_envs,) whether the last step counted for a slot; it does not for those that waited.
+        active: (num_envs,) whether the last step counted for a slot; it does not for slots that waited.
         ladder: Moves the worlds through the levels of the curriculum of the task; None without one.
 
     Raises:
@@ -132,7 +132,7 @@ class SB3VecEnv(VecEnv):  # type: ignore[misc] # types of an extra are not read
         raise ArgumentError("slots have no attributes of their own", "set attributes of the environment itself")
 
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
-        """What a method of this object returns, once for each slot."""
+        """The result of a method of this object, once for each slot."""
         result = getattr(self, method_name)(*method_args, **method_kwargs)
         return [result] * len(list(self._get_indices(indices)))
 

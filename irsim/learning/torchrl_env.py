@@ -23,7 +23,7 @@ __all__ = ["TorchRLEnv"]
 class TorchRLEnv(EnvBase):  # type: ignore[misc] # types of an extra are not read
     """``worlds`` worlds with A learners as an environment of the batch size (worlds * A,), locked.
 
-    Learners of one world have neighboring entries. An entry whose episode is over before that of its world has the
+    Learners of one world have neighboring entries. An entry whose episode is over before its world's has the
     reward 0 and ``active`` False; it is reset with its world.
 
     Args:

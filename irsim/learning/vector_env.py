@@ -34,13 +34,13 @@ _RESETS: dict[AutoresetMode, Autoreset | None] = {
 
 
 class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # type: ignore[misc] # as in gym_env
-    """``num_envs`` learners; those of one world have neighboring slots, so n worlds with A learners make n * A slots.
+    """``num_envs`` learners; a world's learners have neighboring slots, so n worlds with A learners make n * A slots.
 
     With one learner in each world, slot i is bit for bit what :class:`irsim.learning.Env` is with its seed. With more,
-    the episode of a learner may be over before that of its world. Its slot then waits: the reward is 0,
+    the episode of a learner may be over before its world's. Its slot then waits: the reward is 0,
     ``info["active"]`` is False, and the flag ``truncated`` says in which step the world is over, too.
     ``info["contacts_between_steps"]`` has the number of contacts of each slot's episode so far that began and ended
-    within one step, in the last step of an episode those of the whole episode.
+    within one step, in the last step of an episode the number of the whole episode.
 
     Args:
         task: The task: its file, its data, or a task that was read.
@@ -166,7 +166,7 @@ class VectorEnv(GymnasiumVectorEnv[NDArray[np.float32], Any, NDArray[Any]]):  # 
         return seen.copy() if self._copy else seen, reward, terminated, truncated, info
 
     def _drawn(self) -> dict[str, Any]:
-        """What was drawn for the present episode of each slot's world, and its level; empty if nothing is drawn."""
+        """Draws of the present episode of each slot's world, and its level; empty if nothing is drawn."""
         worlds = self.worlds
         if not worlds.varies:
             return {}
@@ -232,7 +232,7 @@ def _info(result: Result) -> dict[str, Any]:
 
 
 def _final(seen: NDArray[np.float32], slots: NDArray[np.int64]) -> dict[str, Any]:
-    """What slots observed last in an episode, as Gymnasium has it: an array of objects, and which of them there are."""
+    """Last observations of an episode, as Gymnasium has them: an array of objects, and which slots have one."""
     final, there = np.full(len(seen), None, dtype=object), np.zeros(len(seen), dtype=bool)
     there[slots] = True
     for slot, row in zip(slots.tolist(), seen[slots], strict=True):

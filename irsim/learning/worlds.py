@@ -28,7 +28,7 @@ from irsim.simulation.simulation import Simulation
 __all__ = ["Autoreset", "Worlds"]
 
 Autoreset = Literal["over", "before"]
-"""Worlds that start their next episode in a step: those that are over after it, or those that were before it."""
+"""Worlds that start their next episode in a step: worlds that are over after it, or that were before it."""
 _TRIES = 100
 """Number of scenes that are drawn for a world before it is an error that none has room for all objects."""
 
@@ -51,11 +51,11 @@ class Worlds:
         scenario: Its scenario.
         n, learners: Number of worlds, and of learners in each.
         names: Names of the learners of a world.
-        eyes: What they observe.
+        eyes: Their observations.
         width: Number of numbers of an action; 1 for the number of a choice.
         present: (n, A) whether the learner takes part in the present episode.
         level: (n,) level of the curriculum of the present episode.
-        drawn: What was drawn for the present episodes, see :meth:`irsim.learning.draws.Draws.values`.
+        drawn: Draws of the present episodes, see :meth:`irsim.learning.draws.Draws.values`.
 
     Raises:
         TaskError: The task is not valid, or does not fit its scenario.
@@ -240,14 +240,14 @@ class Worlds:
 
         Args:
             numbers: (n * A, F) what :meth:`read` made of actions; None leaves the learners to their behaviors.
-            reset: Which worlds start their next episode: those that are ``over`` after the step, or those that were
-                over ``before`` it; None starts none.
+            reset: Which worlds start their next episode: worlds that are ``over`` after the step, or that were over
+                ``before`` it; None starts none.
             out: (n * A, D) array for observations; None: a new one.
             last: (n * A, D) array for the last observations of episodes; None: one that the next call overwrites.
             watch: Called with the result before worlds that are over after the step start their next episode.
 
         Returns:
-            What has happened, and what the learners observe then.
+            The result of the step, and the observations after it.
         """
         before = self._stepper.over.copy()
         seen = np.empty((len(self.rows), self.eyes.size), dtype=np.float32) if out is None else out

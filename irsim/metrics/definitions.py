@@ -115,7 +115,7 @@ def _extras() -> tuple[Metric, ...]:
         extra(
             "path_irregularity",
             "rad",
-            "cumulative_heading_change, less that of the shortest path (with the first turn, if it must turn to move)",
+            "cumulative_heading_change, minus the shortest path's (with the first turn, if it must turn to move)",
             better="less",
         ),
         extra("path_efficiency", "ratio", "path length / L*; 1 is best", better="less"),

@@ -40,7 +40,7 @@ def newcombe(both: int, mine: int, other: int, neither: int) -> tuple[float, flo
 
     Args:
         both: Number of pairs in which both episodes have the property.
-        mine: Number of pairs in which only the first has it, from whose share that of the second is subtracted.
+        mine: Number of pairs in which only the first has it; the result is the first share minus the second.
         other: Number of pairs in which only the second has it.
         neither: Number of pairs in which neither has it.
     """

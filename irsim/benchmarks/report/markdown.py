@@ -101,7 +101,7 @@ def facts_of(result: BenchmarkResult) -> list[str]:
 
 
 def about_of(result: BenchmarkResult) -> list[str]:
-    """What a suite says about itself: its text, its sources, and when its episodes end; empty without a suite."""
+    """Description of a suite: its text, its sources, and when its episodes end; empty without a suite."""
     if not isinstance(result, SuiteResult):
         return []
     lines = [result.about] if result.about else []

@@ -30,7 +30,7 @@ class Shown:
     """An episode that is shown.
 
     Attributes:
-        caption: What it is.
+        caption: Its caption.
         png: Picture of some moments.
         replay: Path of its replay, relative to the page; empty without one.
     """

@@ -1,4 +1,4 @@
-"""What a report shows of a result: names of scenarios and policies, rows in their order, and the worst episodes."""
+"""Contents of a report of a result: names of scenarios and policies, rows in their order, and the worst episodes."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ varies, ``policy`` (name in the suite), ``behavior`` (as text), ``seed``, ``outc
 ``time_limit``, ``unreachable``, ``human_contacts``, ``failures`` (JSON), ``left``, ``jumped``, every metric under its
 key, and ``zones.ZONE.KEY`` for the metrics of zones. Undefined values are null.
 
-The metadata of each column are ``unit`` and ``description``; those of the file are ``irsim`` (version),
+The metadata of each column are ``unit`` and ``description``; the file itself has ``irsim`` (version),
 ``irsim.hash`` (of everything that decides the numbers), ``irsim.reproduce`` (command), ``irsim.suite`` and
 ``irsim.suite_version``. The same result gives the same bytes with the same version of pyarrow.
 """
@@ -120,7 +120,7 @@ def _columns(result: BenchmarkResult) -> list[_Column]:
 
 
 def _suite_columns(result: BenchmarkResult) -> list[_Column]:
-    """What a suite says about the scenario of each episode; nothing without a suite."""
+    """Facts of a suite about the scenario of each episode; empty without a suite."""
     if not isinstance(result, SuiteResult):
         return []
     facts = {fact.name: fact for fact in result.facts}

@@ -28,7 +28,7 @@ class Clearance(RewardOptions):
     margin: Annotated[Meters, Field(gt=0)] = 0.2
     """Gap from which on nothing is missing."""
     to: Literal["all", "robots", "obstacles"] = "all"
-    """What keeps the learner at a distance: other robots, obstacles (static and moving ones), or all of them."""
+    """Objects to keep away from: other robots, obstacles (static and moving ones), or all of them."""
 
 
 REWARDS.register(Clearance, kernel=core.ClearanceOptions)

@@ -40,7 +40,7 @@ def task_error(path: Path_, message: str, fix: str) -> TaskError:
     Args:
         path: The key.
         message: One sentence.
-        fix: What to write instead.
+        fix: The text to write instead.
     """
     whole = f"{format_path(path)}: {message}"
     return TaskError(whole, fix, [Diagnostic("invalid-value", "error", path, message, fix=fix)])

@@ -44,9 +44,9 @@ class Scene:
 
     Attributes:
         scenario: The scenario, with what is drawn for each episode.
-        levels: What is drawn at each level.
+        levels: The draws at each level.
         parameters: Name of each drawn parameter -> its value in each variant.
-        warnings: What in the scenario has no effect or may not be meant; paths are those of the scenario.
+        warnings: Entries of the scenario without effect, or perhaps not meant; paths are paths in the scenario.
     """
 
     scenario: ResolvedScenario
@@ -170,7 +170,7 @@ def scenario_text(task: Task, folder: Path) -> str:
         TaskError: The template does not exist or does not take these parameters.
     """
     text = _changed(task, folder, task.parameters, {}).text
-    assert text is not None, "only data without a text has none"
+    assert text is not None, "only documents of data have no text"
     return text
 
 

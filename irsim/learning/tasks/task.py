@@ -48,7 +48,7 @@ __all__ = [
 
 Value = bool | int | float | str
 QUANTITIES = ("number", "size", "speed", "acceleration", "sensor_noise", "latency")
-"""What is drawn for objects of the scenario, in the order of the keys."""
+"""Quantities drawn for objects of the scenario, in the order of the keys."""
 
 
 def _ordered(values: list[Any]) -> list[Any]:
@@ -66,7 +66,7 @@ FactorsFromZero = Annotated[list[Annotated[Number, Field(ge=0, le=1000)]], _Pair
 
 
 class Randomize(Options):
-    """What is drawn for each episode: ranges [low, high], uniformly.
+    """Draws for each episode: ranges [low, high], uniformly.
 
     Objects are named by a word: the name, tag or group of objects, an entry of the scenario such as `obstacle[0]`, or
     one of `learners`, `robots`, `obstacles` and `people` (obstacles that move). Each object draws its own value. A draw
@@ -194,7 +194,7 @@ class Action(Meaning):
 
 
 class Ends(Options):
-    """When the episode of a learner, and that of its world, is over."""
+    """When the episode of a learner and of its world is over."""
 
     arrival: Bool | None = None
     """Whether the episode of a learner ends when it has reached its last goal; null: unless arrived robots make room
@@ -227,7 +227,7 @@ class Task(Options):
     title: Annotated[str, Field(max_length=100)] = ""
     """Its subject, in one line."""
     about: str = ""
-    """What it is for, where it comes from, and how to read its results."""
+    """Its purpose and origin, and how to read its results."""
     template: str | None = None
     """Name of a bundled template; `irsim templates` lists them."""
     parameters: dict[str, Value] = {}
@@ -239,8 +239,8 @@ class Task(Options):
     learners: list[str] | None = None
     """Names of the robots that learn, or tags; null: all robots. Others follow their behaviors."""
     protocol: Literal["as-written", "freeze", "yield"] = "as-written"
-    """What robots do that have arrived: stand still (`freeze`), stay controlled so that they can make room (`yield`),
-    or what the scenario says (`as-written`)."""
+    """Robots that have arrived stand still (`freeze`), stay controlled so that they can make room (`yield`), or do
+    what the scenario says (`as-written`)."""
     observation: Annotated[list[Annotated[PartOptions, Select(PARTS)]], Field(min_length=1, max_length=32)]
     """Parts of what a learner observes, in this order; `irsim describe task.observation` lists them."""
     action: Action = Action()
@@ -254,11 +254,11 @@ class Task(Options):
     seeds: Seeds = Seeds()
     """Seeds of the worlds."""
     randomize: Randomize = Randomize()
-    """What is drawn for each episode, besides the places that the scenario draws: ranges [low, high] under words that
-    name objects, as in `size: {"obstacle[0]": [0.7, 1.3]}`. A word is the name, tag or group of objects, an entry of
+    """Draws for each episode, besides the places that the scenario draws: ranges [low, high] under words that name
+    objects, as in `size: {"obstacle[0]": [0.7, 1.3]}`. A word is the name, tag or group of objects, an entry of
     the scenario such as `robot[1]`, or one of `learners`, `robots`, `obstacles` and `people` (obstacles that move)."""
     perturb: Annotated[list[Perturbation], Field(max_length=64)] = []
-    """How far starts, headings and speeds may differ from those that the scenario writes, as `perturb` of `irsim run`:
+    """How far starts, headings and speeds may differ from the values of the scenario, as `perturb` of `irsim run`:
     for random starts with goals that stay. Of two spreads for an object the later one counts."""
     curriculum: Curriculum | None = None
     """Levels from easy to hard, through which a training rises; null: the task as it is."""

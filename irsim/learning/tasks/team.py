@@ -88,6 +88,6 @@ def _action_width(task: Task, record: ObjectRecord) -> int:
     if action.choices is None and action.returns == "control" and action.low is None:
         low, high = np.array(record.vel_min), np.array(record.vel_max)
         if not (np.isfinite(low).all() and np.isfinite(high).all()):
-            what = f"actions lie between the limits of controls, and those of {record.name!r} are infinite"
+            what = f"actions lie between the limits of controls, but {record.name!r} has infinite limits"
             raise TaskError(what, "give the robot finite vel_min and vel_max, or the action low and high")
     return 1 if action.choices is not None else controls

@@ -110,7 +110,7 @@ class _Selection:
         """The objects of a word.
 
         Raises:
-            TaskError: There are none.
+            TaskError: The word names no object.
         """
         own = [record for record in self.records if record.name == word]
         own = own or [r for r in self.records if word in r.tags or word == r.group_name]
@@ -147,10 +147,10 @@ def _quantities(whole: Randomize, changed: Randomize, where: Where, selection: _
 def _check(
     quantity: str, word: str, records: Sequence[ObjectRecord], high: float, where: Where, selection: _Selection
 ) -> None:
-    """Refuse what would have no effect.
+    """Refuse draws without effect.
 
     Raises:
-        TaskError: It would have none.
+        TaskError: The draw would have no effect.
     """
     objects = plural(len(records), "object")
     if quantity == "number" and high > len(records):

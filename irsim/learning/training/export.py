@@ -45,7 +45,7 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
         folder: Folder of the training.
         out: The file, ``.npz``; or ``.onnx``, which other programs run, too.
         license: Licence of the weights, such as an SPDX identifier.
-        description: What the policy does; by default the title of the task.
+        description: Description of the policy; by default the title of the task.
 
     Returns:
         The file.
@@ -211,7 +211,7 @@ def _card_text(file: Path, task: Task, card: Mapping[str, Any]) -> str:
 def draw_curve(rounds: Sequence[Mapping[str, Any]], title: str, file: Path) -> None:
     """Draw success and collisions on the validation seeds against the decisions of the training.
 
-    With one learner its success is that of the episode, so one line shows both.
+    With one learner its success is the success of the episode, so one line shows both.
 
     Args:
         rounds: Facts of the rounds, in order.

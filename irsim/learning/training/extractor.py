@@ -43,10 +43,10 @@ class PartColumns:
 
 
 def columns_of(eyes: Eyes, parts: Sequence[Any]) -> tuple[PartColumns, ...]:
-    """The columns of the parts of a task, and those of the draws that it observes.
+    """The columns of the parts of a task, and of the draws that it observes.
 
     Args:
-        eyes: What its learners observe.
+        eyes: The observations of its learners.
         parts: The options of its parts.
     """
     result = []
@@ -106,7 +106,7 @@ class GruExtractor(BaseFeaturesExtractor):  # type: ignore[misc] # types of an e
     Args:
         observation_space: The box of observations.
         columns: Where the parts are.
-        units: Widths; the last one is that of the GRU in each direction.
+        units: Widths; the last one is the GRU's in each direction.
     """
 
     def __init__(

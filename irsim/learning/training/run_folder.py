@@ -77,7 +77,7 @@ class RunFolder:
         """The settings of the training in the folder.
 
         Raises:
-            ArgumentError: There is none.
+            ArgumentError: The folder holds no training.
         """
         file = self.path / "settings.yaml"
         if not file.is_file():
@@ -86,7 +86,7 @@ class RunFolder:
         return settings_class(str(data["algo"])).model_validate(data)
 
     def rounds(self) -> list[dict[str, Any]]:
-        """What each finished round has reached."""
+        """Facts of each finished round."""
         if not self._progress.is_file():
             return []
         return [json.loads(line) for line in self._progress.read_text(encoding="utf-8").splitlines()]
@@ -96,7 +96,7 @@ class RunFolder:
 
         Args:
             model: The model.
-            facts: What the round has reached.
+            facts: Facts of the round.
             best: Whether it is the best so far.
         """
         for target in [self.best, self.latest] if best else [self.latest]:

@@ -23,7 +23,7 @@ class Success:
     """Shares of episodes.
 
     Attributes:
-        worlds: Share of worlds in which every learner arrived and none collided.
+        worlds: Share of worlds in which every learner arrived without a collision.
         learners: Share of learners that arrived and did not collide.
         collided: Share of learners that collided.
         reward: Mean of the sums of rewards of the learners.
@@ -80,7 +80,7 @@ class Round:
         number: Its number, from 1.
         steps: Decisions of all learners so far, without decisions of learners that waited.
         seconds: Wall-clock time of all rounds so far [s].
-        success: What the policy reaches on the validation seeds.
+        success: Success of the policy on the validation seeds.
         best: Whether it is better than every earlier round: in success or, with equal success, in reward.
         rounds: Number of rounds of the whole training.
     """

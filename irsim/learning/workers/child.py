@@ -1,4 +1,4 @@
-"""What a worker process does: it makes its worlds, and carries out commands until its standard input is closed."""
+"""A worker process makes its worlds, and carries out commands until its standard input is closed."""
 
 from __future__ import annotations
 

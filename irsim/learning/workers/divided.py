@@ -44,7 +44,7 @@ class DividedWorlds:
         level: Level of the curriculum; None: the one that it starts with.
 
     Attributes:
-        task, scenario, n, learners, names, eyes, width, present, level, drawn: As those of the worlds.
+        task, scenario, n, learners, names, eyes, width, present, level, drawn: As for the worlds.
 
     Raises:
         TaskError: The task is not valid, or does not fit its scenario.

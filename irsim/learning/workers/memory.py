@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 __all__ = ["ArrayLayout", "SharedMemory"]
 
 _ALIGNMENT = 64
-"""Arrays begin at multiples of it [bytes]: that of a line of the processor's cache."""
+"""Arrays begin at multiples of it: the size of a line of the processor's cache [bytes]."""
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,10 @@ class SharedMemory:
     """Memory that processes share, which begins empty.
 
     Args:
-        key: What :attr:`key` is in the process that made it; None makes new memory.
+        key: The :attr:`key` in the process that made it; None makes new memory.
 
     Attributes:
-        key: What another process needs: the number of an inherited file, or on Windows a name.
+        key: Key for another process: the number of an inherited file, or on Windows a name.
     """
 
     def __init__(self, key: int | str | None = None) -> None:

@@ -34,7 +34,7 @@ class ValueNet(nn.Module):  # type: ignore[misc] # types of an extra are not rea
         self.mlp3 = _perceptron([own + crowd, *settings.value_units, 1])
 
     def forward(self, states: torch.Tensor) -> torch.Tensor:
-        """(B,) values of states (B, 6 + 7 K): the numbers of the robot, then those of each person or zeros."""
+        """(B,) values of states (B, 6 + 7 K): the numbers of the robot, then of each person, or zeros."""
         _, size, both = ORDER
         own = states[:, :size]
         people = states[:, size:].reshape(len(states), -1, both - size)

@@ -24,13 +24,13 @@ __all__ = ["Plan", "plan_of"]
 
 @dataclass(frozen=True)
 class Plan:
-    """What a training of a value network does with a task.
+    """How a training of a value network uses a task.
 
     Attributes:
         people: Number of neighbors that the network sees.
         range: Gap beyond which they are not seen [m]; None sees everyone.
         lookahead: How moves are chosen.
-        heading: What the third number of a joint state is.
+        heading: Meaning of the third number of a joint state.
     """
 
     people: int
@@ -82,7 +82,7 @@ def plan_of(task: Task, settings: SarlSettings) -> Plan:
 
 
 def _reward(task: Task, gap: str) -> dict[str, Any]:
-    """The reward that is predicted, which is that of the task."""
+    """The reward of the task, as the lookahead predicts it."""
     reward: dict[str, Any] = {"goal": 0.0, "collision": 0.0, "discomfort": 0.0, "gap": gap}
     for term in task.reward:
         if isinstance(term, Arrival):

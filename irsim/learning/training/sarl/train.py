@@ -46,7 +46,7 @@ _LARGEST_GRADIENT = 1.0
 
 
 class _Model:
-    """The network, that of the targets, the optimizer and the memory.
+    """The network, the target network, the optimizer and the memory.
 
     Args:
         settings: The settings.
@@ -133,7 +133,7 @@ def train_sarl(
     """Train a value network.
 
     Args:
-        task: The task, whose observation, action and reward are those of ``sarl_circle``.
+        task: The task; its observation, action and reward are as in ``sarl_circle``.
         folder: Where the training is kept.
         settings: Settings; a resumed training has its own.
         resume: Go on with the training in the folder.
@@ -248,7 +248,7 @@ class _Trainer:
         return made
 
     def measure(self) -> Success:
-        """What the network reaches on the validation seeds, without random moves."""
+        """Success of the network on the validation seeds, without random moves."""
         seeds = self._worlds.task.seeds
         last = len(self._worlds.task.levels) - 1
         worlds = Worlds(self._task, seeds.validation_count, seed=seeds.validation, threads=self._threads, level=last)
