@@ -1,4 +1,4 @@
-"""What decides for robots and is not part of their scenario: behaviors, functions, plug-ins and networks from files.
+"""Policies decide for robots from outside the scenario: behaviors, functions, plug-ins and networks from files.
 
 A policy sees observations and returns controls. The same object drives one environment, a batch of worlds, a benchmark
 and a loop of the user's own; replacing it never changes the scenario.

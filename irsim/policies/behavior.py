@@ -1,4 +1,4 @@
-"""Behaviors as policies: they run in the engine, in place of those that the scenario gives its robots."""
+"""Behaviors as policies: they run in the engine, in place of the behaviors in the scenario."""
 
 from __future__ import annotations
 

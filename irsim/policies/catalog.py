@@ -42,7 +42,7 @@ __all__ = [
 ]
 
 PolicySource = Policy | Callable[[Observations], Any] | str | os.PathLike[str] | Mapping[str, Any]
-"""What :func:`open_policy` takes."""
+"""Input of :func:`open_policy`."""
 SUFFIXES = (".npz", ".onnx")
 """Suffixes of files that hold policies."""
 _TORCH_SUFFIXES = (".pt", ".pth", ".pkl")
@@ -197,7 +197,7 @@ def _unknown(name: str, root: str | Path | None) -> UnknownPolicyError:
 
 
 def _made(name: str, maker: Callable[..., Any], options: Mapping[str, Any]) -> Policy:
-    """What a maker makes of options."""
+    """The policy of a maker with options."""
     if (unknown := _unknown_option(name, maker, options)) is not None:
         raise unknown
     package = getattr(maker, "package", None)

@@ -1,4 +1,4 @@
-"""What policies there are, and what each observes and returns."""
+"""Lists policies, and says what each observes and returns."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ class PolicyInfo:
     """A policy in words.
 
     Attributes:
-        name: What opens it.
+        name: Text that opens it.
         kind: ``behavior``, ``built-in``, ``trained``, ``plug-in`` or ``file``.
-        about: What it does.
-        output: What it returns: ``control``, ``velocity``, or ``engine`` for a behavior.
-        needs: What it observes besides the state and the goal of the robot.
+        about: Its purpose.
+        output: Its result: ``control``, ``velocity``, or ``engine`` for a behavior.
+        needs: Observations besides the state and the goal of the robot.
         drives: Names of the drives that it controls; ``any``.
         decision_dt: Time between two decisions [s]; None: every step.
         options: Option → its default in words; ``required`` without one.
         meanings: Option → what it means.
-        unseen: What it does not see; empty if that is not known.
-        install: How the package is installed that it needs; None if it is, or needs none.
+        unseen: Things that it does not see; empty if that is not known.
+        install: How to install the package that it needs; None if nothing is missing.
         digest: SHA-256 of its file; None without one.
-        facts: What a network says of itself: parts that it observes, what it returns, layers, sizes, card.
+        facts: Facts of a network: parts that it observes, what it returns, layers, sizes, card.
     """
 
     name: str
@@ -152,7 +152,7 @@ def _words(needs: Needs) -> list[str]:
 
 
 def _unseen(needs: Needs) -> str:
-    """What a network does not see that observes this."""
+    """Things that a network with these needs does not see."""
     if needs.scan or needs.map:
         return ""
     if not needs.neighbors:

@@ -170,7 +170,7 @@ class PolicyDriver:
         return rows
 
     def _slot(self, world: Any, group: _Group) -> Any:
-        """Index of a world as the policy knows it: each drive has one of its own, and so has each simulation."""
+        """World index passed to the policy; unique for each drive, and for each simulation."""
         return self._base + group.number * len(self._last) + world
 
     def _begin_episodes(self, simulation: Simulation) -> None:
@@ -253,7 +253,7 @@ class PolicyDriver:
     def _checked(
         self, simulation: Simulation, group: _Group, rows: NDArray[np.int64], answer: Any
     ) -> NDArray[np.float64]:
-        """What a policy returned, as one row of finite numbers for each robot."""
+        """The answer of a policy, as one row of finite numbers for each robot."""
         count, columns = len(rows), group.columns
         what = "velocities in the world frame" if self.policy.output == "velocity" else f"controls of {group.drive}"
         advice = f"return an array of shape ({count}, {columns}): {what}, one row for each robot"

@@ -70,10 +70,10 @@ def check_fit(policy: Policy, simulation: Simulation, robots: Sequence[int]) -> 
 
 
 def lidar_problem(needs: Needs, simulation: Simulation, robots: Sequence[int]) -> tuple[str, str] | None:
-    """What is wrong with the lidars of robots as the second half of a sentence, and what mends it; None if nothing is.
+    """The problem with the lidars of robots, as the second half of a sentence, and its fix; None without a problem.
 
     Args:
-        needs: What is to be observed.
+        needs: Observations of the policy.
         simulation: The simulation.
         robots: Indices of the robots within a world.
     """
@@ -85,15 +85,13 @@ def lidar_problem(needs: Needs, simulation: Simulation, robots: Sequence[int]) -
     for robot in robots:
         name, beams = simulation.scenario.objects[robot].name, beams_of(simulation, robot)
         if beams is None:
-            return f"needs the scan of a lidar, but {name!r} has none", f"give {name!r} {wanted}"
+            return f"needs the scan of a lidar, but {name!r} has no lidar", f"give {name!r} {wanted}"
         if count is not None and len(beams.angles) != count:
             what = f"was made for {count} beams, but the first lidar of {name!r} has {len(beams.angles)}"
             return what, f"write number: {count} in the lidar of {name!r}"
         if first is not None and not first[1].equal(beams):
-            what = (
-                f"needs equal lidars, but those of {first[0]!r} and {name!r} differ in number, angle_range, offset or "
-            )
-            return what + "range_max", f"give {name!r} the lidar of {first[0]!r}"
+            what = f"needs equal lidars, but the lidars of {first[0]!r} and {name!r} differ in number, angle_range, "
+            return what + "offset or range_max", f"give {name!r} the lidar of {first[0]!r}"
         first = first or (name, beams)
     return None
 

@@ -195,7 +195,7 @@ def _points(pose: Floats, position: Floats, ranges: Floats, angles: Floats) -> F
 
 
 def _velocities(points: Floats, neighbors: Neighbors, b: int) -> Floats:
-    """(2, N) velocity of each point [m/s]: that of the neighbor that it lies on, or 0."""
+    """(2, N) velocity of each point [m/s]: the velocity of the neighbor that it lies on, or 0."""
     result = np.zeros_like(points)
     for k in np.flatnonzero(neighbors.mask[b]).tolist():
         away = np.hypot(*(points - neighbors.position[b, k][:, None]))

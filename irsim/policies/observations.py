@@ -1,4 +1,4 @@
-"""What policies observe: arrays over all robots that decide in a step, in all worlds at once."""
+"""Observations of policies: arrays over all robots that decide in a step, in all worlds at once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Neighbors:
 
     Attributes:
         mask: (B, K) whether there is such a neighbor.
-        index: (B, K) index of the object among those of its world; -1 where there is none.
+        index: (B, K) index of the object in its world; -1 for absent neighbors.
         position: (B, K, 2) x, y of the center of the bounding circle [m], world frame.
         heading: (B, K) [rad], world frame.
         velocity: (B, K, 2) true velocity [m/s], world frame.
@@ -32,7 +32,7 @@ class Neighbors:
         robot: (B, K) whether the neighbor is a robot.
         extent: (B, K) how far its footprint reaches from the center of its bounding circle toward the robot, along the
             line between the centers [m]; None unless the policy asks for it.
-        own_extent: (B, K) how far that of the robot reaches toward the neighbor [m].
+        own_extent: (B, K) how far the robot's footprint reaches toward the neighbor [m].
     """
 
     mask: NDArray[np.bool_]
@@ -82,7 +82,7 @@ class Map(Protocol):
 
 @dataclass(frozen=True)
 class Observations:
-    """What B robots know when they decide; row b is one robot of one world.
+    """Observations of B robots that decide; row b is one robot of one world.
 
     Neighbors, scans and maps are present only if the policy needs them (:class:`irsim.policies.Needs`).
 

@@ -139,11 +139,11 @@ class Observer:
 
     Args:
         simulation: The simulation.
-        needs: What is observed besides the robots themselves.
+        needs: Observations besides the robots themselves.
         robots: (n,) indices, within a world, of the robots that may be observed. For scans all have equal lidars.
 
     Attributes:
-        looking: What is observed, for the core.
+        looking: The observations to make, for the core.
     """
 
     def __init__(self, simulation: Simulation, needs: Needs, robots: NDArray[np.int64]) -> None:
@@ -174,12 +174,12 @@ class Observer:
         )
 
     def observe(self, rows: NDArray[np.int64], first: NDArray[np.bool_], slot: NDArray[np.int64]) -> Observations:
-        """What these robots observe now.
+        """Observations of these robots now.
 
         Args:
             rows: (B,) their rows.
             first: (B,) whether each has not decided yet in this episode.
-            slot: (B,) index of the world of each, as the policy knows it.
+            slot: (B,) world index of each, as passed to the policy.
         """
         simulation, needs = self._simulation, self._needs
         world, robot = np.divmod(rows, simulation.objects)

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 __all__ = ["Episode", "FunctionPolicy", "Needs", "Output", "Policy"]
 
 Output = Literal["control", "velocity"]
-"""What a policy returns: controls of the drive, or velocities in the world frame, which every drive follows."""
+"""Result of a policy: controls of the drive, or velocities in the world frame, which every drive follows."""
 MAX_COUNT = 100_000
 """Largest number of neighbors or beams."""
 
 
 @dataclass(frozen=True)
 class Needs:
-    """What a policy observes besides the state and the goal of the robot itself.
+    """Observations of a policy besides the state and the goal of the robot itself.
 
     Attributes:
         neighbors: Number of nearest other objects; 0 for none.
@@ -69,12 +69,12 @@ class Needs:
 
 @dataclass(frozen=True)
 class Episode:
-    """What a policy learns at the start of an episode.
+    """Facts for a policy at the start of an episode.
 
     Attributes:
         world: Index of the world among all that the policy object drives, also in other simulations. Where a policy of
-            controls drives robots with different drives, those of each drive have an index of their own, as if they
-            were in another world.
+            controls drives robots with different drives, the robots of each drive have an index of their own, as if
+            they were in another world.
         robots: Ids of the robots that the policy drives.
         step_time: Period of the simulation [s].
         decision_steps: Number of steps between two decisions.
@@ -94,12 +94,12 @@ class Episode:
 class Policy(ABC):
     """Decides for all robots of all worlds that run together.
 
-    What a policy does in one world must not depend on the other worlds: whatever it remembers belongs to a world.
+    Decisions in one world must not depend on the other worlds: whatever a policy remembers belongs to a world.
 
     Attributes:
         name: Name in tables.
-        needs: What it observes.
-        output: What :meth:`act` returns.
+        needs: Its observations.
+        output: Kind of the result of :meth:`act`.
         drives: Names of the drives that it can control; None: all of them (for ``output = "velocity"``).
         decision_dt: Time between two decisions [s]; None: every step. Rounded to whole steps, at least one. The robot
             keeps its control (or follows its velocity) in between.
@@ -110,7 +110,7 @@ class Policy(ABC):
         may_be_lost: Whether it lives in another process, so that ``act`` may raise :class:`PolicyLostError`.
         package: Python package that it needs and that irsim does not depend on, and how to install it.
         text: How it is written in commands, such as ``orca`` or ``model.npz``; None: only this program has it.
-        source: What opens it again in another folder, with the full path of its file; None as for ``text``.
+        source: Text that opens it from any folder, with the full path of its file; None as for ``text``.
         digest: SHA-256 of the file that it was read from; None without one.
     """
 
@@ -140,10 +140,10 @@ class Policy(ABC):
         """Decide for all robots that need a decision now.
 
         Robots that stand still because of a collision, because they have arrived for good or because their start is
-        delayed, and those that the caller steers, are not among them.
+        delayed are not among them, nor are robots that the caller steers.
 
         Args:
-            observations: What these B robots observe.
+            observations: Observations of these B robots.
 
         Returns:
             (B, 2) velocities in the world frame [m/s] for ``output = "velocity"``; else (B, C) controls in the command
@@ -161,7 +161,7 @@ class FunctionPolicy(Policy):
 
     Args:
         function: ``f(observations)``, which returns what :meth:`irsim.policies.Policy.act` does.
-        name: Name in tables; default: that of the function.
+        name: Name in tables; default: the function's.
         output, needs, drives, decision_dt, stochastic: As for :class:`irsim.policies.Policy`.
     """
 

@@ -304,7 +304,7 @@ def test_others_follow_their_behaviors() -> None:
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ({"observation": [{"name": "scan"}]}, r"needs the scan of a lidar, but 'robot_0' has none"),
+        ({"observation": [{"name": "scan"}]}, r"needs the scan of a lidar, but 'robot_0' has no lidar"),
         ({"action": {"low": [0], "high": [1]}}, r"action.low has 1 numbers"),
         ({"action": {"choices": [[1, 2, 3]]}}, r"action.choices has 3 numbers"),
     ],

@@ -267,12 +267,12 @@ LIDAR = {"name": "lidar2d", "number": 8}
     ("robots", "attributes", "message"),
     [
         ([{}], {"drives": frozenset({"diff"})}, "controls diff, but 'robot_0' has the drive omni"),
-        ([{}], {"needs": Needs(scan=True)}, "needs the scan of a lidar, but 'robot_0' has none"),
+        ([{}], {"needs": Needs(scan=True)}, "needs the scan of a lidar, but 'robot_0' has no lidar"),
         ([{"sensors": [LIDAR]}], {"needs": Needs(scan=True, beams=9)}, "was made for 9 beams, .* 'robot_0' has 8"),
         (
             [{"sensors": [LIDAR]}, {"sensors": [{**LIDAR, "range_max": 3}]}],
             {"needs": Needs(scan=True)},
-            "needs equal lidars, but those of 'robot_0' and 'robot_1' differ",
+            "needs equal lidars, but the lidars of 'robot_0' and 'robot_1' differ",
         ),
     ],
 )

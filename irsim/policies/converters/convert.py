@@ -35,7 +35,7 @@ def convert_policy(
 
     Args:
         kind: Kind of weights: a name of :data:`CONVERTERS`.
-        file: What ``torch.save`` wrote: a state dictionary or a whole module.
+        file: Output of ``torch.save``: a state dictionary or a whole module.
         out: The policy file, ``.npz``; it is written in one step, and only if everything fits.
         options: Options of the kind.
         limits: How large the file may be.

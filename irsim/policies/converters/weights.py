@@ -53,7 +53,7 @@ class Weights:
         """The one array whose name has one of these endings and whose shape fits.
 
         Args:
-            what: What is looked for, in words.
+            what: The wanted array, in words.
             endings: Ends of its name in whole words between dots, such as ``ln.weight``; the first that fits counts.
             shape: Its sides; None for any.
 

@@ -34,16 +34,16 @@ Row = Annotated[list[Number], Field(min_length=1, max_length=3)]
 
 
 class Meaning(Options):
-    """What the numbers of a decision mean."""
+    """Meaning of the numbers of a decision."""
 
     returns: Literal["control", "velocity"] = "control"
     """Controls of the drive, or a velocity that every drive follows."""
     frame: Frame = "world"
     """Frame of the velocity."""
     low: Row | None = None
-    """What -1 stands for, one number for each control or for vx and vy."""
+    """Meaning of -1, one number for each control or for vx and vy."""
     high: Row | None = None
-    """What 1 stands for."""
+    """Meaning of 1."""
     limits: Bool = False
     """Take `low` and `high` from the limits of each robot's controls."""
     increment: Bool = False
@@ -59,19 +59,19 @@ class Meaning(Options):
             raise problem("invalid-value", "'low' and 'high' have different lengths", fix="one number for each output")
         if self.limits and (self.low is not None or self.returns == "velocity"):
             raise problem(
-                "invalid-value", "'limits' are those of controls and replace low and high", fix="give one of them"
+                "invalid-value", "'limits' belong to controls and replace low and high", fix="give one of them"
             )
         if self.choices is not None and (self.low is not None or self.limits):
             raise problem("invalid-value", "'choices' are not scaled", fix="remove limits, low and high")
         if self.choices is not None and len({len(row) for row in self.choices}) > 1:
             raise problem("invalid-value", "the choices have different lengths", fix="one number for each control")
         if self.frame != "world" and self.returns == "control":
-            raise problem("invalid-value", "'frame' is that of a velocity", fix="remove it, or set returns: velocity")
+            raise problem("invalid-value", "'frame' belongs to a velocity", fix="remove it, or set returns: velocity")
         return self
 
 
 class OutputOptions(Meaning):
-    """What the numbers of the network mean.
+    """Meaning of the numbers of the network.
 
     Without `choices`, a number u is squashed first. With `low` and `high`, or with `limits`, it then becomes
     low + (u + 1) / 2 (high - low); otherwise it stays as it is, in m/s and rad/s.
@@ -93,15 +93,15 @@ class Card(Options):
     """Where a network comes from and what it is good for."""
 
     description: Text = ""
-    """What the policy does, for people."""
+    """Description of the policy, for people."""
     license: Text = ""
     """Licence of the weights, such as an SPDX identifier."""
     source: Text = ""
     """Who has made it, or where it is published."""
     task: Text = ""
-    """What it was trained on: scenario or suite."""
+    """Scenario or suite of the training."""
     protocol: Text = ""
-    """What happens on arrival in the training: `freeze`, `yield` or both."""
+    """Protocol on arrival in the training: `freeze`, `yield` or both."""
     seeds: Annotated[list[Integer], Field(max_length=1000)] = []
     """Seeds of the training."""
     steps: Annotated[Integer, Field(ge=0)] | None = None
@@ -111,12 +111,12 @@ class Card(Options):
 
 
 class PolicyHead(Options):
-    """What is said about a network in any format."""
+    """Description of a network in any format."""
 
     layout: Layout
-    """What it observes."""
+    """Its observations."""
     output: OutputOptions
-    """What its result means."""
+    """Meaning of its result."""
     drives: Annotated[list[Annotated[str, Field(max_length=64)]], Field(min_length=1, max_length=64)] | None = None
     """Drives whose controls it returns; null for velocities, which every drive follows."""
     decision_dt: Annotated[Seconds, Field(gt=0)] | None = None
@@ -127,7 +127,7 @@ class PolicyHead(Options):
     @model_validator(mode="after")
     def _has_drives(self) -> PolicyHead:
         if self.output.returns == "control" and self.drives is None:
-            message = "'drives' is missing: controls are those of certain drives"
+            message = "'drives' is missing: controls belong to certain drives"
             raise problem("invalid-value", message, fix='add "drives": ["diff"], or return velocities')
         return self
 
@@ -163,7 +163,7 @@ class PolicyDocument(PolicyHead):
         if output.returns != wanted:
             raise problem("invalid-value", f"these moves are of the kind {wanted}", fix=f'set "returns": "{wanted}"')
         if unicycle and self.drives != ["diff"]:
-            raise problem("invalid-value", "moves of a unicycle are those of diff", fix='set "drives": ["diff"]')
+            raise problem("invalid-value", "moves of a unicycle are controls of diff", fix='set "drives": ["diff"]')
         needs = layout_needs(self.layout)
         if needs.scan or needs.map or needs.neighbor_extents or not needs.neighbors:
             message = "what is observed after a move is predicted, which takes neighbors and no scan, map or extents"

@@ -46,13 +46,13 @@ LIMITS = Limits()
 
 
 def flaw(where: str | Path, message: str, given: str = "", allowed: str = "") -> Diagnostic:
-    """What is wrong at one place of a file of a policy.
+    """The problem at one place of a file of a policy.
 
     Args:
         where: Place in the document, such as ``("network", 2, "units")``, or name of an array; empty for the file.
-        message: What is wrong.
+        message: The problem in words.
         given: The value that is wrong, as text; may be empty.
-        allowed: What is accepted, as text; empty if the message says so.
+        allowed: The accepted values, as text; empty if the message says so.
     """
     path = ((where,) if where else ()) if isinstance(where, str) else where
     text = message + (f", given: {given}" if given else "") + (f", allowed: {allowed}" if allowed else "")
@@ -60,7 +60,7 @@ def flaw(where: str | Path, message: str, given: str = "", allowed: str = "") ->
 
 
 def content_flaw(error: ContentError) -> Diagnostic:
-    """What a reader of archives found wrong."""
+    """The problem that a reader of archives reports."""
     return flaw(error.place, error.message, error.given, error.allowed)
 
 

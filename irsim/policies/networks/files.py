@@ -90,7 +90,7 @@ def read_bytes(path: Path, most: int, kind: str = "a .npz or .onnx file") -> byt
     Args:
         path: The file.
         most: Largest size in bytes.
-        kind: What the file should be, for messages.
+        kind: Expected kind of file, for messages.
 
     Raises:
         PolicyFileError: There is no such file, it cannot be read, or it is too large.

@@ -54,7 +54,7 @@ def _kernel(part: PartOptions) -> Any | None:
 
 
 def layout_needs(layout: Layout) -> Needs:
-    """What a policy with this layout observes: enough for every part."""
+    """Observations of a policy with this layout: enough for every part."""
     needs = [part.needs() for part in layout.parts]
     seeing = [need for need in needs if need.neighbors]
     return Needs(
@@ -90,7 +90,7 @@ def observe(layout: Layout, observations: Observations) -> dict[str, Value]:
 
     Args:
         layout: The parts.
-        observations: What :func:`layout_needs` declares.
+        observations: Observations with :func:`layout_needs`.
 
     Returns:
         (B, F) vectors and (B, K, F) sets of float64.
@@ -114,7 +114,7 @@ def observe(layout: Layout, observations: Observations) -> dict[str, Value]:
 
 
 def _seen_rows(observations: Observations) -> core.SeenRows:
-    """What B robots observe, as the kernels of observation parts take it."""
+    """Observations of B robots, as the kernels of observation parts take them."""
     o, flag = observations, np.uint8
     rows = core.SeenRows(
         pose=o.pose,

@@ -45,7 +45,7 @@ class MoveSet(Options):
     headings: Annotated[Integer, Field(ge=1, le=360)] = 16
     """Number of directions, or of changes of the heading."""
     frame: Frame = "world"
-    """Frame in which the first direction of a holonomic robot is that of x; `goal` makes decisions independent of how
+    """Frame in which the first direction of a holonomic robot is along x; `goal` makes decisions independent of how
     the world is turned."""
 
     @property
@@ -91,11 +91,11 @@ class Lookahead(Options):
 
 @dataclass(frozen=True)
 class Futures:
-    """What B robots can do, and what follows.
+    """Possible moves of B robots, and their consequences.
 
     Attributes:
         move: (B, A, 2) velocities in the world frame [m/s]; of a unicycle speed [m/s] and change of the heading [rad].
-        observations: What they will observe, B * A rows, those of the first robot first.
+        observations: Predicted observations, B * A rows, first all rows of the first robot.
         reward: (B, A) predicted reward.
         discount: (B,) factor of the value of the state that follows.
     """
@@ -107,7 +107,7 @@ class Futures:
 
 
 def take_rows(observations: Observations, rows: NDArray[np.intp] | slice) -> Observations:
-    """What some of the robots observe, in this order, without scans and maps."""
+    """Observations of some of the robots, in this order, without scans and maps."""
 
     def taken(whole: Observations | Neighbors) -> dict[str, NDArray[np.generic]]:
         result = ((field.name, getattr(whole, field.name)) for field in fields(whole))
@@ -142,7 +142,7 @@ def look_ahead(options: Lookahead, observations: Observations) -> Futures:
 
     Args:
         options: The moves, the time and the reward.
-        observations: What the robots observe now, with neighbors.
+        observations: Present observations of the robots, with neighbors.
     """
     o, dt = observations, options.dt
     shares, angles = moves_of(options.moves)
@@ -183,8 +183,8 @@ def _reward(options: Lookahead, before: Observations, pose: Floats, velocity: Fl
     """(N,) rewards of N moves.
 
     Args:
-        options: What counts.
-        before: What is observed before the moves, one row for each.
+        options: The time and the reward.
+        before: Observations before the moves, one row for each.
         pose: (N, 3) poses after them, world frame.
         velocity: (N, 2) velocities during them [m/s], world frame.
     """

@@ -35,7 +35,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class GraphPlan:
-    """What a network needs and makes.
+    """Needs and results of a network.
 
     Attributes:
         shapes: Shape of each part and layer by its label.
@@ -44,7 +44,7 @@ class GraphPlan:
         memory: Label of each layer that remembers -> how many numbers for each robot.
         work: Multiplications for one robot, roughly.
         numbers: Numbers that all layers return for one robot.
-        problems: What is wrong; the rest is incomplete if there are any.
+        problems: Its problems; the rest is incomplete if there are any.
     """
 
     shapes: dict[str, Shape]
@@ -124,7 +124,7 @@ def run_graph(
         layers: Layers that :func:`plan_graph` has accepted.
         arrays: Label of a layer -> its arrays, all of one type.
         observed: Label of a part -> its value, of the same type.
-        memory: Label of a layer that remembers -> (B, M) of the last decision, replaced by those of this one.
+        memory: Label of a layer that remembers -> (B, M) of the last decision, replaced by this one's.
         wanted: Label of the result.
 
     Returns:
@@ -148,7 +148,7 @@ class Network:
     """A network of the layers of irsim.
 
     Attributes:
-        document: What it observes, its layers, what its result means.
+        document: Its observations and layers, and the meaning of its result.
         arrays: ``<label>.<array>`` -> array of the type that the document says.
     """
 
@@ -224,7 +224,7 @@ def _size_problems(plan: GraphPlan, limits: Limits) -> Iterator[Diagnostic]:
 
 
 def _value_problems(document: PolicyDocument, plan: GraphPlan, limits: Limits) -> Iterator[Diagnostic]:
-    """What is wrong with a network whose result is the value of a state."""
+    """Problems of a network whose result is the value of a state."""
     assert document.lookahead is not None
     label, shape = document.output.input, plan.shapes.get(document.output.input)
     if shape is None:
@@ -241,7 +241,7 @@ def _value_problems(document: PolicyDocument, plan: GraphPlan, limits: Limits) -
 
 
 def output_problems(head: PolicyHead, shapes: Mapping[str, Shape]) -> Iterator[Diagnostic]:
-    """What is wrong with the output of a network whose values have these shapes."""
+    """Problems of the output of a network whose values have these shapes."""
     output = head.output
     shape = shapes.get(output.input)
     if shape is None:

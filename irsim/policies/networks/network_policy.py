@@ -38,8 +38,8 @@ class NetworkPolicy(Policy):
 
     Args:
         name: Its name in tables.
-        head: What it observes, and what its result means.
-        facts: What :meth:`describe` adds: format, size, hash.
+        head: Its observations, and the meaning of its result.
+        facts: Additions to :meth:`describe`: format, size, hash.
     """
 
     stochastic = False
@@ -69,7 +69,7 @@ class NetworkPolicy(Policy):
 
         Args:
             observed: Parts of the layout.
-            observations: What they were made of.
+            observations: Observations that they were made from.
         """
 
     def describe(self) -> dict[str, Any]:
@@ -129,8 +129,8 @@ class LayerPolicy(NetworkPolicy):
     Args:
         name: Its name in tables.
         network: The network.
-        plan: What its layers need.
-        facts: What :meth:`describe` adds.
+        plan: Needs of its layers.
+        facts: Additions to :meth:`describe`.
     """
 
     def __init__(self, name: str, network: Network, plan: GraphPlan, facts: Mapping[str, Any] | None = None) -> None:
@@ -166,8 +166,8 @@ class LookaheadPolicy(LayerPolicy):
     Args:
         name: Its name in tables.
         network: The network, whose document has a lookahead.
-        plan: What its layers need.
-        facts: What :meth:`describe` adds.
+        plan: Needs of its layers.
+        facts: Additions to :meth:`describe`.
     """
 
     def __init__(self, name: str, network: Network, plan: GraphPlan, facts: Mapping[str, Any] | None = None) -> None:
@@ -182,7 +182,7 @@ class LookaheadPolicy(LayerPolicy):
             PolicyInputError: The robots do not observe what the network needs.
         """
         if not np.isfinite(observations.high[:, 0]).all():
-            message = "the network chooses between shares of the largest speed, and a robot has none"
+            message = "the network chooses between shares of the largest speed, but a robot's is infinite"
             raise PolicyInputError(message, "give the robot a finite vel_max")
         portion = max(1, _MOVES_AT_ONCE // self.lookahead.moves.count)
         moves = np.zeros((len(observations), 2))

@@ -18,7 +18,7 @@ SUFFIXES = (".npz", ".onnx")
 
 
 def open_network(path: str | Path, *, limits: Limits = LIMITS) -> NetworkPolicy:
-    """The policy in a file; its name is that of the file without the suffix. No code of the file is run.
+    """The policy in a file; its name is the file's without the suffix. No code of the file is run.
 
     Args:
         path: A ``.npz`` file of the format ``irsim-policy``, or an ``.onnx`` file with its metadata.

@@ -18,7 +18,7 @@ __all__ = ["Present", "are_finite", "decide"]
 
 @dataclass(frozen=True)
 class Present:
-    """What the meaning of numbers may depend on, for B robots, as in :class:`irsim.policies.Observations`.
+    """Facts behind the meaning of numbers, for B robots, as in :class:`irsim.policies.Observations`.
 
     Attributes:
         pose, goal: (B, 3) x, y [m], heading [rad], world frame.
@@ -43,7 +43,7 @@ class Present:
 
 
 def decide(output: OutputOptions, numbers: Array, present: Present) -> Floats:
-    """What the numbers of a network mean for B robots.
+    """Decisions that the numbers of a network mean for B robots.
 
     Args:
         output: Their meaning.
@@ -54,7 +54,7 @@ def decide(output: OutputOptions, numbers: Array, present: Present) -> Floats:
         (B, 2) velocities in the world frame [m/s], or (B, C) controls.
 
     Raises:
-        PolicyInputError: The network scales to the limits of controls, and a robot has none.
+        PolicyInputError: The network scales to the limits of controls, and a robot has infinite ones.
     """
     value = numbers.astype(np.float64)
     if output.choices is not None:

@@ -44,7 +44,7 @@ def mlp(
     Args:
         weights: Pairs of weights (inputs, outputs) and biases (outputs), in order; or a mapping with ``W0``, ``b0``,
             ``W1``, ``b1``, …; or one with ``….weight`` (outputs, inputs) and ``….bias`` as PyTorch has them.
-        parts: What the network observes; its inputs are these numbers in this order.
+        parts: Observations of the network; its inputs are these numbers in this order.
         activation: Function after each layer but the last.
         output: Keys of the output but for ``input``; see :class:`irsim.policies.networks.document.OutputOptions`.
         drives: Drives whose controls it returns; None for velocities.

@@ -30,7 +30,7 @@ __all__ = ["ORDER", "PERCEPTRONS", "joint_state_parts", "sarl_network"]
 PERCEPTRONS = {"mlp1": "embed", "mlp2": "features", "attention": "score", "mlp3": "value"}
 """Prefix of the weights -> stem of the labels of the layers."""
 ORDER = (("x", "y", "vx", "vy", "radius", "distance", "radii"), 6, 13)
-"""Numbers of a person after those of the robot, number of the latter, and number of both."""
+"""Numbers of a person, which follow the robot's; count of the robot's numbers, and of both together."""
 _FIX = "give weights named mlp1.0.weight, mlp1.0.bias, mlp1.2.weight, … of the perceptrons " + ", ".join(PERCEPTRONS)
 
 
@@ -54,7 +54,7 @@ def joint_state_parts(neighbors: int, *, heading: Heading = "zero", range: float
 
     Args:
         neighbors: Largest number of people.
-        heading: What the third number is.
+        heading: Meaning of the third number.
         range: Gap between bounding circles beyond which people are not seen [m]; None sees everyone.
     """
     people = {
@@ -90,7 +90,7 @@ def sarl_network(
         source: Name of the weights for messages.
 
     Raises:
-        PolicyFileError: The weights are not those of SARL, or not finite; the error names every place.
+        PolicyFileError: The weights are not weights of SARL, or not finite; the error names every place.
     """
     problems = list(_weight_problems(weights))
     if problems:
@@ -163,7 +163,7 @@ def _perceptron(weights: Mapping[str, Any], name: str) -> _Perceptron:
 
 
 def _weight_problems(weights: Mapping[str, Any]) -> Iterator[Diagnostic]:
-    """What is wrong with the names, the kinds and the shapes of single arrays."""
+    """Problems of the names, the kinds and the shapes of single arrays."""
     known = set()
     for name in PERCEPTRONS:
         numbers = _numbers(weights, name)
@@ -197,7 +197,7 @@ def _pair_problems(weights: Mapping[str, Any], weight: str, bias: str) -> Iterat
 
 
 def _shape_problems(parts: Mapping[str, _Perceptron]) -> Iterator[Diagnostic]:
-    """What is wrong with how the perceptrons fit together."""
+    """Perceptrons that do not fit together."""
     for name, given in parts.items():
         for number, ((_, bias), (weight, _)) in enumerate(zip(given.layers, given.layers[1:], strict=False)):
             if len(bias) != len(weight):

@@ -1,4 +1,4 @@
-"""What flows through a network: arrays of one row per robot, and sets with a mask."""
+"""Values in a network: arrays of one row per robot, and sets with a mask."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Channel(NamedTuple):
     """One number of an observation.
 
     Attributes:
-        name: What it is.
+        name: Its name.
         low, high: Bounds.
     """
 

@@ -28,7 +28,7 @@ class PeerError(Exception):
 
     Args:
         message: The end of the sentence ``the policy …``.
-        fix: What to do.
+        fix: Advice to the user.
     """
 
     def __init__(self, message: str, fix: str = "look at what its process prints") -> None:
@@ -45,7 +45,7 @@ class Channel:
     Args:
         reader, writer: Streams from and to the process.
         close: Ends the connection.
-        ended: What has happened when no more lines come, in words.
+        ended: The reason why no more lines come, in words.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class Channel:
 
 
 def start(command: Sequence[str], folder: str | None = None) -> Channel:
-    """Start a program and talk to its standard input and output; its standard error stays that of this process.
+    """Start a program and talk to its standard input and output; its standard error is this process's.
 
     Raises:
         PeerError: The program cannot be started.

@@ -1,4 +1,4 @@
-"""What irsim and a policy in another process tell each other: one JSON object per line.
+"""Messages between irsim and a policy in another process: one JSON object per line.
 
 irsim asks and the policy answers each line with one line. Arrays are nested lists with one row per robot; a number that
 is not finite, such as a goal that is missing or a limit that does not exist, is null.
@@ -31,11 +31,11 @@ __all__ = ["FIX", "PROTOCOL", "act", "answer", "declaration", "hello", "reset"]
 PROTOCOL = 1
 """Version of the messages."""
 FIX = "irsim describe process says what it must answer"
-"""What to do about an answer that is not understood."""
+"""Advice about an answer that is not understood."""
 _MAX_SHOWN = 80
 """Characters of an answer that an error shows."""
 _DECLARED = ("name", "output", "needs", "drives", "decision_dt", "stochastic")
-"""What a policy says of itself; :class:`irsim.policies.Policy` has the meaning of each."""
+"""Keys of a declaration; :class:`irsim.policies.Policy` has the meaning of each."""
 
 
 def hello() -> bytes:
@@ -71,7 +71,7 @@ def answer(line: bytes, kind: str) -> dict[str, Any]:
 
 
 def declaration(data: dict[str, Any]) -> dict[str, Any]:
-    """What a policy says of itself, as attributes of a policy.
+    """The declaration of a policy, as attributes of a policy.
 
     Raises:
         PeerError: It says something else, or another version of the messages.

@@ -72,7 +72,7 @@ class ProcessPolicy(Policy):
         self._ask(messages.reset(episode, int(rng.integers(2**53))), "ready", "start_timeout")
 
     def act(self, observations: Observations) -> Floats:
-        """What the other process decides.
+        """The decisions of the other process.
 
         Raises:
             PolicyLostError: It does not answer in time, has ended, or answers nonsense.

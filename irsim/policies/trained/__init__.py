@@ -7,7 +7,7 @@ from pathlib import Path
 __all__ = ["COMMON_NAMES", "trained_policies", "trained_policy"]
 
 COMMON_NAMES = {"ppo": "multi_robot", "ppo_freeze": "multi_robot_freeze"}
-"""What else people call a policy, and suites do → its name."""
+"""Other name of a policy, which people and suites use → its name."""
 _FOLDER = Path(__file__).parent
 
 

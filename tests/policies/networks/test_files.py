@@ -139,7 +139,7 @@ def test_facts_of_a_file(tmp_path: Path) -> None:
             "layout.parts[0].range",
             "not a key of 'layout.parts[0]'",
         ),
-        (lambda d: d.update(drives=None), "(document)", "controls are those of certain drives"),
+        (lambda d: d.update(drives=None), "(document)", "controls belong to certain drives"),
         (lambda d: d.update(drives=["omni_angular"]), "output", "omni_angular has 3 controls, given: 2"),
         (lambda d: d["output"].update(low=[0]), "output", "different lengths"),
         (lambda d: d["output"].update(low=[0] * 3, high=[1] * 3), "output.low", "given: 3, allowed: 2"),

@@ -287,7 +287,7 @@ def test_files_keep_the_lookahead(tmp_path: Path) -> None:
                 "output": {"input": "value", "returns": "control"},
                 "drives": ["omni"],
             },
-            "those of diff",
+            "controls of diff",
         ),
         ({"layout": {"parts": [{"name": "self_state", "label": "self"}]}}, "takes neighbors"),
         (

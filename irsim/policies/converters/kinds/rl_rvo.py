@@ -44,7 +44,7 @@ class RlRvo(ConverterOptions):
     range: Annotated[Meters, Field(gt=0)] = 4.0
     """Others whose center is farther away are not seen."""
     count: Annotated[Integer, Field(ge=1, le=256)] = 5
-    """Largest number of others that are observed."""
+    """Largest number of observed objects."""
     decision_dt: Annotated[Seconds, Field(gt=0)] | None = None
     """Time between two decisions; null decides in every step. The authors decide every 0.1 s."""
 

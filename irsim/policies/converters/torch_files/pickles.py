@@ -20,7 +20,7 @@ MAX_OPERATIONS = 1_000_000
 _MAX_KEY = 16
 """Largest number of items of a tuple that is a key."""
 _BROKEN = (ValueError, IndexError, KeyError, TypeError, OverflowError, MemoryError, EOFError, RecursionError)
-"""What :mod:`pickletools` and operations on a stack raise on broken pickles."""
+"""Errors of :mod:`pickletools` and of operations on a stack on broken pickles."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class Name:
 
 @dataclass(eq=False)
 class Stored:
-    """What a pickle says of an object of a foreign class.
+    """An object of a foreign class, as a pickle describes it.
 
     Attributes:
         kind: Its class, or the function that would make it.
@@ -234,7 +234,7 @@ class _Machine:
         if isinstance(self.stack[-1], Stored):
             self.stack[-1].state = state
         elif not isinstance(self.stack[-1], (dict, Tensor)):  # what these have besides is never looked at
-            raise ContentError("a pickle gives attributes to something that has none")
+            raise ContentError("a pickle gives attributes to something without attributes")
 
     def _persistent(self, _: Any) -> None:
         result = _from_elsewhere(self.stack.pop())
@@ -259,7 +259,7 @@ def _name(value: Any) -> Name:
 
 
 def _described(function: Any, arguments: Any) -> Any:
-    """What calling a function would return, as far as it is known here; nothing is called."""
+    """The result that a function would return, as far as it is known here; nothing is called."""
     name = _name(function)
     if not isinstance(arguments, tuple):
         raise ContentError("a pickle calls a function without a tuple of arguments")

@@ -63,7 +63,7 @@ def named_tensors(root: Any, limits: Limits) -> dict[str, Tensor]:
 
 
 def _children(value: Any) -> Iterator[tuple[str, Any]]:
-    """What may hold tensors inside a value, with its name there."""
+    """Parts of a value that may hold tensors, with their names there."""
     if isinstance(value, Stored):
         state = value.state
         if isinstance(state, tuple):  # attributes and slots

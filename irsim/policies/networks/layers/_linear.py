@@ -1,4 +1,4 @@
-"""What several layers compute with."""
+"""Computations that several layers share."""
 
 from __future__ import annotations
 

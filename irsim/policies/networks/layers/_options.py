@@ -26,7 +26,7 @@ Units = Annotated[Integer, Field(ge=1, le=65536)]
 
 
 class Plan(NamedTuple):
-    """What a layer makes of inputs of certain shapes.
+    """Output and needs of a layer for inputs of certain shapes.
 
     Attributes:
         output: Shape of what it returns.
@@ -58,7 +58,7 @@ class LayerOptions(Options):
     """Labels of parts and earlier layers."""
 
     def plan(self, inputs: Sequence[Shape]) -> Plan:
-        """What the layer makes of its inputs.
+        """The plan of the layer for its inputs.
 
         Raises:
             ShapeError: It cannot take these inputs.

@@ -33,7 +33,7 @@ class Gru(LayerOptions):
     direction: Literal["forward", "backward", "both"] = "forward"
     """Whether it reads from the first member, from the last, or both."""
     merge: Literal["concat", "sum"] = "concat"
-    """What becomes of the last states of both directions."""
+    """How the last states of both directions are combined."""
     result: Literal["last", "all"] = "last"
     """Return the last state, or a set with the state after each member."""
 
@@ -114,7 +114,7 @@ class Memory(LayerOptions):
 
 @LAYERS.register(Memory)
 def remember(options: Memory, inputs: Sequence[Value], arrays: Arrays, memory: Array | None) -> Value:
-    """(B, U) state; ``memory`` (B, U) holds that of the last decision and then this one."""
+    """(B, U) state; ``memory`` (B, U) holds the state of the last decision and then this one."""
     assert memory is not None
     gates = Gates.of(arrays)
     state = gru_cell(linear(inputs[0].array, gates.input_weights, gates.input_bias), memory, gates)

@@ -33,7 +33,7 @@ class Pool(LayerOptions):
 
     name: Literal["pool"] = "pool"
     method: Literal["max", "mean", "sum"] = "max"
-    """What is computed of each feature."""
+    """The number kept of each feature."""
 
     def plan(self, inputs: Sequence[Shape]) -> Plan:
         """A vector of as many features."""

@@ -111,7 +111,7 @@ def add(options: Add, inputs: Sequence[Value], arrays: Arrays, memory: Array | N
 
 
 class Concat(LayerOptions):
-    """The features of the inputs one after the other. Members of sets get those of vectors, too."""
+    """The features of the inputs one after the other. Members of sets get the features of vectors, too."""
 
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [{"name": "concat", "label": "all", "inputs": ["goal", "own"]}]

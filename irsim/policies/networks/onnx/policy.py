@@ -34,7 +34,7 @@ Name = Annotated[str, Field(max_length=200)]
 
 
 class OnnxDocument(PolicyHead):
-    """What an ONNX model observes and what its result means.
+    """Observations of an ONNX model, and the meaning of its result.
 
     Inputs of the model are named like the parts. A set has another input `<label>_mask` (1, members), if the model has
     an input of that name. `output.input` is the name of an output of the model, which may contain only letters, digits
@@ -61,9 +61,9 @@ class OnnxPolicy(NetworkPolicy):
 
     Args:
         name: Its name in tables.
-        document: What it observes, and what its result means.
+        document: Its observations, and the meaning of its result.
         model: The model.
-        facts: What :meth:`describe` adds.
+        facts: Additions to :meth:`describe`.
     """
 
     def __init__(self, name: str, document: OnnxDocument, model: OnnxModel, facts: Mapping[str, Any]) -> None:
@@ -160,7 +160,7 @@ def open_onnx(path: Path, content: bytes, facts: Mapping[str, Any], limits: Limi
     Args:
         path: The file.
         content: Its bytes.
-        facts: What is known about it.
+        facts: Facts known about it.
         limits: How large it may be.
 
     Raises:

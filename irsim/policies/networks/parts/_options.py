@@ -44,7 +44,7 @@ class PartOptions(Options):
         return None
 
     def needs(self) -> Needs:
-        """What must be observed."""
+        """The observations that it needs."""
         return Needs()
 
     def channels(self) -> tuple[Channel, ...]:

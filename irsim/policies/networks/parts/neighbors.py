@@ -34,7 +34,7 @@ class NeighborsPart(PartOptions):
     - `radius`: radius of the bounding circle / `radius_max`; `radii`: the sum of both radii / `radius_max`
     - `distance`: between the centers / `distance_max`; `gap`: between the bounding circles / `distance_max`
     - `extent`: how far its footprint reaches toward the robot, along the line between the centers / `radius_max`;
-      `own_extent`: how far that of the robot reaches toward it; `extent_gap`: the distance between the centers without
+      `own_extent`: how far the robot's reaches toward it; `extent_gap`: the distance between the centers without
       both / `distance_max`, which is never larger than the true distance of convex bodies
     - `nearness`: exp(-gap / `decay`), 1 for circles that overlap
     - `goal_distance`: from the neighbor to the robot's own goal / `distance_max`; 0 without a goal

@@ -155,7 +155,7 @@ class SelfState(PartOptions):
     def check(self, observations: Observations) -> None:
         """Refuse robots without a limit of their speed."""
         if not np.isfinite(observations.high[:, 0]).all():
-            message = "the network observes the largest speed, and a robot has none"
+            message = "the network observes the largest speed, but a robot's is infinite"
             raise PolicyInputError(message, "give the robot a finite vel_max")
 
 
@@ -170,7 +170,7 @@ def self_state(observations: Observations, options: SelfState) -> Value:
     result = np.zeros((len(o), 6))
     result[:, 0] = np.sqrt(away[:, 0] * away[:, 0] + away[:, 1] * away[:, 1])
     result[:, 1] = o.high[:, 0]
-    if options.heading == "unwrapped":  # math.atan2, because that of NumPy has other last bits on other processors
+    if options.heading == "unwrapped":  # math.atan2, because NumPy's has other last bits on other processors
         result[:, 2] = o.pose[:, 2] - np.array([math.atan2(y, x) for x, y in axis.tolist()])
     elif options.heading == "wrapped":
         ahead = turn_back(x_axis("own", o.pose, o.goal), axis)

@@ -59,7 +59,7 @@ class RvoCones(PartOptions):
 
     Absent members come first; they are masked and hold zeros. All numbers are in the world frame.
 
-    - `apex_x`, `apex_y`: apex of the cone: the mean of the robot's velocity and that of the other, or 0 for one that
+    - `apex_x`, `apex_y`: apex of the cone: the mean of the velocities of the robot and the other, or 0 for one that
       stands still [m/s]
     - `left_cos`, `left_sin`, `right_cos`, `right_sin`: directions of the legs of the cone, which touch a disc about the
       other; its radius is the sum of both radii and of `margin`
@@ -87,8 +87,8 @@ class RvoCones(PartOptions):
     horizon: Annotated[Seconds, Field(gt=0)] = 5.0
     """Later collisions are not urgent."""
     velocity: Literal["commanded", "present"] = "commanded"
-    """Whose collision is timed: that of the velocity commanded last (0 before the first one, and for policies that
-    return controls), or of the present one."""
+    """Velocity whose collision is timed: the one commanded last (0 before the first one, and for policies that
+    return controls), or the present one."""
     decimals: Decimals | None = 2
     """Numbers are rounded to so many decimals; null keeps them."""
     zero_row: Bool = True

@@ -47,7 +47,8 @@ class ScanPart(PartOptions):
     def check(self, observations: Observations) -> None:
         """Refuse observations without a lidar, with too few beams, or with beams in other directions."""
         if observations.scan is None:
-            raise PolicyInputError("the network observes a lidar, and the robot has none", "add a lidar2d to the robot")
+            message = "the network observes a lidar, but the robot has no lidar"
+            raise PolicyInputError(message, "add a lidar2d to the robot")
         self.check_beams(observations.scan.angles)
 
     def check_beams(self, beams: Floats) -> None:
@@ -65,7 +66,7 @@ class ScanPart(PartOptions):
         if max(abs(a - b) for a, b in zip(given, self.angles, strict=True)) > _ANGLE_TOLERANCE:
             wanted = f"{self.angles[0]:.4g} to {self.angles[1]:.4g} rad"
             message = f"the network expects beams from {wanted}, and the lidar has {given[0]:.4g} to {given[1]:.4g} rad"
-            raise PolicyInputError(message, "set angle_range and offset of the lidar to those of the training")
+            raise PolicyInputError(message, "set angle_range and offset of the lidar as in the training")
 
 
 PARTS.register(ScanPart, kernel=core.ScanOptions)
@@ -91,7 +92,7 @@ class MapPart(PartOptions):
     """Whether everything outside the world counts as occupied."""
 
     def needs(self) -> Needs:
-        """The map, with cells half as large as those of the picture."""
+        """The map, with cells half as large as in the picture."""
         return Needs(map=True, map_resolution=0.5 * self.size / self.cells)
 
     def channels(self) -> tuple[Channel, ...]:
