@@ -288,7 +288,7 @@ def _raise_if_unfit(answer: Mapping[str, Any]) -> None:
         fix = f"install irsim-mcp {version()} on every machine of the cluster"
     elif "problem" in answer:
         what = f"{node} cannot run what this process can: {clean(answer['problem'], 400)}"
-        fix = "install your own modules on every machine, and name those that register behaviors with --import"
+        fix = "install your own modules on every machine, and pass modules with behaviors to --import"
     else:
         return
     raise ClusterError("cluster-differs", what, fix)

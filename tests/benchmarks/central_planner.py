@@ -1,12 +1,12 @@
-"""What share of scenes a central planner with full knowledge solves, bounded from below.
+"""The share of scenes that a central planner with full knowledge solves, bounded from below.
 
     python -m tests.benchmarks.central_planner --robots 15,20,25 --seeds 100-149
 
 A robot that has arrived under the protocol ``freeze`` may block others for good, so not every order of arrivals solves
 a scene. The planner knows everything: all goals, all footprints and how every robot decides. It plans by simulating
-joint plans with the exact footprints and drives, and takes the first in which all robots arrive and none touches
-another. Plan 0 is `footprint_orca` as it is. In the others robots set off one after the other, in random orders of
-priority, while those that wait are obstacles; the spacing of their departures leaves the last one time to arrive.
+joint plans with the exact footprints and drives, and takes the first in which all robots arrive without a
+contact. Plan 0 is `footprint_orca` as it is. In the others robots set off one after the other, in random orders of
+priority, while waiting robots are obstacles; the spacing of their departures leaves the last one time to arrive.
 Scenes without a plan may still have one: the share is a lower bound.
 """
 
@@ -58,7 +58,7 @@ def succeeds(text: str, seed: int, departures: Sequence[int], steps: int) -> boo
 
 
 def plan(text: str, robots: int, seed: int, steps: int, most: int) -> int | None:
-    """Index of the first joint plan that solves a scene, None if there is none among ``most``."""
+    """Index of the first joint plan that solves a scene, None if the first ``most`` do not."""
     rng = np.random.default_rng([seed, robots])
     for index in range(most):
         departures = np.zeros(robots, dtype=int)

@@ -1,7 +1,7 @@
 """Measure how ``footprint_orca`` does with limited acceleration: ``python -m tests.benchmarks.limits_planned``.
 
-The scenes are those of ``random_polygons_v1`` with ``acce: [1, 4]``, and variants of them. They are fixed here, before
-anything is measured. An episode succeeds if every robot arrives within 50 s and none touches anything: contacts at the
+The scenes are the suite ``random_polygons_v1`` with ``acce: [1, 4]``, and variants of it. They are fixed here, before
+anything is measured. An episode succeeds if every robot arrives within 50 s without contact: contacts at the
 ends of steps and between them are both counted, the latter by the core and, with ``--sampled``, by shapely as well.
 """
 
@@ -22,7 +22,7 @@ from irsim.simulation.events import BETWEEN_STEPS, read_events
 from irsim.simulation.simulation import Simulation
 
 DURATION = 50.0
-"""Time limit of an episode [s], that of the suite."""
+"""Time limit of an episode [s], as in the suite."""
 LIMITS = {
     "diff": "vel_max: [1, 3], vel_min: [-1, -3], acce: [1, 4]",
     "omni": "vel_max: [1, 1], vel_min: [-1, -1], acce: [1, 1]",
@@ -116,7 +116,7 @@ def cells() -> Iterator[Cell]:
 
 @dataclass
 class Result:
-    """What became of the episodes of a cell."""
+    """Outcomes of the episodes of a cell."""
 
     success: int = 0
     collided: int = 0

@@ -1,4 +1,4 @@
-"""What reports say that their numbers take for granted."""
+"""Reports say what their numbers take for granted."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROBOT = "{kinematics: {name: diff}, state: [1, 1, 0], goal: [3, 2, 0], behavior:
 
 
 def assumed(folder: Path, **scenes: tuple[str, str]) -> str:
-    """What the report of some scenes says of them; (keys of the world, keys of the robot) by name."""
+    """Assumptions in the report of some scenes; (keys of the world, keys of the robot) by name."""
     texts = {
         name: f"world: {{width: 5, height: 5{world}}}\nrobot:\n  - {ROBOT % robot}\n"
         for name, (world, robot) in scenes.items()

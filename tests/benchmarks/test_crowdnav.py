@@ -63,7 +63,7 @@ def test_its_scenes_are_those_of_crowdnav() -> None:
 
 
 def test_people_who_do_not_see_the_robot_walk_as_if_it_were_not_there() -> None:
-    """Nobody makes room in the invisible scenes, whatever the robot does; in the visible ones people do."""
+    """People make room for the robot in the visible scenes only, whatever it does."""
     from irsim.env import Env
     from irsim.scenario.open import read_scenario
 

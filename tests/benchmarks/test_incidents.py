@@ -1,5 +1,4 @@
-"""What happened besides outcomes is counted and said in the headline: contacts between people, exits, jumps, no
-room."""
+"""Incidents besides outcomes are counted and said in the headline: contacts between people, exits, jumps, no room."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ def test_what_still_waits_at_the_end_is_said(crossing: str) -> None:
 
 
 def test_pedestrians_without_robots_start_as_late(crossing: str) -> None:
-    """The delay of people compares the same starts with and without the robot: here nobody is in the way."""
+    """The delay of people compares the same starts with and without the robot: here no robot is in the way."""
     (Path(crossing)).write_text(CROSSING.replace("goal: [9, 5]", "goal: [2, 5]"))
     result = irsim.benchmark(crossing, seeds=5, perturb="position=0.3,speed=0.3,delay=4")
     assert [episode.metrics["pedestrian_delay"] for episode in result.episodes] == [0.0] * 5

@@ -1,4 +1,4 @@
-"""What the terminal, the page and the tables say of a benchmark: summaries by protocol, zones, facts of a suite."""
+"""Terminal, page and tables of a benchmark: summaries by protocol, zones, facts of a suite."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A benchmark in a folder: it goes on after any interruption, and its files are those of an undisturbed run."""
+"""A benchmark in a folder: it goes on after any interruption, and its files equal an undisturbed run's."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def undisturbed(suite: Path) -> dict[str, str]:
 
 
 def contents(folder: Path) -> dict[str, str]:
-    """Hash of each file of the benchmark, without those of its report."""
+    """Hash of each file of the benchmark, without its report."""
     kept = (EPISODES, PLAN, RESULTS)
     return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in kept}
 

@@ -1,4 +1,4 @@
-"""What tasks draw for each episode: ranges, independence of everything but the seed, and what each draw does."""
+"""Draws of tasks for each episode: ranges, independence of everything but the seed, and what each draw does."""
 
 from __future__ import annotations
 
@@ -231,7 +231,7 @@ def test_limits_are_scaled() -> None:
     }
     worlds = Worlds(made, 1, seed=0)
     state = worlds.simulation.state
-    assert state.vel_max[0].tolist() == [0.5, 2.0, 0.0]  # turn rates are no speeds
+    assert state.vel_max[0].tolist() == [0.5, 2.0, 0.0]  # turn rates are not speeds
     assert state.vel_min[0].tolist() == [-0.5, -2.0, 0.0]
     assert state.vel_max[1].tolist() == [1.0, 2.0, 0.0]
     for _ in range(3):

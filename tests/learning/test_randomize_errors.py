@@ -1,4 +1,4 @@
-"""What is wrong with the ranges of a task: each problem is named with its line and its repair."""
+"""Problems of the ranges of a task: each is named with its line and its repair."""
 
 from __future__ import annotations
 

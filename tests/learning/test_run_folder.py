@@ -1,4 +1,4 @@
-"""What the folder of a training keeps, and which round is the best."""
+"""The folder of a training: its files, and which round is the best."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ def wait_for_end(pids: list[int], seconds: float = 10.0) -> None:
 
 
 def lives(pid: int) -> bool:
-    """Whether a process lives; one that nobody has collected does not."""
+    """Whether a process lives; one that has ended and was not collected does not."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:

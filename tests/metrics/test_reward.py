@@ -45,7 +45,7 @@ def test_an_arrival_is_worth_less_the_later_it_is() -> None:
 
 def test_a_timeout_far_from_everybody_is_worth_nothing() -> None:
     assert reward(2.0) == 0.0
-    assert reward(0.2) == 0.0  # at exactly 0.2 m nobody is disturbed
+    assert reward(0.2) == 0.0  # at exactly 0.2 m no person is disturbed
 
 
 def test_coming_close_costs_until_the_end() -> None:

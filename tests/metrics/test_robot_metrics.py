@@ -339,7 +339,7 @@ def test_a_time_to_collision_that_never_was_is_flagged() -> None:
     for gap, flags in ((0.1, [["no_approach"]]), (-0.1, [[]])):
         path = np.stack([straight(20), np.tile([5.0, 5.5 + gap], (21, 1))], axis=1)
         assert episode_metrics(trace(resolved, path, [[9, 5]]), resolved, []).flags == flags
-    alone = scenario(([1, 5], [9, 5]))  # nobody to meet
+    alone = scenario(([1, 5], [9, 5]))  # no person to meet
     assert episode_metrics(trace(alone, straight(20)[:, None], [[9, 5]]), alone, []).flags == [[]]
 
 
@@ -351,7 +351,7 @@ def test_a_near_miss_and_discomfort() -> None:
     assert metrics["near_misses"] == 1
     assert metrics["discomfort_ratio"] == pytest.approx(len(close) / 81)
     assert metrics["discomfort_min_dist"] == pytest.approx(close.mean())
-    assert passing(-0.1)["near_misses"] == 0  # a contact is none
+    assert passing(-0.1)["near_misses"] == 0  # a contact does not count
 
 
 def test_near_misses_are_of_humans() -> None:
@@ -380,7 +380,7 @@ def test_robots_of_an_episode_together() -> None:
     assert metrics["timeout"] == 1
     assert metrics["path_length"] == pytest.approx(3.0)
     assert (metrics["velocity_min"], metrics["velocity_max"]) == pytest.approx((0.5, 1.0))
-    assert metrics["time_to_goal"] == pytest.approx(4.0)  # of those that have one
+    assert metrics["time_to_goal"] == pytest.approx(4.0)  # of robots that have one
     assert math.isnan(metrics["aggregated_time"])
     both = episode_metrics(done, resolved, [event("arrival", 40, one), event("arrival", 30, other)]).episode
     assert (both["success"], both["aggregated_time"]) == (1, pytest.approx(4.0))

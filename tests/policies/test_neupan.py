@@ -40,7 +40,7 @@ SCENE: dict[str, Any] = {
 
 
 class StandIn:
-    """What the class ``neupan`` of the package has, driving straight to the goal and keeping what it was given."""
+    """Stand-in for the class ``neupan`` of the package: drives straight to the goal and keeps what it was given."""
 
     made: list[StandIn]
 

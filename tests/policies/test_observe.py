@@ -1,4 +1,4 @@
-"""What policies observe."""
+"""Observations of policies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said of policies: lists, single ones, which one to take, and converters."""
+"""Texts about policies: lists, single ones, which one to take, and converters."""
 
 from __future__ import annotations
 

@@ -41,9 +41,9 @@ class Meaning(Options):
     frame: Frame = "world"
     """Frame of the velocity."""
     low: Row | None = None
-    """Meaning of -1, one number for each control or for vx and vy."""
+    """Value for -1, one number for each control or for vx and vy."""
     high: Row | None = None
-    """Meaning of 1."""
+    """Value for 1."""
     limits: Bool = False
     """Take `low` and `high` from the limits of each robot's controls."""
     increment: Bool = False

@@ -1,4 +1,4 @@
-"""Benchmarks on a Ray cluster of several processes: the files are those of a local run, whatever dies meanwhile."""
+"""Benchmarks on a Ray cluster of several processes: the files equal a local run's, whatever dies meanwhile."""
 
 from __future__ import annotations
 

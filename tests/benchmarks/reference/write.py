@@ -35,7 +35,7 @@ class Table:
 
     Attributes:
         suite: Name of the suite.
-        policies: The policies; None: those that the suite runs.
+        policies: The policies; None: the policies of the suite.
         again: Names of the scenarios that the tests run again; None: all.
     """
 

@@ -1,4 +1,4 @@
-"""What ``torch.save`` writes today is read without torch."""
+"""Files that ``torch.save`` writes today are read without torch."""
 
 from __future__ import annotations
 

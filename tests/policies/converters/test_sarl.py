@@ -32,13 +32,13 @@ def test_values_are_those_of_plain_numpy(tmp_path: Path, kind: str, parameters: 
     values = policy.compute(observed, seen)[:, 0]
     own, people = observed["self"].array, observed["people"]
     assert people.mask is not None
-    assert len(set(people.mask.sum(axis=1).tolist())) > 3  # also nobody at all
+    assert len(set(people.mask.sum(axis=1).tolist())) > 3  # also no person at all
     expected = [value_of(weights, own[b], people.array[b, people.mask[b]]) for b in range(30)]
     np.testing.assert_allclose(values, expected, rtol=1e-5, atol=1e-5)
 
 
 def test_people_whose_score_is_exactly_zero_do_not_count() -> None:
-    """All scores are 0 if the last layer of the attention is, so nobody has a share."""
+    """All scores are 0 if the last layer of the attention is, so no person has a share."""
     weights = sarl_weights()
     blind = weights | {
         "attention.4.weight": np.zeros((1, 100), np.float32),

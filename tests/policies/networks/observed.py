@@ -22,7 +22,7 @@ class Grid:
 
 
 def observations(count: int = 7, seed: int = 0, neighbors: int = 5) -> Observations:
-    """What some robots of two worlds observe; the last has no goal, and the first no neighbor."""
+    """Observations of some robots of two worlds; the last has no goal, and the first no neighbor."""
     rng = np.random.default_rng(seed)
     goal = rng.uniform(-5, 5, (count, 3))
     goal[-1] = np.nan

@@ -15,7 +15,7 @@ Arrays = dict[str, NDArray[np.float32]]
 
 
 def sarl_weights(global_state: bool = True, seed: int = 0) -> Arrays:
-    """Weights named and shaped as those of the published code."""
+    """Weights named and shaped as in the published code."""
     rng = np.random.default_rng(seed)
     units = {
         "mlp1": [13, 150, 100],

@@ -139,7 +139,7 @@ def gru_step(x: Any, h: Any, a: Any, suffix: str = "") -> Any:
 
 
 def expected(name: str, options: Any, a: Any, own: Any, crowd: Any, score: Any, h: Any) -> Any:
-    """What a layer returns for one robot, with the members that are present."""
+    """The result of a layer for one robot, with the members that are present."""
     if name == "dense":
         return np.maximum(crowd @ a["w"] + a["b"], 0) if options["units"] == 33 else own @ a["w"]
     if name == "layer_norm":
@@ -236,7 +236,7 @@ def test_a_label_is_used_once_and_layers_after_a_bad_one_are_not_blamed() -> Non
     assert dense is not None
     layers: list[Any] = [
         dense.options.model_validate({"label": label, "inputs": inputs, "units": 2})
-        for label, inputs in (("goal", ["own"]), ("bad", ["nobody"]), ("after", ["bad"]))
+        for label, inputs in (("goal", ["own"]), ("bad", ["missing"]), ("after", ["bad"]))
     ]
     assert [problem.path for problem in plan_graph(PARTS, layers).problems] == [
         ("network", 0, "label"),

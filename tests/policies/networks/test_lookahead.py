@@ -156,7 +156,7 @@ def test_a_free_way_is_taken_at_full_speed(opened: Any) -> None:
     for goal in ([4, 0], [0.7, 3], [-2, -2.5]):
         away = np.array(goal) / np.hypot(*goal)
         np.testing.assert_allclose(policy.act(scene([0, 0, 1], goal, FAR)), [away], atol=1e-15)
-        np.testing.assert_allclose(policy.act(scene([0, 0, 1], goal)), [away], atol=1e-15)  # nobody is in sight
+        np.testing.assert_allclose(policy.act(scene([0, 0, 1], goal)), [away], atol=1e-15)  # no person is in sight
 
 
 def test_a_person_in_the_way_is_not_run_into(opened: Any) -> None:

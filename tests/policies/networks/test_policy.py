@@ -34,7 +34,7 @@ def opened(tmp_path: Path) -> Any:
 
 
 def raw(output: dict[str, Any], units: int = 2, **options: Any) -> Network:
-    """A network whose numbers are those of the goal in the own frame: x, y [m] and 1."""
+    """A network that returns the goal in the own frame: x, y [m] and 1."""
     weights = np.eye(3, units)
     parts = [{"name": "goal", "features": ["x", "y", "present"], "distance_max": 1.0, "clip": False}]
     options = {"drives": ["diff"], **options} if output.get("returns") != "velocity" else options

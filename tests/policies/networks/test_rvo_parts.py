@@ -1,4 +1,4 @@
-"""What RL-RVO observes: numbers worked by hand, and a plain reference of its formulas."""
+"""Observations of RL-RVO: numbers worked by hand, and a plain reference of its formulas."""
 
 from __future__ import annotations
 
