@@ -67,10 +67,10 @@ def value_at(data: Any, path: Path) -> Any:
 
 def entries(data: Any, section: str) -> Iterator[tuple[Path, dict[str, Any]]]:
     """The entries of ``robot`` or ``obstacle`` with their paths, whether they are a list or a single one."""
-    found = data.get(section) if isinstance(data, dict) else None
-    if isinstance(found, dict):
-        yield (section,), found
-    for i, entry in enumerate(found if isinstance(found, list) else []):
+    value = data.get(section) if isinstance(data, dict) else None
+    if isinstance(value, dict):
+        yield (section,), value
+    for i, entry in enumerate(value if isinstance(value, list) else []):
         if isinstance(entry, dict):
             yield (section, i), entry
 

@@ -133,9 +133,9 @@ def _working(server: Server, text: str, request: Request) -> str:
     if score is None or score[0] == 1:
         return text
     for candidate in _changes(data, request):
-        found = _score(server, candidate)
-        if found is not None and found > score:
-            best, score = candidate, found
+        candidate_score = _score(server, candidate)
+        if candidate_score is not None and candidate_score > score:
+            best, score = candidate, candidate_score
         if score[0] == 1:
             break
     return text if best is data else rules.dump(best)

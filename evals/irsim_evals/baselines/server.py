@@ -51,8 +51,8 @@ class Server:
         content = result.content[0] if result.content else None
         if result.is_error or not isinstance(content, TextContent):
             return None
-        found: dict[str, Any] = json.loads(content.text)
-        return found
+        answer: dict[str, Any] = json.loads(content.text)
+        return answer
 
 
 @contextlib.contextmanager

@@ -80,15 +80,15 @@ def substitute(value: Any, values: Mapping[str, Any], language: str = "en") -> A
     whole = _EXPRESSION.fullmatch(value)
     if whole is not None and not whole[1].endswith(": words"):
         return _tidy(evaluate(whole[1], values))
-    return _EXPRESSION.sub(lambda found: _text(found[1], values, language), value)
+    return _EXPRESSION.sub(lambda match: _text(match[1], values, language), value)
 
 
 def _text(expression: str, values: Mapping[str, Any], language: str) -> str:
     if expression.endswith(": words"):
         return in_words(int(evaluate(expression.removesuffix(": words"), values)), language)
-    found = _tidy(evaluate(expression, values))
-    text = f"{found:g}" if isinstance(found, float) else str(found)
-    return text.replace(".", ",") if isinstance(found, float) and language in ("de", "es") else text
+    value = _tidy(evaluate(expression, values))
+    text = f"{value:g}" if isinstance(value, float) else str(value)
+    return text.replace(".", ",") if isinstance(value, float) and language in ("de", "es") else text
 
 
 def _tidy(value: Any) -> Any:

@@ -60,10 +60,10 @@ class _AssertionBase(Record):
     @property
     def predicate(self) -> Predicate:
         """Its predicate."""
-        found: Predicate = next(
+        chosen: Predicate = next(
             value for name in registered() if (value := getattr(self, _attribute(name))) is not None
         )
-        return found
+        return chosen
 
     @model_validator(mode="after")
     def _one_predicate(self) -> Any:
@@ -200,8 +200,8 @@ class Case(Record):
 
 def case_schema() -> dict[str, Any]:
     """The schema; a text such as ``$(radius)`` or ``90deg`` may stand for any number or flag."""
-    found = Case.model_json_schema(by_alias=True)
-    opened: dict[str, Any] = _opened(found)
+    schema = Case.model_json_schema(by_alias=True)
+    opened: dict[str, Any] = _opened(schema)
     opened["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     opened["title"] = "A case of irsim-evals"
     return opened

@@ -34,14 +34,14 @@ def chosen(wanted: Sequence[str] | None) -> list[str]:
     if not wanted:
         return case_ids()
     known = all_case_ids()
-    found: list[str] = []
+    ids: list[str] = []
     for word in wanted:
         of_category = [name for name in known if word in raw_case(name).get("category", ())]
         if word not in known and not of_category:
             hint = suggestion(word, known, None)
             raise ArgumentError(f"no case or category is called {word!r}", hint or "list them with irsim-evals cases")
-        found += [word] if word in known else of_category
-    return list(dict.fromkeys(found))
+        ids += [word] if word in known else of_category
+    return list(dict.fromkeys(ids))
 
 
 def cases(
@@ -88,8 +88,8 @@ def export(
 ) -> None:
     """Write a folder for each case: its prompt, and the files that it starts with.
 
-    The agent works in the folder and leaves its scenario there, and its last message in ``reply.md``. What the user
-    says later is in ``prompt-2.md`` and so on: open each after the reply to the one before, and save that reply as
+    The agent works in the folder and leaves its scenario there, and its last message in ``reply.md``. Later messages
+    of the user are in ``prompt-2.md`` and so on: open each after the reply to the one before, and save that reply as
     ``reply-1.md``.
     """
     instances = [case_of(name, fresh) for name in chosen(wanted)]

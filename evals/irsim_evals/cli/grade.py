@@ -46,7 +46,7 @@ def grade(
     ] = None,
     calls: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="What irsim-mcp --log-calls wrote; default: calls.jsonl in the folder."),
+        typer.Option(metavar="FILE", help="Log of irsim-mcp --log-calls; default: calls.jsonl in the folder."),
     ] = None,
     run_programs: Annotated[
         bool,
@@ -119,21 +119,21 @@ def _works(folder: Path, case: str | None) -> list[_Work]:
             raise ArgumentError(f"no case is called {case!r}", "list them with irsim-evals cases")
         return [work]
     works = (_work(path, path.resolve().name, known) for path in (folder, *sorted(folder.iterdir())) if path.is_dir())
-    found = [work for work in works if work is not None]
-    if not found:
+    exported = [work for work in works if work is not None]
+    if not exported:
         raise ArgumentError(
             f"{folder} holds no exported case",
             "write some with irsim-evals export DIR; for a folder with another name give --case ID",
         )
-    return found
+    return exported
 
 
 def _work(folder: Path, name: str, known: set[str]) -> _Work | None:
     """The work that a name means: an id, or an id and the seed of an instance; None if there is no such case."""
-    found = _EXPORTED.fullmatch(name)
-    if found is None or found[1] not in known:
+    match = _EXPORTED.fullmatch(name)
+    if match is None or match[1] not in known:
         return None
-    return _Work(folder, found[1], int(found[2]) if found[2] else None)
+    return _Work(folder, match[1], int(match[2]) if match[2] else None)
 
 
 class _Grader(NamedTuple):
@@ -204,7 +204,7 @@ def _watch(
 
 def fingerprint(folder: Path) -> Fingerprint:
     """The state of a folder, to tell it from another one, without hidden files and files that vanish meanwhile."""
-    found = []
+    files = []
     for parent, folders, names in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".") and name != "__pycache__"]
         for name in names:
@@ -214,8 +214,8 @@ def fingerprint(folder: Path) -> Fingerprint:
             except OSError:
                 continue
             if not name.startswith("."):
-                found.append((path, state.st_mtime_ns, state.st_size))
-    return tuple(sorted(found))
+                files.append((path, state.st_mtime_ns, state.st_size))
+    return tuple(sorted(files))
 
 
 class Changes:

@@ -32,7 +32,7 @@ def report(
     ],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Folder to write to.")] = Path("report"),
     proof: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="What irsim-evals prove --json printed, for its table.")
+        Path | None, typer.Option(metavar="FILE", help="Output of irsim-evals prove --json, for its table.")
     ] = None,
     pictures: Annotated[bool, typer.Option(help="Draw the worlds at the start and at the end.")] = True,
     title: Annotated[str, typer.Option(help="Title of the report.")] = "irsim evals",
@@ -84,15 +84,15 @@ def compare(
     from irsim_evals.report.benchmark import comparison_data
     from irsim_evals.report.comparison import compare as compare_trials
 
-    found = [compare_trials(a, b, first, second) for first, a, second, b in _sides(files, arm or [])]
-    if not any(one.pairs for one in found):
-        raise ArgumentError(found[0].sentence, "compare results on the same cases")
+    comparisons = [compare_trials(a, b, first, second) for first, a, second, b in _sides(files, arm or [])]
+    if not any(one.pairs for one in comparisons):
+        raise ArgumentError(comparisons[0].sentence, "compare results on the same cases")
     if json_output:
-        sys.stdout.write(json.dumps([comparison_data(one) for one in found], ensure_ascii=False) + "\n")
+        sys.stdout.write(json.dumps([comparison_data(one) for one in comparisons], ensure_ascii=False) + "\n")
     else:
-        for one in found:
+        for one in comparisons:
             _show(one)
-    if any(one.broken for one in found):
+    if any(one.broken for one in comparisons):
         raise typer.Exit(1)
 
 
@@ -147,10 +147,10 @@ def _arms(results: Results) -> list[str]:
 
 
 def _of(results: Results, arm: str, path: Path) -> list[Trial]:
-    found = [trial for trial in results.trials if trial.arm == arm]
-    if not found:
+    trials = [trial for trial in results.trials if trial.arm == arm]
+    if not trials:
         raise ArgumentError(f"{path} has no arm called {arm!r}", f"it has {', '.join(_arms(results))}")
-    return found
+    return trials
 
 
 def _show(one: Comparison) -> None:

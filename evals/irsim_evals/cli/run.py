@@ -110,7 +110,7 @@ def summaries(trials: Sequence[Trial]) -> list[dict[str, Any]]:
             cases.setdefault(trial.verdict.case, []).append(trial.verdict.strict)
         passed, attempts = sum(trial.verdict.strict for trial in mine), min(map(len, cases.values()))
         interval = wilson(passed, len(mine))
-        hat = mean_pass_hat_k([(sum(found), len(found)) for found in cases.values()], attempts)
+        hat = mean_pass_hat_k([(sum(passes), len(passes)) for passes in cases.values()], attempts)
         rows.append(
             {
                 "arm": arm,
@@ -158,13 +158,13 @@ def _arms(given: list[str] | None) -> list[str]:
     known = [*BASELINES, *MODEL_ARMS]
     if not given:
         raise ArgumentError("no arm says who answers", f"give --arm: {', '.join([_ALL_BASELINES, *known])}")
-    found: list[str] = []
+    arms: list[str] = []
     for name in given:
         if name not in known and name != _ALL_BASELINES:
             hint = suggestion(name, [_ALL_BASELINES, *known], None) or "choose one of them"
             raise ArgumentError(f"no arm is called {name!r}; there are {', '.join(known)}", hint)
-        found += BASELINES if name == _ALL_BASELINES else [name]
-    return list(dict.fromkeys(found))
+        arms += BASELINES if name == _ALL_BASELINES else [name]
+    return list(dict.fromkeys(arms))
 
 
 def _instances(names: list[str], fresh: int | None, trials: int) -> list[Instance]:

@@ -119,10 +119,10 @@ def from_folder(folder: Path, name: str = "", turns: int = 1) -> Answer:
 
 def _turn_of(name: str, turns: int) -> int | None:
     """The turn to which a file holds the reply; None for any other file."""
-    found = _REPLY.fullmatch(name)
-    if found is None or (found[1] and not 1 <= int(found[1]) <= turns):
+    match = _REPLY.fullmatch(name)
+    if match is None or (match[1] and not 1 <= int(match[1]) <= turns):
         return None
-    return int(found[1]) if found[1] else turns
+    return int(match[1]) if match[1] else turns
 
 
 def scenarios_in(texts: Mapping[str, str]) -> list[str]:
@@ -154,7 +154,7 @@ def find_scenario(answer: Answer, given: Mapping[str, str]) -> tuple[str, str] |
     return (left[0], answer.files[left[0]]) if left else None
 
 
-def rivals(answer: Answer, given: Mapping[str, str], found: str) -> list[str]:
+def rivals(answer: Answer, given: Mapping[str, str], chosen: str) -> list[str]:
     """Names of other scenarios that might be meant as well as the one that was found; empty if it is clear.
 
     It is clear for ``scenario.yaml``, for a file that was given, and for the only one that the reply names.
@@ -162,16 +162,16 @@ def rivals(answer: Answer, given: Mapping[str, str], found: str) -> list[str]:
     Args:
         answer: The answer.
         given: Files that it started with.
-        found: The result of :func:`find_scenario`.
+        chosen: Name in the result of :func:`find_scenario`.
     """
-    if found == "reply.md":
+    if chosen == "reply.md":
         others = [block for block in _blocks(answer.reply)[:-1] if block.strip() != _blocks(answer.reply)[-1].strip()]
         return ["another block of the reply"] * len(others)
-    if found == "scenario.yaml" or found in given:
+    if chosen == "scenario.yaml" or chosen in given:
         return []
     made = [name for name in scenarios_in(answer.files) if name not in given]
     named = [name for name in made if name in answer.reply or Path(name).name in answer.reply]
-    same = answer.files[found].strip()
+    same = answer.files[chosen].strip()
     return [name for name in (named or made) if answer.files[name].strip() != same]
 
 
@@ -219,11 +219,11 @@ def _log_of(path: Path) -> bytes:
     """Content of an ordinary file of limited size; never waits, as a pipe would make it."""
     file = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     with os.fdopen(file, "rb") as stream:
-        found = os.fstat(file)
-        if not stat.S_ISREG(found.st_mode):
+        status = os.fstat(file)
+        if not stat.S_ISREG(status.st_mode):
             raise ValueError("it is not an ordinary file")
-        if found.st_size > _MAX_LOG_BYTES:
-            raise ValueError(f"it has {found.st_size:,} bytes, and at most {_MAX_LOG_BYTES:,} are read")
+        if status.st_size > _MAX_LOG_BYTES:
+            raise ValueError(f"it has {status.st_size:,} bytes, and at most {_MAX_LOG_BYTES:,} are read")
         return stream.read(_MAX_LOG_BYTES)
 
 

@@ -187,18 +187,18 @@ def _limits(drive: Any, low: list[float], high: list[float]) -> dict[str, float 
     if drive is None or not high:
         return none
     kinematics = str(drive.name)
-    found: dict[str, float | None] = {**none, "forward": high[0], "backward": max(0.0, -low[0])}
+    limits: dict[str, float | None] = {**none, "forward": high[0], "backward": max(0.0, -low[0])}
     if kinematics in _CROSSWISE and len(high) > 1:
-        found["sideways"] = max(high[1], -low[1])
+        limits["sideways"] = max(high[1], -low[1])
     if kinematics == "acker" and len(high) > 1:
         angles = [drive.psi_max] if drive.psi_max is not None else []
         angles += [max(high[1], -low[1])] if drive.mode == "steer" else []
-        found["steer"] = min(angles, default=None)
+        limits["steer"] = min(angles, default=None)
     elif kinematics == "diff" and len(high) > 1:
-        found["turn"] = max(high[1], -low[1])
+        limits["turn"] = max(high[1], -low[1])
     elif kinematics == "omni_angular" and len(high) > 2:
-        found["turn"] = max(high[2], -low[2])
-    return found
+        limits["turn"] = max(high[2], -low[2])
+    return limits
 
 
 def _color(color: Any) -> str | None:

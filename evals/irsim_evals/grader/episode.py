@@ -59,13 +59,13 @@ class Episode:
     def collisions(self, name: str) -> list[tuple[float, str]]:
         """Time and partner of each collision of an object, but for those with objects that others pass through."""
         passable = {body.name for body in self.scene.bodies if body.passable}
-        found = []
+        contacts = []
         for event in self.events:
             if event.kind == "collision" and name in (event.object, event.partner):
                 partner = partner_of(event, name) or ""
                 if partner not in passable:
-                    found.append((event.time, partner))
-        return found
+                    contacts.append((event.time, partner))
+        return contacts
 
     @cached_property
     def distances(self) -> Any:
@@ -110,12 +110,12 @@ def run_episode(scenario: ResolvedScenario, seed: int, seconds: float, scan_time
 
 
 def _scans(scene: Scene) -> dict[str, list[dict[str, Any]]]:
-    found: dict[str, list[dict[str, Any]]] = {}
+    scans: dict[str, list[dict[str, Any]]] = {}
     for view in [*scene.env.robot_list, *scene.env.obstacle_list]:
         if view.sensors:
-            found[view.name] = [
+            scans[view.name] = [
                 {key: np.array(value, copy=True) for key, value in sensor.get_scan().items() if value is not None}
                 for sensor in view.sensors
                 if hasattr(sensor, "get_scan")
             ]
-    return found
+    return scans

@@ -73,7 +73,7 @@ def failed_verdict(instance: Instance, answer: Answer | None, assertion: str, st
 def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace: Path) -> tuple[Material, bool]:
     """Find, read and check the scenario."""
     case = instance.case
-    found = find_scenario(answer, case.files)
+    named_text = find_scenario(answer, case.files)
     if case.python != "any":
         problems = problems_in(answer.files, case.files, case.python)
         _add(
@@ -94,7 +94,7 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace
     )
     if not case.scenario:
         return material, False
-    if found is None:
+    if named_text is None:
         may = "build" not in case.disposition or len(case.disposition) > 1
         said = bool(answer.reply.strip())
         _add(
@@ -104,13 +104,13 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace
         if not (may and said):
             raise _Stop
         return material, False
-    others = [] if _has_several(case) else rivals(answer, case.files, found[0])
+    others = [] if _has_several(case) else rivals(answer, case.files, named_text[0])
     if others:
         _add(
             outcomes, "one-scenario", "parse", False, "one scenario, or one that the reply names",
-            f"nothing says which is meant: {', '.join([found[0], *others][:6])}",
+            f"nothing says which is meant: {', '.join([named_text[0], *others][:6])}",
         )  # fmt: skip
-    material.main, text = found
+    material.main, text = named_text
     material.texts = {**answer.files, material.main: text}
     opened = material.open(material.main)
     document, errors = opened.document, opened.errors
@@ -153,8 +153,8 @@ def _has_several(case: Any) -> bool:
 def _sanity(instance: Instance, material: Material, outcomes: list[Outcome]) -> None:
     case = instance.case
     for seed in case.seeds:
-        found = check_scene(material.scene(seed), overlap=not case.overlap)
-        outcomes += [item for item in found if not item.passed] if seed != case.seeds[0] else found
+        results = check_scene(material.scene(seed), overlap=not case.overlap)
+        outcomes += [item for item in results if not item.passed] if seed != case.seeds[0] else results
     if material.scenario is not None:
         outcomes.append(check_goals(material.scene(case.seeds[0])))
         outcomes.append(check_moves(run_episode(material.scenario, case.seeds[0], _MOVING_TIME)))
@@ -179,9 +179,9 @@ def _assertions(instance: Instance, material: Material, built: bool, outcomes: l
 def _in_scene(material: Material, item: Any, seed: int) -> Any:
     def look() -> Observation:
         about = material.other(item.file)
-        found: Observation = item.predicate.observe(about, about.scene(seed))
-        found.seed = seed if found.seed is None else found.seed
-        return found
+        observation: Observation = item.predicate.observe(about, about.scene(seed))
+        observation.seed = seed if observation.seed is None else observation.seed
+        return observation
 
     return look
 
@@ -208,12 +208,12 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome]) -> None:
             look.seed = seed if look.seed is None else look.seed
             seen[item.id].append(look)
     for item in plan.check:
-        found = seen[item.id]
-        bad = [look for look in found if not look.passed]
-        passed = len(found) - len(bad) >= plan.share * len(found) - 1e-9
-        chosen = (bad or found)[0]
+        looks = seen[item.id]
+        bad = [look for look in looks if not look.passed]
+        passed = len(looks) - len(bad) >= plan.share * len(looks) - 1e-9
+        chosen = (bad or looks)[0]
         if plan.share < 1:
-            chosen.observed = f"{len(found) - len(bad)} of {len(found)} episodes; {chosen.observed}"
+            chosen.observed = f"{len(looks) - len(bad)} of {len(looks)} episodes; {chosen.observed}"
         outcomes.append(_outcome(item, chosen, passed))
 
 
@@ -221,35 +221,35 @@ def _observe(outcomes: list[Outcome], item: Any, looks: Iterable[Any]) -> None:
     """Add the first observation that fails, or else the first."""
     first: Observation | None = None
     for look in looks:
-        found = _guarded(look)
-        if not found.passed:
-            outcomes.append(_outcome(item, found, False))
+        observation = _guarded(look)
+        if not observation.passed:
+            outcomes.append(_outcome(item, observation, False))
             return
-        first = first or found
+        first = first or observation
     if first is not None:
         outcomes.append(_outcome(item, first, True))
 
 
 def _guarded(look: Any) -> Observation:
     try:
-        found: Observation = look()
-        return found
+        observation: Observation = look()
+        return observation
     except Exception as error:  # the grader is total: what cannot be observed does not hold
         return Observation(False, "something that can be observed", f"{type(error).__name__}: {error}"[:300])
 
 
-def _outcome(item: Any, found: Observation, passed: bool) -> Outcome:
+def _outcome(item: Any, observation: Observation, passed: bool) -> Outcome:
     return Outcome(
         assertion=item.id,
         stage=item.predicate.stage,
         passed=passed,
-        expected=f"{item.file}: {found.expected}" if item.file else found.expected,
-        observed=found.observed,
-        yaml_path=found.yaml_path,
-        seed=found.seed,
+        expected=f"{item.file}: {observation.expected}" if item.file else observation.expected,
+        observed=observation.observed,
+        yaml_path=observation.yaml_path,
+        seed=observation.seed,
         soft=item.soft,
         weight=item.weight,
-        marks=[] if passed else found.marks,
+        marks=[] if passed else observation.marks,
     )
 
 

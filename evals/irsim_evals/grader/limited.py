@@ -103,8 +103,10 @@ def grade_all(
     A process grades one answer after the other, and a new one takes its place if it dies or takes too long.
     """
     given, to_grade = itertools.tee(pairs)
-    for (instance, answer), found in zip(given, run_all(_grade, to_grade, workers, seconds, "grading"), strict=True):
-        yield _failed(instance, answer, str(found)) if isinstance(found, LimitError) else Verdict.model_validate(found)
+    for (instance, answer), result in zip(given, run_all(_grade, to_grade, workers, seconds, "grading"), strict=True):
+        yield (
+            _failed(instance, answer, str(result)) if isinstance(result, LimitError) else Verdict.model_validate(result)
+        )
 
 
 def run_all(

@@ -50,10 +50,10 @@ def quantity(value: float | int | str) -> float:
         raise ValueError(f"{value!r} is not a quantity")
     if isinstance(value, (int, float)):
         return float(value)
-    found = _QUANTITY.fullmatch(value)
-    if found is None:
+    match = _QUANTITY.fullmatch(value)
+    if match is None:
         raise ValueError(f"{value!r} is not a number with a unit such as 5.4km/h")
-    number, unit, per = found.groups()
+    number, unit, per = match.groups()
     for name in filter(None, (unit, per)):
         if name not in UNITS:
             raise ValueError(f"{value!r}: the unit {name!r} is not known; known are {', '.join(filter(None, UNITS))}")
@@ -101,8 +101,8 @@ class Match(BaseModel):
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> Any:
         """A bare value is allowed, too."""
-        found = handler.resolve_ref_schema(handler(core_schema))
-        return {"anyOf": [found, {"type": ["number", "string", "boolean", "array", "null"]}]}
+        schema = handler.resolve_ref_schema(handler(core_schema))
+        return {"anyOf": [schema, {"type": ["number", "string", "boolean", "array", "null"]}]}
 
     @model_validator(mode="before")
     @classmethod

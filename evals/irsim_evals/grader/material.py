@@ -154,10 +154,10 @@ class Material:
         if file not in self.beside:
             if file not in self.texts:
                 raise LookupError(f"there is no file {file}")
-            found = self.open(file)
-            if found.scenario is None:
-                raise LookupError(f"{file}: {found.why}")
-            made = replace(self, scenario=found.scenario, document=found.document, main=file, beside={}, _scenes={})
+            opened = self.open(file)
+            if opened.scenario is None:
+                raise LookupError(f"{file}: {opened.why}")
+            made = replace(self, scenario=opened.scenario, document=opened.document, main=file, beside={}, _scenes={})
             try:
                 made.scene(0)
             except IrsimError as error:

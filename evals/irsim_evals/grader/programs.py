@@ -99,13 +99,13 @@ def problems_in(texts: Mapping[str, str], given: Mapping[str, str], allowed: str
     names = [name for name in texts if is_program(name) and given.get(name) != texts[name]]
     if allowed == "none":
         return [f"{name} is a program" for name in names]
-    found = []
+    problems = []
     for name in names:
         if not name.endswith(".py"):
-            found.append(f"{name} is not a Python program")
+            problems.append(f"{name} is not a Python program")
         else:
-            found += [f"{name}, {problem}" for problem in problems_of(texts[name])]
-    return found
+            problems += [f"{name}, {problem}" for problem in problems_of(texts[name])]
+    return problems
 
 
 def run_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
@@ -163,12 +163,12 @@ def problems_of(text: str) -> list[str]:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         return [f"it is not Python: {error}"]
-    found: list[str] = []
+    problems: list[str] = []
     for node in ast.walk(tree):
         why = _problem(node)
         if why:
-            found.append(f"line {getattr(node, 'lineno', 1)}: {why}")
-    return found
+            problems.append(f"line {getattr(node, 'lineno', 1)}: {why}")
+    return problems
 
 
 def _problem(node: ast.AST) -> str:

@@ -129,8 +129,8 @@ def _local(_: Scene, body: Body) -> str | None:
 
 def _turn(scene: Scene, body: Body, sign: int) -> float | None:
     component = 1 if body.kinematics == "diff" else 2
-    found: float | None = _limit(("diff", "omni_angular"), component, sign)(scene, body)
-    return found
+    limit: float | None = _limit(("diff", "omni_angular"), component, sign)(scene, body)
+    return limit
 
 
 PROPERTIES: dict[str, Property] = {

@@ -54,15 +54,15 @@ def read_log(path: Path) -> list[Started]:
     """The episodes in the order in which they were started; without a file there are no episodes."""
     if not path.is_file():
         return []
-    found: dict[Any, Started] = {}
+    episodes: dict[Any, Started] = {}
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines()):
         try:
             data = json.loads(line)
         except ValueError:  # the process was ended while it wrote
             continue
         key = data.pop("key") or number
-        found[str(key)] = Started(**{**data, "behaviors": tuple(data["behaviors"])})
-    return list(found.values())
+        episodes[str(key)] = Started(**{**data, "behaviors": tuple(data["behaviors"])})
+    return list(episodes.values())
 
 
 def rehearse(path: Path) -> None:

@@ -84,14 +84,14 @@ def runs_of(material: Material, behaviors: set[str], seconds: float) -> Runs | s
 
 def _programs(material: Material) -> dict[str, str]:
     """The programs by name; those in the reply are written into the folder where there are no others."""
-    found = {n: t for n, t in material.texts.items() if n.endswith(".py") and n not in material.given}
-    if found:
-        return found
+    programs = {n: t for n, t in material.texts.items() if n.endswith(".py") and n not in material.given}
+    if programs:
+        return programs
     for number, text in enumerate(_PYTHON.findall(material.reply)):
         if "irsim" in text and not problems_of(text):
-            found[f"reply_{number}.py"] = text
+            programs[f"reply_{number}.py"] = text
             (material.folder() / f"reply_{number}.py").write_text(text, encoding="utf-8", errors="replace")
-    return found
+    return programs
 
 
 def _code(text: str) -> str:
@@ -123,11 +123,11 @@ def _contents(folder: Path) -> Mapping[str, str]:
 
 def _commanded(material: Material, text: str) -> Iterator[Started]:
     """The episodes of commands ``irsim benchmark``; none of a command that cannot be read, or that is warned of."""
-    for found in _COMMAND.finditer(text.replace("\\\n", " ")):
-        if _NEGATED.search(found["before"]):
+    for command in _COMMAND.finditer(text.replace("\\\n", " ")):
+        if _NEGATED.search(command["before"]):
             continue
         try:
-            words = shlex.split(found["words"], comments=True)
+            words = shlex.split(command["words"], comments=True)
         except ValueError:
             continue
         files, options = _parsed(words)
@@ -146,11 +146,11 @@ def _commanded(material: Material, text: str) -> Iterator[Started]:
 
 def _expanded(files: list[str], texts: Mapping[str, str]) -> list[str]:
     """The files that a shell makes of patterns."""
-    found: list[str] = []
+    names: list[str] = []
     for file in files:
         plain = file.removeprefix("./")
-        found += sorted(fnmatch.filter(texts, plain)) if re.search(r"[*?\[]", plain) else [plain]
-    return found
+        names += sorted(fnmatch.filter(texts, plain)) if re.search(r"[*?\[]", plain) else [plain]
+    return names
 
 
 def _parsed(words: list[str]) -> tuple[list[str], dict[str, str]]:
@@ -171,8 +171,8 @@ def _parsed(words: list[str]) -> tuple[list[str], dict[str, str]]:
 
 def _name(behavior: str) -> str:
     """The name of a behavior given as text; empty for the one of the scenario."""
-    found = parse_behavior(behavior)
-    return "" if found is None else str(found.get("name", ""))
+    parsed = parse_behavior(behavior)
+    return "" if parsed is None else str(parsed.get("name", ""))
 
 
 def _written(material: Material, file: str) -> tuple[str, ...]:

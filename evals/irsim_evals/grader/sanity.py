@@ -32,22 +32,22 @@ _MAX_PAIRS = 200
 
 def overlaps(scene: Scene) -> list[tuple[Body, str]]:
     """Bodies that overlap something they collide with, with the name of the other, at the start."""
-    found: list[tuple[Body, str]] = []
+    pairs: list[tuple[Body, str]] = []
     bodies = [body for body in scene.bodies if not body.passable]
     footprints = np.array([body.footprint for body in bodies], dtype=object)
     for i, j in shapely.STRtree(footprints).query(footprints, predicate="intersects").T.tolist():
         a, b = bodies[i], bodies[j]
-        if i < j and not (a.static and b.static) and _depth(a, b) > _TOUCH and len(found) < _MAX_PAIRS:
-            found.append((b if not b.static else a, a.name if not b.static else b.name))
+        if i < j and not (a.static and b.static) and _depth(a, b) > _TOUCH and len(pairs) < _MAX_PAIRS:
+            pairs.append((b if not b.static else a, a.name if not b.static else b.name))
     terrain = scene.terrain_area
     for body in bodies:
-        if body.static or terrain.is_empty or len(found) >= _MAX_PAIRS:
+        if body.static or terrain.is_empty or len(pairs) >= _MAX_PAIRS:
             continue
         place = (body.pose[0], body.pose[1])
         inside = body.radius is not None and not scene.is_free(place, body.radius - _TOUCH)
         if inside or (body.radius is None and shapely.intersects(terrain, body.footprint.buffer(-_TOUCH))):
-            found.append((body, "the map"))
-    return found
+            pairs.append((body, "the map"))
+    return pairs
 
 
 def _depth(a: Body, b: Body) -> float:
@@ -80,8 +80,10 @@ def check_scene(scene: Scene, *, overlap: bool = True) -> list[Outcome]:
     ]
     outcomes.append(_outcome("can-stand", "every body may stand still", restless, "all", "vel_min", scene.seed))
     if overlap:
-        found = [(body, f"overlaps {other}") for body, other in overlaps(scene)]
-        outcomes.append(_outcome("no-overlap", "nothing overlaps at the start", found, "nothing", "state", scene.seed))
+        overlapping = [(body, f"overlaps {other}") for body, other in overlaps(scene)]
+        outcomes.append(
+            _outcome("no-overlap", "nothing overlaps at the start", overlapping, "nothing", "state", scene.seed)
+        )
     return outcomes
 
 

@@ -74,8 +74,8 @@ def unfinished(instance: Instance, arm: str, number: int, model: str, why: str) 
 
 def _verdict_of(sample: Any) -> Verdict | None:
     score = (sample.scores or {}).get(SCORER)
-    found = (score.metadata or {}).get("verdict") if score is not None else None
-    return Verdict.model_validate(found) if found is not None else None
+    data = (score.metadata or {}).get("verdict") if score is not None else None
+    return Verdict.model_validate(data) if data is not None else None
 
 
 def _end_of(sample: Any, work: Work | None) -> tuple[str, bool]:
@@ -107,7 +107,7 @@ def _one_line(text: str) -> str:
 
 def _turns_of(sample: Any, folders: Any) -> list[Turn]:
     outputs = {event.output.message.id: event.output for event in _answers(sample)}
-    names, found = Names(), []
+    names, turns = Names(), []
     calls: dict[str, Call] = {}
     for message in sample.messages:
         if message.role == "tool":
@@ -124,8 +124,8 @@ def _turns_of(sample: Any, folders: Any) -> list[Turn]:
         for one in getattr(message, "tool_calls", None) or []:
             calls[one.id] = Call(id=one.id, name=one.function, args=names.known(one.arguments))
             turn.calls.append(calls[one.id])
-        found.append(turn)
-    return found
+        turns.append(turn)
+    return turns
 
 
 def result_text(message: Any) -> str:
@@ -200,14 +200,14 @@ def drift_of(recorded: Attempt, now: Attempt) -> list[str]:
     """Answers of the tools that differ from the recorded ones."""
     before = [call for turn in recorded.messages for call in turn.calls]
     after = [call for turn in now.messages for call in turn.calls]
-    found = []
+    differences = []
     for number, (old, new) in enumerate(zip(before, after, strict=False), 1):
         if old.result_sha and old.result_sha != new.result_sha:
             was, now_ = _differing(old.result, new.result)
-            found.append(f"call {number}, {old.name}: it was {_quoted(was)}, it is {_quoted(now_)}")
+            differences.append(f"call {number}, {old.name}: it was {_quoted(was)}, it is {_quoted(now_)}")
     if len(before) != len(after):
-        found.append(f"{len(before)} calls were recorded, {len(after)} were made")
-    return found
+        differences.append(f"{len(before)} calls were recorded, {len(after)} were made")
+    return differences
 
 
 def _quoted(text: str) -> str:

@@ -85,8 +85,8 @@ def build_office() -> MCPServer[Any]:
 
     def part_price(part: str) -> str:
         """Look up the price of a robot part."""
-        found = _PRICES.get(part.lower())
-        return f"{found:.2f} EUR" if found else f"unknown part; there are {', '.join(_PRICES)}"
+        price = _PRICES.get(part.lower())
+        return f"{price:.2f} EUR" if price else f"unknown part; there are {', '.join(_PRICES)}"
 
     def floor_plan_request(building: str, hall: str) -> str:
         """Ask facilities for the floor plan of a hall; it is sent within two working days."""

@@ -104,13 +104,13 @@ class Folder:
         place = self._find(parts, below) if parts else self.root
         if not place.is_dir():
             raise FolderError(f"there is no folder {below}; list_files without an argument shows the whole")
-        found = []
+        paths = []
         for path in sorted(place.rglob("*")):
             relative = path.relative_to(place)
             hidden = any(part.startswith(".") or part == "__pycache__" for part in relative.parts)
             if path.is_file() and not path.is_symlink() and not hidden:
-                found.append("/".join([*parts, *relative.parts]))
-        return found
+                paths.append("/".join([*parts, *relative.parts]))
+        return paths
 
     def _find(self, parts: list[str], name: str) -> Path:
         text = "/".join(parts)

@@ -134,8 +134,8 @@ class Recording(Record):
 
     def find(self, case: str, instance: str) -> list[Attempt]:
         """The attempts at an instance, in the order of their numbers."""
-        found = [one for one in self.attempts if (one.case, one.instance) == (case, instance)]
-        return sorted(found, key=lambda one: one.trial)
+        attempts = [one for one in self.attempts if (one.case, one.instance) == (case, instance)]
+        return sorted(attempts, key=lambda one: one.trial)
 
 
 def digest(text: str) -> str:
@@ -183,8 +183,8 @@ def find_recording(path: Path, arm: str) -> Recording:
         ArgumentError: There is no recording, or it is one of another arm.
     """
     if path.is_dir():
-        found = sorted(path.glob("*.jsonl"), key=lambda one: (one.stat().st_mtime, one.name), reverse=True)
-        fitting = (recording for one in found if (recording := read_recording(one)).header.arm == arm)
+        paths = sorted(path.glob("*.jsonl"), key=lambda one: (one.stat().st_mtime, one.name), reverse=True)
+        fitting = (recording for one in paths if (recording := read_recording(one)).header.arm == arm)
         newest = next(fitting, None)
         if newest is None:
             raise ArgumentError(f"{path} has no recording of the arm {arm}", "give the folder of its logs")
@@ -274,16 +274,16 @@ def scrubbed(value: Any, folders: Iterable[Path | str] = ()) -> Any:
 
 def _replacements(folders: Iterable[Path | str]) -> list[tuple[str, str]]:
     """Texts and what stands for them, the longest first."""
-    found = {str(path): "<folder>" for folder in folders for path in (Path(folder), Path(folder).resolve())}
+    replacements = {str(path): "<folder>" for folder in folders for path in (Path(folder), Path(folder).resolve())}
     places = {"<packages>": Path(__file__).resolve().parents[2], "<python>": Path(sys.prefix), "<home>": Path.home()}
     for name, place in (*places.items(), ("<temporary>", Path(tempfile.gettempdir()))):
         for path in (place, place.resolve()):
             if len(path.parts) > 1:
-                found.setdefault(str(path), name)
+                replacements.setdefault(str(path), name)
     for name, text in os.environ.items():
         if _SECRET_NAMES.search(name) and len(text) >= _MIN_SECRET and not text.startswith("/"):
-            found[text] = "<secret>"
-    return sorted(found.items(), key=lambda pair: -len(pair[0]))
+            replacements[text] = "<secret>"
+    return sorted(replacements.items(), key=lambda pair: -len(pair[0]))
 
 
 class Names:
@@ -294,26 +294,26 @@ class Names:
 
     def numbered(self, value: Any) -> Any:
         """A value in which each id is ``$run1``, ``$run2`` …; ids that are new get the next number."""
-        return _mapped(value, _RUN, lambda found: f"$run{self._number(found)}")
+        return _mapped(value, _RUN, lambda run_id: f"$run{self._number(run_id)}")
 
     def known(self, value: Any) -> Any:
         """The same, for what an agent writes: ids that no tool has named stay."""
-        return _mapped(value, _RUN, lambda found: f"$run{self._number(found)}" if found in self.ids else found)
+        return _mapped(value, _RUN, lambda run_id: f"$run{self._number(run_id)}" if run_id in self.ids else run_id)
 
     def filled(self, value: Any) -> Any:
         """A value in which ids stand again where their numbers are."""
         ids = {f"$run{number}": name for number, name in enumerate(self.ids, 1)}
-        return _mapped(value, _NAMED, lambda found: ids.get(found, found))
+        return _mapped(value, _NAMED, lambda text: ids.get(text, text))
 
-    def _number(self, found: str) -> int:
-        if found not in self.ids:
-            self.ids.append(found)
-        return self.ids.index(found) + 1
+    def _number(self, run_id: str) -> int:
+        if run_id not in self.ids:
+            self.ids.append(run_id)
+        return self.ids.index(run_id) + 1
 
 
 def _mapped(value: Any, pattern: re.Pattern[str], change: Any) -> Any:
     if isinstance(value, str):
-        return pattern.sub(lambda found: change(found[0]), value)
+        return pattern.sub(lambda match: change(match[0]), value)
     if isinstance(value, dict):
         return {key: _mapped(one, pattern, change) for key, one in value.items()}
     return [_mapped(one, pattern, change) for one in value] if isinstance(value, list) else value

@@ -235,11 +235,11 @@ def _eval(task: Any, model: str, base_url: str | None, limits: dict[str, Any], l
     made = sorted(set(log_dir.glob("*.eval")) - before, key=lambda path: path.stat().st_mtime)
     if not made:
         raise RunError(f"{model} could not be run: inspect_ai wrote no log")
-    found = read_eval_log(str(made[-1]), resolve_attachments=True)
-    if found.status != "cancelled" and not found.samples:
-        why = found.error.message if found.error is not None else f"the evaluation ended as {found.status}"
+    log = read_eval_log(str(made[-1]), resolve_attachments=True)
+    if log.status != "cancelled" and not log.samples:
+        why = log.error.message if log.error is not None else f"the evaluation ended as {log.status}"
         raise RunError(f"{model} could not be run: {why}")
-    return found, made[-1]
+    return log, made[-1]
 
 
 def _versions() -> dict[str, str]:

@@ -226,8 +226,8 @@ def file_tools(folder: Folder) -> list[Any]:
         return _tried(lambda: folder.write(path, content))  # type: ignore[no-any-return]
 
     async def read_file(path: str, start: int = 0) -> Any:
-        found = _tried(lambda: folder.read(path, start))
-        return found if isinstance(found, str) else [ContentImage(image=picture_url(*found))]
+        content = _tried(lambda: folder.read(path, start))
+        return content if isinstance(content, str) else [ContentImage(image=picture_url(*content))]
 
     async def list_files(path: str = ".") -> str:
         names: list[str] = _tried(lambda: folder.names(path))
@@ -253,12 +253,12 @@ def server_tools(arm: str, folder: Path) -> list[Any]:
     They start in the folder above the agent's and do not import from there, so that no file of the agent takes
     the place of one of their modules. The process gets no environment but the usual paths, hence no key.
     """
-    found = []
+    servers = []
     if "+mcp" in arm:
-        found.append(_server("irsim", folder, "irsim_mcp", "--workspace", str(folder)))
+        servers.append(_server("irsim", folder, "irsim_mcp", "--workspace", str(folder)))
     if "+distractors" in arm:
-        found.append(_server("office", folder, "irsim_evals.harness.distractors"))
-    return found
+        servers.append(_server("office", folder, "irsim_evals.harness.distractors"))
+    return servers
 
 
 def picture_url(kind: str, data: bytes) -> str:

@@ -42,21 +42,23 @@ def changed_facts(before: Scene, after: Scene) -> set[tuple[str, str]]:
     A body without a counterpart has changed its ``count``; one that is only in the second world has a ``+`` before its
     name.
     """
-    found = {("world", kind) for kind in WORLD_FACTS if not _alike(_of_world(before, kind), _of_world(after, kind))}
+    differences = {
+        ("world", kind) for kind in WORLD_FACTS if not _alike(_of_world(before, kind), _of_world(after, kind))
+    }
     pairs = _matched(before.bodies, after.bodies)
     drawn, drawn_after = _drawn(before), _drawn(after)
     for body, other in pairs:
         if body is None:
-            found.add((f"+{other.name}" if other is not None else "+", "count"))
+            differences.add((f"+{other.name}" if other is not None else "+", "count"))
         elif other is None:
-            found.add((body.name, "count"))
+            differences.add((body.name, "count"))
         else:
             if (body.index in drawn) != (other.index in drawn_after):
-                found.add((body.name, "random"))
-            found |= {
+                differences.add((body.name, "random"))
+            differences |= {
                 (body.name, kind) for kind in FACTS[1:-1] if not _alike(_of_body(body, kind), _of_body(other, kind))
             }
-    return found
+    return differences
 
 
 def _drawn(scene: Scene) -> set[int]:
@@ -76,18 +78,18 @@ def touches(
         pins: Pinned or free facts.
     """
     selectors = dict(case.select)
-    found: set[tuple[str, str]] = set()
+    touched: set[tuple[str, str]] = set()
     for pin in pins:
         kinds = {kind for fact in pin.facts for kind in GROUPS.get(fact, (fact,))}
         if pin.of in ("reply", "text"):
             continue
         if pin.of == "world":
-            found |= {(name, kind) for name, kind in changed if name == "world" and kind in kinds}
+            touched |= {(name, kind) for name, kind in changed if name == "world" and kind in kinds}
             continue
         names = {body.name for body in select(scenes[0], pin.of, selectors)}
         names |= {f"+{body.name}" for body in select(scenes[1], pin.of, selectors)}
-        found |= {(name, kind) for name, kind in changed if kind in kinds and name in names}
-    return found
+        touched |= {(name, kind) for name, kind in changed if kind in kinds and name in names}
+    return touched
 
 
 def _matched(first: list[Body], second: list[Body]) -> list[tuple[Body | None, Body | None]]:

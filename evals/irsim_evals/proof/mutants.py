@@ -36,16 +36,16 @@ def mutants_of_text(text: str) -> Iterator[tuple[str, str, Data]]:
     start = 0
     for k, line in enumerate(text.splitlines(keepends=True)):
         code = line.partition("#")[0]
-        for found in _NUMBER.finditer(code):
-            value = float(found[1])
+        for match in _NUMBER.finditer(code):
+            value = float(match[1])
             new = "1" if value == 0 else f"{value * 2:g}"
-            changed = text[: start + found.start()] + new + text[start + found.end() :]
+            changed = text[: start + match.start()] + new + text[start + match.end() :]
             try:
                 data = yaml.safe_load(changed)
             except yaml.YAMLError:
                 continue
             if isinstance(data, dict):
-                yield f"line {k + 1}: {found[1]} becomes {new}", changed, data
+                yield f"line {k + 1}: {match[1]} becomes {new}", changed, data
         start += len(line)
 
 

@@ -41,9 +41,9 @@ def rewrites_of(case: Case, name: str, text: str, scene: Scene) -> Iterator[tupl
     mirrors = {mirror.__name__: mirror for fact, mirror in _MIRRORS.items() if fact in free}
     data = yaml.safe_load(text)
     for operator, make in {**REWRITES, **mirrors}.items():
-        found = make(text, plain(data), scene)
-        if found is not None and found != text:
-            yield operator, found
+        rewritten = make(text, plain(data), scene)
+        if rewritten is not None and rewritten != text:
+            yield operator, rewritten
 
 
 def rewrites_of_edit(given: str, text: str) -> Iterator[tuple[str, str]]:
@@ -79,9 +79,9 @@ def rewrites_of_edit(given: str, text: str) -> Iterator[tuple[str, str]]:
 def _numbers(line: str, change: Callable[[str], str]) -> str:
     """Change the numbers of a line that are not counts: those with the key ``number`` stay."""
 
-    def one(found: re.Match[str]) -> str:
-        before = line[: found.start()].rstrip()
-        return found[0] if before.endswith(("number:", "group:", "seed:")) else change(found[1])
+    def one(match: re.Match[str]) -> str:
+        before = line[: match.start()].rstrip()
+        return match[0] if before.endswith(("number:", "group:", "seed:")) else change(match[1])
 
     return _code(line, lambda code: _NUMBER.sub(one, code))
 

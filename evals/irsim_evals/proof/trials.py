@@ -132,12 +132,12 @@ def trials_of(
 def _changed(
     case_id: str, instance: Instance, gold: Answer, left_out: Counter[str], keep: Callable[[], bool]
 ) -> Iterator[Trial]:
-    found = find_scenario(gold, instance.case.files)
-    words = _changed_words(case_id, instance, gold, found[0] if found else None, left_out)
+    scenario = find_scenario(gold, instance.case.files)
+    words = _changed_words(case_id, instance, gold, scenario[0] if scenario else None, left_out)
     yield from (trial for trial in words if keep())
-    if found is None:
+    if scenario is None:
         return
-    name, text = found
+    name, text = scenario
     scene = scene_of(text, tuple(gold.blobs.items()), instance.case.seeds[0])
     if scene is None:
         return

@@ -59,11 +59,11 @@ def aggregates(content: Content) -> dict[str, Any]:
 def comparison_data(one: Comparison) -> dict[str, Any]:
     """A comparison as JSON."""
 
-    def changes(found: Sequence[Any]) -> list[dict[str, Any]]:
+    def changes(items: Sequence[Any]) -> list[dict[str, Any]]:
         return [
             {"case": c.case, "instance": c.instance, "title": c.title, "before": c.before, "after": c.after,
              "reason": c.reason}
-            for c in found
+            for c in items
         ]  # fmt: skip
 
     data = {
@@ -72,8 +72,8 @@ def comparison_data(one: Comparison) -> dict[str, Any]:
         "p": one.p, "difference": _interval(one.difference), "smallest_difference": one.smallest,
         "means_something": one.means_something, "sentence": one.sentence,
     }  # fmt: skip
-    found: dict[str, Any] = plain(data)
-    return found
+    result: dict[str, Any] = plain(data)
+    return result
 
 
 def plain(value: Any) -> Any:

@@ -72,15 +72,15 @@ def _trial(content: Content, place: int, several: Collection[str]) -> str:
     verdict = trial.verdict
     failed = verdict.failed()
     numbers = {id(one): k for k, one in enumerate((one for one in failed if one.marks), 1)}
-    found = main_file(trial, asked)
+    scenario = main_file(trial, asked)
     paths = {one.yaml_path for one in failed if one.yaml_path}
-    lines = lines_of(found[1], paths) if found else {}
+    lines = lines_of(scenario[1], paths) if scenario else {}
     about = [f"{percent(verdict.rate)} of the requirements", _cost(trial)]
     if not verdict.strict:
         about.insert(1, f"fails at {verdict.reached}")
     held = [one for one in verdict.outcomes if one.passed]
     reached = [one for one in failed if one.observed != NOT_REACHED]
-    body = _verdicts(reached, numbers, lines, found[0] if found else "")
+    body = _verdicts(reached, numbers, lines, scenario[0] if scenario else "")
     if len(reached) < len(failed):
         names = ", ".join(one.assertion for one in failed if one.observed == NOT_REACHED)
         body += f'<p class="note">Not reached: {escaped(names)}</p>'
@@ -88,7 +88,7 @@ def _trial(content: Content, place: int, several: Collection[str]) -> str:
         rows = _verdicts(held, {}, {}, "")
         body += f'<details class="part"><summary>{len(held)} requirements that are met</summary>{rows}</details>'
     body += _pictures(content.gallery, place, failed, numbers) if content.gallery else ""
-    body += _files(trial, asked, found, {number for found_lines in lines.values() for number in found_lines})
+    body += _files(trial, asked, scenario, {number for found_lines in lines.values() for number in found_lines})
     body += "".join(f'<p class="note">{escaped(note)}</p>' for note in _notes(trial)[:_MAX_NOTES])
     if trial.reply.strip():
         body += f"<h3>Reply</h3>{prose(trial.reply)}"
@@ -159,13 +159,13 @@ def _caption(drawn: Drawn, at_end: bool) -> str:
     return f"After {drawn.time:.4g} s{seed}" if at_end else f"At the start{seed}"
 
 
-def _files(trial: Trial, asked: Asked, found: tuple[str, str] | None, marked: set[int]) -> str:
+def _files(trial: Trial, asked: Asked, scenario: tuple[str, str] | None, marked: set[int]) -> str:
     """The scenario, what changed in files that were given, and the other files."""
     parts = []
     shown = set()
-    if found is not None:
-        shown.add(found[0])
-        parts.append(f"<h3>{escaped(found[0], 100)}</h3>{code(found[1], marked)}")
+    if scenario is not None:
+        shown.add(scenario[0])
+        parts.append(f"<h3>{escaped(scenario[0], 100)}</h3>{code(scenario[1], marked)}")
     files = trial.verdict.files
     for name, before in asked.given.items():
         if name not in files:

@@ -67,7 +67,9 @@ def content_of(
         arms=[summarize(trials, name) for name in names],
         categories=table_by(trials, names, lambda trial: trial.category),
         levels=table_by(trials, names, lambda trial: [f"level {trial.level}"]),
-        comparisons=[found for a, b in pairwise(names) if (found := compare(by_arm[a], by_arm[b], a, b)).pairs],
+        comparisons=[
+            comparison for a, b in pairwise(names) if (comparison := compare(by_arm[a], by_arm[b], a, b)).pairs
+        ],
         proof=proof,
         gallery=draw_trials(trials, asked, progress) if pictures else None,
     )

@@ -49,15 +49,15 @@ def _both(job: Job, folder: Path) -> list[Drawn] | str:
     """Both pictures, with maps in a temporary folder."""
     if job.pictures:
         write_files(folder, {job.name: job.text}, job.pictures)
-    found = open_text(job.text, folder if job.pictures else None, job.name)
-    scenario = found.scenario
+    opened = open_text(job.text, folder if job.pictures else None, job.name)
+    scenario = opened.scenario
     if scenario is None:
-        return f"The simulator cannot read the scenario: {found.why}"[:300]
+        return f"The simulator cannot read the scenario: {opened.why}"[:300]
     start = open_scene(scenario, job.start_seed)
     first = _draw(start.env.simulation, job.start_seed)
     seconds = min(job.seconds, _MAX_STEPS * float(start.world.step_time))
     if job.behavior is not None:
-        scenario = with_behavior(found.document, parse_behavior(job.behavior), strict=False)
+        scenario = with_behavior(opened.document, parse_behavior(job.behavior), strict=False)
     episode = run_episode(scenario, job.end_seed, seconds)
     return [first, _draw(episode.scene.env.simulation, job.end_seed)]
 

@@ -67,8 +67,8 @@ def difference(before: str, after: str) -> str:
         return '<p class="note">The file is the one that was given.</p>'
     if max(len(old), len(new)) > _MAX_COMPARED_LINES:
         return f'<p class="note">A file of more than {_MAX_COMPARED_LINES} lines is not compared.</p>'
-    found = list(difflib.unified_diff(old, new, lineterm="", n=2))[2:]
-    lines, rest = _cut("\n".join(found))
+    changes = list(difflib.unified_diff(old, new, lineterm="", n=2))[2:]
+    lines, rest = _cut("\n".join(changes))
     kinds = {"+": "added", "-": "removed", "@": "hunk"}
     parts = [f'<span class="{kinds.get(line[:1], "same")}">{html.escape(line)}</span>' for line in lines]
     return '<pre class="code diff" tabindex="0">' + "\n".join(parts) + "</pre>" + _rest(rest)
@@ -85,7 +85,7 @@ def lines_of(text: str, paths: Collection[str]) -> dict[str, range]:
         document = load_text(text, limits=Limits(bytes=_MAX_PARSED, events=_MAX_PARSED, expansion=20_000, aliases=1000))
         if document.fatal:
             return {}
-        return {path: found for path in paths if (found := _lines(document, path)) is not None}
+        return {path: lines for path in paths if (lines := _lines(document, path)) is not None}
     except Exception:  # marks are a help to the eye: a file that cannot be read again is shown without them
         return {}
 

@@ -48,12 +48,12 @@ class Proof(BaseModel):
 
     def totals(self) -> list[tuple[str, int, Interval]]:
         """Wrong answers that were accepted and right ones that were rejected: name, number, share of all of them."""
-        found = []
+        errors = []
         for name, right in (("wrong answers accepted", False), ("right answers rejected", True)):
             rows = [row for row in self.rows if (row.kind in _RIGHT_KINDS) == right]
             wrong, total = sum(row.wrong for row in rows), sum(row.trials for row in rows)
-            found.append((f"{name}, of {total:,}", wrong, wilson(min(wrong, total), total)))
-        return found
+            errors.append((f"{name}, of {total:,}", wrong, wilson(min(wrong, total), total)))
+        return errors
 
 
 def load_results(path: Path) -> Results:
@@ -155,11 +155,11 @@ def asked_of(results: Results) -> list[Asked]:
     """The question of each trial's case; nothing is known if the trials were made with other cases than the present."""
     if results.cases != cases_hash():
         return [Asked() for _ in results.trials]
-    found: dict[tuple[str, str], Asked] = {}
+    by_key: dict[tuple[str, str], Asked] = {}
     for trial in results.trials:
-        if trial.key not in found:
-            found[trial.key] = _asked(trial)
-    return [found[trial.key] for trial in results.trials]
+        if trial.key not in by_key:
+            by_key[trial.key] = _asked(trial)
+    return [by_key[trial.key] for trial in results.trials]
 
 
 def _asked(trial: Trial) -> Asked:

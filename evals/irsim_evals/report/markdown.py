@@ -42,7 +42,7 @@ def markdown(content: Content) -> str:
     for arm in content.arms:
         failed = [t for t in content.results.trials if t.arm == arm.arm and not t.verdict.strict]
         if failed:
-            parts += [f"## What {_safe(arm.arm)} fails", _failed(failed)]
+            parts += [f"## Failures of {_safe(arm.arm)}", _failed(failed)]
     return "\n\n".join(parts) + "\n"
 
 

@@ -99,14 +99,14 @@ def _marks(drawn: Drawn, marks: Sequence[NumberedMark]) -> tuple[str, int]:
         texts_of.setdefault(one.number, set()).add(one.mark.text)
     named: set[int] = set()
     parts = []
-    for place, found in places.items():
+    for place, here in places.items():
         texts = dict.fromkeys(
             one.mark.text
-            for one in found
+            for one in here
             if one.mark.text and (one.number not in named or len(texts_of[one.number]) > 1)
         )
-        named.update(one.number for one in found)
-        parts.append(_shape(drawn, place, sorted({one.number for one in found}), list(texts)))
+        named.update(one.number for one in here)
+        parts.append(_shape(drawn, place, sorted({one.number for one in here}), list(texts)))
     return "".join(parts), outside
 
 

@@ -95,13 +95,13 @@ def draw_trials(
     jobs: dict[str, Job] = {}
     wanted: dict[int, str] = {}
     for number in sorted(range(len(trials)), key=lambda k: trials[k].verdict.strict):
-        found = main_file(trials[number], asked[number])
-        if found is None:
+        scenario = main_file(trials[number], asked[number])
+        if scenario is None:
             gallery.shown[number] = "There is no scenario to draw."
         elif not any(one.assertion == "loads" and one.passed for one in trials[number].verdict.outcomes):
             gallery.shown[number] = "The world could not be built, so there is nothing to draw."
         else:
-            job = _job(trials[number], asked[number], found)
+            job = _job(trials[number], asked[number], scenario)
             wanted[number] = hashlib.sha256(repr(job).encode(errors="replace")).hexdigest()[:16]
             jobs[wanted[number]] = job
     made = _draw_all(jobs, progress)
@@ -143,13 +143,13 @@ def _keep(gallery: Gallery, name: str, drawn: list[Drawn] | str) -> list[str] | 
     return names
 
 
-def _job(trial: Trial, asked: Asked, found: tuple[str, str]) -> Job:
+def _job(trial: Trial, asked: Asked, scenario: tuple[str, str]) -> Job:
     """The job of drawing a trial: worlds with the seeds that the failures were observed with, else with the case's."""
     failed = [one for one in trial.verdict.failed() if one.seed is not None]
     start = next((one.seed for one in failed if one.stage != "behavior"), None)
     end = next((one.seed for one in failed if one.stage == "behavior"), None)
     return Job(
-        *found,
+        *scenario,
         start_seed=asked.seed if start is None else start,
         end_seed=asked.episode_seed if end is None else end,
         seconds=asked.episode_seconds,

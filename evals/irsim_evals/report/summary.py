@@ -88,10 +88,10 @@ def arms_of(trials: Iterable[Trial]) -> list[str]:
 
 def attempts(trials: Iterable[Trial]) -> dict[tuple[str, str], list[Trial]]:
     """Case and instance → attempts at it."""
-    found: dict[tuple[str, str], list[Trial]] = {}
+    by_key: dict[tuple[str, str], list[Trial]] = {}
     for trial in trials:
-        found.setdefault(trial.key, []).append(trial)
-    return found
+        by_key.setdefault(trial.key, []).append(trial)
+    return by_key
 
 
 def summarize(trials: Sequence[Trial], arm: str) -> ArmSummary:
@@ -136,13 +136,13 @@ def table_by(trials: Sequence[Trial], arms: Sequence[str], names: Callable[[Tria
         arms: The columns.
         names: Rows that a trial belongs to.
     """
-    found: dict[str, dict[str, list[bool]]] = {}
+    by_row: dict[str, dict[str, list[bool]]] = {}
     for trial in trials:
         for name in names(trial):
-            found.setdefault(name, {}).setdefault(trial.arm, []).append(trial.verdict.strict)
+            by_row.setdefault(name, {}).setdefault(trial.arm, []).append(trial.verdict.strict)
     rows = []
-    for name in sorted(found):
-        passes = [found[name].get(arm, []) for arm in arms]
+    for name in sorted(by_row):
+        passes = [by_row[name].get(arm, []) for arm in arms]
         rows.append((name, [Cell(sum(one), len(one)) for one in passes]))
     return Table(rows)
 
@@ -153,11 +153,11 @@ def _mean_interval(values: Sequence[float]) -> Interval:
 
 def _funnel(trials: Sequence[Trial]) -> dict[str, Cell]:
     """How many attempts have no failure up to each stage."""
-    found = {}
+    cells = {}
     for place, stage in enumerate(STAGES):
         clear = sum(t.verdict.strict or STAGES.index(t.verdict.reached) > place for t in trials)
-        found[str(stage)] = Cell(clear, len(trials))
-    return found
+        cells[str(stage)] = Cell(clear, len(trials))
+    return cells
 
 
 def _cost(trials: Sequence[Trial]) -> CostSummary:

@@ -77,11 +77,11 @@ def add_facts(text: str, mentions: list[Mention]) -> dict[str, float]:
 def _add_size(text: str, mentions: list[Mention], a: Quantity, b: Quantity) -> None:
     """A size such as 12 x 8 m."""
     factor = b.value / _bare(text, b) if a.kind == "count" and b.kind == "length" and b.value else 1.0
-    found = owner(text, mentions, a.start, b.end, ("world", "robot", "obstacle", "corridor"))
-    if found is None or (found.kind == "robot" and min(a.value * factor, b.value) > _LARGEST_ROBOT_M):
-        found = Mention("world", a.start, b.end, 1, False, False, "")
-        mentions.append(found)
-    found.facts.setdefault("size", (round(a.value * factor, 6), b.value))
+    mention = owner(text, mentions, a.start, b.end, ("world", "robot", "obstacle", "corridor"))
+    if mention is None or (mention.kind == "robot" and min(a.value * factor, b.value) > _LARGEST_ROBOT_M):
+        mention = Mention("world", a.start, b.end, 1, False, False, "")
+        mentions.append(mention)
+    mention.facts.setdefault("size", (round(a.value * factor, 6), b.value))
 
 
 def _bare(text: str, number: Quantity) -> float:
@@ -149,9 +149,9 @@ def _last_kind(text: str, mentions: list[Mention], position: int) -> str | None:
 def _give(
     text: str, mentions: list[Mention], start: int, end: int, kinds: tuple[str, ...], key: str, value: float
 ) -> None:
-    found = owner(text, mentions, start, end, kinds)
-    if found is not None:
-        found.facts.setdefault(key, value)
+    mention = owner(text, mentions, start, end, kinds)
+    if mention is not None:
+        mention.facts.setdefault(key, value)
 
 
 def _add_sensor_words(text: str, mentions: list[Mention]) -> None:

@@ -91,20 +91,20 @@ def plain(text: str) -> str:
     text = re.sub(r"[−–—‐‑]", "-", text).replace("×", "x").replace("，", ", ").replace("、", ", ").replace("。", ". ")
     text = re.sub(r"(?<=[\d )])\*(?=[\d ])", "x", text)
     if language in ("de", "es"):
-        text = _DECIMAL_COMMA.sub(lambda found: _decimal(text, found), text)
+        text = _DECIMAL_COMMA.sub(lambda match: _decimal(text, match), text)
     else:
         text = _THOUSANDS.sub("", _COMMA_AND_UNIT.sub(r"\1.\2", text))
     if language == "zh":
-        text = _ZH_NUMBER.sub(lambda found: f" {_chinese(found[1])} ", text)
+        text = _ZH_NUMBER.sub(lambda match: f" {_chinese(match[1])} ", text)
     for name in dict.fromkeys(("en", language)):
         text = _in_digits(text, name) if name in _NUMBERS else text
     return re.sub(r"[ \t\n]+", " ", text).strip()
 
 
-def _decimal(text: str, found: re.Match[str]) -> str:
+def _decimal(text: str, match: re.Match[str]) -> str:
     """A decimal number; ``(2,3)`` alone in brackets is a place and stays."""
-    alone = text[: found.start()].endswith("(") and text[found.end() :].startswith(")")
-    return found[0] if alone else f"{found[1]}.{found[2]}"
+    alone = text[: match.start()].endswith("(") and text[match.end() :].startswith(")")
+    return match[0] if alone else f"{match[1]}.{match[2]}"
 
 
 def _chinese(word: str) -> int:
@@ -117,7 +117,7 @@ def _chinese(word: str) -> int:
 def _in_digits(text: str, language: Language) -> str:
     values = {word: i for i, word in enumerate(_NUMBERS[language].split())} | _TENS[language]
     known = "|".join(sorted(map(re.escape, values), key=len, reverse=True))
-    return re.sub(rf"\b({known})\b(?!-)", lambda found: str(values[found[1]]), text)
+    return re.sub(rf"\b({known})\b(?!-)", lambda match: str(values[match[1]]), text)
 
 
 @dataclass(frozen=True)
@@ -138,10 +138,10 @@ class Quantity:
 
 def quantities(text: str) -> list[Quantity]:
     """All numbers of a text that :func:`.language.plain` made, in their order."""
-    found = []
+    numbers = []
     for match in _QUANTITY.finditer(text):
         unit = next((i for i in range(len(_UNITS)) if match[f"u{i}"] is not None), None)
         kind: Kind = "count" if unit is None else _UNITS[unit][1]
         factor = 1.0 if unit is None else _UNITS[unit][2]
-        found.append(Quantity(round(float(match[1]) * factor, 9), kind, match.start(), match.end()))
-    return found
+        numbers.append(Quantity(round(float(match[1]) * factor, 9), kind, match.start(), match.end()))
+    return numbers

@@ -141,7 +141,7 @@ def has(text: str, pattern: str) -> bool:
 
 def first(text: str, table: dict[str, str]) -> str | None:
     """The name whose words come first in a text; the earlier name where two begin at one place."""
-    found = [
+    matches = [
         (match.start(), i, name) for i, (name, words) in enumerate(table.items()) if (match := re.search(words, text))
     ]
-    return min(found)[2] if found else None
+    return min(matches)[2] if matches else None

@@ -76,13 +76,13 @@ class Mention:
 
 def mentions_of(text: str) -> list[Mention]:
     """The nouns of a text in their order."""
-    found: list[tuple[int, int, str]] = []
+    nouns: list[tuple[int, int, str]] = []
     for kind, words in NOUNS.items():
         for match in re.finditer(rf"(?<![a-zà-ÿ_])(?:{words})(?![a-zà-ÿ_])", text):
-            if not any(start < match.end() and match.start() < end for start, end, _ in found):
-                found.append((match.start(), match.end(), kind))
+            if not any(start < match.end() and match.start() < end for start, end, _ in nouns):
+                nouns.append((match.start(), match.end(), kind))
     merged: list[tuple[int, int, str]] = []
-    for start, end, kind in sorted(found):
+    for start, end, kind in sorted(nouns):
         if merged and merged[-1][2] == kind and text[merged[-1][1] : start] in ("", " ", "-", " ("):
             merged[-1] = (merged[-1][0], end, kind)
         else:
@@ -158,17 +158,17 @@ class Place:
 
 def places_of(text: str, mentions: list[Mention]) -> list[Place]:
     """The points and directions of a text in their order, with what each is for."""
-    found: list[tuple[int, tuple[float, float] | None, tuple[float, float]]] = []
+    words_of_places: list[tuple[int, tuple[float, float] | None, tuple[float, float]]] = []
     for match in _POINT.finditer(text):
-        found.append((match.start(), (float(match[1]), float(match[2])), (0.0, 0.0)))
+        words_of_places.append((match.start(), (float(match[1]), float(match[2])), (0.0, 0.0)))
     taken: list[tuple[int, int]] = []
     for words, signs in DIRECTIONS:
         for match in re.finditer(words, text):
             if not any(a < match.end() and match.start() < b for a, b in taken):
                 taken.append(match.span())
-                found.append((match.start(), None, signs))
+                words_of_places.append((match.start(), None, signs))
     places: list[Place] = []
-    for position, point, signs in sorted(found, key=lambda item: item[0]):
+    for position, point, signs in sorted(words_of_places, key=lambda item: item[0]):
         role = _role(text, mentions, position, point is not None, places)
         if role is not None:
             places.append(Place(role, point, signs, position))

@@ -90,7 +90,7 @@ class Request:
 
 def request_of(prompt: str) -> Request:
     """Read a request."""
-    text = re.sub(_IDIOMS, lambda found: "-" * len(found[0]), plain(prompt))
+    text = re.sub(_IDIOMS, lambda match: "-" * len(match[0]), plain(prompt))
     text = _COORDINATES.sub(r"(\1, \2)", text)
     mentions = mentions_of(text)
     whole = add_facts(text, mentions)

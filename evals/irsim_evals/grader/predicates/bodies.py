@@ -46,9 +46,9 @@ class Count(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Count them."""
-        found = len(material.bodies(scene, self.of))
+        count = len(material.bodies(scene, self.of))
         expected = f"{self.of}: {self.number.words()}"
-        return Observation(matches(self.number, found, "count"), expected, f"{self.of}: {found}")
+        return Observation(matches(self.number, count, "count"), expected, f"{self.of}: {count}")
 
 
 @register("each")
@@ -101,8 +101,8 @@ class Distinct(OfBodies, ScenePredicate):
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Collect the values."""
         bodies = material.bodies(scene, self.of)
-        found = [value_of(scene, body, self.property) for body in bodies]
-        values = set(map(show, discernible(found) if self.property == "color" else found))
+        every_value = [value_of(scene, body, self.property) for body in bodies]
+        values = set(map(show, discernible(every_value) if self.property == "color" else every_value))
         passed = bool(bodies) and matches(self.number, len(values), "count")
         shown = ", ".join(sorted(values)[:6])
         return Observation(

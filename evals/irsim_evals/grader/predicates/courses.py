@@ -40,8 +40,8 @@ class Visits(OfBodies, EpisodePredicate):
             expected += f", at most {show(self.stray)} m off the lines between them"
         if not bodies or not self.places:
             return Observation(False, expected, f"{self.of}: no body")
-        found = [(body, self._problem(episode.positions(body.index))) for body in bodies]
-        wrong = [(body, text) for body, text in found if text]
+        problems = [(body, self._problem(episode.positions(body.index))) for body in bodies]
+        wrong = [(body, text) for body, text in problems if text]
         marks = [Mark(points=[list(place)], text="visit") for place in self.places] if wrong else []
         return judged(expected, wrong, "so it is", "waypoints", marks=marks)
 
@@ -95,8 +95,8 @@ class Enters(OfBodies, EpisodePredicate):
 
 def _within(way: np.ndarray, region: tuple[float, float, float, float]) -> np.ndarray:
     x0, y0, x1, y1 = region
-    found: np.ndarray = (way[:, 0] >= x0) & (way[:, 0] <= x1) & (way[:, 1] >= y0) & (way[:, 1] <= y1)
-    return found
+    inside: np.ndarray = (way[:, 0] >= x0) & (way[:, 0] <= x1) & (way[:, 1] >= y0) & (way[:, 1] <= y1)
+    return inside
 
 
 @register("one_way")
@@ -164,16 +164,16 @@ class Timetable(OfBodies, EpisodePredicate):
         bodies = material.bodies(episode.scene, self.of)
         expected = f"{self.of} cross the line {show(list(self.start))} to {show(list(self.end))} after "
         expected += ", ".join(f"{time:g} s" for time in self.times)
-        found = sorted(
+        crossings = sorted(
             ((time, body) for body in bodies for time in self._crossings(episode, body.index)),
             key=lambda crossing: crossing[0],
         )
-        passed = len(found) == len(self.times) == len({body.name for _, body in found})
-        passed = passed and all(abs(a - b) <= self.tol + 1e-9 for (a, _), b in zip(found, self.times, strict=True))
+        passed = len(crossings) == len(self.times) == len({body.name for _, body in crossings})
+        passed = passed and all(abs(a - b) <= self.tol + 1e-9 for (a, _), b in zip(crossings, self.times, strict=True))
         return Observation(
             passed,
             expected,
-            summary([(body, f"{time:.1f} s") for time, body in found]) or f"none of {len(bodies)}",
+            summary([(body, f"{time:.1f} s") for time, body in crossings]) or f"none of {len(bodies)}",
             f"{bodies[0].entry}.state" if bodies else None,
             marks=[Mark(points=[list(self.start), list(self.end)], text="line")],
         )

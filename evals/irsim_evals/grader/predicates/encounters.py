@@ -32,7 +32,7 @@ class Collisions(OfBodies, EpisodePredicate):
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body")
         hits = [(body, episode.collisions(body.name)) for body in bodies]
-        bad = [(body, found[0]) for body, found in hits if found]
+        bad = [(body, contacts[0]) for body, contacts in hits if contacts]
         events = [event for event in episode.events if event.kind == "collision"]
         return Observation(
             matches(self.number, len(bad), "count"),
@@ -61,7 +61,7 @@ class Separation(EpisodePredicate):
         pairs = [(a, b) for a in first for b in second if a is not b]
         if not pairs:
             return Observation(False, expected, "no pair of bodies")
-        least, a, b = min(((closest(episode, a, b), a, b) for a, b in pairs), key=lambda found: found[0])
+        least, a, b = min(((closest(episode, a, b), a, b) for a, b in pairs), key=lambda entry: entry[0])
         return Observation(
             matches(self.distance, least, "length"), expected, f"{a.name} and {b.name}: {show(least)} m", a.entry
         )

@@ -83,25 +83,25 @@ class Data(AnswerPredicate):
             return Observation(False, expected, "it is not JSON")
         seen, passed = [], True
         for path, match in self.has.items():
-            found = values_at(content, path)
-            passed &= bool(found) and all(matches(match, value, "count") for value in found)
-            more = len(found) - _MAX_SHOWN
-            shown = ", ".join(map(show, found[:_MAX_SHOWN])) or "no value"
+            values = values_at(content, path)
+            passed &= bool(values) and all(matches(match, value, "count") for value in values)
+            more = len(values) - _MAX_SHOWN
+            shown = ", ".join(map(show, values[:_MAX_SHOWN])) or "no value"
             seen.append(f"{path}: {shown}" + (f" and {more} more" if more > 0 else ""))
         return Observation(passed, expected, "; ".join(seen))
 
 
 def values_at(data: Any, path: str) -> list[Any]:
     """The values at a path; none where a part of it does not exist."""
-    found = [data]
+    values = [data]
     for name, index in re.findall(r"([^.\[\]]+)|\[(\d+|\*)\]", path):
         if name:
-            found = [item[name] for item in found if isinstance(item, dict) and name in item]
+            values = [item[name] for item in values if isinstance(item, dict) and name in item]
         elif index == "*":
-            found = [item for entries in found if isinstance(entries, list) for item in entries]
+            values = [item for entries in values if isinstance(entries, list) for item in entries]
         else:
-            found = [item for entries in found if isinstance(entries, list) for item in entries[int(index) :][:1]]
-    return found
+            values = [item for entries in values if isinstance(entries, list) for item in entries[int(index) :][:1]]
+    return values
 
 
 @register("edits")

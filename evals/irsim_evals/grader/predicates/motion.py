@@ -34,20 +34,20 @@ class Arrive(OfBodies, EpisodePredicate):
         expected = f"share of {self.of} that arrive within {show(end)} s: {self.share.words()}"
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body")
-        found = []
+        arrivals = []
         for body in bodies:
             time = episode.arrival(body.name)
             there = time is not None and time <= end + 1e-9
             if not there and self.or_near is not None and body.goal is not None:
                 there = math.dist(episode.positions(body.index)[-1], body.goal[:2]) <= self.or_near
-            found.append((body, there, "not" if time is None else f"after {time:.1f} s"))
-        share = sum(there for _, there, _ in found) / len(found)
+            arrivals.append((body, there, "not" if time is None else f"after {time:.1f} s"))
+        share = sum(there for _, there, _ in arrivals) / len(arrivals)
         wanted = self.share.eq != 0.0
-        odd = [(body, text) for body, there, text in found if there != wanted]
+        odd = [(body, text) for body, there, text in arrivals if there != wanted]
         return Observation(
             matches(self.share, share, "share"),
             expected,
-            f"{share:.0%}; " + summary(odd or [(body, text) for body, _, text in found]),
+            f"{share:.0%}; " + summary(odd or [(body, text) for body, _, text in arrivals]),
             f"{(odd[0][0] if odd else bodies[0]).entry}.goal",
         )
 
@@ -67,16 +67,16 @@ class EndsAt(OfBodies, EpisodePredicate):
         missing = [body for body in bodies if body.goal is None]
         if not bodies or missing:
             return Observation(False, expected, f"{missing[0].name}: no goal" if missing else f"{self.of}: no body")
-        found = []
+        shares = []
         for body in bodies:
             (x, y), goal = body.pose[:2], body.goal or [0.0, 0.0]
             way = math.dist((x, y), goal[:2]) or math.inf
             end_x, end_y = episode.positions(body.index)[-1].tolist()
             along = ((end_x - x) * (goal[0] - x) + (end_y - y) * (goal[1] - y)) / way
-            found.append((body, along / way))
-        wrong = [(body, value) for body, value in found if not matches(self.share, value, "share")]
+            shares.append((body, along / way))
+        wrong = [(body, value) for body, value in shares if not matches(self.share, value, "share")]
         marks = [Mark(points=[episode.positions(body.index)[-1].tolist()], text=body.name) for body, _ in wrong]
-        return judged(expected, wrong, summary(found), "behavior", marks=marks)
+        return judged(expected, wrong, summary(shares), "behavior", marks=marks)
 
 
 @register("travel")
@@ -100,7 +100,7 @@ class Travel(OfBodies, EpisodePredicate):
         expected = f"{self.of}: {words}"
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body")
-        found, wrong = [], []
+        measures, wrong = [], []
         for body in bodies:
             way = episode.positions(body.index)
             seen = {
@@ -110,10 +110,10 @@ class Travel(OfBodies, EpisodePredicate):
                 "dy": float(way[-1, 1] - way[0, 1]),
             }
             text = ", ".join(f"{key} {show(seen[key])}" for key, match in wanted.items() if match is not None)
-            found.append((body, text))
+            measures.append((body, text))
             if any(match is not None and not matches(match, seen[key], "length") for key, match in wanted.items()):
                 wrong.append((body, text))
-        return judged(expected, wrong, summary(found), "behavior")
+        return judged(expected, wrong, summary(measures), "behavior")
 
 
 @register("speed")
@@ -134,7 +134,7 @@ class Speed(OfBodies, EpisodePredicate):
         expected = ", ".join(f"{name} {match.words()}" for name, match in wanted.items() if match is not None)
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body")
-        found, wrong = [], []
+        measures, wrong = [], []
         for body in bodies:
             along = episode.speeds(body.index)
             pose = episode.trace.pose[:, body.index]
@@ -149,10 +149,10 @@ class Speed(OfBodies, EpisodePredicate):
             shown = {key: seen[key] for key, match in wanted.items() if match is not None}
             off = [k for k, m in wanted.items() if m is not None and not matches(m, seen[k], "speed")]
             text = ", ".join(f"{key} {show(value)}" for key, value in shown.items())
-            found.append((body, text))
+            measures.append((body, text))
             if off:
                 wrong.append((body, text))
-        return judged(f"{self.of}: {expected}", wrong, summary(found), "vel_max")
+        return judged(f"{self.of}: {expected}", wrong, summary(measures), "vel_max")
 
 
 @register("roams")

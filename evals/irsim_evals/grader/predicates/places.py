@@ -100,10 +100,10 @@ class Near(OfBodies, ScenePredicate):
         expected = f"{self.what} of {self.of} to {target}: {self.distance.words()} m"
         if not bodies or (self.place is None and not others):
             return Observation(False, expected, "no body")
-        found = [(body, self._measure(body, others)) for body in bodies]
-        wrong = [(body, value) for body, value in found if not matches(self.distance, value, "length")]
+        distances = [(body, self._measure(body, others)) for body in bodies]
+        wrong = [(body, value) for body, value in distances if not matches(self.distance, value, "length")]
         marks = [Mark(points=[list(body.position)], text=body.name) for body, _ in wrong]
-        return judged(expected, wrong, summary(found), "goal" if self.what == "goal" else "state", marks=marks)
+        return judged(expected, wrong, summary(distances), "goal" if self.what == "goal" else "state", marks=marks)
 
     def _measure(self, body: Body, others: list[Body]) -> float | None:
         if self.what == "goal":
@@ -179,17 +179,17 @@ class Beside(OfBodies, ScenePredicate):
         (x, y, _), goal = ways[0].pose, ways[0].goal
         length = math.dist((x, y), goal[:2]) or 1.0
         dx, dy = (goal[0] - x) / length, (goal[1] - y) / length
-        found = []
+        distances = []
         for body in bodies:
             point = body.position if self.what == "start" else body.goal
             if point is None:
-                found.append((body, -math.inf))
+                distances.append((body, -math.inf))
                 continue
             px, py = point[0] - x, point[1] - y
             ahead, left = px * dx + py * dy, dx * py - dy * px
-            found.append((body, {"left": left, "right": -left, "ahead": ahead, "behind": -ahead}[self.side]))
-        wrong = [(body, value) for body, value in found if value < self.by - 1e-9 or value <= 0]
-        return judged(expected, wrong, summary(found), "state" if self.what == "start" else "goal")
+            distances.append((body, {"left": left, "right": -left, "ahead": ahead, "behind": -ahead}[self.side]))
+        wrong = [(body, value) for body, value in distances if value < self.by - 1e-9 or value <= 0]
+        return judged(expected, wrong, summary(distances), "state" if self.what == "start" else "goal")
 
 
 @register("on_circle")
@@ -271,9 +271,9 @@ class Facing(OfBodies, ScenePredicate):
         expected = f"{self.of} {'away from' if self.away else 'toward'} {where}"
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body")
-        found = [(body, self._off(material, scene, body)) for body in bodies]
-        wrong = [(body, off) for body, off in found if off is None or off > self.tol + 1e-9]
-        degrees = [(body, None if off is None else f"{math.degrees(off):.0f}° off") for body, off in wrong or found]
+        angles = [(body, self._off(material, scene, body)) for body in bodies]
+        wrong = [(body, off) for body, off in angles if off is None or off > self.tol + 1e-9]
+        degrees = [(body, None if off is None else f"{math.degrees(off):.0f}° off") for body, off in wrong or angles]
         return Observation(not wrong, expected, summary(degrees), f"{wrong[0][0].entry}.state" if wrong else None)
 
     def _off(self, material: Material, scene: Scene, body: Body) -> float | None:

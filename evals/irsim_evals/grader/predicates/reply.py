@@ -60,10 +60,10 @@ class Claim:
 
 def claims(reply: str, scene: Scene) -> list[Claim]:
     """The claims of a reply about sizes, numbers, measures, drives and behaviors, each at its first mention."""
-    found: dict[str, Claim] = {}
+    by_words: dict[str, Claim] = {}
 
     def add(text: str, holds: bool | None) -> None:
-        found.setdefault(text.lower(), Claim(text, holds))
+        by_words.setdefault(text.lower(), Claim(text, holds))
 
     width, height = float(scene.world.width), float(scene.world.height)
     boxes = [(body.extent if body.radius is None else (math.nan, math.nan)) for body in scene.bodies]
@@ -88,7 +88,7 @@ def claims(reply: str, scene: Scene) -> list[Claim]:
         if re.search(rf"\b{name}\b", reply, re.IGNORECASE):
             used = {body.behavior for body in scene.bodies} | {body.kinematics for body in scene.bodies}
             add(name, True if name in used else None)
-    return list(found.values())
+    return list(by_words.values())
 
 
 def _pair(a: float, b: float, size: tuple[float, float]) -> bool:
@@ -167,8 +167,8 @@ class Says(AnswerPredicate):
             f"says {self.about or 'so'}, in words that the case knows ({len(self.any_of) + len(self.all_of)} ways)"
         )
         if unwanted:
-            found = re.search(unwanted[0], text, re.IGNORECASE)
-            expected += f"; it must not say {found[0]!r}" if found else ""
+            match = re.search(unwanted[0], text, re.IGNORECASE)
+            expected += f"; it must not say {match[0]!r}" if match else ""
         quoted = text if len(text) <= _MAX_QUOTED else text[:_MAX_QUOTED] + " …"
         return Observation(
             bool(text) and not (missing or unwanted or lacking), f"the reply {expected}", quoted or "no reply"
@@ -220,7 +220,9 @@ class States(AnswerPredicate):
         value = value_of(scene, bodies[0], self.property)
         expected = f"the reply states {self.property} of {self.of} ({show(value)}) near /{self.about}/"
         if not isinstance(value, (int, float)):
-            return Observation(False, expected, f"{bodies[0].name} has none", yaml_path(bodies[0], self.property))
+            return Observation(
+                False, expected, f"{bodies[0].name} has no {self.property}", yaml_path(bodies[0], self.property)
+            )
         seen = _numbers(re.sub(r"\s+", " ", material.reply), self.about)
         wanted = [value * factor for factor in self.factors]
         passed = any(abs(a - b) <= 0.02 * abs(b) + 1e-9 for a in seen for b in wanted)
@@ -230,14 +232,14 @@ class States(AnswerPredicate):
 
 def _numbers(reply: str, about: str) -> list[float]:
     """The numbers near a about in SI units."""
-    found: list[float] = []
+    numbers: list[float] = []
     for mention in re.finditer(about, reply, re.IGNORECASE):
         part = reply[max(0, mention.start() - _AROUND) : mention.end() + _AROUND]
         for number, unit in _STATED.findall(part):
             plain = number.replace(",", ".")
             known = all(name in UNITS for name in unit.split("/"))
-            found.append(quantity(f"{plain} {unit}") if known else float(plain))
-    return found
+            numbers.append(quantity(f"{plain} {unit}") if known else float(plain))
+    return numbers
 
 
 @register("assumptions")
@@ -251,9 +253,9 @@ class Assumptions(AnswerPredicate):
 
     def observe(self, material: Material) -> Observation:
         """Hold the reply against the world."""
-        found = claims(material.reply, material.scene(0))
-        good = [claim.text for claim in found if claim.holds]
-        bad = [claim.text for claim in found if claim.holds is False]
+        stated = claims(material.reply, material.scene(0))
+        good = [claim.text for claim in stated if claim.holds]
+        bad = [claim.text for claim in stated if claim.holds is False]
         passed = matches(self.number, len(good), "count") and matches(self.contradictions, len(bad), "count")
         observed = f"{len(good)}: {', '.join(good[:6])}" + (f"; not so: {', '.join(bad[:4])}" if bad else "")
         return Observation(passed, f"stated facts that hold: {self.number.words()}, none that do not", observed)

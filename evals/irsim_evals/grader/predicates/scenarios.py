@@ -56,10 +56,10 @@ class EveryScenario(AnswerPredicate):
             for item in self.that:
                 predicate: Any = _predicate(item)
                 scene = predicate.subject == "scene"
-                found: Observation = predicate.observe(one, one.scene(_SEED)) if scene else predicate.observe(one)
-                if not found.passed:
-                    words = f"{name}: {found.expected}", f"{name}: {found.observed}"
-                    return Observation(False, *words, found.yaml_path, _SEED, found.marks)
+                observation: Observation = predicate.observe(one, one.scene(_SEED)) if scene else predicate.observe(one)
+                if not observation.passed:
+                    words = f"{name}: {observation.expected}", f"{name}: {observation.observed}"
+                    return Observation(False, *words, observation.yaml_path, _SEED, observation.marks)
         return Observation(True, expected, f"{len(names)} scenarios")
 
 
@@ -133,25 +133,25 @@ class Comparison(AnswerPredicate):
 
     def _runs(self, material: Material, groups: dict[int, dict[str, Material]]) -> str:
         """The first problem of the episodes that programs start, commands plan or, without either, the reply tells."""
-        found = runs_of(material, set(self.behaviors), self.seconds)
-        if isinstance(found, str):
-            return found
-        problem = self._started(found, groups) if found.started else self._told(found.words, groups)
+        runs = runs_of(material, set(self.behaviors), self.seconds)
+        if isinstance(runs, str):
+            return runs
+        problem = self._started(runs, groups) if runs.started else self._told(runs.words, groups)
         if problem:
             return problem
-        missing = next((name for name, ways in self.metrics.items() if not _occurs(ways, found.words)), "")
+        missing = next((name for name, ways in self.metrics.items() if not _occurs(ways, runs.words)), "")
         return f"nothing reports the rate of {missing}" if missing else ""
 
-    def _started(self, found: Runs, groups: dict[int, dict[str, Material]]) -> str:
+    def _started(self, runs: Runs, groups: dict[int, dict[str, Material]]) -> str:
         """The first problem of the episodes; empty without one."""
         numbers = {name: number for number, files in groups.items() for name in files}
         seeds: dict[tuple[int, str], list[int]] = {}
-        for one in found.started:
+        for one in runs.started:
             if one.file not in numbers:
-                return f"{found.by} runs {one.file or 'a text'}, which is not a scenario of the answer"
+                return f"{runs.by} runs {one.file or 'a text'}, which is not a scenario of the answer"
             steps = one.steps if one.steps is not None else _limit(groups[numbers[one.file]][one.file])
             if steps is None or abs(steps - self.steps) > _ROUNDING:
-                return f"{found.by} gives {one.file} {'no horizon' if steps is None else f'{steps} steps'}"
+                return f"{runs.by} gives {one.file} {'no horizon' if steps is None else f'{steps} steps'}"
             for behavior in one.behaviors:
                 seeds.setdefault((numbers[one.file], behavior), []).append(one.seed)
         common = max(map(set, seeds.values()), key=len)
@@ -160,9 +160,9 @@ class Comparison(AnswerPredicate):
             if not own:
                 return f"nothing runs {behavior} with {number} robots"
             if len(own) != self.episodes:
-                return f"{found.by} runs {behavior} with {number} robots in {len(own)} episodes"
+                return f"{runs.by} runs {behavior} with {number} robots in {len(own)} episodes"
             if set(own) != common or len(common) < len(own):
-                return f"{found.by} gives {behavior} with {number} robots other seeds, or seeds twice"
+                return f"{runs.by} gives {behavior} with {number} robots other seeds, or seeds twice"
         return ""
 
     def _told(self, words: str, groups: dict[int, dict[str, Material]]) -> str:
@@ -209,7 +209,7 @@ def _facts(one: Material, *, layout: bool = False) -> dict[str, Any]:
         ]
         for body in scene.robots
     ]
-    found: dict[str, Any] = {
+    facts: dict[str, Any] = {
         "the size of the world": scene.bounds,
         "the time of a step": [world.step_time, world.sample_time],
         "the time limit": world.time_limit,
@@ -219,10 +219,10 @@ def _facts(one: Material, *, layout: bool = False) -> dict[str, Any]:
         "drive, shape, limits or sensors of a robot": sorted({repr(robot) for robot in robots}),
     }
     if layout:
-        found["starts and goals"] = [
+        facts["starts and goals"] = [
             [body.pose[:2], body.goals] for seed in _SEEDS for body in one.scene(seed).bodies if not body.static
         ]
-    return found
+    return facts
 
 
 def _differing(a: dict[str, Any], b: dict[str, Any]) -> str:

@@ -103,12 +103,12 @@ class LinePasses(OfBodies, ScenePredicate):
         if not bodies or not places:
             return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.by}: {len(places)}")
         middle = shapely.Point(sum(x for x, _ in places) / len(places), sum(y for _, y in places) / len(places))
-        found = [
+        distances = [
             (body, float(shapely.LineString([body.pose[:2], (body.goal or [])[:2]]).distance(middle)))
             for body in bodies
         ]
-        wrong = [(body, value) for body, value in found if not matches(self.distance, value, "length")]
-        return judged(expected, wrong, summary(found), "goal")
+        wrong = [(body, value) for body, value in distances if not matches(self.distance, value, "length")]
+        return judged(expected, wrong, summary(distances), "goal")
 
 
 @register("reachable")
@@ -135,10 +135,10 @@ class Reachable(OfBodies, ScenePredicate):
         if not bodies:
             return Observation(False, expected, f"{self.of}: no body with a goal")
         plugs = () if self.plug is None else (self.plug,)
-        found = [(body, self._gets_there(scene, body, plugs)) for body in bodies]
-        wrong = [(body, value) for body, value in found if value != self.possible]
+        results = [(body, self._gets_there(scene, body, plugs)) for body in bodies]
+        wrong = [(body, value) for body, value in results if value != self.possible]
         marks = [Mark(points=[list(place)], text=body.name) for body, _ in wrong for place in self._targets(body)]
-        return judged(expected, wrong, summary(found), "goal", said="a path for ", marks=marks)
+        return judged(expected, wrong, summary(results), "goal", said="a path for ", marks=marks)
 
     def _gets_there(self, scene: Scene, body: Body, plugs: tuple[tuple[float, float, float], ...]) -> bool:
         radius = disc_radius(body, self.size)

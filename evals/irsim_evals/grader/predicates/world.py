@@ -48,8 +48,8 @@ class World(ScenePredicate):
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> Any:
         """The properties may be written without ``has``."""
-        found = handler.resolve_ref_schema(handler(core_schema))
-        return {**found["properties"]["has"], "description": found.get("description", "")}
+        schema = handler.resolve_ref_schema(handler(core_schema))
+        return {**schema["properties"]["has"], "description": schema.get("description", "")}
 
     @model_validator(mode="before")
     @classmethod

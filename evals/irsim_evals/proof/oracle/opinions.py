@@ -44,15 +44,15 @@ def opinions(instance: Instance, answer: Answer) -> dict[str, bool]:
         instance: The case.
         answer: An answer with a scenario that can be loaded; for any other there are no opinions.
     """
-    found = find_scenario(answer, instance.case.files)
-    if found is None or answer.blobs:
+    scenario = find_scenario(answer, instance.case.files)
+    if scenario is None or answer.blobs:
         return {}
     case: Any = instance.case
     judged: dict[str, bool] = {}
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "scenario.yaml")
-        path.write_text(found[1], encoding="utf-8")
-        data = yaml.safe_load(found[1])
+        path.write_text(scenario[1], encoding="utf-8")
+        data = yaml.safe_load(scenario[1])
         for item in case.check:
             if item.predicate.name in JUDGED and item.predicate.subject == "scene":
                 _add(judged, item, partial(_looks, path, data, case.seeds, case.select))
@@ -224,26 +224,26 @@ class _Look:
             return None
         point: Point = (goals[-1][0], goals[-1][1]) if goals else thing.middle
         if said.place is not None:
-            found = [to_point(thing, said.place) if said.what == "footprint" else math.dist(point, said.place)]
+            distances = [to_point(thing, said.place) if said.what == "footprint" else math.dist(point, said.place)]
         elif said.what == "position":
-            found = [math.dist(point, other.middle) for other in rest]
+            distances = [math.dist(point, other.middle) for other in rest]
         elif said.what == "goal":
-            found = [to_point(other, point) for other in rest]
+            distances = [to_point(other, point) for other in rest]
         else:
-            found = [max(0.0, apart(thing, other)) for other in rest]
-        if not found:
+            distances = [max(0.0, apart(thing, other)) for other in rest]
+        if not distances:
             return math.inf
-        return max(found) if said.farthest else min(found)
+        return max(distances) if said.farthest else min(distances)
 
     def spacing(self, said: Any, _: float) -> bool:
         things = self.of(said.of)
         if said.what == "goal":
             raise _Unknown
-        found = [
+        distances = [
             max(0.0, apart(a, b)) if said.what == "footprint" else math.dist(a.middle, b.middle)
             for a, b in itertools.combinations(things, 2)
         ]
-        return bool(found) and _accepts(said.distance, min(found), "length")
+        return bool(distances) and _accepts(said.distance, min(distances), "length")
 
     def _solids(self) -> list[Thing]:
         if (self.data.get("world") or {}).get("obstacle_map") is not None:
@@ -262,7 +262,7 @@ class _Look:
         world = self.data.get("world") or {}
         x0, y0 = world.get("offset") or [0.0, 0.0]
         bounds = (x0, y0, x0 + world.get("width", 10), y0 + world.get("height", 10))
-        found = []
+        verdicts = []
         for thing in things:
             if thing.radius is None:
                 raise _Unknown
@@ -273,8 +273,8 @@ class _Look:
             ]
             if all(ways[0]) != all(ways[1]):
                 raise _Unknown  # too close to tell with coarse cells
-            found.append(all(ways[0]) == said.possible)
-        return bool(found) and all(found)
+            verdicts.append(all(ways[0]) == said.possible)
+        return bool(verdicts) and all(verdicts)
 
     def _steps(self, seconds: float) -> int:
         return round(seconds / float((self.data.get("world") or {}).get("step_time", 0.1)))
