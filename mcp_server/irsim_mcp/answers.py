@@ -10,7 +10,7 @@ from mcp.types import TextContent
 from irsim.common.text import clean
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 
-__all__ = ["Found", "failure", "json_answer"]
+__all__ = ["WorkerResult", "failure", "json_answer"]
 
 
 _MAX_LENGTH = 400
@@ -43,17 +43,17 @@ def _sentence(text: str) -> str:
     return line if line.endswith(("?", "!")) else f"{line}."
 
 
-class Found(dict[str, Any]):
+class WorkerResult(dict[str, Any]):
     """The result of a worker, and the JSON text in which it was written."""
 
     text: str = ""
 
 
-def json_answer(found: Found, most: int, alternative: str, *, prefix: str = "") -> TextContent:
+def json_answer(result: WorkerResult, most: int, alternative: str, *, prefix: str = "") -> TextContent:
     """The complete result as JSON.
 
     Args:
-        found: The result.
+        result: The result of the worker.
         most: Greatest number of characters.
         alternative: Advice if the JSON is longer.
         prefix: Beginning of the message if the JSON is longer.
@@ -61,7 +61,7 @@ def json_answer(found: Found, most: int, alternative: str, *, prefix: str = "") 
     Raises:
         ToolError: The JSON is longer.
     """
-    text = found.text
+    text = result.text
     if len(text) > most:
         what = f"{prefix}the whole result has {len(text):,} characters; at most {most:,} are returned"
         raise failure("over-limit", what, where="response_format", fix=alternative)

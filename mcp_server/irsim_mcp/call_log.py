@@ -111,19 +111,19 @@ def _open(path: Path) -> tuple[int, bool]:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise CallLogRefused(f"--log-calls: {path} cannot be written: {reason}; choose a file of your own") from None
-    found = os.fstat(file)
-    if not stat.S_ISREG(found.st_mode) or _is_stdout(found):
+    status = os.fstat(file)
+    if not stat.S_ISREG(status.st_mode) or _is_stdout(status):
         os.close(file)
         raise CallLogRefused(f"--log-calls: {path} is not an ordinary file; choose a file of your own")
-    if not found.st_size:
+    if not status.st_size:
         return file, False
     os.lseek(file, -1, os.SEEK_END)
     return file, os.read(file, 1) != b"\n"
 
 
-def _is_stdout(found: os.stat_result) -> bool:
+def _is_stdout(status: os.stat_result) -> bool:
     try:
-        return os.path.samestat(found, os.fstat(1))
+        return os.path.samestat(status, os.fstat(1))
     except OSError:
         return False
 

@@ -87,8 +87,8 @@ def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
 
     limits, path = _limits(job), job["arguments"]["path"]
     document = load_text(job["arguments"]["text"], name=path, path=path, limits=limits)
-    scenario, found = or_raise(read(document, strict=True, limits=limits, feasibility=feasibility_findings))
-    warnings = sum(item.severity == "warning" for item in found)
+    scenario, findings = or_raise(read(document, strict=True, limits=limits, feasibility=feasibility_findings))
+    warnings = sum(item.severity == "warning" for item in findings)
     return json.dumps({"contents": in_words(counts_of(scenario), sensors=False), "warnings": warnings})
 
 
@@ -238,11 +238,11 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
 
         plan = Plan.model_validate(arguments["plan"])
         replace_file(os.path.join(folder, PLAN), plan.model_dump_json().encode())
-        found = measure_plan(plan, log=arguments["log"], **options)
+        result = measure_plan(plan, log=arguments["log"], **options)
     else:
-        found = benchmark(**arguments, strict=True, **options)
+        result = benchmark(**arguments, strict=True, **options)
     replace_file(os.path.join(folder, TIMING), json.dumps(timing).encode())
-    return found.model_dump_json()
+    return result.model_dump_json()
 
 
 def _logged(job: dict[str, Any], progress: _Progress) -> str:
@@ -255,10 +255,10 @@ def _logged(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.runs.files import replace_file
 
     log = Path(job["arguments"]["log"])
-    found = logged(log)
+    result = logged(log)
     if (plan := log.with_name(PLAN)).is_file():  # of a suite, which names scenarios and policies
-        found = result_of_plan(Plan.model_validate_json(plan.read_bytes()), found)
-    replace_file(job["arguments"]["to"], found.model_dump_json().encode())
+        result = result_of_plan(Plan.model_validate_json(plan.read_bytes()), result)
+    replace_file(job["arguments"]["to"], result.model_dump_json().encode())
     return "null"
 
 

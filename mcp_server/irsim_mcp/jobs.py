@@ -124,7 +124,7 @@ class Jobs:
 
         Returns:
             ``id``, ``status`` (running, finished, failed, cancelled, interrupted), ``done``, ``total``, and ``result``
-            or ``error`` if there is one. The result of a stopped job is that of its completed episodes; if it was not
+            or ``error`` if there is one. A stopped job has the result of its completed episodes; if it was not
             cancelled, ``why`` and ``fix`` say why it stopped.
 
         Raises:
@@ -195,13 +195,13 @@ class Jobs:
 
     def _find(self, job_id: str) -> Path:
         folder = self._folder()
-        found = next((job for job in run_folders(folder) if job.name == job_id), None)
-        if found is None:
+        job_folder = next((job for job in run_folders(folder) if job.name == job_id), None)
+        if job_folder is None:
             recent = recent_ids(folder)
             fix = f"recent ones are {', '.join(recent)}" if recent else "there are no jobs here"
             fix += "; jobs are deleted after 24 h: benchmark with the same arguments gives the same result again"
             raise failure("unknown-job", f"there is no job {clean(job_id)!r}", where="job_id", fix=fix)
-        return found
+        return job_folder
 
 
 def _state(job: Path) -> dict[str, Any]:

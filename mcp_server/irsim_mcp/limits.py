@@ -48,7 +48,7 @@ class ServerLimits:
         work: Number of steps times objects of one run.
         workers: Number of worker processes at the same time.
         yaml_bytes: Size of a scenario [bytes].
-        yaml_events: Number of values and brackets of a scenario, and of those that aliases may add.
+        yaml_events: Number of values and brackets of a scenario; as many more may come from aliases.
         yaml_depth: Nesting of lists and mappings.
         yaml_aliases: Number of aliases.
         check_seconds: Wall-clock time of validating a scenario [s].

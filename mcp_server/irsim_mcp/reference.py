@@ -64,14 +64,14 @@ def _list(answer: Answer) -> str:
 def _several(topics: list[str]) -> str:
     """Brief explanations of several topics; of templates, the YAML."""
     try:
-        found = lookup_several(topics)
+        explanations = lookup_several(topics)
     except TopicError as error:
         fix = f"did you mean {' or '.join(error.near)}?" if error.near else "lookup without a topic lists all topics"
         raise RunError("unknown-topic", error.message, fix, where="topic") from None
     except InputError as error:
         raise RunError("bad-argument", error.message, error.fix, where="topic") from None
     parts = []
-    for one in found:
+    for one in explanations:
         if isinstance(one, TopicError):
             near = f": did you mean {' or '.join(one.near)}?" if one.near else ""
             parts.append(f"{one.message}{near}")

@@ -153,11 +153,11 @@ def _text(topic: str) -> str:
 
 def _pages() -> dict[str, Path]:
     """Files of the pages by name; of two pages with the same name, the second has its skill as prefix."""
-    found: dict[str, Path] = {}
+    pages: dict[str, Path] = {}
     for path in sorted(resources.skills_directory().glob("*/references/*.md")):
-        name = path.stem if path.stem not in found else f"{path.parents[1].name}-{path.stem}"
-        found[name] = path
-    return found
+        name = path.stem if path.stem not in pages else f"{path.parents[1].name}-{path.stem}"
+        pages[name] = path
+    return pages
 
 
 RUN = "irsim://runs/{run_id}/{artifact}{?from_step,to_step,every,robot,offset}"
@@ -191,7 +191,7 @@ def add_run_resources(server: MCPServer, services: Services) -> None:
         offset: str = "0",
     ) -> str:
         try:
-            found = await services.run_job(
+            part = await services.run_job(
                 "artifact",
                 run_id,
                 seconds=services.limits.check_seconds,
@@ -205,7 +205,7 @@ def add_run_resources(server: MCPServer, services: Services) -> None:
             )
         except ToolError as error:
             raise ResourceNotFoundError(str(error)) from None
-        return str(found["text"])
+        return str(part["text"])
 
     description = (
         f"Part of a recorded run: {', '.join(ARTIFACTS)}. At most 1 MB per read: files and the data of replay.json "
@@ -284,8 +284,8 @@ def add_completions(server: MCPServer, services: Services) -> None:
         if (of, argument.name) in choices:
             with suppress(OSError):
                 known = choices[of, argument.name]()
-        found = [choice for choice in known if choice.startswith(argument.value) and clean(choice, 1000) == choice]
-        return Completion(values=found[:_MAX_VALUES], total=len(found), has_more=len(found) > _MAX_VALUES)
+        values = [choice for choice in known if choice.startswith(argument.value) and clean(choice, 1000) == choice]
+        return Completion(values=values[:_MAX_VALUES], total=len(values), has_more=len(values) > _MAX_VALUES)
 
     completing: Callable[[], Callable[..., Any]] = server.completion  # the SDK declares no types for it
     completing()(complete)

@@ -65,8 +65,8 @@ class Workspace:
         """The path of a scenario file that may be written, relative to the workspace.
 
         Raises:
-            ToolError: The path leads out of the workspace, through a link or into a hidden folder, or is not that of a
-                YAML file.
+            ToolError: The path leads out of the workspace, through a link or into a hidden folder, or does not
+                end as YAML files do.
         """
         wrong = why_outside(name, self.root)
         if wrong is not None:
@@ -143,11 +143,11 @@ class Workspace:
     def _relative(self, name: str) -> str | None:
         """An absolute path inside the workspace as a path relative to it; None for other paths."""
         try:
-            found = Path(name).resolve()
-            inside = Path(name).is_absolute() and found.is_file() and found.is_relative_to(self.root)
+            path = Path(name).resolve()
+            inside = Path(name).is_absolute() and path.is_file() and path.is_relative_to(self.root)
         except (OSError, RuntimeError, ValueError):
             return None
-        return found.relative_to(self.root).as_posix() if inside else None
+        return path.relative_to(self.root).as_posix() if inside else None
 
     def _advice(self, target: Path, argument: str) -> str:
         """A fix that suggests scenario files of the workspace, or the template that is meant."""
@@ -167,12 +167,12 @@ class Workspace:
 
     def scenarios(self) -> list[str]:
         """YAML files of the workspace and of its immediate folders."""
-        found = []
+        names = []
         for pattern in ("*", "*/*"):
             for count, path in enumerate(self.root.glob(pattern)):
                 if count >= _MAX_LISTED_FILES:
                     break
                 name = path.relative_to(self.root).as_posix()
                 if path.suffix.lower() in _SUFFIXES and path.is_file() and why_outside(name, self.root) is None:
-                    found.append(name)
-        return sorted(found, key=lambda name: (name.count("/"), name))
+                    names.append(name)
+        return sorted(names, key=lambda name: (name.count("/"), name))

@@ -95,11 +95,11 @@ class IrsimServer(MCPServer[Any]):
         self, uri: AnyUrl | str, context: Context[Any, Any] | None = None
     ) -> Iterable[ReadResourceContents] | InputRequiredResult:
         """Read a resource; artifacts of runs have the media type of their name."""
-        found = await super().read_resource(uri, context)
+        contents = await super().read_resource(uri, context)
         kind = media_type(str(uri))
-        if kind is None or isinstance(found, InputRequiredResult):
-            return found
-        return [replace(content, mime_type=kind) for content in found]
+        if kind is None or isinstance(contents, InputRequiredResult):
+            return contents
+        return [replace(content, mime_type=kind) for content in contents]
 
     async def get_prompt(
         self, name: str, arguments: dict[str, Any] | None = None, context: Context[Any, Any] | None = None

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from irsim.common.text import clean
-from irsim_mcp.answers import Found, failure
+from irsim_mcp.answers import WorkerResult, failure
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.sandbox import Workspace
@@ -111,7 +111,7 @@ class Services:
         seconds: float,
         progress: Progress | None = None,
         **arguments: Any,
-    ) -> Found:
+    ) -> WorkerResult:
         """Have a worker do a task with a scenario that is given as a file or as text.
 
         Args:
@@ -131,7 +131,7 @@ class Services:
 
     async def text_job(
         self, task: str, text: str, argument: str, *, path: str, seconds: float, **arguments: Any
-    ) -> Found:
+    ) -> WorkerResult:
         """Have a worker do a task with the text of a file that is not written yet.
 
         Args:
@@ -151,7 +151,7 @@ class Services:
 
     async def run_job(
         self, task: str, run_id: str, *, seconds: float, progress: Progress | None = None, **arguments: Any
-    ) -> Found:
+    ) -> WorkerResult:
         """Have a worker do a task with a recorded run.
 
         Args:
@@ -292,7 +292,7 @@ class Services:
         return text
 
 
-def _result(answer: dict[str, Any], argument: str) -> Found:
+def _result(answer: dict[str, Any], argument: str) -> WorkerResult:
     """The result in a worker's answer.
 
     Raises:
@@ -300,7 +300,7 @@ def _result(answer: dict[str, Any], argument: str) -> Found:
     """
     if "error" in answer:
         raise _as_failure(answer["error"], argument)
-    result = Found(answer["result"])
+    result = WorkerResult(answer["result"])
     result.text = answer["text"]
     return result
 

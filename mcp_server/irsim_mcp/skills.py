@@ -90,12 +90,12 @@ def skill_folders(folder: Path) -> list[Path]:
 
 def skill_files(folder: Path) -> dict[str, Path]:
     """Files of a skill by path relative to it; ``SKILL.md`` first."""
-    found = {
+    files = {
         path.relative_to(folder).as_posix(): path
         for path in sorted(folder.rglob("*"))
         if path.is_file() and not any(part.startswith((".", "__")) for part in path.relative_to(folder).parts)
     }
-    return {_MAIN: found.pop(_MAIN), **found}
+    return {_MAIN: files.pop(_MAIN), **files}
 
 
 def _uri(folder: Path, name: str) -> str:
@@ -128,8 +128,8 @@ def _resource(folder: Path, name: str, path: Path) -> FunctionResource:
 def _description(main: Path) -> str:
     """The description in the head of a skill, read without a YAML parser, whose import would slow down the start."""
     head = _HEAD.match(main.read_text(encoding="utf-8"))
-    found = _DESCRIPTION.search(head[1]) if head else None
-    return " ".join(found[1].split()).strip("\"'") if found else ""
+    match = _DESCRIPTION.search(head[1]) if head else None
+    return " ".join(match[1].split()).strip("\"'") if match else ""
 
 
 def _entry(folder: Path) -> dict[str, Any]:

@@ -51,7 +51,7 @@ def scenario_of_suite(given: str, argument: str) -> str:
     except SuiteError as error:
         raise _wrong(error.message, error.fix or "irsim suites lists them", argument) from None
     if scene is None:
-        raise _wrong(f"{given!r} is no scenario of a suite", "irsim suites lists them", argument)
+        raise _wrong(f"{given!r} is not a scenario of a suite", "irsim suites lists them", argument)
     return scene.text
 
 
@@ -103,8 +103,8 @@ def _whole(suite: str) -> Plan:
 
 def _known_policies(suite: str) -> set[str]:
     """Names of the policies of a suite, whether it runs them by itself or not."""
-    found = _whole(suite).suite
-    return set() if found is None else {*found.known_policies}
+    known_suite = _whole(suite).suite
+    return set() if known_suite is None else {*known_suite.known_policies}
 
 
 def _unknown(suite: str, known: Sequence[str], given: str, argument: str) -> InputError:

@@ -218,7 +218,7 @@ def answer(state: dict[str, Any], detailed: bool = False) -> CallToolResult:
     """
     if "error" in state:
         raise _as_failure(state["error"])
-    found = Benchmark(
+    report = Benchmark(
         status=state["status"],
         summary=f"{state['status']}: {state['done']} of {state['total']} episodes",
         job_id=state["id"],
@@ -227,46 +227,46 @@ def answer(state: dict[str, Any], detailed: bool = False) -> CallToolResult:
         next="Look at the episodes that failed with run_episode and their seed.",
     )
     if state["status"] == "running":
-        found.next = f"get_job job_id={state['id']}"
+        report.next = f"get_job job_id={state['id']}"
     elif "result" not in state:
-        found.next = "No episode was completed; call benchmark again."
+        report.next = "No episode was completed; call benchmark again."
     else:
-        _fill(found, state, RESULT if state["status"] == "finished" else PARTIAL, detailed)
-        found.done, found.total = state["done"], state["total"]
+        _fill(report, state, RESULT if state["status"] == "finished" else PARTIAL, detailed)
+        report.done, report.total = state["done"], state["total"]
         if state["status"] != "finished":
             why, more = "", "call benchmark again for all"
             if "why" in state:
                 why, more = f"{clean(state['why'], 300)}. ", clean(state["fix"], 300)
-            found.next = f"{why}This is the result of the {found.done} completed episodes; {more}."
-    text = TextContent(type="text", text=_text(found))
-    return CallToolResult(content=[text], structured_content=found.model_dump(exclude_none=True))
+            report.next = f"{why}This is the result of the {report.done} completed episodes; {more}."
+    text = TextContent(type="text", text=_text(report))
+    return CallToolResult(content=[text], structured_content=report.model_dump(exclude_none=True))
 
 
-def _fill(found: Benchmark, state: dict[str, Any], file: str, detailed: bool) -> None:
+def _fill(report: Benchmark, state: dict[str, Any], file: str, detailed: bool) -> None:
     result, timing = state["result"], state.get("timing")
     extra = [key for key in _SOMETIMES if any(row["metrics"][key]["n"] for row in result["rows"])]
     labels = policy_names(result)
-    found.rows = [
+    report.rows = [
         _row(row, [*(_DETAILED if detailed else _METRICS), *extra], labels, detailed)
         for row in result["rows"][:_MAX_ROWS]
     ]
-    found.summary = _summary(result, labels)
+    report.summary = _summary(result, labels)
     notes = [f"{label} is {text}" for text, label in labels.items() if label != text] + list(result["notes"])
     notes += _decision_times(timing, labels)
     if len(result["rows"]) > _MAX_ROWS:
         notes.append(f"{len(result['rows']) - _MAX_ROWS} more rows are in the artifact")
     for name, warnings in result["warnings"].items():
         notes += [f"{name}: {w['code']} at {w['path']}: {w['message']}" for w in warnings if w["severity"] == "warning"]
-    found.notes = [clean(note, 300) for note in notes[:_MAX_NOTES]]
-    found.artifact = f".irsim/jobs/{found.job_id}/{file}"
+    report.notes = [clean(note, 300) for note in notes[:_MAX_NOTES]]
+    report.artifact = f".irsim/jobs/{report.job_id}/{file}"
     command = clean(result["reproduce"], 1000)
-    found.reproduce = None if any(RecentTexts.is_id(name) for name in result["scenarios"]) else command
+    report.reproduce = None if any(RecentTexts.is_id(name) for name in result["scenarios"]) else command
     lost = [e for e in result["episodes"] if e["outcome"] not in ("success", CROWDED)]
     if not lost:
         done = any(e["outcome"] == "success" for e in result["episodes"])
-        found.next = "Every episode succeeded; compare times and paths." if done else _NO_ROOM
+        report.next = "Every episode succeeded; compare times and paths." if done else _NO_ROOM
         return
-    found.next = f"To see why: {call_to_repeat(result, lost[0])} ({lost[0]['outcome']})."
+    report.next = f"To see why: {call_to_repeat(result, lost[0])} ({lost[0]['outcome']})."
 
 
 def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
@@ -284,7 +284,7 @@ def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
 def _decision_times(timing: dict[str, Any] | None, labels: dict[str, str]) -> list[str]:
     """A note on the wall-clock time that deciding takes; none if nothing was timed."""
     policies = (timing or {}).get("policies", {})
-    times = {name: found["per_robot"] for name, found in policies.items() if "per_robot" in found}
+    times = {name: measured["per_robot"] for name, measured in policies.items() if "per_robot" in measured}
     each = [f"{clean(labels[name])} {one['mean_ms']:g} ({one['p95_ms']:g})" for name, one in times.items()]
     return (
         [f"deciding for one robot takes, in ms on this machine, mean (95th percentile): {', '.join(each)}"]
@@ -305,7 +305,9 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str], de
     }
     shown |= {key: _numbers(row[key], "rate") for key in _SHARES}
     shown |= _defined(row["metrics"], metrics, row["episodes"])
-    zones = {clean(name): {key: _numbers(found) for key, found in zone.items()} for name, zone in row["zones"].items()}
+    zones = {
+        clean(name): {key: _numbers(metric) for key, metric in zone.items()} for name, zone in row["zones"].items()
+    }
     shown |= {"zones": zones} if zones else {}
     diff = _defined(row["paired"], _DIFFERENCES, row["episodes"])
     shown |= {"diff": diff} if diff else {}
@@ -321,11 +323,11 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str], de
     return shown
 
 
-def _defined(found: dict[str, Any], keys: Sequence[str], episodes: int) -> dict[str, Any]:
+def _defined(values: dict[str, Any], keys: Sequence[str], episodes: int) -> dict[str, Any]:
     """The metrics that are defined, and the number of episodes in which they are, if not in all."""
-    known = [key for key in keys if key in found and found[key]["n"]]
-    fewer = {key: found[key]["n"] for key in known if found[key]["n"] < episodes}
-    return {key: _numbers(found[key]) for key in known} | ({"n": fewer} if fewer else {})
+    known = [key for key in keys if key in values and values[key]["n"]]
+    fewer = {key: values[key]["n"] for key in known if values[key]["n"] < episodes}
+    return {key: _numbers(values[key]) for key in known} | ({"n": fewer} if fewer else {})
 
 
 def _numbers(estimate: dict[str, Any], value: str = "mean") -> list[float]:
@@ -338,11 +340,11 @@ def _rounded(value: float) -> float:
     return round(value, _DECIMALS)
 
 
-def _text(found: Benchmark) -> str:
+def _text(report: Benchmark) -> str:
     """The result in words, with everything that the structured content has."""
-    lines = [f"{found.status}: {found.summary}" if found.rows else found.summary]
-    lines[0] += f" (job {found.job_id}, {found.done} of {found.total})"
-    for row in found.rows:
+    lines = [f"{report.status}: {report.summary}" if report.rows else report.summary]
+    lines[0] += f" (job {report.job_id}, {report.done} of {report.total})"
+    for row in report.rows:
         values = _lines(row, partly=row["success"][0] < 1) + [
             f"difference of {line}" for line in _lines(row.get("diff", {}))
         ]
@@ -352,15 +354,15 @@ def _text(found: Benchmark) -> str:
         elif incidents := row.get("incidents"):
             values.append(f"episodes with {', '.join(f'{name}: {count}' for name, count in incidents.items())}")
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(values)}")
-    lines += [f"Note: {note}" for note in found.notes]
-    if found.artifact:
+    lines += [f"Note: {note}" for note in report.notes]
+    if report.artifact:
         lines.append(
-            f"Episodes: inspect_run run_id={found.job_id}; more metrics: get_job job_id={found.job_id} detailed=true; "
-            f"all: {found.artifact}"
+            f"Episodes: inspect_run run_id={report.job_id}; more metrics: get_job job_id={report.job_id} detailed=true"
+            f"; all: {report.artifact}"
         )
-    if found.reproduce:
-        lines.append(f"Again: {found.reproduce}")
-    return "\n".join([*lines, f"Next: {found.next}"])
+    if report.reproduce:
+        lines.append(f"Again: {report.reproduce}")
+    return "\n".join([*lines, f"Next: {report.next}"])
 
 
 def _lines(row: dict[str, Any], partly: bool = False) -> list[str]:

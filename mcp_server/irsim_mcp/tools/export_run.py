@@ -49,7 +49,7 @@ def tool(services: Services) -> StrictTool:
         ] = "movers",
     ) -> Annotated[CallToolResult, Exported]:
         services.workspace.check_run(run_id)
-        found = await services.run_job(
+        exported = await services.run_job(
             "export",
             run_id,
             seconds=services.limits.draw_seconds,
@@ -57,7 +57,7 @@ def tool(services: Services) -> StrictTool:
             objects=objects,
             out=services.workspace.folder_for_exports(),
         )
-        report = _report(found)
+        report = _report(exported)
         lines = [report.summary, *(f"Note: {note}" for note in report.notes), f"Next: {report.next}"]
         text = TextContent(type="text", text="\n".join(lines))
         return CallToolResult(content=[text], structured_content=report.model_dump())
@@ -65,17 +65,17 @@ def tool(services: Services) -> StrictTool:
     return strict(export_run, title="Export a run", description=_DESCRIPTION, read_only=False, idempotent=True)
 
 
-def _report(found: dict[str, Any]) -> Exported:
-    path = clean(str(found["file"]), 300)
-    objects = [clean(name, 60) for name in found["objects"]]
-    summary = f"wrote {path} ({found['bytes']:,} bytes): {len(objects)} objects, {found['steps']} steps"
+def _report(exported: dict[str, Any]) -> Exported:
+    path = clean(str(exported["file"]), 300)
+    objects = [clean(name, 60) for name in exported["objects"]]
+    summary = f"wrote {path} ({exported['bytes']:,} bytes): {len(objects)} objects, {exported['steps']} steps"
     return Exported(
         path=path,
-        bytes=found["bytes"],
-        format=found["format"],
-        steps=found["steps"],
+        bytes=exported["bytes"],
+        format=exported["format"],
+        steps=exported["steps"],
         objects=objects[:50],
-        notes=[clean(note, 300) for note in found["notes"]],
+        notes=[clean(note, 300) for note in exported["notes"]],
         summary=summary,
         next="tell the user the path; the same call with another format writes another file.",
     )

@@ -70,12 +70,12 @@ def tool(services: Services) -> StrictTool:
     ) -> Annotated[CallToolResult, Table]:  # fmt: skip
         asked: dict[str, Any] = {"robot": robot, "to_step": to_step, "every": every, "fields": fields}
         job = None if run_id in services.workspace.runs() else await services.jobs.state(run_id)
-        found: dict[str, Any]
+        data: dict[str, Any]
         if job is not None:
             used = [name for name, value in {**asked, "from_step": from_step or None}.items() if value is not None]
-            found = _episodes(job, ["view"] * (view != "rows") + used, limit, cursor)
+            data = _episodes(job, ["view"] * (view != "rows") + used, limit, cursor)
         else:
-            found = await services.run_job(
+            data = await services.run_job(
                 "inspect",
                 run_id,
                 seconds=services.limits.check_seconds,
@@ -85,9 +85,9 @@ def tool(services: Services) -> StrictTool:
                 cursor=cursor,
                 **asked,
             )
-        found = _first_rows(found, cursor, services.limits.text)
-        table = _table(found, found["view"])
-        text = TextContent(type="text", text=_text(table, found))
+        data = _first_rows(data, cursor, services.limits.text)
+        table = _table(data, data["view"])
+        text = TextContent(type="text", text=_text(table, data))
         return CallToolResult(content=[text], structured_content=table.model_dump())
 
     return strict(inspect_run, title="Look into a run", description=_DESCRIPTION, read_only=True, idempotent=True)
@@ -113,40 +113,40 @@ def _episodes(job: dict[str, Any], other: list[str], limit: int, cursor: str | N
     return episodes_table(job, limit, cursor)
 
 
-def _first_rows(found: dict[str, Any], cursor: str | None, most_characters: int) -> dict[str, Any]:
+def _first_rows(data: dict[str, Any], cursor: str | None, most_characters: int) -> dict[str, Any]:
     """The table with its first rows, as many as fit into a number of characters; the others are another page."""
-    sizes = itertools.accumulate(len(json.dumps(row)) + 2 for row in found["rows"])
+    sizes = itertools.accumulate(len(json.dumps(row)) + 2 for row in data["rows"])
     kept = sum(size <= most_characters - _RESERVED_LENGTH for size in sizes)
-    if kept == len(found["rows"]):
-        return found
-    return {**found, "rows": found["rows"][:kept], "next_cursor": str(int(cursor or 0) + kept)}
+    if kept == len(data["rows"]):
+        return data
+    return {**data, "rows": data["rows"][:kept], "next_cursor": str(int(cursor or 0) + kept)}
 
 
-def _table(found: dict[str, Any], view: str) -> Table:
+def _table(data: dict[str, Any], view: str) -> Table:
     longest = _MAX_CELL_LENGTH if view != "episodes" else _MAX_EPISODE_CELL_LENGTH
-    rows = [[clean(cell, longest) if isinstance(cell, str) else cell for cell in row] for row in found["rows"]]
-    changed = {"summary": clean(found["summary"], 300), "rows": rows, "next": _advice(found, view, rows)}
-    return Table(**{key: value for key, value in {**found, **changed}.items() if key != "again"})
+    rows = [[clean(cell, longest) if isinstance(cell, str) else cell for cell in row] for row in data["rows"]]
+    changed = {"summary": clean(data["summary"], 300), "rows": rows, "next": _advice(data, view, rows)}
+    return Table(**{key: value for key, value in {**data, **changed}.items() if key != "again"})
 
 
-def _advice(found: dict[str, Any], view: str, rows: list[list[Any]]) -> str:
-    more = "" if found["next_cursor"] is None else f"More rows: the same call with cursor={found['next_cursor']}."
+def _advice(data: dict[str, Any], view: str, rows: list[list[Any]]) -> str:
+    more = "" if data["next_cursor"] is None else f"More rows: the same call with cursor={data['next_cursor']}."
     if view == "episodes":
-        return f"Look into one: {found['again']}, then inspect_run with the returned run_id. {more}".rstrip()
+        return f"Look into one: {data['again']}, then inspect_run with the returned run_id. {more}".rstrip()
     if more:
         return more
-    if "step" in found["columns"] and rows and view != "rows":
-        step = rows[0][found["columns"].index("step")]
-        return f"Look at it: render_snapshot run_id={found['run_id']} step={step}."
-    if view == "rows" and found["every"] > 1:
+    if "step" in data["columns"] and rows and view != "rows":
+        step = rows[0][data["columns"].index("step")]
+        return f"Look at it: render_snapshot run_id={data['run_id']} step={step}."
+    if view == "rows" and data["every"] > 1:
         return "Look closer with from_step, to_step, robot and every=1, or try view=collisions, closest, speeds."
-    return f"Look at a moment with render_snapshot run_id={found['run_id']} step=N, then change the scenario."
+    return f"Look at a moment with render_snapshot run_id={data['run_id']} step=N, then change the scenario."
 
 
-def _text(table: Table, found: dict[str, Any]) -> str:
+def _text(table: Table, data: dict[str, Any]) -> str:
     """The table in words, with everything that the structured content has."""
-    ended = found["status"] if found["outcome"] is None else found["outcome"]
-    lines = [f"{ended}: {table.summary}", *(f"Note: {note}" for note in found["notes"]), ", ".join(table.columns)]
+    ended = data["status"] if data["outcome"] is None else data["outcome"]
+    lines = [f"{ended}: {table.summary}", *(f"Note: {note}" for note in data["notes"]), ", ".join(table.columns)]
     lines += [", ".join("-" if cell is None else str(cell) for cell in row) for row in table.rows]
-    spread = f", every {found['every']} steps" if found["every"] > 1 else ""
+    spread = f", every {data['every']} steps" if data["every"] > 1 else ""
     return "\n".join([*lines, f"{len(table.rows)} of {table.total} rows{spread}", f"Next: {table.next}"])

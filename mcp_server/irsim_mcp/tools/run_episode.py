@@ -11,7 +11,7 @@ from pydantic import Field
 from irsim.results.concise import ConciseRun
 from irsim.results.episode import EventRecord
 from irsim.results.run import LOST_THINGS, MAX_CONCISE, MAX_DETAILED, RunResult
-from irsim_mcp.answers import Found, json_answer
+from irsim_mcp.answers import WorkerResult, json_answer
 from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_SEED, MAX_STEPS
 from irsim_mcp.resources import PAGE, uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
@@ -63,7 +63,7 @@ def tool(services: Services) -> StrictTool:
             ),
         ] = "concise",
     ) -> Annotated[CallToolResult, ConciseRun]:
-        found = await services.scenario_job(
+        data = await services.scenario_job(
             "run",
             scenario_path,
             scenario_yaml,
@@ -75,7 +75,7 @@ def tool(services: Services) -> StrictTool:
             perturb=perturb,
         )
         given = services.given(scenario_path, scenario_yaml)
-        result = RunResult.model_validate(found)
+        result = RunResult.model_validate(data)
         episode = result.concise(
             detailed=response_format == "detailed",
             artifacts=None if result.run_id is None else {name: uri(result.run_id, name) for name in _ARTIFACTS},
@@ -83,7 +83,7 @@ def tool(services: Services) -> StrictTool:
         )
         text = TextContent(type="text", text=episode.text())
         if response_format == "json":
-            text = _json_answer(found, services.limits.text)
+            text = _json_answer(data, services.limits.text)
         return CallToolResult(content=[text], structured_content=episode.model_dump(exclude_none=True))
 
     return strict(
@@ -92,14 +92,14 @@ def tool(services: Services) -> StrictTool:
     )  # fmt: skip
 
 
-def _json_answer(found: Found, most: int) -> TextContent:
+def _json_answer(data: WorkerResult, most: int) -> TextContent:
     """The complete JSON; if that is too long, the error says how the run ended and where to read the rest."""
-    run, prefix = found["run_id"], f"the run is done, outcome {found['outcome']}, but "
+    run, prefix = data["run_id"], f"the run is done, outcome {data['outcome']}, but "
     if run is None:
-        return json_answer(found, most, "use response_format=detailed", prefix=prefix)
+        return json_answer(data, most, "use response_format=detailed", prefix=prefix)
     views = f"inspect_run run_id={run} view=speeds, closest or collisions lists every robot, in pages"
     alternative = f"{views}; {uri(run, 'result.json')} has all; or use response_format=detailed"
-    return json_answer(found, most, alternative, prefix=prefix)
+    return json_answer(data, most, alternative, prefix=prefix)
 
 
 def _advice(result: RunResult, given: str) -> str:

@@ -86,7 +86,7 @@ def tool(services: Services) -> StrictTool:
             Field(description="detailed: with hints, columns, all allowed values. json: as irsim validate --json."),
         ] = "concise",
     ) -> Annotated[CallToolResult, Report]:
-        found = await services.scenario_job(
+        data = await services.scenario_job(
             "validate",
             scenario_path,
             scenario_yaml,
@@ -94,12 +94,12 @@ def tool(services: Services) -> StrictTool:
             simulate=simulate,
             **services.base(base),
         )
-        report = report_of(found, max_issues, response_format == "detailed", services.limits.text)
+        report = report_of(data, max_issues, response_format == "detailed", services.limits.text)
         if report.valid:
             report.next = f"{report.next.removesuffix('.')} {services.given(scenario_path, scenario_yaml)}."
         text = TextContent(type="text", text=text_of(report))
         if response_format == "json":
-            text = json_answer(found, services.limits.text, "fix the first problems, or use response_format=detailed")
+            text = json_answer(data, services.limits.text, "fix the first problems, or use response_format=detailed")
         return CallToolResult(content=[text], structured_content=report.model_dump(exclude_none=True))
 
     return strict(
@@ -107,58 +107,58 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def report_of(found: dict[str, Any], most: int, detailed: bool, most_characters: int) -> Report:
+def report_of(data: dict[str, Any], most: int, detailed: bool, most_characters: int) -> Report:
     """The result of the tool.
 
     Args:
-        found: The report of a worker, as data.
+        data: The report of a worker.
         most: Greatest number of issues.
         detailed: With hints, columns and all allowed values.
         most_characters: Greatest number of characters of all issues.
     """
-    few = found["valid"] and found["hints"] <= _MAX_SHOWN_HINTS
-    findings = [item for item in found["findings"] if detailed or few or item["severity"] != "hint"]
-    summary = found["summary"] if found["valid"] else f"invalid: {found['summary']}"
-    if found["hints"] and not detailed:
-        codes = dict.fromkeys(item["code"] for item in found["findings"] if item["severity"] == "hint")
+    few = data["valid"] and data["hints"] <= _MAX_SHOWN_HINTS
+    findings = [item for item in data["findings"] if detailed or few or item["severity"] != "hint"]
+    summary = data["summary"] if data["valid"] else f"invalid: {data['summary']}"
+    if data["hints"] and not detailed:
+        codes = dict.fromkeys(item["code"] for item in data["findings"] if item["severity"] == "hint")
         named = ", ".join(list(codes)[:_MAX_HINT_CODES])
-        summary += f"; {found['hints']} hint{'s' * (found['hints'] != 1)}"
+        summary += f"; {data['hints']} hint{'s' * (data['hints'] != 1)}"
         summary += "" if few else f" ({named}) with response_format=detailed"
     issues = _first_issues([_issue(item, detailed) for item in findings[:most]], most_characters)
     cut = len(findings) - len(issues)
     if cut > 0:
         advice = f"{cut} more issues are not shown: fix these first, or raise max_issues."
-    elif not found["valid"]:
-        errors = {item["code"] for item in found["findings"] if item["severity"] == "error"}
+    elif not data["valid"]:
+        errors = {item["code"] for item in data["findings"] if item["severity"] == "error"}
         fixable = "Apply the fixes and validate again; lookup explains a code or a key."
         advice = _GAPS if errors == {"not-yet-simulated"} else fixable
-    elif found["warnings"]:
+    elif data["warnings"]:
         advice = "Check whether the warnings{} are intended, look at it with render_snapshot, then run_episode."
-        advice = advice.format(" and what dry_run reports" if _dry_run_has_problems(found) else "")
-    elif _dry_run_has_problems(found):
+        advice = advice.format(" and what dry_run reports" if _dry_run_has_problems(data) else "")
+    elif _dry_run_has_problems(data):
         advice = "It is valid, but check whether all that dry_run reports is intended; look with render_snapshot."
     else:
         advice = "Look at it with render_snapshot, then run_episode."
     return Report(
-        valid=found["valid"],
+        valid=data["valid"],
         summary=summary,
-        error_count=found["errors"],
-        warning_count=found["warnings"],
-        counts=found["counts"],
+        error_count=data["errors"],
+        warning_count=data["warnings"],
+        counts=data["counts"],
         issues=issues,
         truncated=cut > 0,
-        dry_run=_dry_run_text(found["dry_run"], detailed),
-        changes=_changes(found["changes"], detailed),
+        dry_run=_dry_run_text(data["dry_run"], detailed),
+        changes=_changes(data["changes"], detailed),
         next=advice,
     )
 
 
-def _dry_run_has_problems(found: dict[str, Any]) -> bool:
+def _dry_run_has_problems(data: dict[str, Any]) -> bool:
     """Whether something happened in the dry run that is hardly intended; an early end of it does not count."""
-    tried = found["dry_run"]
+    tried = data["dry_run"]
     if tried is None:
         return False
-    late = len(tried["arrived"]) + len(tried["parked"]) < found["counts"]["robots"] and tried["ended"] != "budget"
+    late = len(tried["arrived"]) + len(tried["parked"]) < data["counts"]["robots"] and tried["ended"] != "budget"
     return late or _concerns(tried)
 
 
@@ -167,37 +167,37 @@ def _concerns(tried: dict[str, Any]) -> bool:
     return any(tried[key] for key in ("collisions", "contacts_between_steps", "stuck", "jammed", "left"))
 
 
-def _dry_run_text(found: dict[str, Any] | None, detailed: bool) -> str | None:
+def _dry_run_text(tried: dict[str, Any] | None, detailed: bool) -> str | None:
     """The dry run in words; a detailed text lists every collision and every stuck robot."""
-    if found is None:
+    if tried is None:
         return None
-    more = [f"'{e['object']}' hit '{e['partner']}' at {seconds(e['time'])}" for e in found["collisions"][1:]]
+    more = [f"'{e['object']}' hit '{e['partner']}' at {seconds(e['time'])}" for e in tried["collisions"][1:]]
     more += [
-        f"'{item['name']}' {item['doing']} since {seconds(item['since'])}: {item['why']}" for item in found["stuck"][1:]
+        f"'{item['name']}' {item['doing']} since {seconds(item['since'])}: {item['why']}" for item in tried["stuck"][1:]
     ]
-    more += [f"'{item['name']}' left the world at {seconds(item['time'])}" for item in found["left"][1:]]
-    seed = f"seed {found['seed']}, " if found["random"] else ""
-    if found["ended"] == "done":
-        seed += f"ran to its end{'' if _concerns(found) else ': success'}: "
-    return clean("; ".join([seed + found["summary"], *(more if detailed else [])]), 1500)
+    more += [f"'{item['name']}' left the world at {seconds(item['time'])}" for item in tried["left"][1:]]
+    seed = f"seed {tried['seed']}, " if tried["random"] else ""
+    if tried["ended"] == "done":
+        seed += f"ran to its end{'' if _concerns(tried) else ': success'}: "
+    return clean("; ".join([seed + tried["summary"], *(more if detailed else [])]), 1500)
 
 
-def _changes(found: dict[str, Any] | None, detailed: bool) -> list[str] | None:
+def _changes(difference: dict[str, Any] | None, detailed: bool) -> list[str] | None:
     """The summary of the changes, and one line per change."""
-    if found is None:
+    if difference is None:
         return None
     most = _MAX_CHANGES if detailed else _MAX_CHANGES // 4
-    lines = [f"{item['change']} {place(item['change'], item['path'])}: {_values(item)}" for item in found["keys"]]
-    facts = [item for item in found["world"] or [] if not item["direct"]]
+    lines = [f"{item['change']} {place(item['change'], item['path'])}: {_values(item)}" for item in difference["keys"]]
+    facts = [item for item in difference["world"] or [] if not item["direct"]]
     for item in facts:
         before, after = rounded_pair(*names_if_different(item["before"], item["after"]))
         values = _values(item | {"before": before, "after": after})
         lines.append(f"in the world: {item['change']} {_fact(item)}: {values}")
-    lines += [f"comment lost: {comment}" for comment in found["comments_lost"]]
-    edited = [shorten_pair(item["before"], item["after"]) for item in found["comments_changed"]]
+    lines += [f"comment lost: {comment}" for comment in difference["comments_lost"]]
+    edited = [shorten_pair(item["before"], item["after"]) for item in difference["comments_changed"]]
     lines += [f"comment changed: {before} -> {after}" for before, after in edited]
     cut = [f"{len(lines) - most} more with response_format=detailed"] if len(lines) > most else []
-    return [clean(line, 300) for line in [found["summary"], *lines[:most], *cut]]
+    return [clean(line, 300) for line in [difference["summary"], *lines[:most], *cut]]
 
 
 def _fact(item: dict[str, Any]) -> str:

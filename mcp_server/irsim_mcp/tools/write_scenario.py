@@ -46,10 +46,12 @@ def tool(services: Services) -> StrictTool:
         overwrite: bool = False,
     ) -> Annotated[CallToolResult, Written]:
         where = services.workspace.new_file(path)
-        found = await services.text_job("validate_new", yaml, "yaml", path=where, seconds=services.limits.check_seconds)
+        checked = await services.text_job(
+            "validate_new", yaml, "yaml", path=where, seconds=services.limits.check_seconds
+        )
         data = yaml.encode()
         replaced = await anyio.to_thread.run_sync(write_file, services.workspace.root, where, data, overwrite)
-        summary = f"{'replaced' if replaced else 'wrote'} {clean(where)} ({len(data):,} bytes): {_contents(found)}"
+        summary = f"{'replaced' if replaced else 'wrote'} {clean(where)} ({len(data):,} bytes): {_contents(checked)}"
         advice = f"Look at it with render_snapshot scenario_path={clean(where)}, then run_episode."
         report = Written(path=where, bytes=len(data), replaced=replaced, summary=summary, next=advice)
         text = TextContent(type="text", text=f"{summary}\nNext: {advice}")
@@ -65,6 +67,6 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def _contents(found: dict[str, Any]) -> str:
-    warnings = found["warnings"]
-    return f"{found['contents']}, {warnings or 'no'} warning{'s' * (warnings != 1)}"
+def _contents(checked: dict[str, Any]) -> str:
+    warnings = checked["warnings"]
+    return f"{checked['contents']}, {warnings or 'no'} warning{'s' * (warnings != 1)}"
