@@ -36,10 +36,10 @@ def run(python: str, behaviors: tuple[str, ...], known: Path, jobs: int, *option
             command = [python, str(WORKER), str(part), "--behaviors", ",".join(behaviors), "--share", f"{k}/{jobs}"]
             processes.append(subprocess.Popen([*command, *options], env={**os.environ, **QUIET}))
         failed = [process.wait() for process in processes]
-        found = read(parts)
+        outcomes = read(parts)
     if any(failed):
         raise SystemExit(f"{WORKER.name} failed with {python}")
-    return found
+    return outcomes
 
 
 def table(counted: dict[tuple[str, ...], Pool], head: str) -> str:

@@ -45,20 +45,20 @@ class Outcomes:
 
 def read(files: Iterable[Path]) -> dict[Key, Outcomes]:
     """The lines of several files; of two lines of a group the one with more starts counts."""
-    found: dict[Key, Outcomes] = {}
+    outcomes: dict[Key, Outcomes] = {}
     for file in files:
         with file.open(encoding="utf-8", newline="") as opened:
             for row in csv.reader(opened):
                 key = tuple(row[:6])
-                if row[0] != COLUMNS[0] and (key not in found or len(found[key].letters) < len(row[6])):
+                if row[0] != COLUMNS[0] and (key not in outcomes or len(outcomes[key].letters) < len(row[6])):
                     between, seconds = tuple(map(int, row[7].split())), tuple(map(float, row[8].split()))
-                    found[key] = Outcomes(row[6], between, seconds, tuple(row))
-    return found
+                    outcomes[key] = Outcomes(row[6], between, seconds, tuple(row))
+    return outcomes
 
 
-def write(file: Path, found: dict[Key, Outcomes]) -> None:
+def write(file: Path, outcomes: dict[Key, Outcomes]) -> None:
     """Write lines in the order of the families."""
     with file.open("w", encoding="utf-8", newline="") as opened:
         writer = csv.writer(opened, lineterminator="\n")
         writer.writerow(COLUMNS)
-        writer.writerows(found[group.key].row for group in groups(BEHAVIORS) if group.key in found)
+        writer.writerows(outcomes[group.key].row for group in groups(BEHAVIORS) if group.key in outcomes)

@@ -66,13 +66,13 @@ def test_a_wall_is_the_same_in_every_spelling(case: Case, tmp_path: Path) -> Non
         env = irsim.make(str(write_start(group(case, spelling), 0, tmp_path)), display=False)
         bodies = [thing.geometry for thing in env.obstacle_list]
         if spelling == "map":
-            found = shapely.union_all([shapely.box(*cell) for cell in cells(env)])
+            built = shapely.union_all([shapely.box(*cell) for cell in cells(env)])
         elif spelling == "line":
-            found = shapely.union_all([shapely.Polygon(body.coords) for body in bodies])
+            built = shapely.union_all([shapely.Polygon(body.coords) for body in bodies])
         else:
-            found = shapely.union_all(bodies)
+            built = shapely.union_all(bodies)
         env.end(0)
-        assert found.symmetric_difference(wanted).area < 1e-9, spelling
+        assert built.symmetric_difference(wanted).area < 1e-9, spelling
 
 
 def test_an_exact_circle_is_the_distribution_of_that_name(tmp_path: Path) -> None:
@@ -80,9 +80,9 @@ def test_an_exact_circle_is_the_distribution_of_that_name(tmp_path: Path) -> Non
         if case.ring:
             env = irsim.make(str(write_start(group(case, ""), 0, tmp_path)), display=False)
             robots = layout(case, 0).robots
-            for robot, found in zip(robots, env.robot_list, strict=True):
-                assert found.state[:2, 0] == pytest.approx(robot.start)
-                assert found.goal[:2, 0] == pytest.approx(robot.goal)
+            for robot, placed in zip(robots, env.robot_list, strict=True):
+                assert placed.state[:2, 0] == pytest.approx(robot.start)
+                assert placed.goal[:2, 0] == pytest.approx(robot.goal)
             env.end(0)
 
 

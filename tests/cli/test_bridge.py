@@ -12,9 +12,9 @@ from tests.cli.conftest import Run
 
 def test_doctor_lists_every_bridge(irsim: Run) -> None:
     done = irsim("bridge", "doctor", "--json")
-    found = {one["bridge"]: one for one in json.loads(done.stdout)}
-    assert found["json_lines"]["state"] == "ready"
-    assert "crossed" in found["json_lines"]["text"]
+    bridges = {one["bridge"]: one for one in json.loads(done.stdout)}
+    assert bridges["json_lines"]["state"] == "ready"
+    assert "crossed" in bridges["json_lines"]["text"]
 
 
 def test_doctor_of_one_that_does_not_exist(irsim: Run) -> None:

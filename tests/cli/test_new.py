@@ -99,9 +99,9 @@ def test_templates_are_listed(irsim: Run) -> None:
     ],
 )
 def test_templates_are_found_by_the_words_of_users(irsim: Run, words: list[str], expected: str) -> None:
-    found = [template["name"] for template in json.loads(irsim("templates", "--json", *words).stdout)]
-    assert expected in found
-    assert len(found) <= len(templates.names()) // 4
+    names = [template["name"] for template in json.loads(irsim("templates", "--json", *words).stdout)]
+    assert expected in names
+    assert len(names) <= len(templates.names()) // 4
 
 
 def test_a_contact_sheet_of_templates(irsim: Run, tmp_path: Path) -> None:

@@ -119,9 +119,9 @@ def test_an_update_replaces_what_is_ours_and_keeps_what_is_not(skill: Callable[.
     [done] = install(place, [skill("2", scripts__run="2", scripts__new="new")])
     assert (done.action, done.changed) == ("updated", [])
     assert done.written == ["SKILL.md", "old", "scripts/new", "scripts/run"]
-    found = {path.name: path.read_text(encoding="utf-8") for path in (place / "small").rglob("*") if path.is_file()}
-    assert not {"old"} & set(found)
-    assert (found["run"], found["new"], found["notes"]) == ("2", "new", "mine")
+    files = {path.name: path.read_text(encoding="utf-8") for path in (place / "small").rglob("*") if path.is_file()}
+    assert not {"old"} & set(files)
+    assert (files["run"], files["new"], files["notes"]) == ("2", "new", "mine")
     assert (place / "small" / "notes").stat().st_mode & 0o777 == 0o755
     assert [path.name for path in place.iterdir()] == ["small"]
 

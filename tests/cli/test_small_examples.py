@@ -44,8 +44,8 @@ def errors_of(path: tuple[str, ...], text: str) -> list[str]:
         data["robot"][0].update(given)
     else:
         data.setdefault(path[0], {}).update(given)
-    found = read(data, strict=True).diagnostics
-    return [item.code for item in found if item.severity == "error" and item.code not in ELSEWHERE]
+    diagnostics = read(data, strict=True).diagnostics
+    return [item.code for item in diagnostics if item.severity == "error" and item.code not in ELSEWHERE]
 
 
 def test_every_made_example_is_valid() -> None:

@@ -130,8 +130,8 @@ def test_diff_lists_changes_and_refuses_those_not_asked_for(irsim: Run, room: Pa
     assert "behavior.name" in result.stdout
     assert irsim("diff", "room.yaml", "other.yaml", "--only", "robot[0].behavior").exit_code == 0
     assert irsim("diff", "room.yaml", "other.yaml", "--only", "world").exit_code == 1
-    found = parsed(irsim("diff", "room.yaml", "other.yaml", "--json"))
-    assert found == package.diff("room.yaml", "other.yaml").model_dump(mode="json")
+    printed = parsed(irsim("diff", "room.yaml", "other.yaml", "--json"))
+    assert printed == package.diff("room.yaml", "other.yaml").model_dump(mode="json")
 
 
 COMMENTED = """\

@@ -24,8 +24,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def load(name: str) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((ROOT / name).read_text(encoding="utf-8"))
-    return found
+    manifest: dict[str, Any] = json.loads((ROOT / name).read_text(encoding="utf-8"))
+    return manifest
 
 
 SERVER = load("server.json")

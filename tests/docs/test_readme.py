@@ -88,7 +88,7 @@ def test_irsim_commands_run(folder: Path) -> None:
 
 
 def test_the_table_of_commands_is_the_programs_own() -> None:
-    found = re.search(r"<!-- begin commands -->\n(.*?)<!-- end commands -->", README, re.DOTALL)
-    assert found
-    assert found[1] == commands_table(), "write it again: python -m irsim.cli.overview README.md"
+    table = re.search(r"<!-- begin commands -->\n(.*?)<!-- end commands -->", README, re.DOTALL)
+    assert table
+    assert table[1] == commands_table(), "write it again: python -m irsim.cli.overview README.md"
     assert SENTENCES_FILE.read_text(encoding="utf-8") == sentences_text(), "write it again, too"

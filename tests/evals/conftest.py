@@ -50,5 +50,5 @@ def seen(material: Material, name: str, keys: dict[str, Any], seconds: float = 0
     """What a predicate sees of an answer; one about episodes, of an episode of that length."""
     predicate: Any = registered()[name].model_validate(keys)
     subject = {"scene": lambda: (material.scene(0),), "episode": lambda: (episode(material, seconds),)}
-    found: Observation = predicate.observe(material, *subject.get(predicate.subject, tuple)())
-    return found
+    observation: Observation = predicate.observe(material, *subject.get(predicate.subject, tuple)())
+    return observation

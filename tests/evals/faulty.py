@@ -24,10 +24,10 @@ class _Fault(MetaPathFinder, Loader):
         if fullname != self.module:
             return None
         sys.meta_path.remove(self)
-        found = importlib.util.find_spec(fullname)
-        assert found is not None
-        assert found.origin is not None
-        return importlib.util.spec_from_file_location(fullname, found.origin, loader=self)
+        spec = importlib.util.find_spec(fullname)
+        assert spec is not None
+        assert spec.origin is not None
+        return importlib.util.spec_from_file_location(fullname, spec.origin, loader=self)
 
     def exec_module(self, module: ModuleType) -> None:
         assert module.__file__ is not None

@@ -62,17 +62,17 @@ def run_offline(tmp_path: Path, *arguments: str) -> subprocess.CompletedProcess[
 
 
 def snapshot() -> dict[str, dict[str, bool]]:
-    found: dict[str, dict[str, bool]] = json.loads(SNAPSHOT.read_text(encoding="utf-8"))
-    return found
+    recorded: dict[str, dict[str, bool]] = json.loads(SNAPSHOT.read_text(encoding="utf-8"))
+    return recorded
 
 
-def flips(found: dict[str, dict[str, bool]]) -> list[str]:
+def flips(verdicts: dict[str, dict[str, bool]]) -> list[str]:
     """What differs from the snapshot, in words."""
     words = {True: "passed", False: "failed", None: "was not there"}
     known = snapshot()
     return [
         f"{arm} {words[known.get(arm, {}).get(case)]} {case}, and now it {'passes' if passed else 'fails'}"
-        for arm, cases in found.items()
+        for arm, cases in verdicts.items()
         for case, passed in cases.items()
         if known.get(arm, {}).get(case) is not passed
     ]
@@ -81,9 +81,9 @@ def flips(found: dict[str, dict[str, bool]]) -> list[str]:
 def assert_as_recorded(tmp_path: Path, *arguments: str) -> dict[str, Any]:
     done = run_offline(tmp_path, "run", "--arm", "baselines", "--verdicts", "verdicts.json", "--json", *arguments)
     assert done.returncode == 0, done.stderr
-    found = json.loads((tmp_path / "verdicts.json").read_text(encoding="utf-8"))
-    assert list(found) == list(BASELINES)
-    changed = flips(found)
+    verdicts = json.loads((tmp_path / "verdicts.json").read_text(encoding="utf-8"))
+    assert list(verdicts) == list(BASELINES)
+    changed = flips(verdicts)
     assert not changed, f"{'; '.join(changed)}. If that is meant, run: {REGENERATE}"
     return dict(json.loads(done.stdout))
 
@@ -258,26 +258,26 @@ obstacle:
     ],
 )
 def test_edits_change_their_line_only(request_text, old, new):
-    found = by_rules(Task(request_text, (), {"scenario.yaml": GIVEN}))
-    assert found.files["scenario.yaml"] == GIVEN.replace(old, new)
+    result = by_rules(Task(request_text, (), {"scenario.yaml": GIVEN}))
+    assert result.files["scenario.yaml"] == GIVEN.replace(old, new)
 
 
 def test_a_second_lidar_is_another_line():
-    found = by_rules(Task("Add a second lidar looking backwards, 3 m, 60 beams, 90 degrees", (), {"a.yaml": GIVEN}))
-    added = set(found.files["a.yaml"].splitlines()) - set(GIVEN.splitlines())
+    result = by_rules(Task("Add a second lidar looking backwards, 3 m, 60 beams, 90 degrees", (), {"a.yaml": GIVEN}))
+    added = set(result.files["a.yaml"].splitlines()) - set(GIVEN.splitlines())
     assert len(added) == 1
     assert "range_max: 3, angle_range: 1.570796, number: 60" in added.pop()
 
 
 def test_a_correction_starts_from_the_file_before():
     turns = ("Make the robot 50 % bigger.", "No, I meant the world, not the robot.")
-    found = by_rules(Task(turns[0], turns[1:], {"scenario.yaml": GIVEN}))
-    assert found.files["scenario.yaml"] == GIVEN.replace("width: 18, height: 12", "width: 27, height: 18")
-    assert len(found.replies) == 2
+    result = by_rules(Task(turns[0], turns[1:], {"scenario.yaml": GIVEN}))
+    assert result.files["scenario.yaml"] == GIVEN.replace("width: 18, height: 12", "width: 27, height: 18")
+    assert len(result.replies) == 2
 
 
 def test_what_cannot_be_is_said_and_not_built():
     for prompt in ("Put 80 robots of radius 1 m in a 10 × 10 m room.", "A drone flies over a wall at 3 m altitude."):
-        found = by_rules(Task(prompt))
-        assert not found.files
-        assert "not possible" in found.reply
+        result = by_rules(Task(prompt))
+        assert not result.files
+        assert "not possible" in result.reply

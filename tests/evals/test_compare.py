@@ -117,9 +117,9 @@ def test_bad_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[
 
 def test_no_change_says_so() -> None:
     trials = [trial(f"case-{k}", True) for k in range(10)]
-    found = compare(trials, trials, "before", "after")
-    assert (found.p, found.fixed, found.broken) == (1.0, [], [])
-    assert "no case changed" in found.sentence
+    comparison = compare(trials, trials, "before", "after")
+    assert (comparison.p, comparison.fixed, comparison.broken) == (1.0, [], [])
+    assert "no case changed" in comparison.sentence
 
 
 def test_one_case_more_may_be_chance_and_ten_more_are_not() -> None:
@@ -133,8 +133,8 @@ def test_cases_of_one_family_say_less_than_independent_ones() -> None:
     def width(family: Any) -> float:
         before = [trial(f"case-{k}", False, family=family(k)) for k in range(20)]
         after = [trial(f"case-{k}", k % 4 == 0, family=family(k)) for k in range(20)]
-        found = compare(before, after, "a", "b").difference
-        return found.high - found.low
+        interval = compare(before, after, "a", "b").difference
+        return interval.high - interval.low
 
     assert width(lambda k: f"family-{k % 4}") > 1.5 * width(lambda k: f"family-{k}")
 
@@ -143,9 +143,9 @@ def test_cases_of_one_family_say_less_than_independent_ones() -> None:
     ("pairs", "changing", "points"), [(60, 0.1, 12.6), (60, 0.2, 16), (60, 0.3, 20), (120, 0.1, 8), (120, 0.3, 14)]
 )
 def test_smallest_difference_agrees_with_tables(pairs: int, changing: float, points: float) -> None:
-    found = smallest_difference(pairs, changing)
-    assert found is not None
-    assert 100 * found == pytest.approx(points, abs=1)
+    difference = smallest_difference(pairs, changing)
+    assert difference is not None
+    assert 100 * difference == pytest.approx(points, abs=1)
 
 
 def test_five_cases_show_no_difference() -> None:

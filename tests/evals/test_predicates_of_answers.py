@@ -80,10 +80,10 @@ def scene_text(number: int, behavior: str = "dash", size: int = 10, speed: int =
     ],
 )
 def test_values_of_a_file(has: dict[str, Any], passes: bool) -> None:
-    found = seen(left({"result.json": RESULT}), "data", {"file": "result.json", "has": has})
-    assert found.passed == passes
-    assert found.expected.startswith("result.json: ")
-    assert all(path in found.observed for path in has)
+    observation = seen(left({"result.json": RESULT}), "data", {"file": "result.json", "has": has})
+    assert observation.passed == passes
+    assert observation.expected.startswith("result.json: ")
+    assert all(path in observation.observed for path in has)
 
 
 @pytest.mark.parametrize(
@@ -96,8 +96,8 @@ def test_values_of_a_file(has: dict[str, Any], passes: bool) -> None:
     ],
 )
 def test_a_file_that_holds_no_values(files: dict[str, str], observed: str) -> None:
-    found = seen(left(files), "data", {"file": "result.json", "has": {"rows": 20}})
-    assert (found.passed, found.observed) == (False, observed)
+    observation = seen(left(files), "data", {"file": "result.json", "has": {"rows": 20}})
+    assert (observation.passed, observation.observed) == (False, observed)
 
 
 @pytest.mark.parametrize(
@@ -114,16 +114,16 @@ def test_a_file_that_holds_no_values(files: dict[str, str], observed: str) -> No
 )
 def test_commands_run_in_the_folder(run: str, prints: str | None, passes: bool, tmp_path: Path) -> None:
     (tmp_path / "here.py").write_text("print(__file__)", encoding="utf-8")
-    found = Command(run=run, prints=prints).observe(left({}, trusted_folder=tmp_path))
-    assert found.passed == passes, found.observed
-    assert "exit code" in found.observed
+    observation = Command(run=run, prints=prints).observe(left({}, trusted_folder=tmp_path))
+    assert observation.passed == passes, observation.observed
+    assert "exit code" in observation.observed
     assert not Command(run=run, prints=prints).observe(left({})).passed
 
 
 def test_a_command_that_does_not_end_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("irsim_evals.grader.predicates.files._SECONDS", 0.5)
-    found = Command(run='python -c "while True: pass"').observe(left({}, trusted_folder=tmp_path))
-    assert (found.passed, found.observed) == (False, "it takes more than 0.5 s")
+    observation = Command(run='python -c "while True: pass"').observe(left({}, trusted_folder=tmp_path))
+    assert (observation.passed, observation.observed) == (False, "it takes more than 0.5 s")
 
 
 def test_a_file_beside_the_scenario_is_compared_by_its_name() -> None:
@@ -248,9 +248,9 @@ def test_a_program_of_a_comparison_must_end_without_an_error(tmp_path: Path) -> 
 )
 def test_a_reply_states_a_number_that_the_world_has(reply: str, passes: bool) -> None:
     stated = {"of": "guard", "property": "radius", "about": "guard", "factors": [1, 2]}
-    found = seen(world(GUARD, reply, guard={"named": "guard"}), "states", stated)
-    assert found.passed == passes
-    assert "0.3" in found.expected
+    observation = seen(world(GUARD, reply, guard={"named": "guard"}), "states", stated)
+    assert observation.passed == passes
+    assert "0.3" in observation.expected
 
 
 @pytest.mark.parametrize(

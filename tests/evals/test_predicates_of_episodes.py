@@ -44,9 +44,9 @@ def hall(*robots: str, obstacle: str = "") -> Material:
 )
 def test_an_aisle_is_one_way(robot: str, direction: Any, number: int, passes: bool) -> None:
     aisle = {"of": "robots", "region": [2, 4, 8, 6], "direction": direction, "number": number}
-    found = seen(hall(robot), "one_way", aisle, 16)
-    assert found.passed == passes
-    assert "toward" in found.expected
+    observation = seen(hall(robot), "one_way", aisle, 16)
+    assert observation.passed == passes
+    assert "toward" in observation.expected
 
 
 @pytest.mark.parametrize(
@@ -59,9 +59,9 @@ def test_an_aisle_is_one_way(robot: str, direction: Any, number: int, passes: bo
     ],
 )
 def test_rooms_are_entered_in_their_order(regions: Any, avoids: Any, observed: str) -> None:
-    found = seen(hall(EAST), "enters", {"of": "robots", "regions": regions, "avoids": avoids}, 12)
-    assert observed in found.observed
-    assert found.passed == (observed == "all 1")
+    observation = seen(hall(EAST), "enters", {"of": "robots", "regions": regions, "avoids": avoids}, 12)
+    assert observed in observation.observed
+    assert observation.passed == (observed == "all 1")
 
 
 @pytest.mark.parametrize(
@@ -101,9 +101,9 @@ def test_a_body_ends_on_a_part_of_its_way(share: Any, passes: bool) -> None:
 def test_a_round_is_followed_in_its_order(keys: dict[str, Any], observed: str) -> None:
     material = world(ROUND, guard={"named": "guard"}, nobody={"named": "nobody"})
     seconds = 15 if "places" in keys and "stray" not in keys else 32
-    found = seen(material, "visits", {"of": "guard", "places": [(6, 2), (6, 6), (2, 2)], **keys}, seconds)
-    assert found.passed == (observed == "")
-    assert observed in found.observed
+    observation = seen(material, "visits", {"of": "guard", "places": [(6, 2), (6, 6), (2, 2)], **keys}, seconds)
+    assert observation.passed == (observed == "")
+    assert observed in observation.observed
 
 
 def test_an_episode_may_have_other_speed_limits() -> None:

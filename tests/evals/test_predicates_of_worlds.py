@@ -83,10 +83,10 @@ def test_the_walls_of_a_pocket_are_connected(x: float, observed: str) -> None:
     ],
 )  # fmt: skip
 def test_everything_solid_agrees_with_a_sketch(old: str, new: str, observed: str) -> None:
-    found = seen(world(RING.replace(old, new) if old else RING), "plan", SKETCH)
-    assert found.observed.startswith(observed)
-    assert found.passed == (observed == "as in the drawing")
-    assert bool(found.marks) != found.passed
+    observation = seen(world(RING.replace(old, new) if old else RING), "plan", SKETCH)
+    assert observation.observed.startswith(observed)
+    assert observation.passed == (observed == "as in the drawing")
+    assert bool(observation.marks) != observation.passed
 
 
 @pytest.mark.parametrize(
@@ -112,9 +112,9 @@ def test_boxes_and_discs_of_a_plan_and_what_it_ignores(plan: dict[str, Any], pas
     ],
 )
 def test_a_table_has_a_row_for_each_body(rows: Any, observed: str) -> None:
-    found = seen(world(TABLE), "placed", {"of": "obstacles", "rows": rows})
-    assert observed in found.observed
-    assert found.passed == (observed == "all 2")
+    observation = seen(world(TABLE), "placed", {"of": "obstacles", "rows": rows})
+    assert observed in observation.observed
+    assert observation.passed == (observed == "all 2")
 
 
 @pytest.mark.parametrize(("gap", "passes"), [(1.0, True), (0.2, False)])

@@ -47,8 +47,8 @@ def verdict_on(program: str, instance: Instance) -> Verdict:
 
 
 def outcome(verdict: Verdict, name: str) -> Outcome:
-    [found] = [item for item in verdict.outcomes if item.assertion == name]
-    return found
+    [only] = [item for item in verdict.outcomes if item.assertion == name]
+    return only
 
 
 def test_a_runner_is_run_and_its_output_graded() -> None:
@@ -83,8 +83,8 @@ def test_no_program_may_be_left_where_only_yaml_was_wanted() -> None:
     ],
 )
 def test_programs_that_do_more_than_run_scenarios_are_refused(program: str, why: str) -> None:
-    found = problems_of(program)
-    assert any(item.startswith(why) for item in found), found
+    problems = problems_of(program)
+    assert any(item.startswith(why) for item in problems), problems
 
 
 def test_an_endless_program_is_ended(tmp_path: Path) -> None:

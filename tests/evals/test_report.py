@@ -141,21 +141,21 @@ def test_nothing_that_somebody_wrote_becomes_markup() -> None:
     one.category = [HOSTILE]
     one.verdict.outcomes[-1].assertion = one.verdict.outcomes[-1].observed = HOSTILE
     one.verdict.outcomes[-1].yaml_path = HOSTILE
-    found = Elements(report_of(one))
-    assert found.names.count("script") == 2
-    assert "img" not in found.names
-    assert not [name for name, _ in found.attributes if name.startswith("on")]
-    assert "<script>alert(1)</script>" in found.words
-    assert "\u202e" not in found.words
-    assert "\x1b" not in found.words
+    elements = Elements(report_of(one))
+    assert elements.names.count("script") == 2
+    assert "img" not in elements.names
+    assert not [name for name, _ in elements.attributes if name.startswith("on")]
+    assert "<script>alert(1)</script>" in elements.words
+    assert "\u202e" not in elements.words
+    assert "\x1b" not in elements.words
 
 
 def test_the_page_needs_nothing_else() -> None:
     text = report_of(trial("one", True))
-    found = Elements(text)
-    addresses = [value for name, value in found.attributes if name in ("src", "href", "srcset", "action")]
+    elements = Elements(text)
+    addresses = [value for name, value in elements.attributes if name in ("src", "href", "srcset", "action")]
     assert all(value.startswith(("data:", "#")) for value in addresses)
-    policy = next(value for name, value in found.attributes if name == "content" and "default-src" in value)
+    policy = next(value for name, value in elements.attributes if name == "content" and "default-src" in value)
     assert policy.startswith("default-src 'none'")
     assert "unsafe" not in policy
 
@@ -166,24 +166,24 @@ def test_funnel_and_cost() -> None:
         trial("two", False, stage="behavior", cost=Cost(tokens=300)),
         trial("three", False, stage="facts"),
     ]
-    found = summarize(trials, "skill")
-    assert [found.funnel[stage].passed for stage in ("sane", "facts", "relations", "behavior", "reply")] == [
+    summary = summarize(trials, "skill")
+    assert [summary.funnel[stage].passed for stage in ("sane", "facts", "relations", "behavior", "reply")] == [
         3,
         2,
         2,
         1,
         1,
     ]
-    assert found.cost.known == 2
-    assert found.cost.per_pass == {"tokens": 400}
+    assert summary.cost.known == 2
+    assert summary.cost.per_pass == {"tokens": 400}
 
 
 def test_lines_of_a_path() -> None:
     text = "world: {width: 8}\nrobot:\n  - state:\n      - 1\n      - 2\n    goal: [3, 4]\n"
-    found = lines_of(text, {"robot[0].state", "robot[0].goal", "robot[0].shape.radius", "elsewhere"})
-    assert found["robot[0].state"] == range(3, 6)
-    assert found["robot[0].goal"] == range(6, 7)
-    assert "elsewhere" not in found
+    lines = lines_of(text, {"robot[0].state", "robot[0].goal", "robot[0].shape.radius", "elsewhere"})
+    assert lines["robot[0].state"] == range(3, 6)
+    assert lines["robot[0].goal"] == range(6, 7)
+    assert "elsewhere" not in lines
     assert lines_of("a: [1, 2", {"a"}) == {}
 
 
@@ -217,9 +217,9 @@ def test_long_texts_are_cut_with_a_sentence() -> None:
 
 
 def test_differences_show_what_changed() -> None:
-    found = difference("a: 1\nb: <2>\n", "a: 1\nb: <3>\n")
-    assert '<span class="removed">-b: &lt;2&gt;</span>' in found
-    assert '<span class="added">+b: &lt;3&gt;</span>' in found
+    changes = difference("a: 1\nb: <2>\n", "a: 1\nb: <3>\n")
+    assert '<span class="removed">-b: &lt;2&gt;</span>' in changes
+    assert '<span class="added">+b: &lt;3&gt;</span>' in changes
     assert "the one that was given" in difference("a", "a")
 
 
@@ -242,9 +242,9 @@ def test_worlds_are_drawn_once_with_the_places_that_failed() -> None:
     ],
 )
 def test_what_cannot_be_drawn_is_a_sentence(text: str, sentence: str) -> None:
-    found = draw_answer(Job("scenario.yaml", text, 0, 0, 1.0))
-    assert isinstance(found, str)
-    assert sentence in found
+    result = draw_answer(Job("scenario.yaml", text, 0, 0, 1.0))
+    assert isinstance(result, str)
+    assert sentence in result
 
 
 def test_hostile_scenarios_do_not_stop_a_report() -> None:
@@ -261,9 +261,9 @@ def test_hostile_scenarios_do_not_stop_a_report() -> None:
 )
 def test_long_texts_are_searched_in_a_moment(text: str) -> None:
     begin = time.perf_counter()
-    found = find_scenario(Answer("", {"scenario.yaml": text}, text), {})
+    scenario = find_scenario(Answer("", {"scenario.yaml": text}, text), {})
     assert time.perf_counter() - begin < 2
-    assert found is None
+    assert scenario is None
 
 
 def test_real_answers_are_shown_with_what_was_given() -> None:

@@ -36,8 +36,8 @@ each_task = pytest.mark.parametrize("task", [task for tasks in TASKS.values() fo
 def triggers(skill: str) -> list[dict[str, Any]]:
     told = json.loads((EVALS / "skills" / skill / "triggers.json").read_text(encoding="utf-8"))
     assert told["skill_name"] == skill
-    found: list[dict[str, Any]] = told["queries"]
-    return found
+    queries: list[dict[str, Any]] = told["queries"]
+    return queries
 
 
 @each

@@ -114,9 +114,9 @@ async def test_the_tools_know_the_answer(item: dict[str, Any], shared: Path) -> 
         call = Caller(client)
         for step in item["calls"]:
             text, _ = await call(step["tool"], step["arguments"])
-    found = re.search(item["found"], text)
-    assert found, text
-    assert ", ".join(found.groups()) == item["answer"]
+    match = re.search(item["found"], text)
+    assert match, text
+    assert ", ".join(match.groups()) == item["answer"]
 
 
 def test_there_are_ten_questions() -> None:

@@ -49,8 +49,8 @@ def schema() -> Any:
 @functools.cache
 def keys() -> tuple[str, ...]:
     """All keys of the language."""
-    found = {key for part in schema()["$defs"].values() for key in part.get("properties", ())}
-    return (*sorted(found), "<<", "irsim", "")
+    names = {key for part in schema()["$defs"].values() for key in part.get("properties", ())}
+    return (*sorted(names), "<<", "irsim", "")
 
 
 @functools.cache
@@ -159,19 +159,19 @@ def _grown_text(rng: random.Random, part: Any) -> str:
 
 def _places(tree: Any, most: int = 400) -> list[tuple[Any, Any]]:
     """(container, key) of the values of a tree, each container once."""
-    found: list[tuple[Any, Any]] = []
+    places: list[tuple[Any, Any]] = []
     seen: set[int] = set()
     stack = [tree]
-    while stack and len(found) < most:
+    while stack and len(places) < most:
         part = stack.pop()
         if id(part) in seen or not isinstance(part, (dict, list)):
             continue
         seen.add(id(part))
         items: Iterator[tuple[Any, Any]] = iter(part.items()) if isinstance(part, dict) else enumerate(part)
         for key, value in list(items)[:50]:
-            found.append((part, key))
+            places.append((part, key))
             stack.append(value)
-    return found
+    return places
 
 
 def _spoilt(rng: random.Random, tree: Any) -> Any:

@@ -42,26 +42,26 @@ async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pyt
         result = await client.call_tool(
             "benchmark", {"scenarios": ["random.yaml", ROOM], "policies": ["dash", "rvo"], "seeds": 4}
         )
-    found = data_of(result)
-    assert (found["status"], found["done"], found["total"]) == ("finished", 10, 10)
+    data = data_of(result)
+    assert (data["status"], data["done"], data["total"]) == ("finished", 10, 10)
     monkeypatch.chdir(workspace)
     sources = {"random.yaml": "random.yaml", RecentTexts().remember(ROOM): ROOM}
     same = irsim.benchmark(sources, ["dash", "rvo"], 4, strict=True, limits=None)
-    kept = json.loads((workspace / found["artifact"]).read_text())
+    kept = json.loads((workspace / data["artifact"]).read_text())
     assert kept["episodes"] == json.loads(same.model_dump_json())["episodes"]
-    assert [(row["scenario"], row["behavior"], row["episodes"]) for row in found["rows"]] == [
+    assert [(row["scenario"], row["behavior"], row["episodes"]) for row in data["rows"]] == [
         (row.scenario, row.behavior, row.episodes) for row in same.rows
     ]
     first = same.rows[0]
-    assert found["rows"][0]["success"] == [
+    assert data["rows"][0]["success"] == [
         round(x, 3) for x in (first.success.rate, first.success.low, first.success.high)
     ]
-    assert "diff" in found["rows"][1]
-    assert any("nothing is random" in note for note in found["notes"])
-    assert "reproduce" not in found  # no file has the text
-    for row in found["rows"]:
+    assert "diff" in data["rows"][1]
+    assert any("nothing is random" in note for note in data["notes"])
+    assert "reproduce" not in data  # no file has the text
+    for row in data["rows"]:
         assert f"{row['success'][0]:g} [" in text_of(result)
-    assert len(json.dumps(found)) < 6000
+    assert len(json.dumps(data)) < 6000
     assert (workspace / ".irsim" / ".gitignore").read_text() == "*\n"
 
 
@@ -72,26 +72,26 @@ async def test_other_seeds_and_the_episodes_that_failed(workspace: Path) -> None
         result = await client.call_tool("benchmark", arguments)
         job = {"job_id": data_of(result)["job_id"], "detailed": True}
         more = data_of(await client.call_tool("get_job", job))["rows"][0]
-    found = data_of(result)
+    data = data_of(result)
     assert " of 6" in more["failed"]
     assert {"path_length", "spl", "min_clearance"} <= set(more)
-    assert "reproduce" not in found  # which would need a file
-    kept = json.loads((workspace / found["artifact"]).read_text())
+    assert "reproduce" not in data  # which would need a file
+    kept = json.loads((workspace / data["artifact"]).read_text())
     assert kept["seeds"] == list(range(1000, 1006))
     bad = [e["seed"] for e in kept["episodes"] if e["behavior"] == "dash" and e["outcome"] == "collision"]
-    row, same = found["rows"]
+    row, same = data["rows"]
     assert row["failed"].startswith(f"collision: seed{'s' * (len(bad) > 1)} {', '.join(map(str, bad))}")
     assert " of 6" not in row["failed"]  # which robots failed how is detailed
     assert "path_length" not in row
     assert same["behavior"] == "dash #2"
-    assert found["notes"][0] == f"dash #2 is {long}"
+    assert data["notes"][0] == f"dash #2 is {long}"
     assert set(same["diff"]) >= {"success", "collision", "timeout"}
     assert same["diff"]["success"][0] == 0
     assert same["diff"]["success"][1] < 0 < same["diff"]["success"][2]
     told = text_of(result)
     assert told.count(long) == 1  # in the note
     assert row["failed"] in told
-    assert f"seed={bad[0]} policy='dash' (collision)" in found["next"]
+    assert f"seed={bad[0]} policy='dash' (collision)" in data["next"]
 
 
 async def test_the_largest_seeds_can_be_run_again(workspace: Path) -> None:
@@ -108,15 +108,15 @@ async def test_the_largest_seeds_can_be_run_again(workspace: Path) -> None:
 async def test_means_of_fewer_episodes_say_so_and_the_period_is_told(workspace: Path) -> None:
     arguments = {"scenarios": [RANDOM], "behaviors": ["dash", "rvo"], "seeds": 10}
     result = await call(workspace, "benchmark", arguments)
-    found, told = data_of(result), text_of(result)
-    kept = json.loads((workspace / found["artifact"]).read_text())["rows"]
+    data, told = data_of(result), text_of(result)
+    kept = json.loads((workspace / data["artifact"]).read_text())["rows"]
     assert kept[0]["metrics"]["time_to_goal"]["n"] < 10
-    for row, all_of in zip(found["rows"], kept, strict=True):
+    for row, all_of in zip(data["rows"], kept, strict=True):
         n = {key: all_of["metrics"][key]["n"] for key in row if key in all_of["metrics"]}
         assert row.get("n", {}) == {key: count for key, count in n.items() if count < 10}
-    assert found["rows"][1]["diff"]["n"] == {"time_to_goal": kept[1]["paired"]["time_to_goal"]["n"]}
-    assert f"] n={found['rows'][0]['n']['time_to_goal']};" in told
-    assert f"] n={found['rows'][1]['diff']['n']['time_to_goal']}" in told
+    assert data["rows"][1]["diff"]["n"] == {"time_to_goal": kept[1]["paired"]["time_to_goal"]["n"]}
+    assert f"] n={data['rows'][0]['n']['time_to_goal']};" in told
+    assert f"] n={data['rows'][1]['diff']['n']['time_to_goal']}" in told
     assert "20 episodes, step_time 0.1 s; success" in told
 
 
@@ -132,8 +132,8 @@ async def test_times_beside_failures_are_those_of_robots_that_arrived(workspace:
 
 
 async def test_what_is_not_random_has_no_interval(workspace: Path) -> None:
-    found = data_of(await call(workspace, "benchmark", {"scenarios": [ROOM]}))
-    assert [len(found["rows"][0][key]) for key in ("success", "collision", "timeout")] == [1, 1, 1]
+    data = data_of(await call(workspace, "benchmark", {"scenarios": [ROOM]}))
+    assert [len(data["rows"][0][key]) for key in ("success", "collision", "timeout")] == [1, 1, 1]
 
 
 async def test_limits(workspace: Path) -> None:

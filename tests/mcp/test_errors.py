@@ -179,8 +179,8 @@ def test_every_code_that_is_told_anywhere_is_in_the_list() -> None:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             place = f"{name_of_file}:{getattr(node, 'lineno', 0)}"
             text = text_in(node)
-            if text is not None and (found := re.match(r"([a-z]+(?:-[a-z0-9]+)+): \S", text)):
-                told[found[1]] = place
+            if text is not None and (match := re.match(r"([a-z]+(?:-[a-z0-9]+)+): \S", text)):
+                told[match[1]] = place
             if isinstance(node, ast.Call):
                 name = getattr(node.func, "id", getattr(node.func, "attr", ""))
                 if node.args and (text := text_in(node.args[0])) is not None:

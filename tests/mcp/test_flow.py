@@ -30,9 +30,9 @@ async def test_from_a_template_to_a_run(workspace: Path, era: str) -> None:
         (workspace / "mine.yaml").write_text(scenario.replace("eastbound", "nurse"), encoding="utf-8")
 
         wrong = scenario.replace("behavior:", "behaviour:")
-        found = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": wrong}))
-        assert found["valid"] is False
-        assert [issue["fix"] for issue in found["issues"]] == ["rename it to 'behavior'"] * 2
+        report = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": wrong}))
+        assert report["valid"] is False
+        assert [issue["fix"] for issue in report["issues"]] == ["rename it to 'behavior'"] * 2
 
         source = {"scenario_path": "mine.yaml"}
         result = await client.call_tool("validate_scenario", source)

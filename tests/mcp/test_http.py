@@ -45,9 +45,9 @@ def served(
     )
     assert process.stderr is not None
     try:
-        found = re.fullmatch(r"irsim-mcp: serving (http://\S+)\n", process.stderr.readline())
-        assert found is not None
-        yield found[1], process
+        match = re.fullmatch(r"irsim-mcp: serving (http://\S+)\n", process.stderr.readline())
+        assert match is not None
+        yield match[1], process
     finally:
         process.terminate()
         process.wait(20)

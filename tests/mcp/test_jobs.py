@@ -27,10 +27,10 @@ async def test_what_takes_longer_goes_on_as_a_job(workspace: Path) -> None:
         begun = data_of(await client.call_tool("benchmark", {"scenarios": [RANDOM], "seeds": 60, "wait_s": 0}))
         assert begun["status"] == "running"
         assert begun["next"] == f"get_job job_id={begun['job_id']}"
-        found = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"], "wait_s": 50}))
-        assert (found["status"], found["done"]) == ("finished", 60)
+        ended = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"], "wait_s": 50}))
+        assert (ended["status"], ended["done"]) == ("finished", 60)
         again = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"]}))
-        assert again == found
+        assert again == ended
 
 
 @pytest.mark.slow
@@ -249,11 +249,11 @@ def descendants(pid: int) -> list[int]:
                 continue
             if fields[0] != "Z":
                 parents[int(entry.name)] = int(fields[1])
-    found, level = [], [pid]
+    processes, level = [], [pid]
     while level:
         level = [child for child, parent in parents.items() if parent in level and child not in SERVERS]
-        found += level
-    return found
+        processes += level
+    return processes
 
 
 def alive(pid: int) -> bool:

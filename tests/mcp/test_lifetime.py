@@ -165,12 +165,12 @@ async def test_of_a_run_whose_worker_is_killed_the_beginning_can_be_read(workspa
 
     async with connected(workspace) as client:
         told = error_of(await client.call_tool("run_episode", {"scenario_yaml": LONG}, progress_callback=on_progress))
-        found = re.search(r"inspect_run run_id=(\S+) shows the steps until then", told)
-        assert found is not None, told
+        match = re.search(r"inspect_run run_id=(\S+) shows the steps until then", told)
+        assert match is not None, told
         assert re.match(
             r"worker-failed: the process that did the work ended with code -9 after \d+ of [0-9,]+ steps", told
         )
-        table = data_of(await client.call_tool("inspect_run", {"run_id": found[1], "limit": 1}))
+        table = data_of(await client.call_tool("inspect_run", {"run_id": match[1], "limit": 1}))
     assert "interrupted" in json.dumps(table)
 
 
@@ -193,15 +193,15 @@ async def test_more_calls_than_workers_are_told_to_come_back(empty: Path) -> Non
 @pytest.mark.anyio
 async def test_calls_at_the_same_time_do_not_mix(empty: Path) -> None:
     goals = {2: "success", 3: "success", 4: "success"}
-    found: dict[int, Any] = {}
+    results: dict[int, Any] = {}
 
     async with connected(empty) as client, anyio.create_task_group() as tasks:
 
         async def call(goal: int) -> None:
             scenario = ROOM.replace("goal: [4, 3, 0]", f"goal: [{goal}, 3, 0]").replace("rover", f"rover_{goal}")
-            found[goal] = data_of(await client.call_tool("run_episode", {"scenario_yaml": scenario, "seed": goal}))
+            results[goal] = data_of(await client.call_tool("run_episode", {"scenario_yaml": scenario, "seed": goal}))
 
         for goal in goals:
             tasks.start_soon(call, goal)
-    assert {goal: data["outcome"] for goal, data in found.items()} == goals
-    assert all(data["robots"][0]["name"] == f"rover_{goal}" and data["seed"] == goal for goal, data in found.items())
+    assert {goal: data["outcome"] for goal, data in results.items()} == goals
+    assert all(data["robots"][0]["name"] == f"rover_{goal}" and data["seed"] == goal for goal, data in results.items())

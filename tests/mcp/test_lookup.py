@@ -181,8 +181,8 @@ async def test_other_resources_do_not_exist(empty: Path, uri: str) -> None:
 async def test_names_are_completed(empty: Path) -> None:
     async with connected(empty) as client:
         ref = ResourceTemplateReference(type="ref/resource", uri="irsim://templates/{name}")
-        found = await client.complete(ref, {"name": "name", "value": "c"})
-    assert {"car-park", "circle-swap", "corridor-passing", "crossing"} <= set(found.completion.values)
+        completed = await client.complete(ref, {"name": "name", "value": "c"})
+    assert {"car-park", "circle-swap", "corridor-passing", "crossing"} <= set(completed.completion.values)
 
 
 async def test_several_topics_are_answered_in_one_call(empty: Path) -> None:

@@ -35,9 +35,9 @@ async def talk(client: Client, who: int, calls: int, runs: list[str]) -> None:
         kind = rng.choice(("validate", "run", "run", "inspect", "lookup", "broken", "render", "benchmark"))
         if kind == "run" or (kind in ("inspect", "render") and last is None):
             seed = 1000 * who + number
-            found = data_of(await patiently(client, "run_episode", {"scenario_yaml": mine, "seed": seed}))
-            assert (found["seed"], found["robots"][0]["name"], found["outcome"]) == (seed, f"rover_{who}", "success")
-            last = found["run_id"]
+            run = data_of(await patiently(client, "run_episode", {"scenario_yaml": mine, "seed": seed}))
+            assert (run["seed"], run["robots"][0]["name"], run["outcome"]) == (seed, f"rover_{who}", "success")
+            last = run["run_id"]
             runs.append(last)
         elif kind == "validate":
             assert data_of(await patiently(client, "validate_scenario", {"scenario_yaml": mine}))["valid"]

@@ -44,8 +44,8 @@ async def looked(empty: Path, text: str, **more: object) -> dict[str, str]:
     given = {"scenario_yaml": text, "overlays": ["plan"], "return_image": False, **more}
     lines = text_of(await call(empty, "render_snapshot", given)).splitlines()
     kinds = {"finding": r"1\. .*(narrow-passage|goal-unreachable)", "table": "Narrowest passage"}
-    found = {kind: line for kind, start in kinds.items() for line in lines if re.match(start, line)}
-    return {"first": lines[0], **found}
+    first_lines = {kind: line for kind, start in kinds.items() for line in lines if re.match(start, line)}
+    return {"first": lines[0], **first_lines}
 
 
 def places(line: str) -> set[str]:

@@ -22,15 +22,15 @@ async def test_a_perturbed_benchmark_and_one_of_its_episodes(workspace: Path, mo
     async with connected(workspace) as client:
         arguments = {"scenarios": ["crossing.yaml"], "seeds": 6, "perturb": spreads}
         result = await client.call_tool("benchmark", arguments)
-        found, told = data_of(result), text_of(result)
-        kept = json.loads((workspace / found["artifact"]).read_text())
+        data, told = data_of(result), text_of(result)
+        kept = json.loads((workspace / data["artifact"]).read_text())
         monkeypatch.chdir(workspace)
         same = irsim.benchmark("crossing.yaml", seeds=6, perturb=spreads, strict=True)
         assert kept["episodes"] == json.loads(same.model_dump_json())["episodes"]
-        assert len(found["rows"][0]["success"]) == 3  # random, so with an interval
-        assert any(note.startswith("perturbed, drawn uniformly for each seed: start ±0.5 m") for note in found["notes"])
+        assert len(data["rows"][0]["success"]) == 3  # random, so with an interval
+        assert any(note.startswith("perturbed, drawn uniformly for each seed: start ±0.5 m") for note in data["notes"])
         assert "Note: perturbed" in told
-        assert "--seeds 6 --perturb position=0.5 --perturb speed=0.1,delay=1,objects=walker" in found["reproduce"]
+        assert "--seeds 6 --perturb position=0.5 --perturb speed=0.1,delay=1,objects=walker" in data["reproduce"]
         call = re.search(r"run_episode scenario_path='crossing.yaml' seed=(\d) perturb='([^']+)' \(collision\)", told)
         assert call is not None
         again = await client.call_tool(
@@ -70,18 +70,18 @@ async def test_seeds_without_room_are_counted_beside_n(workspace: Path) -> None:
     (workspace / "crowded.yaml").write_text(CROWDED % 15)
     async with connected(workspace) as client:
         result = await client.call_tool("benchmark", {"scenarios": ["crowded.yaml"], "seeds": 12})
-        found, first = data_of(result), text_of(result).splitlines()[0]
-        table = data_of(await client.call_tool("inspect_run", {"run_id": found["job_id"]}))
-    kept = json.loads((workspace / found["artifact"]).read_text())
+        data, first = data_of(result), text_of(result).splitlines()[0]
+        table = data_of(await client.call_tool("inspect_run", {"run_id": data["job_id"]}))
+    kept = json.loads((workspace / data["artifact"]).read_text())
     without = sum(episode["outcome"] == "placement-crowded" for episode in kept["episodes"])
     assert 0 < without < 12
-    [row] = found["rows"]
+    [row] = data["rows"]
     assert row["episodes"] == 12 - without
     assert row["incidents"]["placement-crowded"] == without
     assert f"{without} of 12 seeds had no room and do not count (placement-crowded): " in first
     assert f"/{12 - without};" in first
     assert "episodes with placement-crowded: seeds 0, 1, 2" in text_of(result)
-    assert "placement-crowded" not in found["next"]
+    assert "placement-crowded" not in data["next"]
     assert f"and {without} without room (placement-crowded)" in table["summary"]
 
 

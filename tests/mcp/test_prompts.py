@@ -111,8 +111,8 @@ async def test_completions(workspace: Path, era: str) -> None:
         assert await completed(client, design, "kinematics", "o") == ["omni", "omni_angular"]
         assert await completed(client, design, "difficulty", "") == ["easy", "medium", "hard"]
         assert await completed(client, debug, "run_id", "room") == [run_id]
-        found = await completed(client, compare, "scenario", "cross")
-        assert found == ["crossing-mine.yaml", *(name for name in template_names() if name.startswith("cross"))]
+        crossings = await completed(client, compare, "scenario", "cross")
+        assert crossings == ["crossing-mine.yaml", *(name for name in template_names() if name.startswith("cross"))]
         everything = await completed(client, compare, "scenario", "")
         assert "room.yaml" in everything
         assert not {"link.yaml", "evil\x1b[2J.yaml"} & set(everything)

@@ -65,9 +65,9 @@ async def test_resources_tell_what_skills_are_for(empty: Path) -> None:
         listed = {str(item.uri): item for item in (await client.list_resources()).resources}
     for folder in FOLDERS:
         head = yaml.safe_load((folder / "SKILL.md").read_text(encoding="utf-8").split("---\n")[1])
-        found = listed[f"skill://{folder.name}/SKILL.md"]
-        assert found.description == " ".join(head["description"].split())
-        assert found.mime_type == "text/markdown"
+        resource = listed[f"skill://{folder.name}/SKILL.md"]
+        assert resource.description == " ".join(head["description"].split())
+        assert resource.mime_type == "text/markdown"
 
 
 async def test_others_are_unknown(empty: Path) -> None:

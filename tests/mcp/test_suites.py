@@ -22,26 +22,26 @@ async def test_a_suite_is_a_benchmark_and_a_failed_episode_can_be_looked_at(work
             "benchmark",
             {"scenarios": ["random_polygons_v1/robots-5"], "policies": ["orca", "dash"], "seeds": 3},
         )
-        found = data_of(result)
-        kept = json.loads((workspace / found["artifact"]).read_text())
+        data = data_of(result)
+        kept = json.loads((workspace / data["artifact"]).read_text())
         plan = suite_plan("random_polygons_v1", policies=["orca", "dash"], seeds=3, scenarios=["robots-5"])
         same = measure_plan(plan)
-        timing = json.loads((workspace / found["artifact"]).with_name("timing.json").read_text())["policies"]
+        timing = json.loads((workspace / data["artifact"]).with_name("timing.json").read_text())["policies"]
         assert set(timing) == set(same.behaviors)
-        assert all(found["per_robot"]["mean_ms"] > 0 for found in timing.values())
+        assert all(measured["per_robot"]["mean_ms"] > 0 for measured in timing.values())
         assert kept == json.loads(same.model_dump_json())
-        assert [row["behavior"] for row in found["rows"][:2]] == ["orca", "dash"]
-        assert found["reproduce"] == (
+        assert [row["behavior"] for row in data["rows"][:2]] == ["orca", "dash"]
+        assert data["reproduce"] == (
             "irsim benchmark random_polygons_v1 --policies orca,dash --scenario robots-5 --seeds 3"
         )
-        assert "scenario_path='random_polygons_v1/robots-5/freeze' seed=100 policy='dash'" in found["next"]
+        assert "scenario_path='random_polygons_v1/robots-5/freeze' seed=100 policy='dash'" in data["next"]
         again = data_of(
             await client.call_tool(
                 "run_episode", {"scenario_path": "random_polygons_v1/robots-5/freeze", "seed": 100, "policy": "dash"}
             )
         )
         assert again["outcome"] == "collision"
-        listed = data_of(await client.call_tool("inspect_run", {"run_id": found["job_id"]}))
+        listed = data_of(await client.call_tool("inspect_run", {"run_id": data["job_id"]}))
         assert listed["rows"][0][1] == "dash"
 
 
@@ -49,8 +49,8 @@ async def test_a_suite_runs_files_of_the_workspace(workspace: Path) -> None:
     save_network(workspace / "goal.npz", go_to_goal())
     async with connected(workspace) as client:
         arguments = {"scenarios": ["random_polygons_v1/robots-5/yield"], "policies": ["orca", "goal.npz"], "seeds": 2}
-        found = data_of(await client.call_tool("benchmark", arguments))
-        assert [row["episodes"] for row in found["rows"]] == [2, 2]
+        data = data_of(await client.call_tool("benchmark", arguments))
+        assert [row["episodes"] for row in data["rows"]] == [2, 2]
         outside = {**arguments, "policies": ["/etc/net.npz"]}
         assert "workspace" in text_of(await client.call_tool("benchmark", outside))
 
@@ -58,31 +58,31 @@ async def test_a_suite_runs_files_of_the_workspace(workspace: Path) -> None:
 async def test_a_suite_runs_other_seeds(workspace: Path) -> None:
     async with connected(workspace) as client:
         arguments = {"scenarios": ["random_polygons_v1/robots-5/yield"], "policies": ["dash"], "seeds": 2}
-        found = data_of(await client.call_tool("benchmark", arguments | {"first_seed": 7}))
-        assert found["reproduce"].endswith("--scenario robots-5/yield --seeds 7-8")
+        data = data_of(await client.call_tool("benchmark", arguments | {"first_seed": 7}))
+        assert data["reproduce"].endswith("--scenario robots-5/yield --seeds 7-8")
         assert data_of(await client.call_tool("benchmark", arguments))["reproduce"].endswith("--seeds 2")
 
 
 async def test_an_episode_of_a_suite_knows_the_policies_of_the_suite(workspace: Path) -> None:
     async with connected(workspace) as client:
         arguments = {"scenario_path": "random_polygons_v1/robots-5/yield", "seed": 100, "max_steps": 3}
-        found = data_of(await client.call_tool("run_episode", arguments | {"policy": "ppo"}))
-        assert found["behavior"] == "multi_robot"
-        found = data_of(await client.call_tool("run_episode", arguments | {"policy": "orca"}))
-        assert found["behavior"].startswith("{name: orca, neighborDist: 5")
+        data = data_of(await client.call_tool("run_episode", arguments | {"policy": "ppo"}))
+        assert data["behavior"] == "multi_robot"
+        data = data_of(await client.call_tool("run_episode", arguments | {"policy": "orca"}))
+        assert data["behavior"].startswith("{name: orca, neighborDist: 5")
 
 
 async def test_a_stopped_suite_is_named_like_a_finished_one(workspace: Path) -> None:
     async with connected(workspace) as client:
         arguments = {"scenarios": ["random_polygons_v1"], "policies": ["orca", "sarl_multi_robot"], "seeds": 30}
         job = data_of(await client.call_tool("benchmark", arguments | {"wait_s": 2}))["job_id"]
-        found = data_of(await client.call_tool("get_job", {"job_id": job, "cancel": True}))
-        while not found["done"]:  # the machine is slow
+        data = data_of(await client.call_tool("get_job", {"job_id": job, "cancel": True}))
+        while not data["done"]:  # the machine is slow
             job = data_of(await client.call_tool("benchmark", arguments | {"wait_s": 20}))["job_id"]
-            found = data_of(await client.call_tool("get_job", {"job_id": job, "cancel": True}))
-        assert found["status"] == "cancelled"
-        assert found["rows"][0]["behavior"] == "orca"
-        assert found["reproduce"] == "irsim benchmark random_polygons_v1 --policies orca,sarl_multi_robot --seeds 30"
+            data = data_of(await client.call_tool("get_job", {"job_id": job, "cancel": True}))
+        assert data["status"] == "cancelled"
+        assert data["rows"][0]["behavior"] == "orca"
+        assert data["reproduce"] == "irsim benchmark random_polygons_v1 --policies orca,sarl_multi_robot --seeds 30"
         listed = data_of(await client.call_tool("inspect_run", {"run_id": job}))
         assert "scenario_path='random_polygons_v1/robots-5/freeze'" in listed["next"]
 

@@ -138,8 +138,8 @@ async def test_says_what_an_edit_changed(workspace: Path) -> None:
 async def test_an_edit_is_told_once(workspace: Path) -> None:
     before = ROOM.replace("height: 6}", "height: 6}  # 8 m wide")
     after = before.replace("width: 8", "width: 9").replace("# 8 m", "# 9 m").replace("name: rover", "number: 2")
-    found = await call(workspace, "validate_scenario", {"scenario_yaml": after, "base": before})
-    lines = data_of(found)["changes"]
+    result = await call(workspace, "validate_scenario", {"scenario_yaml": after, "base": before})
+    lines = data_of(result)["changes"]
     assert [line for line in lines if "width" in line] == [lines[0], "changed world.width: 8 -> 9"]
     assert "no comment lost, 1 comment changed" in lines[0]
     assert "comment changed: # 8 m wide -> # 9 m wide" in lines
@@ -149,8 +149,10 @@ async def test_an_edit_is_told_once(workspace: Path) -> None:
 async def test_what_was_there_before_an_edit_is_marked(workspace: Path) -> None:
     before = ROOM.replace("[4, 3, 0]", "[40, 3, 0]")
     after = before.replace("state: [1, 1, 0]", "state: [-1, 1, 0]")
-    found = await call(workspace, "validate_scenario", {"scenario_yaml": after, "base": before})
-    issues = {issue["path"]: issue["message"] for issue in data_of(found)["issues"] if issue["code"] == "outside-world"}
+    result = await call(workspace, "validate_scenario", {"scenario_yaml": after, "base": before})
+    issues = {
+        issue["path"]: issue["message"] for issue in data_of(result)["issues"] if issue["code"] == "outside-world"
+    }
     assert issues["robot[0].goal"].endswith(" (also in base)")
     assert "also in base" not in issues["robot[0].state"]
 

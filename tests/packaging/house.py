@@ -30,23 +30,23 @@ _PROBE = Path(__file__).with_name("house_probe.py")
 @cache
 def sources() -> dict[Path, str]:
     """File, relative to the checkout -> its text, for all Python of the three packages."""
-    found = {}
+    texts = {}
     for package in PACKAGES:
         for path in sorted((ROOT / package).rglob("*.py")):
-            found[path.relative_to(ROOT)] = path.read_text(encoding="utf-8")
-    return found
+            texts[path.relative_to(ROOT)] = path.read_text(encoding="utf-8")
+    return texts
 
 
 @cache
 def trees() -> dict[Path, ast.Module]:
     """File -> its syntax tree; a program that is a template of the evals has none."""
-    found = {}
+    parsed = {}
     for path, text in sources().items():
         try:
-            found[path] = ast.parse(text)
+            parsed[path] = ast.parse(text)
         except SyntaxError:
             continue
-    return found
+    return parsed
 
 
 def object_types() -> list[str]:
@@ -61,16 +61,16 @@ def object_types() -> list[str]:
 
 def _fields(node: ast.ClassDef) -> set[str]:
     """Names of annotated fields, of properties, and of what ``__init__`` assigns, without leading underscores."""
-    found = set()
+    names = set()
     for item in node.body:
         if isinstance(item, ast.AnnAssign) and isinstance(item.target, ast.Name):
-            found.add(item.target.id)
+            names.add(item.target.id)
         elif isinstance(item, ast.FunctionDef):
             if any(ast.unparse(word).endswith("property") for word in item.decorator_list):
-                found.add(item.name)
+                names.add(item.name)
             elif item.name == "__init__":
-                found |= {name.attr for name in ast.walk(item) if _is_own(name)}
-    return {name.strip("_") for name in found}
+                names |= {name.attr for name in ast.walk(item) if _is_own(name)}
+    return {name.strip("_") for name in names}
 
 
 def _is_own(node: ast.AST) -> bool:

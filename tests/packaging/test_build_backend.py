@@ -70,8 +70,8 @@ def test_any_usual_compiler_on_path_will_do(
     backend: ModuleType, bare: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     monkeypatch.setattr(backend, "_succeeds", lambda *command: True)  # Xcode, on macOS
-    found = tool(bare, name)
-    assert backend.find_compiler() == str(found)
+    compiler = tool(bare, name)
+    assert backend.find_compiler() == str(compiler)
     assert not any("ziglang" in requirement for requirement in backend.get_requires_for_build_wheel())
 
 

@@ -32,13 +32,13 @@ def listed_rooms() -> dict[str, str]:
 @cache
 def sources() -> dict[str, Path]:
     """Module -> file, for all Python of the two packages."""
-    found = {}
+    files = {}
     for package, folder in (("irsim", ROOT / "irsim"), ("irsim_mcp", ROOT / "mcp_server" / "irsim_mcp")):
         for path in folder.rglob("*.py"):
             parts = path.relative_to(folder).with_suffix("").parts
             if parts[:2] != ("core", "backend"):
-                found[".".join([package, *parts]).removesuffix(".__init__")] = path
-    return found
+                files[".".join([package, *parts]).removesuffix(".__init__")] = path
+    return files
 
 
 @cache
@@ -81,7 +81,7 @@ def circles(graph: Mapping[str, list[str]]) -> list[list[str]]:
     index: dict[str, int] = {}
     low: dict[str, int] = {}
     stack: list[str] = []
-    found: list[list[str]] = []
+    groups: list[list[str]] = []
 
     def visit(node: str) -> None:
         index[node] = low[node] = len(index)
@@ -95,12 +95,12 @@ def circles(graph: Mapping[str, list[str]]) -> list[list[str]]:
             group = stack[stack.index(node) :]
             del stack[stack.index(node) :]
             if len(group) > 1:
-                found.append(sorted(group))
+                groups.append(sorted(group))
 
     for node in graph:
         if node not in index:
             visit(node)
-    return found
+    return groups
 
 
 def test_the_rooms_are_those_of_the_guide() -> None:

@@ -61,8 +61,8 @@ def look(env: Any, more: Sequence[str] = ()) -> dict[str, Any]:
             for place, sensor in enumerate(robot.sensors):
                 seen.update(read_scan(sensor.get_scan(), 100 * index + place + 10))
         if "fov" in more:
-            found = {o.id for o in robot.get_fov_detected_objects()}
-            seen[f"in_view_{index}"] = [o.id in found for o in objects]
+            detected = {o.id for o in robot.get_fov_detected_objects()}
+            seen[f"in_view_{index}"] = [o.id in detected for o in objects]
             seen[f"detected_{index}"] = [o is not robot and robot.fov_detect_object(o) for o in objects]
     if "fog" in more:
         seen["explored"] = np.array(env._world.fog_map.explored)

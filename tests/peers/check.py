@@ -143,12 +143,12 @@ def served() -> Iterator[str]:
             for _ in range(600):
                 time.sleep(0.1)
                 told.seek(0)
-                found = re.search(r"serving (http\S+)", told.read())
-                if found:
+                match = re.search(r"serving (http\S+)", told.read())
+                if match:
                     break
             else:
                 raise Failed("the fixture server did not start")
-            yield found[1]
+            yield match[1]
         finally:
             process.terminate()
             process.wait()
@@ -196,18 +196,18 @@ def load(peers: Peers, workspace: str) -> str:
 def strict(peers: Peers, workspace: str, era: str) -> str:
     """The lint of tool schemas."""
     told = inspector(peers, workspace, "--method", "tools/list", "--strict", "--protocol-era", era)
-    found = re.search(r"(\d+) errors?, (\d+) warnings?", told)
-    return found[0] if found else "clean"
+    match = re.search(r"(\d+) errors?, (\d+) warnings?", told)
+    return match[0] if match else "clean"
 
 
 def skills_over_mcp(peers: Peers, workspace: str) -> str:
     """Digests, sizes and heads of all files of the skills."""
     options = ["--protocol-era", "modern", "--method", "skills/list", "--verify", "--require-digests"]
     told = inspector(peers, workspace, *options)
-    found = re.search(r"Verified \d+ skills? and \d+ files?", told)
-    if found is None:
+    match = re.search(r"Verified \d+ skills? and \d+ files?", told)
+    if match is None:
         raise Failed(told)
-    return found[0]
+    return match[0]
 
 
 def skill_folders(peers: Peers) -> str:

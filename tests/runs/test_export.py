@@ -166,9 +166,12 @@ def test_several_runs_are_one_table(traffic: Run, room: Path) -> None:
 
 def test_formats_are_found_by_module_and_suffix() -> None:
     for name in format_names():
-        found = find_format(name, None)
-        assert found.name == name
-        assert find_format(None, Path(f"x{'' if found.folder else f'.{name}'}{found.suffix}")) is found
+        export_format = find_format(name, None)
+        assert export_format.name == name
+        assert (
+            find_format(None, Path(f"x{'' if export_format.folder else f'.{name}'}{export_format.suffix}"))
+            is export_format
+        )
     assert {"parquet", "csv", "npz", "mcap", "minari"} <= set(format_names())
     for name, out, message in (
         ("parqet", None, "unknown-format: 'parqet' is not a format of runs. Fix: did you mean parquet"),

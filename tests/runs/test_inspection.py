@@ -183,9 +183,9 @@ def test_speeds(pair: Run) -> None:
 def test_speeds_are_those_until_it_arrived(workspace: Path) -> None:
     text = PAIR.replace("goal: [9, 3, 0]", "goal: [4, 3, 0]")  # left is there long before right
     run = open_run(str(irsim.run(text=text, seed=0, record=True).run_id))
-    found = irsim.benchmark(text, seeds=[0], workers=1).episodes[0].metrics
+    metrics = irsim.benchmark(text, seeds=[0], workers=1).episodes[0].metrics
     told = [dict(zip(t.columns, t.rows[0], strict=True)) for t in [inspect_run(run, view="speeds", robot="left")]]
-    assert found["velocity_avg"] == pytest.approx(1.0)
+    assert metrics["velocity_avg"] == pytest.approx(1.0)
     assert told[0]["mean_speed"] == pytest.approx(1.0)
     assert told[0]["path_length"] < 3.2
     after = inspect_run(run, view="speeds", robot="left", from_step=50)

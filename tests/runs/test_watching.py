@@ -146,8 +146,8 @@ def test_who_comes_later_enters_with_the_next_step() -> None:
     shape = {"name": "circle", "radius": 0.25}
     env.add_object(env.create_robot(name="late", kinematics={"name": "omni"}, shape=shape, state=[3.5, 5, 0]))
     env.step()
-    found = [(e.kind, e.step, e.object, e.partner, e.zone) for e in events_of(env) if "late" in (e.object, e.partner)]
-    assert found == [("zone_entry", 4, "late", None, "box"), ("sight_start", 4, "camera", "late", None)]
+    events = [(e.kind, e.step, e.object, e.partner, e.zone) for e in events_of(env) if "late" in (e.object, e.partner)]
+    assert events == [("zone_entry", 4, "late", None, "box"), ("sight_start", 4, "camera", "late", None)]
 
 
 def test_a_field_of_view_that_is_taken_away_sees_nobody() -> None:

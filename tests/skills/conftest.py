@@ -34,7 +34,7 @@ def fences(text: str, language: str) -> list[str]:
 def spans(text: str) -> list[str]:
     """Inline code, on one line, outside of fenced blocks."""
     prose = re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
-    return [" ".join(found.split()) for found in re.findall(r"`([^`]+)`", prose)]
+    return [" ".join(code.split()) for code in re.findall(r"`([^`]+)`", prose)]
 
 
 def execute(words: list[str], folder: Path) -> str:

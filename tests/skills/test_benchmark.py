@@ -37,8 +37,8 @@ def verdict(path: Path, *words: str) -> tuple[int, dict[str, Any]]:
 
 
 def shares(row: dict[str, Any]) -> str:
-    found = row["success"]
-    return f"{100 * found['rate']:.0f} % [{100 * found['low']:.0f}, {100 * found['high']:.0f}]"
+    success = row["success"]
+    return f"{100 * success['rate']:.0f} % [{100 * success['low']:.0f}, {100 * success['high']:.0f}]"
 
 
 @pytest.mark.slow(10)

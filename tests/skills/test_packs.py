@@ -80,7 +80,7 @@ def test_links_lead_to_files_of_the_skill_and_every_page_can_be_reached(skill: P
             assert target.is_file(), f"{page.name}: {link}"
             assert target.is_relative_to(skill)
     linked = {(skill / link).resolve() for link in re.findall(r"\]\(([^)#]+)\)", parts(skill / "SKILL.md")[1])}
-    linked |= {page for found in linked for page in found.parent.glob("*.md")}
+    linked |= {page for target_page in linked for page in target_page.parent.glob("*.md")}
     assert set(pages) - linked == {skill / "SKILL.md"}
 
 

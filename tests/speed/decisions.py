@@ -53,9 +53,9 @@ def main(arguments: list[str] | None = None) -> int:
     print(f"| {' | '.join(_HEAD)} |\n|{'---|' * len(_HEAD)}")
     for name in given.policies or POLICIES:
         for robots in given.robots:
-            found = 1e3 * times(name, robots, given.seeds) * np.array([1.0, 1e-3])
-            each = np.repeat(found[:, 0] / found[:, 1], found[:, 1].astype(np.int64))
-            values = each.mean(), np.percentile(each, 95), found[:, 0].mean()
+            timed = 1e3 * times(name, robots, given.seeds) * np.array([1.0, 1e-3])
+            each = np.repeat(timed[:, 0] / timed[:, 1], timed[:, 1].astype(np.int64))
+            values = each.mean(), np.percentile(each, 95), timed[:, 0].mean()
             print(f"| {name} | {robots} | {' | '.join(f'{value:.4g} ms' for value in values)} |", flush=True)
     return 0
 

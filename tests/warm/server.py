@@ -33,10 +33,10 @@ def load(name: str) -> None:
     """Import a module, or with ``.*`` at the end a package and all that is in it, but for programs and old names."""
     package = importlib.import_module(name.removesuffix(".*"))
     if name.endswith(".*"):
-        for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            if not found.name.endswith(".__main__") and not found.name.startswith("irsim.compat."):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if not module.name.endswith(".__main__") and not module.name.startswith("irsim.compat."):
                 with suppress(ExtraError):  # a module for libraries that are not installed here
-                    importlib.import_module(found.name)
+                    importlib.import_module(module.name)
 
 
 def serve(address: str) -> Program | None:

@@ -114,14 +114,14 @@ class _Handler(BaseHTTPRequestHandler):
         body = json.loads(self.rfile.read(int(self.headers["content-length"])))
         if self.path.partition("?")[0] != "/v1/messages":
             return self._json(404, {"type": "error", "error": {"type": "not_found_error", "message": self.path}})
-        found = self.server.api.answer(body, {k.lower(): v for k, v in self.headers.items()})  # type: ignore[attr-defined]
-        if isinstance(found, Fault):
-            error = {"type": "error", "error": {"type": found.kind, "message": found.message}}
-            return self._json(found.status, error, found.headers)
-        message = _message(found, body["model"], turn_of(body))
+        answer = self.server.api.answer(body, {k.lower(): v for k, v in self.headers.items()})  # type: ignore[attr-defined]
+        if isinstance(answer, Fault):
+            error = {"type": "error", "error": {"type": answer.kind, "message": answer.message}}
+            return self._json(answer.status, error, answer.headers)
+        message = _message(answer, body["model"], turn_of(body))
         if not body.get("stream"):
             return self._json(200, message)
-        return self._stream(message, found.cut_after)
+        return self._stream(message, answer.cut_after)
 
     def _json(self, status: int, data: dict[str, Any], headers: dict[str, str] | None = None) -> None:
         content = json.dumps(data).encode()

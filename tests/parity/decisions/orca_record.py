@@ -108,8 +108,8 @@ def answer(data: dict[str, np.ndarray]) -> np.ndarray | None:
         preferred = way * (data["top"][k] / distance) if distance >= 0.1 else way * 0.0
         simulator.set_agent_pref_velocity(k, tuple(float(v) for v in preferred))
     simulator.do_step()
-    found = [simulator.get_agent_velocity(k) for k in range(AGENTS)]
-    return np.array([[v.x, v.y] for v in found])
+    velocities = [simulator.get_agent_velocity(k) for k in range(AGENTS)]
+    return np.array([[v.x, v.y] for v in velocities])
 
 
 def main() -> None:

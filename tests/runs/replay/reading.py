@@ -32,6 +32,6 @@ def unpacked(data: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def data_in(page: str) -> bytes:
     """The packed run in a page."""
-    found = re.search(r'<script type="application/octet-stream" id="data">([A-Za-z0-9+/=]*)</script>', page)
-    assert found is not None
-    return base64.b64decode(found[1])
+    match = re.search(r'<script type="application/octet-stream" id="data">([A-Za-z0-9+/=]*)</script>', page)
+    assert match is not None
+    return base64.b64decode(match[1])

@@ -17,10 +17,10 @@ def test_a_block_is_read_back(rows: list[list[int]], order: int, text: str) -> N
     columns = Columns()
     columns.add("table", table, order)
     columns.add("flat", table.ravel(), order)
-    head, found = unpacked(columns.block({"text": text}))
+    head, arrays = unpacked(columns.block({"text": text}))
     assert head["text"] == text
-    np.testing.assert_array_equal(found["table"], table)
-    np.testing.assert_array_equal(found["flat"], table.ravel())
+    np.testing.assert_array_equal(arrays["table"], table)
+    np.testing.assert_array_equal(arrays["flat"], table.ravel())
 
 
 def test_smooth_series_are_small() -> None:
@@ -31,8 +31,8 @@ def test_smooth_series_are_small() -> None:
 
 
 def test_what_is_not_finite_is_quantised_all_the_same() -> None:
-    found = quantised([np.nan, np.inf, -np.inf, 0.26, 1e300], 0.125)
-    assert found.tolist() == [0, 2**31 - 1, 1 - 2**31, 2, 2**31 - 1]
+    steps = quantised([np.nan, np.inf, -np.inf, 0.26, 1e300], 0.125)
+    assert steps.tolist() == [0, 2**31 - 1, 1 - 2**31, 2, 2**31 - 1]
 
 
 def test_changes() -> None:

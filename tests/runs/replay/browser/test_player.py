@@ -153,20 +153,20 @@ def test_everything_is_reached_by_tab_named_and_seen_in_focus(shown: Any) -> Non
     reached = []
     for _ in range(60):
         shown.keyboard.press("Tab")
-        found = shown.evaluate(
+        focused = shown.evaluate(
             """() => {
                 const e = document.activeElement, s = getComputedStyle(e);
                 const name = e.ariaLabel || e.labels?.[0]?.textContent || e.textContent;
                 return [e.id, name, s.outlineStyle, parseFloat(s.outlineWidth)];
             }"""
         )
-        if found[0] in reached:
+        if focused[0] in reached:
             break
-        if found[0]:
-            reached.append(found[0])
-            assert found[1].strip(), found
-            assert found[2] != "none", found
-            assert found[3] >= 2, found
+        if focused[0]:
+            reached.append(focused[0])
+            assert focused[1].strip(), focused
+            assert focused[2] != "none", focused
+            assert focused[3] >= 2, focused
     assert {
         "theme",
         "help",
