@@ -71,7 +71,7 @@ def report(ours: dict[Key, Outcomes], peer: dict[Key, Outcomes]) -> str:
     ]
     wanted = sum(len(group.starts) for group in groups(PEER_BEHAVIORS))
     there = sum(len(theirs.letters) for theirs in peer.values())
-    parts = [f"The reference of 2.12 has {there} of {wanted} starts; the tables compare those that both have."]
+    parts = [f"The reference of 2.12 has {there} of {wanted} starts; the tables compare starts that both have."]
     parts += [table(pools(ours, peer, name), head) for head, name in names]
     alone = {key: mine for key, mine in ours.items() if key[0] not in PEER_BEHAVIORS}
     parts.append("Ours only:\n\n" + _alone(alone))

@@ -3,8 +3,8 @@
 A *case* is a layout: where robots start, which way they look, where they want to go, and which walls are there. Its
 start 0 is exact, with all its symmetries; starts 1, 2, … move every robot by up to 0.2 m in x and in y, drawn from a
 generator of its own, so that every behavior, drive, step and spelling of a wall gets the same starts. Random scenes
-are drawn anew for each start instead. The keys of the scenarios are those that IR-SIM 2.12 has, and this module needs
-the standard library only: the worker imports it into the other simulator's interpreter, too.
+are drawn anew for each start instead. The scenarios use keys of IR-SIM 2.12 only, and this module needs only the
+standard library: the worker imports it into the other simulator's interpreter, too.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ __all__ = [
 
 BEHAVIORS = ("rvo", "sfm", "orca", "avocado", "footprint_orca")
 PEER_BEHAVIORS = BEHAVIORS[:3]
-"""Those that ir-sim 2.12 has as well."""
+"""Behaviors that ir-sim 2.12 has as well."""
 DRIVES = ("diff", "omni")
 STEPS_S = (0.1, 0.2, 0.05)
 """Lengths of a step; the first is the one with all starts."""
@@ -70,7 +70,7 @@ class Wall:
 
 @dataclass(frozen=True)
 class Layout:
-    """What a case looks like at one start."""
+    """Robots and walls of a case at one start."""
 
     robots: tuple[Robot, ...]
     walls: tuple[Wall, ...] = ()

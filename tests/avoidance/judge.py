@@ -1,4 +1,4 @@
-"""What happened in an episode, from the poses alone: the same code for every simulator.
+"""Judges an episode from the poses alone, with the same code for every simulator.
 
 Robots are discs, walls solid outlines. Between two poses a disc moves on the straight line between them, which is the
 motion of both simulators under Euler's method; so the least distance of two discs, or of a disc and an edge, within a
@@ -20,16 +20,16 @@ Floats = NDArray[np.float64]
 TOUCH_M = 1e-6
 """Overlap from which on bodies touch."""
 STILL_S = 5.0
-"""Time in which somebody has to move by a millimetre; an episode in which nobody does has got stuck."""
+"""Time in which at least one robot has to move by a millimetre; otherwise the episode is stuck."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of one start.
+    """Result of one start.
 
     Attributes:
-        outcome: ``a`` everybody arrived, or got across and went on to the time limit; ``c`` bodies touch at the end of
-            a step, which ends the episode; ``t`` time is up, or nobody moves any more.
+        outcome: ``a`` all robots arrived, or got across and went on to the time limit; ``c`` bodies touch at the end of
+            a step, which ends the episode; ``t`` time is up, or no robot moves any more.
         seconds: Time of the arrival, of the contact, or of the end [s].
         between: Number of pairs and steps in which bodies touch within a step but at neither of its ends, up to the
             outcome.
@@ -43,12 +43,12 @@ class Verdict:
 
     @property
     def success(self) -> bool:
-        """Whether everybody arrived and nobody touched anything, within steps neither."""
+        """Whether all robots arrived without a contact, within steps or at their ends."""
         return self.outcome == "a" and self.between == 0
 
     @property
     def touched(self) -> bool:
-        """Whether anybody touched anything, at the end of a step or within one."""
+        """Whether a robot touched anything, at the end of a step or within one."""
         return self.outcome == "c" or self.between > 0
 
 
@@ -73,7 +73,7 @@ class Judge:
     loop: bool = False
 
     def ended(self, places: Any) -> bool:
-        """Whether somebody touches something at one of these moments, or all have arrived; (T, N, 2) positions [m]."""
+        """Whether a robot touches something at one of these moments, or all have arrived; (T, N, 2) positions [m]."""
         path = np.asarray(places, dtype=np.float64)
         if at_ends(path, self.walls, self.radius).min(initial=np.inf) < -TOUCH_M:
             return True
@@ -114,7 +114,7 @@ def _verdict(outcome: str, last: int, ends: Floats, within: Floats, dt: float) -
 
 
 def at_rest(places: Any, dt: float) -> bool:
-    """Whether nobody has moved by a millimetre for a while."""
+    """Whether no robot has moved by a millimetre for a while."""
     steps = round(STILL_S / dt)
     if len(places) <= steps:
         return False

@@ -20,10 +20,10 @@ Key = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Outcomes:
-    """What became of the starts of a group, in their order.
+    """Results of the starts of a group, in their order.
 
     Attributes:
-        letters: ``a`` everybody arrived, ``c`` bodies touch at the end of a step, ``t`` time is up.
+        letters: ``a`` all robots arrived, ``c`` bodies touch at the end of a step, ``t`` time is up.
         between: Contacts within steps of each start.
         seconds: Time of each outcome [s].
         row: The line itself.
@@ -35,11 +35,11 @@ class Outcomes:
     row: tuple[str, ...]
 
     def success(self, start: int) -> bool:
-        """Whether everybody arrived in a start and nobody touched anything, within steps neither."""
+        """Whether all robots arrived in a start without a contact, within steps or at their ends."""
         return self.letters[start] == "a" and self.between[start] == 0
 
     def touched(self, start: int) -> bool:
-        """Whether anybody touched anything in a start."""
+        """Whether a robot touched anything in a start."""
         return self.letters[start] == "c" or self.between[start] > 0
 
 

@@ -1,4 +1,4 @@
-"""The layouts are valid, the same in every spelling, and those that the references were made with."""
+"""The layouts are valid, the same in every spelling, and the layouts of the references."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ FAR = [(9.0, 9.0), (-9.0, 9.0)]
 
 
 def judged(path: Any, goals: Any = FAR, walls: Any = (), *, loop: bool = False) -> Verdict:
-    """What the judge says about robots of 0.2 m."""
+    """The verdict about robots with a radius of 0.2 m."""
     judge = Judge(goals, list(walls), radius=0.2, threshold=0.2, dt=0.1, loop=loop)
     verdict = judge.verdict(path)
     assert judge.ended(path) == (verdict.outcome == "c" or (verdict.outcome == "a" and not loop))

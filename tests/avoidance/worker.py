@@ -117,7 +117,7 @@ def line(group: Group, folder: Path, starts: int | None = None, known: Sequence[
     """The line of a reference: the outcomes, one letter each, and what else was counted, start by start.
 
     Args:
-        group: What is run.
+        group: The group to run.
         folder: Folder for its files.
         starts: Number of starts, from the exact one on; None for all.
         known: A line with the first of these starts, which are not run again.
@@ -167,6 +167,6 @@ if __name__ == "__main__":
     logging.disable(logging.CRITICAL)
     warnings.simplefilter("ignore")
     os.environ["MPLBACKEND"] = "Agg"
-    # Another simulator writes arrays into messages that nobody reads, in a third of its time.
+    # Another simulator writes arrays into unused messages, which takes a third of its time.
     np._core.arrayprint._default_array_str = lambda array: "array"
     main(sys.argv[1:])

@@ -80,7 +80,7 @@ MEANT = {
 
 
 def led_to(answer: Answer) -> list[str]:
-    """The topic of an answer, and those that it names."""
+    """The topic of an answer, and the topics that it names."""
     return [answer.topic, *(key.name for keys in answer.groups.values() for key in keys), *answer.see]
 
 

@@ -1,4 +1,4 @@
-"""What is printed is fit for terminals, whatever a scenario contains."""
+"""Output is safe for terminals, whatever a scenario contains."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``irsim skills``: each host's folder, again and again, and never over what somebody changed."""
+"""``irsim skills``: each host's folder, again and again, and never over changed files."""
 
 from __future__ import annotations
 

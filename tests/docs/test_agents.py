@@ -1,4 +1,4 @@
-"""What the README and server.json tell agents' hosts: each block is valid, starts the server, and follows the rules."""
+"""Blocks in the README and server.json for agents' hosts: each is valid, starts the server, and follows the rules."""
 
 from __future__ import annotations
 

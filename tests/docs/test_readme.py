@@ -1,4 +1,4 @@
-"""The README: every file, program and command in it works as printed, and its tables are those of the program."""
+"""The README: every file, program and command in it works as printed, and the program generates its tables."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def episode(material: Material, seconds: float) -> Episode:
 
 
 def seen(material: Material, name: str, keys: dict[str, Any], seconds: float = 0.0) -> Observation:
-    """What a predicate sees of an answer; one about episodes, of an episode of that length."""
+    """Observation of a predicate about an answer; predicates about episodes get one of that length."""
     predicate: Any = registered()[name].model_validate(keys)
     subject = {"scene": lambda: (material.scene(0),), "episode": lambda: (episode(material, seconds),)}
     observation: Observation = predicate.observe(material, *subject.get(predicate.subject, tuple)())

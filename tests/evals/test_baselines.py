@@ -51,7 +51,7 @@ sys.addaudithook(refuse)
 
 
 def run_offline(tmp_path: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run ``irsim-evals`` where every socket but those of the loopback is refused, in all of its processes."""
+    """Run ``irsim-evals`` where every socket except on the loopback is refused, in all of its processes."""
     hooks = tmp_path / "hooks"
     hooks.mkdir(exist_ok=True)
     (hooks / "sitecustomize.py").write_text(NO_NETWORK, encoding="utf-8")
@@ -67,7 +67,7 @@ def snapshot() -> dict[str, dict[str, bool]]:
 
 
 def flips(verdicts: dict[str, dict[str, bool]]) -> list[str]:
-    """What differs from the snapshot, in words."""
+    """Differences from the snapshot, in words."""
     words = {True: "passed", False: "failed", None: "was not there"}
     known = snapshot()
     return [

@@ -94,7 +94,7 @@ def test_a_case_with_several_attempts_passes_if_most_of_them_do(tmp_path: Path) 
         (["a.json", "other.json"], "different cases"),
         (["a.json", "empty.json"], "no trials"),
         (["a.json", "elsewhere.json"], "no case in common"),
-        (["a.json", "b.json", "--arm", "nobody"], "no arm called 'nobody'"),
+        (["a.json", "b.json", "--arm", "unknown"], "no arm called 'unknown'"),
         (["a.json", "b.json", "a.json"], "two sides"),
         (["a.json", "a.json"], "given twice"),
         (["a.json", "mcp.json", "--json"], "--arm"),

@@ -211,7 +211,7 @@ def test_watching_goes_on_through_half_written_files_until_ctrl_c(exported: Path
 
     try:
         assert verdicts() == [("pub-01", False), ("pub-19", False)]
-        for end in range(0, len(RIGHT), 25):  # somebody writes slowly
+        for end in range(0, len(RIGHT), 25):  # a file that is written slowly
             scenario.write_text(RIGHT[:end], encoding="utf-8")
             time.sleep(0.1)
         scenario.write_text(RIGHT, encoding="utf-8")

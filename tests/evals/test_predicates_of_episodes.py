@@ -95,11 +95,11 @@ def test_a_body_ends_on_a_part_of_its_way(share: Any, passes: bool) -> None:
         ({"places": [(6, 2), (2, 6)]}, "does not come to (2, 6)"),
         ({"laps": 9}, "does not come to"),
         ({"places": [(6, 2), (2, 2)], "stray": 0.5}, "off the lines"),
-        ({"of": "nobody"}, "no body"),
+        ({"of": "missing"}, "no body"),
     ],
 )
 def test_a_round_is_followed_in_its_order(keys: dict[str, Any], observed: str) -> None:
-    material = world(ROUND, guard={"named": "guard"}, nobody={"named": "nobody"})
+    material = world(ROUND, guard={"named": "guard"}, missing={"named": "missing"})
     seconds = 15 if "places" in keys and "stray" not in keys else 32
     observation = seen(material, "visits", {"of": "guard", "places": [(6, 2), (6, 6), (2, 2)], **keys}, seconds)
     assert observation.passed == (observed == "")

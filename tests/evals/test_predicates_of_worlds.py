@@ -73,7 +73,7 @@ def test_the_walls_of_a_pocket_are_connected(x: float, observed: str) -> None:
     [
         ("", "", "as in the drawing"),
         ("[4, 5, 0]", "[4, 5.05, 0]", "as in the drawing"),  # within the tolerance
-        ("height: 6}", "height: 6, boundary: walls}", "as in the drawing"),  # walls round the world are no surplus
+        ("height: 6}", "height: 6, boundary: walls}", "as in the drawing"),  # walls round the world do not count
         ("length: 8, width: 2}, state: [4, 5, 0]", "length: 7, width: 2}, state: [3.5, 5, 0]", "missing"),
         ("state: [1, 2, 0]", "state: [2, 2, 0]", "missing"),
         ("state: [4, 5, 0]", "state: [4, 5, 0], unobstructed: true", "missing"),

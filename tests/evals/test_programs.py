@@ -1,4 +1,4 @@
-"""Programs in an answer: only those that run scenarios are executed, within limits, and what they print is graded."""
+"""Programs in an answer: they are executed, within limits, if they only run scenarios; their output is graded."""
 
 from __future__ import annotations
 

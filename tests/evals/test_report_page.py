@@ -1,4 +1,4 @@
-"""The page of a report in headless Chromium, as somebody uses it."""
+"""The page of a report in headless Chromium, as a reader uses it."""
 
 from __future__ import annotations
 

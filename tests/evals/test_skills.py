@@ -72,7 +72,7 @@ def test_there_is_an_answer_to_each_but_one() -> None:
     asked = {(skill, task) for skill, tasks in TASKS.items() for task in tasks}
     assert asked - known == {
         ("irsim-dev", "ellipse"),  # a change of the whole tree
-        ("irsim-scenario", "larger-world"),  # its answer is a transcript, and so is that of the next
+        ("irsim-scenario", "larger-world"),  # its answer is a transcript, as is the next one's
         ("irsim-benchmark", "three-densities"),
     }
     assert known <= asked

@@ -33,7 +33,7 @@ def trial(
     cost: Cost | None = None,
     category: str = "basic",
 ) -> Trial:
-    """An answer that fails one requirement of a stage, or none."""
+    """An answer that fails one requirement of a stage, or meets all."""
     outcomes = [
         Outcome(assertion=f"{name}-holds", stage=name, passed=True, expected="it", observed="it")
         for name in STAGES[: STAGES.index(stage)]

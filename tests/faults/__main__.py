@@ -1,7 +1,7 @@
 """Make faults in a copy of the checkout, one at a time, and tell which of them their tests catch.
 
 ``python -m tests.faults`` makes all of them, ``python -m tests.faults NAME …`` those named. First the tests must pass
-without any fault. With ``--tests quick`` all quick tests stand in for those that a fault names. A fault is caught if a
+without any fault. With ``--tests quick`` all quick tests stand in for the tests of a fault. A fault is caught if a
 test fails; it is broken if pytest could not run the tests, and so tells nothing. Exit code 0: all are caught.
 """
 

@@ -77,7 +77,7 @@ class Copy:
         """Run tests until one fails: pytest's exit code, None if they took too long; and what it printed.
 
         Args:
-            tests: What is run, slow tests too; all quick tests if it is empty.
+            tests: Tests to run, slow ones too; all quick tests if it is empty.
         """
         command = [str(self.python), "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
         command += ["-m", "", *tests] if tests else []

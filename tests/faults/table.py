@@ -21,7 +21,7 @@ class Fault:
 
     name: str
     seen: str
-    """What a user would notice."""
+    """The effect that a user would notice."""
     file: str
     """Where the text was found first; it may have moved since."""
     find: str

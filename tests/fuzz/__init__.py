@@ -1,1 +1,1 @@
-"""Scenarios nobody would write, thousands of them: whatever the text, the answer is findings or a run, soon."""
+"""Thousands of absurd scenarios: whatever the text, the answer is findings or a run, soon."""

@@ -1,4 +1,4 @@
-"""``python -m tests.fuzz --documents 20000 --seed 1``: tries documents, keeps those that went wrong."""
+"""``python -m tests.fuzz --documents 20000 --seed 1``: tries documents and keeps the ones that went wrong."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def attempt(text: str, limits: Any) -> tuple[str, str | None]:
-    """What a document came to: ``invalid``, ``refused``, ``ran``; and what is wrong with that."""
+    """Result of a document, ``invalid``, ``refused`` or ``ran``, and the problem with that result, if any."""
     import irsim
     from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError
 
@@ -85,7 +85,7 @@ def attempt(text: str, limits: Any) -> tuple[str, str | None]:
 
 
 def _check(result: Any) -> None:
-    """What we tell can be read back as it is."""
+    """A result that is written as JSON can be read back unchanged."""
     text = result.model_dump_json()
     again = type(result).model_validate_json(text).model_dump_json()
     assert again == text, "a result that is not read back as it was"

@@ -26,7 +26,7 @@ RAW = (
     "9" * 400, "-" + "9" * 30, "1e-320", "1.7976931348623157e308", "5e-324", "- - - -", "? a", "&a [*a]", "[[[[1]]]]",
     "1e", "0.1.2", "+", "1e15", "-0.0", "1e6", "18446744073709551616", "-9223372036854775809", "2147483648", "'",
 )  # fmt: skip
-"""Written as they are, which may be no YAML."""
+"""Texts that are written as they are, even if that is not valid YAML."""
 HOSTILE = (
     "", " ", "\x1b[2J", "\x00", "\u202e", "\ud7ff", "\ufeff", "\U0001f916", "a" * 3000, "../../../etc/passwd",
     "/dev/zero", "/proc/self/mem", "CON", "~root", "__class__", "{0.__class__}", "%s%n", "${HOME}", "<b>", "\n\n", "\t",
@@ -55,7 +55,7 @@ def keys() -> tuple[str, ...]:
 
 @functools.cache
 def known_texts() -> tuple[str, ...]:
-    """Scenarios that are there: templates, bad ones, those of the tests of parity."""
+    """Existing scenarios: templates, bad ones, scenarios of the parity tests."""
     patterns = ("templates/*/scenario.yaml", "tests/bad/*.yaml", "tests/parity/scenarios/*.yaml")
     return tuple(file.read_text(encoding="utf-8") for pattern in patterns for file in sorted(ROOT.glob(pattern)))
 
@@ -79,7 +79,7 @@ def document(seed: int, index: int) -> str:
 
 
 def _tree(text: str) -> Any:
-    """What a text says; the text itself if it is no YAML."""
+    """Data of a text; the text itself if it is not YAML."""
     try:
         return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except yaml.YAMLError:
@@ -261,7 +261,7 @@ def _swap(rng: random.Random, places: Any, where: Any, key: Any) -> None:
 
 
 def _many(rng: random.Random, places: Any, where: Any, key: Any) -> None:
-    """More objects, beams or nodes than anybody needs."""
+    """Far too many objects, beams or nodes."""
     counts = [(w, k) for w, k in places if isinstance(w, dict) and ("kinematics" in w or "name" in w)]
     if counts:
         rng.choice(counts)[0]["number"] = rng.choice((0, 50, 999, 1001, 5000, 100000, 10**9))

@@ -35,7 +35,7 @@ class Wrong:
 
 @dataclass
 class Tally:
-    """What all came to."""
+    """Results of all documents."""
 
     came_to: Counter[str] = field(default_factory=Counter)
     wrong: list[Wrong] = field(default_factory=list)

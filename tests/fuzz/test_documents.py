@@ -1,4 +1,4 @@
-"""What fuzzing has ever found, and a thousand documents more; `python -m tests.fuzz --documents 20000` tries others."""
+"""Documents on which fuzzing once failed and a thousand more; `python -m tests.fuzz --documents 20000` tries others."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from tests.fuzz.grammar import document
 from tests.fuzz.pool import try_all
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of processes are those of Linux")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of processes need Linux")
 CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))
 
 

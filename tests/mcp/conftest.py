@@ -61,7 +61,7 @@ def workspace(tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="session")
 def empty(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A workspace that nobody writes to, so that tests can share a server."""
+    """A workspace that no test writes to, so that tests can share a server."""
     return tmp_path_factory.mktemp("empty")
 
 
@@ -111,14 +111,14 @@ def error_of(result: CallToolResult) -> str:
 
 
 def data_of(result: CallToolResult) -> dict[str, Any]:
-    """The structure of a result that is no error."""
+    """The structure of a result that is not an error."""
     assert not result.is_error, text_of(result)
     assert result.structured_content is not None
     return dict(result.structured_content)
 
 
 def image_of(result: CallToolResult) -> ImageContent:
-    """The picture of a result that is no error."""
+    """The picture of a result that is not an error."""
     assert not result.is_error, text_of(result)
     assert result.structured_content is None
     image = result.content[1]

@@ -23,7 +23,7 @@ pytestmark = [
 ]
 
 SECOND = 1.0
-"""What a refusal may take; bounds are in processor time, since tests share a machine."""
+"""Longest time of a refusal [s]; bounds are in processor time, since tests share a machine."""
 
 
 def bomb(first: str, others: str) -> str:
@@ -78,7 +78,7 @@ FILES = {
 
 @pytest.fixture(scope="module")
 def trap(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A workspace with links that lead out, beside a file that nobody may read."""
+    """A workspace with links that lead out, beside a file that must not be read."""
     workspace = tmp_path_factory.mktemp("outside") / "workspace"
     workspace.mkdir()
     for name in ("secret.yaml", "secret.png"):

@@ -25,7 +25,7 @@ KEYS = [
     "call", "at_s", "took_s", "tool", "arguments", "error", "argument_characters", "answer_characters", "pictures",
     "tokens",
 ]  # fmt: skip
-SECRET = "a-token-that-nobody-must-read"
+SECRET = "a-token-that-must-stay-secret"
 
 
 def logged(path: Path) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""What an agent does, through a real client and a real process: template, edit, validate, look, run."""
+"""The work of an agent, through a real client and a real process: template, edit, validate, look, run."""
 
 from __future__ import annotations
 

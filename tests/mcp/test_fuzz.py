@@ -46,7 +46,7 @@ junk = st.recursive(
 
 
 def values(part: dict[str, Any]) -> st.SearchStrategy[Any]:
-    """What a part of a schema allows."""
+    """Values that a part of a schema allows."""
     if "anyOf" in part:
         return st.one_of([values(option) for option in part["anyOf"]])
     if "enum" in part:
@@ -70,7 +70,7 @@ def calls(tool: dict[str, Any]) -> st.SearchStrategy[dict[str, Any]]:
     schema = tool["inputSchema"]
     required = {name: values(schema["properties"][name]) for name in schema.get("required", ())}
     others = {name: values(part) for name, part in schema["properties"].items() if name not in required}
-    for name in ("wait_s", "max_wall_s"):  # nobody waits for long here
+    for name in ("wait_s", "max_wall_s"):  # no test waits for long
         if name in others:
             others[name] = st.integers(1, 3)
     sound = st.fixed_dictionaries(required, optional=others)

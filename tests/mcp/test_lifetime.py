@@ -115,7 +115,7 @@ def test_a_server_that_is_killed_takes_its_workers_along(wire: Wire, how: str) -
 
 def test_it_survives_nonsense(wire: Wire) -> None:
     assert wire.process.stdin is not None
-    wire.process.stdin.write("this is no message\n{}\n")
+    wire.process.stdin.write("not a message\n{}\n")
     wire.send(id=1, method="initialize", params=HANDSHAKE)
     answers = [wire.receive()]
     while answers[-1].get("id") != 1:

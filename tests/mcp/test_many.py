@@ -1,4 +1,4 @@
-"""Many servers on one workspace, many clients of one server: every answer is that of the call; busy ones try again."""
+"""Many servers on one workspace, many clients of one server: every answer belongs to its call; busy ones try again."""
 
 from __future__ import annotations
 

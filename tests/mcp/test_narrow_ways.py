@@ -1,4 +1,4 @@
-"""What a look says about narrow ways: hint, table and first line name the same gaps, and what to do about them."""
+"""Narrow ways in a look: hint, table and first line name the same gaps, and what to do about them."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ obstacle:
 
 
 async def looked(empty: Path, text: str, **more: object) -> dict[str, str]:
-    """The line of the picture, that of the finding about a path, and that of the table about passages."""
+    """The line of the picture, the finding about a path, and the row of the table about passages."""
     given = {"scenario_yaml": text, "overlays": ["plan"], "return_image": False, **more}
     lines = text_of(await call(empty, "render_snapshot", given)).splitlines()
     kinds = {"finding": r"1\. .*(narrow-passage|goal-unreachable)", "table": "Narrowest passage"}

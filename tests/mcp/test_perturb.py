@@ -58,8 +58,10 @@ async def test_wrong_perturbations_are_told(workspace: Path) -> None:
             assert told.startswith(
                 "bad-argument: heading must be a number from 0 to 3.1416 [rad], got '10' (10 degrees"
             )
-            told = error_of(await client.call_tool(tool, {**scenario, "perturb": "delay=1,objects=nobody"}))
-            assert told.startswith("bad-argument: no object of 'crossing' has the name, tag or role 'nobody' (perturb)")
+            told = error_of(await client.call_tool(tool, {**scenario, "perturb": "delay=1,objects=missing"}))
+            assert told.startswith(
+                "bad-argument: no object of 'crossing' has the name, tag or role 'missing' (perturb)"
+            )
             told = error_of(await client.call_tool(tool, {**scenario, "perturb": ["position=1"]}))
             assert told.startswith("bad-argument")
     jobs = workspace / ".irsim" / "jobs"

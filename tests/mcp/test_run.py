@@ -77,7 +77,7 @@ async def test_the_same_seed_gives_the_same(empty: Path) -> None:
 
 
 def without_run(data: dict[str, Any]) -> dict[str, Any]:
-    """What does not name the record of the run."""
+    """All data that does not name the record of the run."""
     return {key: value for key, value in data.items() if key not in ("run_id", "artifacts", "next")}
 
 

@@ -159,7 +159,7 @@ async def test_runs_are_resources(workspace: Path, era: str) -> None:
         assert content.mime_type == "text/plain"  # no JSON by itself
         part = json.loads(await read(client, f"irsim://runs/{run_id}/trace.json?from_step=3&to_step=9&every=2"))
         assert [row["step"] for row in part["rows"]] == [3, 5, 7, 9]
-        for wrong in (f"{run_id}/secret", "nobody-123456/run.json", f"{run_id}/..%2Frun.json"):
+        for wrong in (f"{run_id}/secret", "unknown-123456/run.json", f"{run_id}/..%2Frun.json"):
             with pytest.raises(MCPError):
                 await read(client, f"irsim://runs/{wrong}")
         for wrong in ("from_step=x", "every=0", "offset=-1", "to_step=1.5", "from_step=" + "9" * 40):

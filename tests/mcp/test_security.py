@@ -1,7 +1,7 @@
 """Each rule on security and limits of the server, and the tests that try to break it.
 
-The table below names them; a rule without tests, or a test that is gone, fails here. What no other file tries is tried
-in this one.
+The table below names them; a rule without tests, or a test that is gone, fails here. This file has
+the attempts that no other file makes.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ RULES = {
         "mcp/test_validate.py::test_names_in_messages_are_harmless",
         "mcp/test_security.py::test_names_come_out_harmless_everywhere",
     ),
-    "HTTP: off by default, this machine only, Host and Origin checked, a token for others": (
+    "HTTP: off by default, this machine only, Host and Origin checked, a token for other machines": (
         "mcp/test_start.py::test_standard_output_has_messages_only",
         "mcp/test_http.py::test_pages_of_other_sites_are_not_let_in",
         "mcp/test_http.py::test_a_token_is_asked_for",
@@ -155,7 +155,7 @@ async def test_every_argument_that_is_a_path_is_confined(workspace: Path) -> Non
 
 @QUIET
 async def test_capital_letters_open_no_other_way(workspace: Path) -> None:
-    """What is refused is refused in any spelling, wherever the file system tells them apart or not."""
+    """A refused path is refused in any spelling, wherever the file system tells them apart or not."""
     async with connected(workspace) as client:
         for path in ("CON.yaml", "Nul", "c:\\x.yaml", "\\\\HOST\\share\\x.yaml", "A/../../x.yaml", "lpt1.YAML"):
             told = error_of(await client.call_tool("run_episode", {"scenario_path": path}))

@@ -170,7 +170,7 @@ async def test_paths(workspace: Path, name: str) -> None:
 @POSIX
 @pytest.mark.parametrize("overwrite", [False, True])
 async def test_links_that_appear_after_the_check_are_not_followed(workspace: Path, overwrite: bool) -> None:
-    """Whoever may write in the workspace, too, cannot send a file elsewhere by being quick."""
+    """Another process that may write in the workspace cannot redirect a file elsewhere by being quick."""
     from mcp.server.mcpserver.exceptions import ToolError
 
     outside = workspace.parent / "outside"

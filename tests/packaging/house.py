@@ -1,6 +1,6 @@
 """The numbers of the house: size, types that describe one thing, imports in functions, and the way of a recorded run.
 
-``python -m tests.packaging.house`` prints them; ``test_house.py`` holds those that say how often one idea is there.
+``python -m tests.packaging.house`` prints them; ``test_house.py`` holds the counts of repeated ideas.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def sources() -> dict[Path, str]:
 
 @cache
 def trees() -> dict[Path, ast.Module]:
-    """File -> its syntax tree; a program that is a template of the evals has none."""
+    """File -> its syntax tree; templates of programs in the evals, which do not parse, are left out."""
     parsed = {}
     for path, text in sources().items():
         try:

@@ -1,4 +1,4 @@
-"""The build backend: which compiler it finds, and what it asks for when there is none."""
+"""The build backend: which compiler it finds, and what it asks for without one."""
 
 from __future__ import annotations
 

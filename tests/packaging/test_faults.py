@@ -8,7 +8,7 @@ from tests.faults import table
 
 
 def test_every_fault_can_still_be_made() -> None:
-    """Whoever moves or rewrites its text carries the fault over to the new code."""
+    """A change that moves or rewrites its text has to carry the fault over to the new code."""
     for fault in table.faults().values():
         path = table.holder(fault)
         text = path.read_text(encoding="utf-8")

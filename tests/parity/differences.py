@@ -1,6 +1,6 @@
 """The intended differences that touch a scenario, and how the trace is compared where one applies.
 
-A scenario names ids under `custom.differs`: those of the published list, `irsim.compat.DIFFERENCES`. Without an
+A scenario names ids of the published list, `irsim.compat.DIFFERENCES`, under `custom.differs`. Without an
 id every field of every step must equal the trace.
 """
 
@@ -28,7 +28,7 @@ class Difference:
 
 DIFFERENCES = {
     "D2": Difference(
-        "Circles are circles, in the reference inscribed 64-gons. Ranges lie between those of a run with the full "
+        "Circles are circles, in the reference inscribed 64-gons. Ranges lie between the ranges of a run with the full "
         "circles and of a run with circles smaller by cos(pi/64), that is within r(1 - cos(pi/64)) of depth; flags, "
         "hits and status agree with one of these two runs.",
         ("ranges", "valid", "hit_velocity", "collision", "stop", "status", "done"),
@@ -48,7 +48,7 @@ DIFFERENCES = {
         ("state", "goal", "heading"),
     ),
     "dynamics-18": Difference(
-        "State rows beyond those of the drive keep their value; in the reference each step overwrites them with the "
+        "State rows beyond the rows of the drive keep their value; in the reference each step overwrites them with the "
         "last component. Here they are compared with their initial values.",
         ("state",),
     ),

@@ -9,7 +9,7 @@ A scenario file says under `custom` how it is played:
     actions    {object id: [[steps, action], ...]}: consecutive segments; null and anything after the last segment
                leave the object to its behavior
     style      how actions are handed over: ids (default), list, flat, names, array, from (a list with
-               the id of its first target; empty when there is none)
+               the id of its first target; empty without one)
     calls      [[step, object id or "env", method, arguments], ...]: called before the step of that number
     reset      true: env.reset() right after irsim.make(); with D12 among `differs` record.py does it anyway, because
                irsim.make() already evaluates what the reference evaluates in its reset()
@@ -82,7 +82,7 @@ def read_scan(scan: dict[str, Any], number: int) -> dict[str, Any]:
 
 
 def once(env: Any) -> dict[str, np.ndarray]:
-    """What belongs to the object, not to the moment: sizes, limits, names, scan header; footprints of the last pose."""
+    """Facts of the objects, not of the moment: sizes, limits, names, scan header; footprints of the last pose."""
     objects = list(env.objects)
     facts: dict[str, Any] = {
         "name": [o.name for o in objects],

@@ -1,4 +1,4 @@
-"""What a behavior registered the 2.12 way is called with: the keys of its YAML mapping, no more."""
+"""Arguments of a behavior registered the 2.12 way: the keys of its YAML mapping, no more."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Checks of others on the MCP server, the skills and the manifests: ``nox -s peers``.
+"""Third-party checks of the MCP server, the skills and the manifests: ``nox -s peers``.
 
-Each prints one line, PASS or FAIL; a failure also its last lines of output. What the checks need is installed into a
+Each prints one line, PASS or FAIL; a failure also its last lines of output. Their packages are installed into a
 folder of its own (``--folder``), with exact versions, and found there the next time. Needs npm and, on the first run,
 the network; Linux on x64 for the Node that comes along, elsewhere a Node 22.19 or newer on PATH.
 """
@@ -35,8 +35,8 @@ NOT_OFFERED = {
     # the server asks its client nothing, sends no logs, keeps no tasks, and announces no subscriptions to old clients
     "logging-set-level": "no protocol logging (deprecated)",
     "tools-call-with-logging": "no protocol logging (deprecated)",
-    "resources-subscribe": "no subscriptions before 2026-07-28, and none announced",
-    "resources-unsubscribe": "no subscriptions before 2026-07-28, and none announced",
+    "resources-subscribe": "no subscriptions before 2026-07-28, nor are any announced",
+    "resources-unsubscribe": "no subscriptions before 2026-07-28, nor are any announced",
     "server-sse-polling": "streams are not resumed: no store of events",
     "elicitation-sep1330-enums": "asks its client nothing",
     "http-custom-header-server-validation": "no tool takes arguments from headers",

@@ -1,4 +1,4 @@
-"""What a run was made of stays with it: its map, whatever is drawn later; and nothing of it is run to look at it."""
+"""A record keeps its own files: its map, whatever is drawn later; and reading a record executes none of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is kept, what is let go, and what happens when a process dies or somebody has been at the files."""
+"""The store keeps and deletes records, and survives processes that die and files that were changed."""
 
 from __future__ import annotations
 

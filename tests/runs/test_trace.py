@@ -34,7 +34,7 @@ def simulation(seed: int = 0) -> Simulation:
 
 
 def seen(steps: int) -> list[dict[str, Any]]:
-    """What an onlooker writes down, step by step."""
+    """Rows that an onlooker writes down, step by step."""
     watched = simulation()
     rows = []
     for step in range(steps + 1):

@@ -27,7 +27,7 @@ def parts(path: Path = SKILL / "SKILL.md") -> tuple[dict[str, Any], str]:
 
 
 def fences(text: str, language: str) -> list[str]:
-    """What stands in fenced blocks of a language."""
+    """Contents of the fenced blocks of a language."""
     return re.findall(rf"^ *```{language}\n(.*?)^ *```", text, re.DOTALL | re.MULTILINE)
 
 

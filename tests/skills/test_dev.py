@@ -28,7 +28,7 @@ Run = Callable[..., str]
 
 
 def copy_tree(folder: Path) -> None:
-    """What a checkout has, without its history."""
+    """Copy a checkout without its history."""
     for name in ("irsim", "mcp_server", "schema", "skills", "templates", "tests"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.so", "*.pyd"))
     for name in ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md"):

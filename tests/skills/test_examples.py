@@ -19,7 +19,7 @@ each = pytest.mark.parametrize("folder", EXAMPLES, ids=lambda path: path.name)
 
 
 def at(data: object, path: str) -> object:
-    """What stands at a path such as ``robot[0].vel_max[1]``."""
+    """The value at a path such as ``robot[0].vel_max[1]``."""
     for word in re.findall(r"[^.\[\]]+", path):
         data = data[int(word)] if isinstance(data, list) else data[word]  # type: ignore[index]
     return data

@@ -120,7 +120,7 @@ def test_scripts_name_the_version_they_were_written_for(script: Path) -> None:
         "requires-python": PROJECT["requires-python"],
         "dependencies": [f"{PROJECT['name']}=={PROJECT['version']}"] if needs_irsim else [],
     }
-    assert "input(" not in text  # nobody is there to answer
+    assert "input(" not in text  # an agent cannot answer prompts
 
 
 def test_each_pack_has_scripts() -> None:

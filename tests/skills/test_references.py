@@ -27,7 +27,7 @@ PAGE_OF = {
 
 
 RUNNER_BRIDGES = REFERENCES.parents[1] / "irsim-runner" / "references" / "bridges.md"
-"""Bridges are no part of what happens in a scenario, and are in the skill that runs it."""
+"""The page about bridges, which are not part of what happens in a scenario; the skill that runs it has the page."""
 
 
 def page(name: str) -> str:

@@ -75,7 +75,7 @@ def wait_for(port: str) -> None:
         if not listening or f":{int(port):04X} 00000000:0000 0A" in listening:
             return
         time.sleep(0.05)
-    raise AssertionError("nobody listens")
+    raise AssertionError("the port does not listen")
 
 
 def test_the_loop_with_connections_is_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

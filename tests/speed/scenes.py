@@ -1,7 +1,7 @@
 """Scenes whose speed is measured: each makes one part of a step dominate.
 
 Positions come from generators of their own, so that two simulators get the same file whatever their own random streams
-do. Keys and values are those of IR-SIM 2.12.
+do. Keys and values follow IR-SIM 2.12.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class Scene:
 
     Attributes:
         build: Makes the scenario.
-        mode: What is timed: a step; a step with an action after which a learner reads everything; a plan; a frame that
-            nobody sees; a picture in a file; a frame of an animation; a step of a batch of worlds.
+        mode: The timed part: a step; a step with an action after which a learner reads everything; a plan; a frame that
+            is not shown; a picture in a file; a frame of an animation; a step of a batch of worlds.
         steps: Steps of an episode.
         agents: Number of robots of one world.
         rays: Number of beams of all sensors of one world.

@@ -76,7 +76,7 @@ def _plan(env: Any, job: dict[str, Any]) -> float:
 
 
 def _draw(env: Any, job: dict[str, Any]) -> float:
-    """Frames that nobody sees, or that are written to a file; the steps between them are not timed."""
+    """Frames that are not shown, or that are written to a file; the steps between them are not timed."""
     spent = 0.0
     for _ in range(job["steps"]):
         env.step()

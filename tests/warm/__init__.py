@@ -2,7 +2,7 @@
 
 Tests that are about something else than the start of a process run ``warm(command)`` in place of the command. The
 process is a fork of a server that has imported the modules and done nothing else; its files, folder, variables, exit
-status and end are those of an ordinary process. Signals do not reach it, it is not a child of the test, and it lives a
+status and end are as for an ordinary process. Signals do not reach it, it is not a child of the test, and it lives a
 moment longer than a command that is killed: tests of those, and of what a start loads or costs, ask for the fixture
 ``ordinary_processes`` or start processes as usual.
 """
@@ -33,7 +33,7 @@ LIBRARIES = (
     "mpl_toolkits.mplot3d",
     "PIL.Image",
 )
-"""What irsim builds on."""
+"""Libraries that irsim builds on."""
 PACKAGE = (*LIBRARIES, "irsim.*", "irsim_mcp.*", "tests.warm.schema")
 """irsim and its server, too, and the schema of the language."""
 ENABLED = True
@@ -47,7 +47,7 @@ def warm(command: Sequence[str | Path], modules: tuple[str, ...] = PACKAGE) -> l
 
     Args:
         command: ``sys.executable`` and its arguments: a script, ``-m module`` or ``-c code``, with arguments.
-        modules: What is loaded.
+        modules: Modules to load.
     """
     words = [str(word) for word in command]
     assert words[0] == sys.executable

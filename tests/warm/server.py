@@ -26,7 +26,7 @@ from irsim.common.extras import ExtraError
 __all__ = ["end", "load", "run", "serve"]
 
 Program = tuple[list[str], str, dict[str, str]]
-"""What follows the interpreter on the command line, the working directory, environment variables."""
+"""Arguments after the interpreter, the working directory, environment variables."""
 
 
 def load(name: str) -> None:

@@ -81,7 +81,7 @@ def key(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(autouse=True)
 def connections_of_others() -> Iterator[None]:
-    """Connections that inspect_ai leaves open are collected here, where a warning about them is no error."""
+    """Connections that inspect_ai leaves open are collected here, where a warning about them is not an error."""
     yield
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

@@ -16,7 +16,7 @@ class Reply:
     """An answer of the model.
 
     Attributes:
-        text: What it says.
+        text: Its text.
         calls: Tools that it calls: name and arguments.
         usage: Tokens.
         stop_reason: Why it stops; default: to have tools called, or because it is done.
@@ -61,7 +61,7 @@ class MessagesApi:
         self.lock = threading.Lock()
 
     def first(self, *faults: Fault | Reply) -> MessagesApi:
-        """Answer the next requests with these before those of the script."""
+        """Answer the next requests with these, before the answers of the script."""
         self.faults += faults
         return self
 

@@ -1,4 +1,4 @@
-"""What an agent of each arm is given, does and is graded by."""
+"""An agent of each arm: its prompt and tools, its work and its grading."""
 
 from __future__ import annotations
 

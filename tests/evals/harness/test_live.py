@@ -26,7 +26,7 @@ OVERLOADED = Fault(529, "overloaded_error", "Overloaded")
 
 @pytest.fixture(autouse=True)
 def quick_retries(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """Waits of inspect_ai between requests are noted and not made; those of Anthropic's library are."""
+    """Waits of inspect_ai between requests are noted and not made; Anthropic's library does wait."""
     from inspect_ai.model import _retry
 
     waited: list[float] = []

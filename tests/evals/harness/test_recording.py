@@ -1,4 +1,4 @@
-"""What the harness says and does where inspect_ai is not installed: arms, recordings, folders, distractors."""
+"""The harness where inspect_ai is not installed: arms, recordings, folders, distractors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``tools/list`` answers: ``python tests/mcp/golden/write.py`` writes the golden file again."""
+"""The answer to ``tools/list``: ``python tests/mcp/golden/write.py`` writes the golden file again."""
 
 from __future__ import annotations
 

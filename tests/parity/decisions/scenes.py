@@ -2,7 +2,7 @@
 
 No scene has what a difference id is about: static shapes other than circles and linestrings (D6), drives without a law
 of their own (D13). Where lines (D6) or `acce` (D28) matter, the test leaves the scene out. Objects pass through each
-other, so that nobody stops.
+other, so that none stops.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from random import Random
 from typing import Any
 
 FAMILIES = {"rvo": 700, "sfm": 600, "sfm-group": 150}
-"""Scenes per family. In a scene of a group every member's decision counts, else that of the first robot."""
+"""Scenes per family. In a scene of a group every member's decision counts, else only the first robot's."""
 
 
 def scene(family: str, index: int) -> dict[str, Any]:

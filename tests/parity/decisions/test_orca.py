@@ -21,12 +21,12 @@ EXCEPTIONS = {
     (560, 2): "the same",
     (600, 1): "the same",
 }
-"""(snapshot, agent) of recorded answers that are not reproduced: 7 of 6400. Those that touch a wall are left out: their
-wanted velocity is turned along it (D6)."""
+"""(snapshot, agent) of recorded answers that are not reproduced: 7 of 6400. Agents that touch a wall are left out:
+their wanted velocity is turned along it (D6)."""
 
 
 AHEAD = 1e-3
-"""Distance [m] of the goals. No wall is before them, so the wanted velocity leads straight on, as that of RVO2 does."""
+"""Distance [m] of the goals. No wall is before them, so the wanted velocity leads straight on, as in RVO2."""
 
 
 def before(position: np.ndarray, goal: np.ndarray) -> np.ndarray:

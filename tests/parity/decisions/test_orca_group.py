@@ -1,4 +1,4 @@
-"""Groups of `orca` take their first step as those of IR-SIM 2.12 do: what they prefer, how fast, and their drives."""
+"""Groups of `orca` take their first step as in IR-SIM 2.12: what they prefer, how fast, and their drives."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_first_steps() -> None:
         gap = np.abs(simulation.control[:, :2] - velocity)
         if drive == "diff":
             # 2.12 leaves headings alone that are less than 0.1 rad off, and stops below 0.02 m/s; robots that avoid
-            # somebody do neither (D11)
+            # an object do neither (D11)
             stops = (velocity == 0.0).all(axis=1) & (np.abs(simulation.control[:, 0]) <= 0.02)
             small = ((velocity[:, 1] == 0.0) & (np.abs(simulation.control[:, 1]) <= 0.1 / 0.1)) | stops
             gap[stops, 0] = 0.0

@@ -25,7 +25,7 @@ BROKEN = {"content": [{"type": "text", "text": "invalid-scenario: …"}], "isErr
 
 @pytest.fixture
 def served(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """What the server gives: the page, a result of run_episode, and its run in several parts."""
+    """Answers of the server: the page, a result of run_episode, and its run in several parts."""
     monkeypatch.setattr(irsim_mcp.resources, "_MAX_BYTES", 1500)
 
     async def ask() -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The page as somebody uses it."""
+"""The page as a user meets it."""
 
 from __future__ import annotations
 
