@@ -195,10 +195,10 @@ def _record(skill: Skill, files: Mapping[str, bytes]) -> bytes:
 def _read_record(folder: Path) -> dict[str, str]:
     """File -> digest, as recorded at the installation; empty without a valid record."""
     try:
-        found = json.loads((folder / _RECORD).read_text(encoding="utf-8"))["files"]
+        digests = json.loads((folder / _RECORD).read_text(encoding="utf-8"))["files"]
     except (OSError, ValueError, KeyError, TypeError):
         return {}
-    return {str(name): str(digest) for name, digest in found.items()} if isinstance(found, dict) else {}
+    return {str(name): str(digest) for name, digest in digests.items()} if isinstance(digests, dict) else {}
 
 
 def _replace(folder: Path, files: Mapping[str, bytes], obsolete: Iterable[str]) -> None:

@@ -64,12 +64,12 @@ class Commands(TyperGroup):
         """Return a command; in a list of commands only its name and sentence."""
         if self._listing or cmd_name not in COMMANDS:
             return super().get_command(ctx, cmd_name)
-        found = loaded(cmd_name)
-        if not isinstance(found, typer.Typer):
+        target = loaded(cmd_name)
+        if not isinstance(target, typer.Typer):
             one = typer.Typer(add_completion=False, rich_markup_mode="rich")
-            one.command(cmd_name)(handle_errors(found))
-            found = one
-        command = typer.main.get_command(found)
+            one.command(cmd_name)(handle_errors(target))
+            target = one
+        command = typer.main.get_command(target)
         command.name = cmd_name
         return command
 

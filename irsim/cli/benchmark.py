@@ -261,10 +261,10 @@ def _difference_line(row: BenchmarkRow, behavior: str, reference: str) -> str:
     """Return one line with the paired differences between a behavior and the reference."""
     differences = []
     for key, name, unit in _DIFFERENCES:
-        found = row.paired[key]
-        if found.mean is not None:
-            interval = "" if found.low is None else f" [{found.low:+.2f}, {found.high:+.2f}]"
-            differences.append(f"{name} {found.mean:+.2f}{unit}{interval}{_episodes_note(found, row.episodes)}")
+        estimate = row.paired[key]
+        if estimate.mean is not None:
+            interval = "" if estimate.low is None else f" [{estimate.low:+.2f}, {estimate.high:+.2f}]"
+            differences.append(f"{name} {estimate.mean:+.2f}{unit}{interval}{_episodes_note(estimate, row.episodes)}")
     line = ", ".join(differences) or "no common episodes"
     return f"{clean(behavior)} minus {clean(reference)}, same seeds: {line}"
 
@@ -283,24 +283,24 @@ def _watched_line(row: BenchmarkRow) -> str:
     return "; ".join(parts)
 
 
-def _share(found: Proportion) -> str:
-    if found.low is None or found.high is None:
-        return f"{100 * found.rate:.0f}%"
-    return f"{100 * found.rate:.0f}% {100 * found.low:.0f}-{100 * found.high:.0f}"
+def _share(share: Proportion) -> str:
+    if share.low is None or share.high is None:
+        return f"{100 * share.rate:.0f}%"
+    return f"{100 * share.rate:.0f}% {100 * share.low:.0f}-{100 * share.high:.0f}"
 
 
-def _mean(found: Estimate, digits: int, episodes: int, *, interval: bool = False) -> str:
-    if found.mean is None:
+def _mean(estimate: Estimate, digits: int, episodes: int, *, interval: bool = False) -> str:
+    if estimate.mean is None:
         return "-"
-    text = f"{found.mean:.{digits}f}"
-    if interval and found.low is not None and found.high is not None:
-        text += f" ±{(found.high - found.low) / 2:.{digits}f}"
-    return text + _episodes_note(found, episodes)
+    text = f"{estimate.mean:.{digits}f}"
+    if interval and estimate.low is not None and estimate.high is not None:
+        text += f" ±{(estimate.high - estimate.low) / 2:.{digits}f}"
+    return text + _episodes_note(estimate, episodes)
 
 
-def _episodes_note(found: Estimate, episodes: int) -> str:
+def _episodes_note(estimate: Estimate, episodes: int) -> str:
     """Return the number of episodes in parentheses if fewer than all have a value."""
-    return f" ({found.n})" if found.n < episodes else ""
+    return f" ({estimate.n})" if estimate.n < episodes else ""
 
 
 def _labels(files: list[str]) -> dict[str, str]:

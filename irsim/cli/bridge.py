@@ -49,20 +49,20 @@ def doctor(
         if name not in BRIDGES.names():
             known = BRIDGES.names()
             raise InputError(f"{name!r} is not a bridge", suggestion(name, known, f"they are {', '.join(known)}"))
-    found = examine(names or ())
+    reports = examine(names or ())
     if json_output:
-        typer.echo(json.dumps([asdict(one) for one in found], indent=2))
+        typer.echo(json.dumps([asdict(one) for one in reports], indent=2))
     else:
         table = Table(box=None, pad_edge=False, header_style="dim")
         for heading in ("bridge", "library", "version", "state", ""):
             table.add_column(heading)
-        for one in found:
+        for one in reports:
             table.add_row(
                 Text(one.bridge, "bold cyan"), one.part, one.version, Text(one.state, _COLORS[one.state]),
                 Text(clean(one.text, 300)),
             )  # fmt: skip
         console().print(table)
-    if any(one.state == "broken" for one in found):
+    if any(one.state == "broken" for one in reports):
         raise typer.Exit(FAILED)
 
 
@@ -91,15 +91,17 @@ def import_bag(
     options = BagOptions(
         odom, scan, _mount(mount), resolution, radius, step_time, start, math.inf if end is None else end
     )  # fmt: skip
-    found = convert(bag, out, options, overwrite=force)
+    converted = convert(bag, out, options, overwrite=force)
     if json_output:
-        typer.echo(json.dumps(asdict(found)))
+        typer.echo(json.dumps(asdict(converted)))
         return
-    what = f": {found.poses} poses, {found.duration:.1f} s" + (f", a map of {found.scans} scans" if found.map else "")
-    console().print(Text.assemble("wrote ", (found.file, "bold"), what), soft_wrap=True)
-    for note in found.notes:
+    what = f": {converted.poses} poses, {converted.duration:.1f} s" + (
+        f", a map of {converted.scans} scans" if converted.map else ""
+    )
+    console().print(Text.assemble("wrote ", (converted.file, "bold"), what), soft_wrap=True)
+    for note in converted.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)
-    console().print(Text.assemble("run it: ", (f"irsim run {found.file}", "cyan")), soft_wrap=True)
+    console().print(Text.assemble("run it: ", (f"irsim run {converted.file}", "cyan")), soft_wrap=True)
 
 
 def _mount(text: str | None) -> tuple[float, float, float] | None:

@@ -98,7 +98,7 @@ def import_pedestrians(
     layout = Layout(
         file.name, step_time, radius, margin, "cubic" if smooth else "linear", begin, goal, behavior, robot
     )  # fmt: skip
-    found = convert(
+    converted = convert(
         file,
         out,
         suite=suite,
@@ -113,21 +113,21 @@ def import_pedestrians(
         overwrite=force,
     )
     if json_output:
-        typer.echo(json.dumps(asdict(found)))
+        typer.echo(json.dumps(asdict(converted)))
         return
-    if found.file is not None:
-        people = f"{found.pedestrians} pedestrian{'' if found.pedestrians == 1 else 's'}"
-        what = f": {people}, {found.rows} recorded places, {found.duration:g} s"
-        console().print(Text.assemble("wrote ", (found.file, "bold"), what), soft_wrap=True)
-    if found.suite is not None:
-        what = f": {len(found.windows)} windows of {found.length:g} s, 10 seeds each"
-        console().print(Text.assemble("wrote ", (found.suite, "bold"), what), soft_wrap=True)
-    for note in found.notes:
+    if converted.file is not None:
+        people = f"{converted.pedestrians} pedestrian{'' if converted.pedestrians == 1 else 's'}"
+        what = f": {people}, {converted.rows} recorded places, {converted.duration:g} s"
+        console().print(Text.assemble("wrote ", (converted.file, "bold"), what), soft_wrap=True)
+    if converted.suite is not None:
+        what = f": {len(converted.windows)} windows of {converted.length:g} s, 10 seeds each"
+        console().print(Text.assemble("wrote ", (converted.suite, "bold"), what), soft_wrap=True)
+    for note in converted.notes:
         console().print(f"note: {note}", style="yellow", soft_wrap=True)
-    if found.file is not None:
-        console().print(Text.assemble("run it: ", (f"irsim run {found.file}", "cyan")), soft_wrap=True)
-    if found.suite is not None:
-        command = f"irsim benchmark {found.suite} --policies orca,sfm"
+    if converted.file is not None:
+        console().print(Text.assemble("run it: ", (f"irsim run {converted.file}", "cyan")), soft_wrap=True)
+    if converted.suite is not None:
+        command = f"irsim benchmark {converted.suite} --policies orca,sfm"
         console().print(Text.assemble("run it: ", (command, "cyan")), soft_wrap=True)
 
 

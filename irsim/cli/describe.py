@@ -45,10 +45,10 @@ def describe(
         _show(answer, console())
 
 
-def _show_several(found: list[Answer | TopicError], json_output: bool) -> None:
+def _show_several(answers: list[Answer | TopicError], json_output: bool) -> None:
     """Print the answers to several topics briefly, or all of them as a JSON list; errors go to standard error."""
-    known = [one for one in found if isinstance(one, Answer)]
-    for one in found:
+    known = [one for one in answers if isinstance(one, Answer)]
+    for one in answers:
         if not isinstance(one, Answer):
             typer.echo(f"{one.message}. Fix: {one.fix}.", err=True)
     if json_output:

@@ -50,29 +50,29 @@ def diff(
     Order of keys, layout and equivalent notations do not count. Entries are matched even if others are added or
     removed.
     """
-    found = api.diff(before, after, seed=seed)
+    difference = api.diff(before, after, seed=seed)
     extra = [
         place(change.change, change.path)
-        for change in found.keys
+        for change in difference.keys
         if only and not any(_within(change.path, path) for path in only)
     ]
-    extra += _comments_outside(found, after, only) if only and found.comments_changed else []
+    extra += _comments_outside(difference, after, only) if only and difference.comments_changed else []
     if json_output:
-        print_json(found)
+        print_json(difference)
     else:
-        _show(found, extra)
-    if extra or (only and found.comments_lost):
+        _show(difference, extra)
+    if extra or (only and difference.comments_lost):
         raise typer.Exit(FAILED)
 
 
-def _comments_outside(found: ScenarioDiff, after: str, only: list[str]) -> list[str]:
+def _comments_outside(difference: ScenarioDiff, after: str, only: list[str]) -> list[str]:
     """Return the changed comments that belong to keys other than the allowed ones."""
     places: dict[str, list[Path]] = defaultdict(list)
     for comment, about in places_of_comments(load_path(locate(after))):
         places[comment] += about
     return [
         edited.after
-        for edited in found.comments_changed
+        for edited in difference.comments_changed
         if not any(_within(format_path(path), allowed) for path in places.get(edited.after, ()) for allowed in only)
     ]
 
@@ -81,7 +81,7 @@ def _within(path: str, allowed: str) -> bool:
     return path == allowed or path.startswith((f"{allowed}.", f"{allowed}["))
 
 
-def _show(found: ScenarioDiff, extra: list[str]) -> None:
+def _show(difference: ScenarioDiff, extra: list[str]) -> None:
 
     out = console()
 
@@ -95,11 +95,11 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
         change = {"added": now, "removed": was, "changed": moved, "moved": moved}[kind]
         out.print(Text.assemble((f"{sign} {clean(where, 120)}", color), f"  {change}"), soft_wrap=True)
 
-    if found.keys:
+    if difference.keys:
         out.print("in the file", style="bold")
-    for change in found.keys:
+    for change in difference.keys:
         line(change.change, place(change.change, change.path), change.before, change.after)
-    facts = [fact for fact in found.world or [] if not fact.direct]
+    facts = [fact for fact in difference.world or [] if not fact.direct]
     if facts:
         out.print("in the world", style="bold")
     for fact in facts:
@@ -108,10 +108,10 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
             " ".join(filter(None, (fact.object or "world", fact.key))),
             *rounded_pair(*names_if_different(fact.before, fact.after)),
         )
-    for comment in found.comments_lost:
+    for comment in difference.comments_lost:
         out.print(Text.assemble(("comment lost", "red"), f"  {clean(comment, MAX_VALUE_LENGTH)}"), soft_wrap=True)
-    for edited in found.comments_changed:
+    for edited in difference.comments_changed:
         line("changed", "comment", edited.before, edited.after)
-    out.print(clean(found.summary, 600), soft_wrap=True)
+    out.print(clean(difference.summary, 600), soft_wrap=True)
     if extra:
         out.print(Text(f"not allowed by --only: {clean(', '.join(extra), 400)}", style="bold red"), soft_wrap=True)

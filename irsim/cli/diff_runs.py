@@ -34,35 +34,38 @@ def diff_runs(
 
     Differences of scenario, seed, version and options are listed, too, but do not count.
     """
-    found = comparison.diff_runs(before, after, tolerance=tolerance)
+    difference = comparison.diff_runs(before, after, tolerance=tolerance)
     if json_output:
-        print_json(found)
+        print_json(difference)
     else:
-        _show(found)
-    if not found.same:
+        _show(difference)
+    if not difference.same:
         raise typer.Exit(FAILED)
 
 
-def _show(found: RunsDiff) -> None:
+def _show(difference: RunsDiff) -> None:
 
     out = console()
-    for change in found.setup:
+    for change in difference.setup:
         out.print(f"{change.key}: {clean(change.before, 100)} -> {clean(change.after, 100)}", soft_wrap=True)
         if change.key == "scenario":
             out.print("  `irsim diff` with these two files lists the keys that differ", style="dim", soft_wrap=True)
-    if found.parted:
+    if difference.parted:
         table = Table(box=None, pad_edge=False, header_style="dim")
-        for heading in ("object", "quantity", found.before, found.after, "difference"):
+        for heading in ("object", "quantity", difference.before, difference.after, "difference"):
             table.add_column(heading, overflow="fold")
-        for one in found.parted[:MAX_ROWS]:
+        for one in difference.parted[:MAX_ROWS]:
             numbers = [_cell(one.before), _cell(one.after), "-" if one.difference is None else f"{one.difference:.3g}"]
             beams = f" and {one.beams - 1} beams" if one.beams is not None and one.beams > 1 else ""
             table.add_row(clean(one.object, 40), one.quantity + beams, *numbers)
         out.print(table)
-        if found.parted_count > MAX_ROWS:
-            out.print(f"... and {found.parted_count - MAX_ROWS} more")
+        if difference.parted_count > MAX_ROWS:
+            out.print(f"... and {difference.parted_count - MAX_ROWS} more")
     for run, count, events in zip(
-        (found.before, found.after), found.event_counts, (found.events_before, found.events_after), strict=True
+        (difference.before, difference.after),
+        difference.event_counts,
+        (difference.events_before, difference.events_after),
+        strict=True,
     ):
         for event in events[:MAX_ROWS]:
             partner = "" if event.partner is None else f" with {clean(event.partner, 40)}"
@@ -72,9 +75,9 @@ def _show(found: RunsDiff) -> None:
             out.print(f"only in {run}: {who} at step {event.step}", soft_wrap=True)
         if count > MAX_ROWS:
             out.print(f"... and {count - MAX_ROWS} more events only in {run}")
-    for note in found.notes:
+    for note in difference.notes:
         out.print(f"note: {clean(note, 200)}", style="yellow")
-    out.print(clean(found.summary, 600), soft_wrap=True, style="green" if found.same else "bold red")
+    out.print(clean(difference.summary, 600), soft_wrap=True, style="green" if difference.same else "bold red")
 
 
 def _cell(value: float | bool | None) -> str:

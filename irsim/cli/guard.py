@@ -103,8 +103,8 @@ def _report(error: BaseException, *, as_json: bool) -> int:
         print_error(code, message)
     if as_json:
         data: dict[str, object] = {"code": code, "message": message}
-        if found := getattr(error, "diagnostics", ()):
-            data["findings"] = [diagnostic.as_dict() for diagnostic in found]
+        if diagnostics := getattr(error, "diagnostics", ()):
+            data["findings"] = [diagnostic.as_dict() for diagnostic in diagnostics]
         try:
             typer.echo(json.dumps({"error": data}, indent=2, default=str))
             sys.stdout.flush()

@@ -221,12 +221,12 @@ def import_(
 def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...]:
 
     try:
-        found = tuple(float(part) for part in text.split(","))
+        numbers = tuple(float(part) for part in text.split(","))
     except ValueError:
-        found = ()
-    if len(found) != count:
+        numbers = ()
+    if len(numbers) != count:
         raise InputError(f"the {what} '{text}' is not {count} numbers", f"write {example}")
-    return found
+    return numbers
 
 
 def _show_import(result: MapImportResult, out: Path | None, robot: bool) -> None:

@@ -26,11 +26,11 @@ def commands_table() -> str:
     rows = ["| command | what it does |", "|---|---|"]
     groups = []
     for name in COMMANDS:
-        found = loaded(name)
-        if isinstance(found, typer.Typer):
-            groups.append((name, found))
+        entry = loaded(name)
+        if isinstance(entry, typer.Typer):
+            groups.append((name, entry))
         else:
-            rows.append(f"| `irsim {name}` | {_first(found)} |")
+            rows.append(f"| `irsim {name}` | {_first(entry)} |")
     for name, group in groups:
         for command in group.registered_commands:
             assert command.callback is not None
@@ -46,9 +46,9 @@ def sentences_text() -> str:
     """Return the module with the first sentence of each command or group."""
     lines = []
     for name in COMMANDS:
-        found = loaded(name)
+        entry = loaded(name)
         lines.append(
-            f'    "{name}": {json.dumps(found.info.help if isinstance(found, typer.Typer) else _first(found))},'
+            f'    "{name}": {json.dumps(entry.info.help if isinstance(entry, typer.Typer) else _first(entry))},'
         )
     head = [
         "# ruff: noqa: E501",

@@ -28,9 +28,9 @@ def policies(
 ) -> None:
     """List the policies that can drive robots, or describe one: what it observes, returns and controls."""
     import_user_modules(imports)
-    found = list_policies() if name is None else [describe_policy(name)]
+    listed = list_policies() if name is None else [describe_policy(name)]
     if json_output:
-        data = [asdict(one) for one in found]
+        data = [asdict(one) for one in listed]
         typer.echo(json.dumps(data if name is None else data[0], indent=2, ensure_ascii=False))
         return
 
@@ -39,14 +39,14 @@ def policies(
     if name is None:
         for heading in ("policy", "kind", "returns", "needs", "drives", "what it does"):
             table.add_column(heading)
-        for one in found:
+        for one in listed:
             needs, drives = ", ".join(one.needs) or "-", ", ".join(one.drives)
             row = (one.kind, one.output, clean(needs, 100), clean(drives, 100), clean(one.about, 200))
             table.add_row(Text(clean(one.name), "bold cyan"), *row)
         out.print(table)
         out.print("a file is a policy, too: irsim policies model.npz; irsim run SCENARIO --policy NAME uses one")
         return
-    one = found[0]
+    one = listed[0]
     period = "every step" if one.decision_dt is None else f"every {one.decision_dt:g} s"
     facts = {
         "kind": one.kind, "returns": one.output, "needs": ", ".join(one.needs) or "nothing else",

@@ -40,7 +40,7 @@ class Target(str, Enum):
 
 def list_(json_output: Json = False) -> None:
     """List the skills for coding agents that are included in irsim."""
-    found = find_skills()
+    bundled = find_skills()
     if json_output:
         rows = [
             {
@@ -49,7 +49,7 @@ def list_(json_output: Json = False) -> None:
                 "description": skill.description,
                 "folder": str(skill.folder),
             }
-            for skill in found
+            for skill in bundled
         ]
         typer.echo(json.dumps(rows, indent=2, ensure_ascii=False))
         return
@@ -57,7 +57,7 @@ def list_(json_output: Json = False) -> None:
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(style="bold cyan", no_wrap=True)
     table.add_column()
-    for skill in found:
+    for skill in bundled:
         table.add_row(skill.name, skill.description.partition(". ")[0].rstrip(".") + ".")
     out = console()
     out.print(table)

@@ -17,7 +17,7 @@ __all__ = ["suites"]
 
 def suites(json_output: Json = False) -> None:
     """List the bundled suites: benchmarks with fixed scenarios, seeds, horizon, protocol and policies."""
-    found = {name: (load_suite(name)[0], suite_plan(name)) for name in SUITES.names()}
+    plans = {name: (load_suite(name)[0], suite_plan(name)) for name in SUITES.names()}
     if json_output:
         listed = [
             {
@@ -26,7 +26,7 @@ def suites(json_output: Json = False) -> None:
                 "others": suite.others,
                 "protocols": suite.protocols, "seeds": len(plan.seeds), "steps": suite.steps,
             }
-            for suite, plan in found.values()
+            for suite, plan in plans.values()
         ]  # fmt: skip
         typer.echo(json.dumps(listed, indent=2, ensure_ascii=False))
         return
@@ -35,7 +35,7 @@ def suites(json_output: Json = False) -> None:
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(style="bold cyan", no_wrap=True)
     table.add_column()
-    for name, (suite, plan) in found.items():
+    for name, (suite, plan) in plans.items():
         size = f"{len(plan.scenarios)} scenarios x {len(plan.policies)} policies x {len(plan.seeds)} seeds"
         table.add_row(name, f"{suite.title} ({size})")
     out.print(table)

@@ -32,26 +32,26 @@ def templates(
     json_output: Json = False,
 ) -> None:
     """List the bundled scenarios to start from."""
-    found = find(words or ())
+    matching = find(words or ())
     if sheet is not None:
-        steps = [(template.name, scenario_file(template.name)) for template in found]
+        steps = [(template.name, scenario_file(template.name)) for template in matching]
         pictures = ((name, snapshot(path, seed=1, steps=_SHEET_STEPS, overlays=_OVERLAYS).png) for name, path in steps)
         typer.echo(f"wrote {contact_sheet(pictures, sheet)}", err=json_output)
         if not json_output:
             return
     if json_output:
-        listed = [template.model_dump(mode="json", exclude={"text", "sets"}) for template in found]
+        listed = [template.model_dump(mode="json", exclude={"text", "sets"}) for template in matching]
         typer.echo(json.dumps(listed, indent=2, ensure_ascii=False))
         return
 
     out = console()
-    if not found:
+    if not matching:
         out.print(f"no template matches {' '.join(words or ())!r}; irsim templates lists all")
         return
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(style="bold cyan", no_wrap=True)
     table.add_column()
-    for template in found:
+    for template in matching:
         table.add_row(template.name, template.purpose)
     out.print(table)
     out.print("\nirsim describe NAME shows the parameters; irsim new NAME writes the scenario file.")

@@ -177,21 +177,21 @@ def _show_table(file: str, text: str | None, seed: int | None, limits: Limits | 
         console(stderr=stderr).print(Text(line), soft_wrap=True)
 
 
-def show_dry_run(found: DryRun, out: Console) -> None:
+def show_dry_run(dry_run: DryRun, out: Console) -> None:
     """Print the result of a dry run.
 
     Args:
-        found: Dry run of a report.
+        dry_run: Dry run of a report.
         out: Console to print to.
     """
-    seed = f" (seed {found.seed})" if found.random else ""
+    seed = f" (seed {dry_run.seed})" if dry_run.random else ""
     lines = [
-        f"'{e.object}' with '{e.partner}' at {seconds(e.time)}, ({e.x:.2f}, {e.y:.2f})" for e in found.collisions[1:]
+        f"'{e.object}' with '{e.partner}' at {seconds(e.time)}, ({e.x:.2f}, {e.y:.2f})" for e in dry_run.collisions[1:]
     ]
     lines += [
-        f"'{s.name}' {s.doing} since {seconds(s.since)} at ({s.x:.2f}, {s.y:.2f}): {s.why}" for s in found.stuck[1:]
+        f"'{s.name}' {s.doing} since {seconds(s.since)} at ({s.x:.2f}, {s.y:.2f}): {s.why}" for s in dry_run.stuck[1:]
     ]
-    lines += [f"'{gone.name}' left the world at {seconds(gone.time)}" for gone in found.left[1:]]
-    out.print(Text.assemble(("dry run", "bold"), f"{seed}: {clean(found.summary, 600)}"), soft_wrap=True)
+    lines += [f"'{gone.name}' left the world at {seconds(gone.time)}" for gone in dry_run.left[1:]]
+    out.print(Text.assemble(("dry run", "bold"), f"{seed}: {clean(dry_run.summary, 600)}"), soft_wrap=True)
     for line in lines:
         out.print(f"  {clean(line, 200)}", soft_wrap=True)

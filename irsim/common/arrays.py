@@ -13,6 +13,6 @@ Floats = NDArray[np.float64]
 
 def range_of(chosen: NDArray[np.bool_]) -> slice | NDArray[np.bool_]:
     """The slice of the chosen ones if they follow one another, so that indexing makes no copy; else what is given."""
-    found = np.flatnonzero(chosen)
-    together = found.size > 0 and found[-1] - found[0] + 1 == found.size
-    return slice(int(found[0]), int(found[-1]) + 1) if together else chosen
+    indices = np.flatnonzero(chosen)
+    together = indices.size > 0 and indices[-1] - indices[0] + 1 == indices.size
+    return slice(int(indices[0]), int(indices[-1]) + 1) if together else chosen

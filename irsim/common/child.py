@@ -211,14 +211,14 @@ def write_line(pipe: Writer, message: Any) -> None:
 
 def lines() -> queue.SimpleQueue[bytes]:
     """The lines of standard input; the process ends at once when it is closed."""
-    found: queue.SimpleQueue[bytes] = queue.SimpleQueue()
-    threading.Thread(target=_listen, args=(found,), daemon=True).start()
-    return found
+    received: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(received,), daemon=True).start()
+    return received
 
 
-def _listen(found: queue.SimpleQueue[bytes]) -> None:
+def _listen(received: queue.SimpleQueue[bytes]) -> None:
     for line in sys.stdin.buffer:
-        found.put(line)
+        received.put(line)
     os._exit(0)
 
 

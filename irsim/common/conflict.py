@@ -29,14 +29,14 @@ def find_conflicts(path: Iterable[str]) -> list[str]:
     Returns:
         Paths such as ``…/site-packages/ir_sim-2.12.0.dist-info``, in the order of ``path``.
     """
-    found = []
+    folders = []
     for entry in dict.fromkeys(path):
         try:
             names = os.listdir(entry or ".")
         except OSError:  # zip files, folders that do not exist
             continue
-        found += [os.path.join(entry, name) for name in names if name.endswith("-info") and _is_upstream(name)]
-    return found
+        folders += [os.path.join(entry, name) for name in names if name.endswith("-info") and _is_upstream(name)]
+    return folders
 
 
 def refuse_conflicts() -> None:
@@ -46,11 +46,11 @@ def refuse_conflicts() -> None:
         ConflictError: ``ir-sim`` is installed; the message says where, and what to uninstall.
         SystemExit: ``ir-sim`` is installed, and a command of this package was called.
     """
-    found = find_conflicts(sys.path)
-    if not found:
+    folders = find_conflicts(sys.path)
+    if not folders:
         return
     message = (
-        f"the package 'ir-sim' is installed too ({found[0]}). It and 'irsim-mcp' both provide the Python package "
+        f"the package 'ir-sim' is installed too ({folders[0]}). It and 'irsim-mcp' both provide the Python package "
         "'irsim' and overwrite each other's files. Use separate environments, or remove both and install one "
         "again: pip uninstall -y ir-sim irsim-mcp"
     )

@@ -35,7 +35,7 @@ def _own_docs(cls: type) -> dict[str, str]:
     except (OSError, TypeError, SyntaxError):  # made at run time or shipped without source
         return {}
     body = getattr(tree.body[0], "body", [])
-    found: dict[str, str] = {}
+    docs: dict[str, str] = {}
     for statement, following in itertools.pairwise(body):
         if (
             isinstance(statement, ast.AnnAssign)
@@ -44,5 +44,5 @@ def _own_docs(cls: type) -> dict[str, str]:
             and isinstance(following.value, ast.Constant)
             and isinstance(following.value.value, str)
         ):
-            found[statement.target.id] = inspect.cleandoc(following.value.value)
-    return found
+            docs[statement.target.id] = inspect.cleandoc(following.value.value)
+    return docs

@@ -91,8 +91,8 @@ def format_path(path: Path) -> str:
 def nearest(word: object, choices: Iterable[str], cutoff: float = 0.6) -> str | None:
     """The choice most similar to ``word``; None if none is similar enough."""
     lowered = {str(choice).lower(): str(choice) for choice in choices}
-    found = difflib.get_close_matches(str(word).lower(), list(lowered), 1, cutoff)
-    return lowered[found[0]] if found else None
+    matches = difflib.get_close_matches(str(word).lower(), list(lowered), 1, cutoff)
+    return lowered[matches[0]] if matches else None
 
 
 def suggestion(word: object, choices: Iterable[str], otherwise: Otherwise) -> str | Otherwise:

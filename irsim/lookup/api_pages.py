@@ -220,11 +220,11 @@ def _docstring(thing: Any) -> tuple[str, list[tuple[str, str]]]:
 
 
 def _section(doc: str, name: str) -> list[tuple[str, str]]:
-    found = re.search(rf"(?:^|\n){name}:\n(.*?)(?=\n\S|\Z)", doc, re.DOTALL)
-    if not found:
+    match = re.search(rf"(?:^|\n){name}:\n(.*?)(?=\n\S|\Z)", doc, re.DOTALL)
+    if not match:
         return []
     entries: list[tuple[str, str]] = []
-    for line in inspect.cleandoc(found[1]).splitlines():
+    for line in inspect.cleandoc(match[1]).splitlines():
         start = re.match(r"(\*{0,2}[\w, ]+?): (.*)", line)
         if start and not line.startswith(" "):
             entries.append((start[1], _markup(start[2])))

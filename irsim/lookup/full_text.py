@@ -60,7 +60,7 @@ def best(documents: Sequence[Document], query: str) -> tuple[list[str], list[str
     scores = bm25(frequencies.values(), [count.total() for count in counts])
     matched = [sum(times[k] > 0 for times in frequencies.values()) for k in range(len(counts))]
     unknown = [word for word, times in frequencies.items() if not any(times)]
-    scores = [score * found / max(len(wanted), 1) for score, found in zip(scores, matched, strict=True)]
+    scores = [score * hits / max(len(wanted), 1) for score, hits in zip(scores, matched, strict=True)]
     order = sorted(range(len(scores)), key=lambda k: -scores[k])[:MAX_RESULTS]
     shown = [k for k in order if scores[k] > 0 and scores[k] >= MIN_SCORE_SHARE * scores[order[0]]]
     return [documents[k].name for k in shown], unknown

@@ -276,15 +276,15 @@ def find_gaps(schema: Node) -> list[Gap]:
         schema: JSON Schema of the language.
     """
     language = max(mappings(schema, schema), key=lambda option: len(option["properties"]))["properties"]
-    found = []
+    gaps = []
     for section, base in (("world", _WORLD), ("robot", _ROBOT)):
         [keys] = [option["properties"] for option in mappings(schema, language[section])]
         for key, node in keys.items():
             for name, value in _values(schema, key, node):
                 message = _find_refusal({"world": _WORLD, "robot": _ROBOT, section: {**base, key: value}})
                 if message is not None:
-                    found.append(Gap(section, key, name, f"{key}: {yaml_text(_name_first(value))}", message))
-    return found
+                    gaps.append(Gap(section, key, name, f"{key}: {yaml_text(_name_first(value))}", message))
+    return gaps
 
 
 def _values(schema: Node, key: str, node: Node) -> Iterator[tuple[str, Any]]:

@@ -72,13 +72,13 @@ def alternatives(root: Node, node: Node) -> Iterator[Node]:
 
 def mappings(root: Node, node: Node) -> list[Node]:
     """Return the mappings that a node accepts, including those in lists."""
-    found: list[Node] = []
+    options: list[Node] = []
     for option in alternatives(root, node):
         if "properties" in option:
-            found.append(option)
+            options.append(option)
         elif isinstance(option.get("items"), dict):
-            found += mappings(root, option["items"])
-    unique = {json.dumps(option, sort_keys=True): option for option in found}
+            options += mappings(root, option["items"])
+    unique = {json.dumps(option, sort_keys=True): option for option in options}
     return list(unique.values())
 
 
@@ -120,7 +120,7 @@ def paths(
 
 def definitions_of(root: Node, node: Any) -> dict[str, Node]:
     """Return all definitions that a node refers to, directly or through others, sorted by name."""
-    found: dict[str, Node] = {}
+    definitions: dict[str, Node] = {}
     waiting = [node]
     while waiting:
         item = waiting.pop()
@@ -129,10 +129,10 @@ def definitions_of(root: Node, node: Any) -> dict[str, Node]:
         elif isinstance(item, dict):
             waiting += item.values()
             name = str(item.get("$ref", "")).removeprefix("#/$defs/")
-            if name and name not in found:
-                found[name] = root["$defs"][name]
-                waiting.append(found[name])
-    return dict(sorted(found.items()))
+            if name and name not in definitions:
+                definitions[name] = root["$defs"][name]
+                waiting.append(definitions[name])
+    return dict(sorted(definitions.items()))
 
 
 def key(root: Node, name: str, node: Node, required: bool = False) -> Key:

@@ -49,7 +49,7 @@ def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[
     """
     wanted = " ".join(words).lower()
     keys = [(_hit(path, node), node) for path, node in paths(schema) if _is_searched(path)]
-    keys.sort(key=lambda found: len(found[0].name))
+    keys.sort(key=lambda match: len(match[0].name))
     same = [hit for hit, _ in keys if _last(hit) == wanted]
     if same:
         return _namesakes_answer(clean(wanted), same)
@@ -59,18 +59,18 @@ def search_answer(schema: Node, topic: str, words: list[str], explain: Callable[
     topics, (documents, lines) = all_topics(schema), _documents(schema, keys)
     metrics = [full_text.Document(name, f"{m.key} metric", m.text) for name, m in METRIC_TOPICS.items()]
     lines |= {name: Key(name=name, text=metric_line(metric)) for name, metric in METRIC_TOPICS.items()}
-    found, unknown = full_text.best(documents, topic)
-    if not found or not full_text.best(metrics, topic)[1]:  # without a word of their own, metrics are not meant
-        found, unknown = full_text.best(documents + metrics, topic)
+    names, unknown = full_text.best(documents, topic)
+    if not names or not full_text.best(metrics, topic)[1]:  # without a word of their own, metrics are not meant
+        names, unknown = full_text.best(documents + metrics, topic)
     called = named(topic)
     unknown = [word for word in unknown if not any(word in full_text.words_of(EVERYDAY[name]) for name in called)]
-    if not (called or found) or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _MIN_LIKENESS)):
+    if not (called or names) or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _MIN_LIKENESS)):
         raise TopicError(topic, near_topics(topics, words))
     lines |= {name: _line_of(schema, name) for name in called}
     guides = {document.name: document for document in documents if document.name in GUIDES}
-    whole = [name for name in found if name in guides and full_text.has_all(guides[name], topic)]
+    whole = [name for name in names if name in guides and full_text.has_all(guides[name], topic)]
     first = [] if _is_named_whole(topic, called) else whole[:1]
-    hits = [lines[name] for name in dict.fromkeys([*first, *called[:_MAX_EVERYDAY], *found])][:MAX_HITS]
+    hits = [lines[name] for name in dict.fromkeys([*first, *called[:_MAX_EVERYDAY], *names])][:MAX_HITS]
     title = f"{len(hits)} topics fit '{clean(wanted)}' best" if len(hits) > 1 else f"About '{clean(wanted)}'"
     return _hits_answer(wanted, hits, title, unknown).model_copy(update={"best": explain(hits[0].name)})
 

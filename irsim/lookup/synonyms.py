@@ -124,7 +124,7 @@ def named(query: str) -> list[str]:
     also occurs, such as ``drive`` in ``differential drive``.
     """
     words = words_of(query.replace("*", " star"))
-    found: list[tuple[int, int, str]] = []  # (words, first word, topic)
+    matches: list[tuple[int, int, str]] = []  # (words, first word, topic)
     for topic, names in EVERYDAY.items():
         spans = [
             (len(name), start, topic)
@@ -132,10 +132,10 @@ def named(query: str) -> list[str]:
             for start in range(len(words) - len(name) + 1)
             if words[start : start + len(name)] == name
         ]
-        found += sorted(spans, reverse=True)[:1]
+        matches += sorted(spans, reverse=True)[:1]
     whole = [
         (count, start, topic)
-        for count, start, topic in found
-        if not any(other[0] > count and other[1] <= start < start + count <= other[1] + other[0] for other in found)
+        for count, start, topic in matches
+        if not any(other[0] > count and other[1] <= start < start + count <= other[1] + other[0] for other in matches)
     ]
     return [topic for _, _, topic in sorted(whole, key=lambda span: -span[0])]

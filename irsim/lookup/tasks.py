@@ -68,12 +68,12 @@ def _bundled(name: str) -> Answer:
 
 
 def _keys(schema: Node, node: Node) -> list[Key]:
-    found: dict[str, Key] = {}
+    keys: dict[str, Key] = {}
     for option in mappings(schema, node):
         required = option.get("required", [])
         for name, child in option["properties"].items():
-            found.setdefault(name, key(schema, name, child, name in required))
-    return list(found.values())
+            keys.setdefault(name, key(schema, name, child, name in required))
+    return list(keys.values())
 
 
 def _line(name: str, option: Node) -> Key:
@@ -85,8 +85,8 @@ def _text(node: Node) -> str:
 
 
 def _example(schema: Node, node: Node) -> str | None:
-    found = [option["examples"] for option in (node, *mappings(schema, node)) if option.get("examples")]
-    return yaml_text(found[0][0]) if found else None
+    examples = [option["examples"] for option in (node, *mappings(schema, node)) if option.get("examples")]
+    return yaml_text(examples[0][0]) if examples else None
 
 
 _EXAMPLE = """\

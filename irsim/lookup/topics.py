@@ -111,9 +111,9 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     if topic.strip() in DIFFERENCES:
         return difference_answer(topic.strip())
     schema = json_schema() if schema is None else schema
-    found = _find(schema, words) if words else None
-    if found:
-        return _part(schema, *found)
+    match = _find(schema, words) if words else None
+    if match:
+        return _part(schema, *match)
     guide = next((known for known, guide in GUIDES.items() if topic.strip().lower() in (known, *guide.words)), None)
     if guide is not None:
         asked = f"metric {name}"
@@ -141,10 +141,10 @@ def schema_part(topic: str) -> Node:
     words, schema = _words(topic), json_schema()
     if not words:
         return schema
-    found = _find(schema, words)
-    if found is None:
+    match = _find(schema, words)
+    if match is None:
         raise TopicError(" ".join(words), near_topics(all_topics(schema), words))
-    path, nodes = found
+    path, nodes = match
     body = nodes[0] if len(nodes) == 1 else {"anyOf": nodes}
     return {"$schema": schema["$schema"], "title": ".".join(path), **body, "$defs": definitions_of(schema, body)}
 
@@ -181,18 +181,18 @@ def _find(schema: Node, words: list[str]) -> tuple[tuple[str, ...], list[Node]] 
 
 def _readings(schema: Node, words: tuple[str, ...]) -> list[tuple[str, ...]]:
     """Return the paths that the words may mean, the most literal first."""
-    found = [words, ("robot", *words), ("world", *words)]
+    readings = [words, ("robot", *words), ("world", *words)]
     kind = _kind(words[0])
     if kind is not None:
-        found += [(*_PLACES[kind], *words[1:])]
+        readings += [(*_PLACES[kind], *words[1:])]
     for place, registry in ((_PLACES[registry.kind], registry) for registry in REGISTRIES.values()):
         if words[0] in registry.names():
-            found.append((*place, *words))
+            readings.append((*place, *words))
     if len(words) == 1:
         same = [path for path, _ in paths(schema) if path[-1] == words[0] and path[0] != "bridges"]
         if len({path[1:] for path in same}) == 1:  # robots and obstacles have the same keys
-            found += same
-    return found
+            readings += same
+    return readings
 
 
 def _kind(word: str) -> str | None:
@@ -246,9 +246,9 @@ def _keys(schema: Node, node: Node, siblings: list[Node]) -> dict[str, list[Key]
 
 def _keys_by_component(schema: Node, names: dict[str, Node]) -> dict[str, list[Key]]:
     """Return the keys of each component that may be chosen; keys of all components come last."""
-    found = {name: _keys(schema, option, list(names.values())) for name, option in names.items()}
-    own = {f"keys of {name}": groups["keys"] for name, groups in found.items()}
-    return {**own, "keys of all": next(iter(found.values()))["keys it has in common with the others"]}
+    keys = {name: _keys(schema, option, list(names.values())) for name, option in names.items()}
+    own = {f"keys of {name}": groups["keys"] for name, groups in keys.items()}
+    return {**own, "keys of all": next(iter(keys.values()))["keys it has in common with the others"]}
 
 
 def _siblings(schema: Node, path: tuple[str, ...]) -> list[Node]:
@@ -320,12 +320,12 @@ def lookup_several(topics: list[str]) -> list[Answer | TopicError]:
     """
     if len(topics) > MAX_TOPICS:
         raise InputError(f"{len(topics)} topics are too many", f"ask for at most {MAX_TOPICS} at once")
-    schema, found = json_schema(), list[Answer | TopicError]()
+    schema, answers = json_schema(), list[Answer | TopicError]()
     for topic in topics:
         try:
-            found.append(lookup(topic, schema=schema))
+            answers.append(lookup(topic, schema=schema))
         except TopicError as error:
-            found.append(error)
-    if all(isinstance(one, TopicError) for one in found):
-        raise next(one for one in found if isinstance(one, TopicError))
-    return found
+            answers.append(error)
+    if all(isinstance(one, TopicError) for one in answers):
+        raise next(one for one in answers if isinstance(one, TopicError))
+    return answers

@@ -162,16 +162,16 @@ def standing_distance(
 
 def closest(distances: Clearance) -> list[Approach | None]:
     """Closest approach of each robot to any object, the first of equal ones; None if there is no other object."""
-    found: list[Approach | None] = []
+    nearest: list[Approach | None] = []
     for robot in range(len(distances.robots)):
         table = distances.distance[:, robot]
         if not np.isfinite(table).any():
-            found.append(None)
+            nearest.append(None)
             continue
         row, kind = np.unravel_index(np.nanargmin(table), table.shape)
         partner = distances.names[distances.partner[row, robot, kind]]
-        found.append(Approach(int(row), float(table[row, kind]), partner, KINDS[kind]))
-    return found
+        nearest.append(Approach(int(row), float(table[row, kind]), partner, KINDS[kind]))
+    return nearest
 
 
 def approaches(
@@ -196,7 +196,7 @@ def approaches(
     records = simulation.scenario.objects
     poses = np.ascontiguousarray(trace if isinstance(trace, np.ndarray) else trace.pose, dtype=np.float64)
     rounds = max(1, min(most, _MAX_WORK // max(1, len(poses) * len(records) * len(objects))))
-    found = []
+    listed = []
     for index in objects:
         company, mine = kinds_of(records), list[Approach]()
         for _ in range(rounds):
@@ -210,8 +210,8 @@ def approaches(
                     company[other] = IGNORED  # the next round finds the next nearest
             if len(mine) == known:
                 break
-        found.append(sorted(mine, key=lambda approach: approach.distance))
-    return found
+        listed.append(sorted(mine, key=lambda approach: approach.distance))
+    return listed
 
 
 def least(
@@ -231,7 +231,7 @@ def least(
     best: list[Approach | None] = [None] * len(robots)
     for rows, absent in _stretches(poses):
         present = [place for place, robot in enumerate(robots) if not absent[robot] and ends[place] > rows.start]
-        found = core.least_clearances(
+        columns = core.least_clearances(
             simulation.world,
             simulation.state,
             world,
@@ -240,7 +240,7 @@ def least(
             np.where(absent, IGNORED, company).astype(company.dtype),
             [ends[place] - rows.start for place in present],
         )
-        for place, distance, partner, row in zip(present, *(column.tolist() for column in found), strict=True):
+        for place, distance, partner, row in zip(present, *(column.tolist() for column in columns), strict=True):
             before = best[place]
             if partner >= 0 and (before is None or distance < before.distance):
                 best[place] = Approach(rows.start + row, distance, records[partner].name, KINDS[company[partner]])

@@ -69,8 +69,8 @@ class Geodesics:
         key = (line.tobytes(), radius, coarse)
         if key not in self._known:
             size = max(radius - _SLACK_M, _MIN_RADIUS_M)
-            found = self._search(line, size, _COARSE_FACTOR) if coarse else None
-            self._known[key] = self._search(line, size) if found is None else found
+            coarse_path = self._search(line, size, _COARSE_FACTOR) if coarse else None
+            self._known[key] = self._search(line, size) if coarse_path is None else coarse_path
         return self._known[key]
 
     def length(self, start: Floats, goal: Floats, radius: float, *, coarse: bool = False) -> float:

@@ -214,13 +214,13 @@ class CustomBehaviors:
     def function(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:
         """The function that user code has registered, or None."""
         key = (kinematics or "static", name)
-        found = self.functions.get(key)
-        return None if found is None or key in self._taken[1] or is_built_in(found) else found
+        function = self.functions.get(key)
+        return None if function is None or key in self._taken[1] or is_built_in(function) else function
 
     def maker(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:
         """The class or factory that user code has registered, or None."""
-        found = self.classes.get((kinematics or "static", name))
-        return None if is_built_in(found) else found
+        maker = self.classes.get((kinematics or "static", name))
+        return None if is_built_in(maker) else maker
 
     def has(self, kinematics: str | None, name: str) -> bool:
         """Whether user code has registered anything for this kinematics and name."""

@@ -120,7 +120,7 @@ def diff_runs(
         and outcomes[0] == outcomes[1]
         and not any(change.key in ("objects", "step_time") for change in setup)
     )
-    found = RunsDiff(
+    difference = RunsDiff(
         before=first.id,
         after=second.id,
         same=same,
@@ -137,8 +137,8 @@ def diff_runs(
         event_counts=(len(events[0]), len(events[1])),
         notes=[f"{run.id}: {note}" for run in runs for note in run.notes],
     )
-    found.summary = _summary(found)
-    return found
+    difference.summary = _summary(difference)
+    return difference
 
 
 def _setup(first: Run, second: Run) -> list[SetupChange]:
@@ -245,27 +245,30 @@ def _identity(event: Event) -> tuple[str, int, str, str | None, str | None, str 
     return event.kind, event.step, event.object, event.partner, event.zone, event.direction
 
 
-def _summary(found: RunsDiff) -> str:
+def _summary(difference: RunsDiff) -> str:
     """One sentence: whether the runs are equal, or where they part."""
-    keys = [change.key for change in found.setup]
+    keys = [change.key for change in difference.setup]
     although = f", although {' and '.join(keys)} differ" if keys else ""
-    if found.same:
-        return f"the runs are equal in all {found.last_steps[0]} steps{although}"
-    if found.step is not None:
-        where = f"the runs part at step {found.step} ({found.time:g} s)"
-        if not found.parted:
+    if difference.same:
+        return f"the runs are equal in all {difference.last_steps[0]} steps{although}"
+    if difference.step is not None:
+        where = f"the runs part at step {difference.step} ({difference.time:g} s)"
+        if not difference.parted:
             return f"{where}: they begin with different steps"
-        one = found.parted[0]
-        more = f", and {found.parted_count - 1} more" if found.parted_count > 1 else ""
+        one = difference.parted[0]
+        more = f", and {difference.parted_count - 1} more" if difference.parted_count > 1 else ""
         values = f"{_shown(one.before)} and {_shown(one.after)}"
         return f"{where}: {one.quantity} of '{clean(one.object, 40)}' is {values}{more}"
     reasons = []
-    if found.last_steps[0] != found.last_steps[1]:
-        reasons.append(f"{found.before} ends with step {found.last_steps[0]}, {found.after} with {found.last_steps[1]}")
-    if any(found.event_counts):
-        reasons.append(f"{sum(found.event_counts)} events are only in one of them")
-    if found.outcomes[0] != found.outcomes[1]:
-        reasons.append(f"the outcomes are {found.outcomes[0]} and {found.outcomes[1]}")
+    if difference.last_steps[0] != difference.last_steps[1]:
+        reasons.append(
+            f"{difference.before} ends with step {difference.last_steps[0]}, "
+            f"{difference.after} with {difference.last_steps[1]}"
+        )
+    if any(difference.event_counts):
+        reasons.append(f"{sum(difference.event_counts)} events are only in one of them")
+    if difference.outcomes[0] != difference.outcomes[1]:
+        reasons.append(f"the outcomes are {difference.outcomes[0]} and {difference.outcomes[1]}")
     if "objects" in keys or "step_time" in keys:
         reasons.append(f"{' and '.join(key for key in ('objects', 'step_time') if key in keys)} differ")
     return f"all steps that both runs have are equal, but {'; '.join(reasons)}"

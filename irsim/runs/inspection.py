@@ -94,11 +94,11 @@ def inspect_run(
     question = Question(
         opened, trace, objects, named, from_step - begin, last - begin, every, chosen, start, limit, limits
     )
-    found = VIEWS[view](question)
-    if start and start >= found.total:
+    table = VIEWS[view](question)
+    if start and start >= table.total:
         what = f"cursor {cursor!r} is beyond the last row"
         raise RunError("bad-argument", what, "use next_cursor of the previous page", where="cursor")
-    shown = start + len(found.rows)
+    shown = start + len(table.rows)
     result = opened.result
     return RunTable(
         run_id=opened.id,
@@ -107,14 +107,14 @@ def inspect_run(
         lost=None if result is None else result.lost,
         summary=f"recorded until step {end}" if result is None else result.summary,
         view=view,
-        columns=found.columns,
-        rows=found.rows,
-        total=found.total,
-        every=found.every,
+        columns=table.columns,
+        rows=table.rows,
+        total=table.total,
+        every=table.every,
         from_step=from_step,
         to_step=last,
-        next_cursor=str(shown) if shown < found.total else None,
-        notes=[*opened.notes, *_beyond(opened, end, to_step), *_empty(question, view, found)],
+        next_cursor=str(shown) if shown < table.total else None,
+        notes=[*opened.notes, *_beyond(opened, end, to_step), *_empty(question, view, table)],
     )
 
 
@@ -125,10 +125,10 @@ def _beyond(run: Run, end: int, to_step: int | None) -> list[str]:
     return [f"step {to_step} is beyond the end of the episode: {run.extent}"]
 
 
-def _empty(question: Question, view: str, found: Table) -> list[str]:
+def _empty(question: Question, view: str, table: Table) -> list[str]:
     """A note that says why a table has no rows."""
     message = _EMPTY_MESSAGES.get(view)
-    return [] if found.total or message is None else [message(question)]
+    return [] if table.total or message is None else [message(question)]
 
 
 # request --------------------------------------------------------------------------------------------------------------
@@ -246,9 +246,9 @@ def _closest(asked: Question) -> Table:
     scenario = scenario_of(asked.run, asked.limits)
     part, trace = asked.trace.pose[asked.first : asked.last + 1], asked.trace
     near = approaches(part, scenario, asked.objects, _MAX_PARTNERS, seed=int(asked.run.meta["seed"]))
-    found = [(each, index) for index, some in zip(asked.objects, near, strict=True) for each in some]
+    pairs = [(each, index) for index, some in zip(asked.objects, near, strict=True) for each in some]
     rows: list[list[Cell]] = []
-    for each, index in sorted(found, key=lambda item: (item[0].distance, item[1])):
+    for each, index in sorted(pairs, key=lambda item: (item[0].distance, item[1])):
         row = asked.first + each.row
         moment: list[Cell] = [int(trace.step[row]), rounded(trace.time[row])]
         place: list[Cell] = [rounded(value) for value in trace.pose[row, index, :2]]

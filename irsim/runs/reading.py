@@ -123,8 +123,8 @@ class Run:
     def notes(self) -> list[str]:
         """Notes on what was too large to be recorded, and of a finished run the messages of its bridges."""
         result = self.result
-        found = omission_notes(self.meta, None if result is None else result.steps)
-        return [*found, *(note for note in ([] if result is None else result.notes) if note not in found)]
+        omissions = omission_notes(self.meta, None if result is None else result.steps)
+        return [*omissions, *(note for note in ([] if result is None else result.notes) if note not in omissions)]
 
     @property
     def extent(self) -> str:
@@ -200,11 +200,11 @@ class Run:
         Raises:
             RunError: A piece is missing.
         """
-        found = sorted((int(m[2]), m[1], m[0]) for name in self._names() if (m := _PIECE.fullmatch(name)))
-        for number, (there, _, _) in enumerate(found):
+        pieces = sorted((int(m[2]), m[1], m[0]) for name in self._names() if (m := _PIECE.fullmatch(name)))
+        for number, (there, _, _) in enumerate(pieces):
             if there != number:
                 raise unreadable(f"piece {number:04d} of run {self.id} is missing, or exists twice")
-        return [name for _, kind, name in found if kind in kinds]
+        return [name for _, kind, name in pieces if kind in kinds]
 
     def _piece(self, name: str, objects: Sequence[int] | None = None, scans: bool = True) -> Trace:
         sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]

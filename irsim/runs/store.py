@@ -136,7 +136,7 @@ def dated_folders(runs: Path, dated_by: Sequence[str]) -> list[tuple[int, Path]]
         runs: Folder of all runs.
         dated_by: Names of files; the first one that exists gives the date of a run.
     """
-    found: list[tuple[int, str, Path]] = []
+    folders: list[tuple[int, str, Path]] = []
     with suppress(FileNotFoundError, NotADirectoryError), os.scandir(runs) as entries:
         for entry in entries:
             if ID.fullmatch(entry.name) and entry.is_dir(follow_symlinks=False):
@@ -144,8 +144,8 @@ def dated_folders(runs: Path, dated_by: Sequence[str]) -> list[tuple[int, Path]]
                     dates = {name: date_of(os.path.join(entry.path, name)) for name in (META, *dated_by)}
                     date = next((dates[name] for name in dated_by if dates[name] is not None), None)
                     if date is not None and dates[META] is not None:
-                        found.append((date, entry.name, Path(entry.path)))
-    return [(date, folder) for date, _, folder in sorted(found, reverse=True)]
+                        folders.append((date, entry.name, Path(entry.path)))
+    return [(date, folder) for date, _, folder in sorted(folders, reverse=True)]
 
 
 def date_of(path: str) -> int | None:

@@ -99,11 +99,11 @@ def chosen_objects(run: Run, asked: str | None) -> tuple[list[int], frozenset[st
     objects = run.resolved["objects"]
     if asked is None:
         return [index for index, item in enumerate(objects) if item.get("role") == "robot"], None
-    found: dict[int, None] = {}
+    rows: dict[int, None] = {}
     words = [asked] if asked in run.names else [word.strip() for word in asked.split(",") if word.strip()] or [asked]
     for word in words:
-        found.update(dict.fromkeys(_named(run, word)))
-    return sorted(found), None if words == [ALL] and ALL not in run.names else frozenset(run.names[k] for k in found)
+        rows.update(dict.fromkeys(_named(run, word)))
+    return sorted(rows), None if words == [ALL] and ALL not in run.names else frozenset(run.names[k] for k in rows)
 
 
 def _named(run: Run, word: str) -> list[int]:

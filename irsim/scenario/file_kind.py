@@ -23,8 +23,8 @@ Model = TypeVar("Model", bound=BaseModel)
 
 def explained(failure: ValidationError, document: Document, model: type[BaseModel]) -> list[Diagnostic]:
     """The errors of a validation in the words of scenarios, without their lines."""
-    found = translate(failure, document.data, document, MOST_PROBLEMS, model)
-    return [item.diagnostic for item in found]
+    findings = translate(failure, document.data, document, MOST_PROBLEMS, model)
+    return [item.diagnostic for item in findings]
 
 
 def schema_text(schema: dict[str, Any]) -> str:
@@ -80,16 +80,16 @@ class FileKind(Generic[Model]):
 
     def read(self, document: Document) -> Model:
         """Check a document; all of its problems are in the exception that ``error`` makes."""
-        found = [item for item in document.problems if item.severity == "error"]
-        if found and (document.fatal or document.data is None):
-            raise self.error(document, found)
+        errors = [item for item in document.problems if item.severity == "error"]
+        if errors and (document.fatal or document.data is None):
+            raise self.error(document, errors)
         try:
             content = self.model.model_validate(document.data)
         except ValidationError as failure:
             wrong = [located(item, document) for item in self.explain(failure, document, self.model)]
-            raise self.error(document, [*found, *wrong]) from None
-        if found:
-            raise self.error(document, found)
+            raise self.error(document, [*errors, *wrong]) from None
+        if errors:
+            raise self.error(document, errors)
         return content
 
     def schema(self) -> dict[str, Any]:

@@ -75,7 +75,7 @@ def _message(wanted: str, searched: list[str]) -> str:
 def _near(wanted: str, places: list[str]) -> list[str]:
     """Files in the searched places with a similar name, nearest first."""
     base = os.path.basename(wanted).lower()
-    found: dict[str, str] = {}
+    paths: dict[str, str] = {}
     for place in places:
         try:
             entries = [entry.name for entry in os.scandir(place) if entry.is_file()]
@@ -83,7 +83,7 @@ def _near(wanted: str, places: list[str]) -> list[str]:
             continue
         for entry in entries:
             if entry.lower().endswith((".yaml", ".yml")):
-                found.setdefault(entry, os.path.relpath(os.path.join(place, entry)))
+                paths.setdefault(entry, os.path.relpath(os.path.join(place, entry)))
     stem = base.rsplit(".", 1)[0]
-    by_stem = {entry.lower().rsplit(".", 1)[0]: entry for entry in found}
-    return [found[by_stem[match]] for match in difflib.get_close_matches(stem, by_stem, _MAX_SUGGESTIONS, 0.5)]
+    by_stem = {entry.lower().rsplit(".", 1)[0]: entry for entry in paths}
+    return [paths[by_stem[match]] for match in difflib.get_close_matches(stem, by_stem, _MAX_SUGGESTIONS, 0.5)]

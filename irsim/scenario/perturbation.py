@@ -48,10 +48,10 @@ class _WithUnit:
         if not isinstance(value, str):
             return value
         share = value.strip().endswith("%") and self.unit == "1"
-        found = read_number(value.strip()[:-1] if share else value, self.unit).value
-        if found is None:
+        number = read_number(value.strip()[:-1] if share else value, self.unit).value
+        if number is None:
             return value
-        return found / 100 if share else found
+        return number / 100 if share else number
 
 
 def _rounded(value: float) -> float:
@@ -109,16 +109,16 @@ def read_perturbations(given: Perturbations | None) -> tuple[Perturbation, ...]:
     """
     one = given is None or isinstance(given, (str, Mapping, Perturbation)) or not isinstance(given, Iterable)
     listed_items = [part for item in ([] if given is None else [given] if one else given) for part in _parts(item)]
-    found, problems = list[Perturbation](), list[str]()
+    perturbations, problems = list[Perturbation](), list[str]()
     for number, item in enumerate(listed_items):
         made, wrong = _read_one(item)
         where = f"perturb[{number}]: " if len(listed_items) > 1 else ""
         problems += [where + text for text in wrong]
         if made is not None:
-            found.append(made)
+            perturbations.append(made)
     if problems:
         raise InputError("; ".join(problems), _FIX, "perturb")
-    return tuple(found)
+    return tuple(perturbations)
 
 
 def perturbation_text(perturbation: Perturbation) -> str:
@@ -170,12 +170,12 @@ def perturbed_message(scenario: ResolvedScenario) -> list[str]:
     for record in scenario.objects:
         if record.spreads is not None:
             groups.setdefault(record.spreads, []).append(record.name)
-    found = []
+    sentences = []
     for spreads, names in groups.items():
         values = {key: getattr(spreads, key) * (100 if key == "speed" else 1) for key in _SPREADS}
         parts = [_PARTS[key].format(value) for key, value in values.items() if value]
-        found.append(f"{', '.join(parts)} of {listed([repr(clean(name, 40)) for name in names], _MAX_NAMED)}")
-    return found
+        sentences.append(f"{', '.join(parts)} of {listed([repr(clean(name, 40)) for name in names], _MAX_NAMED)}")
+    return sentences
 
 
 def _parts(item: Any) -> list[Any]:
@@ -209,21 +209,21 @@ def _read_text(text: str) -> tuple[dict[str, Any] | None, list[str]]:
         document = load_text(text)
         data = document.data
         return (None, [f"{as_given(text)} is not a mapping"]) if document.problems else (data, [])
-    found: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     problems = []
     last = None
     for word in text.split(","):
         key, sign, value = (part.strip() for part in word.partition("="))
         if not sign and last == "objects" and key:
-            found["objects"].append(key)
+            fields["objects"].append(key)
         elif not sign or not key or not value:
             problems.append(f"{as_given(word.strip())} is not key=value")
-        elif key in found:
+        elif key in fields:
             problems.append(f"{key} is given twice")
         else:
-            found[key] = [value] if key == "objects" else value
+            fields[key] = [value] if key == "objects" else value
             last = key
-    return found, problems
+    return fields, problems
 
 
 def _problem(error: Any, keys: Mapping[Any, Any]) -> str:

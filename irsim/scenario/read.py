@@ -119,12 +119,13 @@ class _Reader:
         scenario = scenario.model_copy(update={"world": resolved.world})
         map_findings = self._map[1].findings if self._map is not None else []
         context = Context(scenario, resolved, self.data, self.document, map_findings)
-        found = run_checks(context)
-        if self.feasibility is not None and not any(f.blocking for f in [*self.findings, *found]):
-            found = [*self.feasibility(context), *found]  # of two equal findings the first is kept, which was tried out
-        found = [f for f in found if not self._under_repair(f.diagnostic.path)]
-        self._add(found)
-        edits = [f.carry_on for f in found if f.carry_on is not None]
+        findings = run_checks(context)
+        if self.feasibility is not None and not any(f.blocking for f in [*self.findings, *findings]):
+            # Of two equal findings the first is kept, which was tried out.
+            findings = [*self.feasibility(context), *findings]
+        findings = [f for f in findings if not self._under_repair(f.diagnostic.path)]
+        self._add(findings)
+        edits = [f.carry_on for f in findings if f.carry_on is not None]
         if edits:
             self.data = apply_edits(self.data, edits)
             scenario = self._validate()
@@ -136,11 +137,11 @@ class _Reader:
             try:
                 return Scenario.model_validate(self.data)
             except ValidationError as failure:
-                found = translate(failure, self.data, self.document, self.limits.problems)
-            self._add([f for f in found if not self._under_repair(f.diagnostic.path)])
+                findings = translate(failure, self.data, self.document, self.limits.problems)
+            self._add([f for f in findings if not self._under_repair(f.diagnostic.path)])
             if len(self.findings) > self.limits.problems:
                 break
-            edits = [self._repair(f) for f in found]
+            edits = [self._repair(f) for f in findings]
             self.touched += [edit.path for edit in edits]
             self.renamed.update(
                 ((*edit.path[:-1], str(edit.value)), edit.path) for edit in edits if edit.action == "rename"
@@ -189,9 +190,9 @@ class _Reader:
     def _under_repair(self, path: Path) -> bool:
         return any(path[: len(other)] == other or other[: len(path)] == path for other in self.touched)
 
-    def _add(self, found: list[Finding]) -> None:
+    def _add(self, findings: list[Finding]) -> None:
         known = {(f.diagnostic.code, f.diagnostic.path) for f in self.findings}
-        for finding in found:
+        for finding in findings:
             key = (finding.diagnostic.code, finding.diagnostic.path)
             if key not in known:
                 known.add(key)

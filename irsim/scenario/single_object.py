@@ -48,7 +48,7 @@ def read_object(
     has_goal = "goal" in entry or "waypoints" in entry
     entry.setdefault("state", list(_ORIGIN))
     around = {key: getattr(world, key) for key in ("width", "height", "offset", "friction", "restitution")}
-    scenario, found = or_raise(read({"world": around, role: entry}, name=f"create_{role}"))
+    scenario, diagnostics = or_raise(read({"world": around, role: entry}, name=f"create_{role}"))
     (record,) = scenario.objects
     record = replace(
         record,
@@ -57,7 +57,7 @@ def read_object(
         goals=record.goals if has_goal else [],
         joined=False,
     )
-    return record, [item for item in found if item.severity != "hint"]
+    return record, [item for item in diagnostics if item.severity != "hint"]
 
 
 def _plain(value: Any) -> Any:

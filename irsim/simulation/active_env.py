@@ -113,6 +113,6 @@ def follow(module: str, parameters: str, default: Any) -> None:
         parameters: Attribute of the environment that holds the parameter object.
         default: Parameter object that is used before the first environment is made.
     """
-    found = sys.modules[module]
-    found.__dict__.update(_parameters=parameters, _default=default, _bound=None)
-    found.__class__ = _Following
+    target = sys.modules[module]
+    target.__dict__.update(_parameters=parameters, _default=default, _bound=None)
+    target.__class__ = _Following

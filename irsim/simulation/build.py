@@ -85,7 +85,7 @@ def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOption
     for record in records:
         if record.joined:
             leaders.setdefault(record.group, record)
-    found: dict[int, BehaviorOptions] = {}
+    behaviors: dict[int, BehaviorOptions] = {}
     for group, leader in leaders.items():
         options = leader.group_behavior
         if not isinstance(options, BehaviorOptions) or not options.in_group:
@@ -93,8 +93,8 @@ def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOption
         feature = BEHAVIORS.get(options.name)
         own = CUSTOM_GROUP_BEHAVIORS.has(getattr(leader.kinematics, "name", None), options.name)
         if feature is not None and feature.kernel is not None and not own:
-            found[group] = options
-    return found
+            behaviors[group] = options
+    return behaviors
 
 
 def build_object(

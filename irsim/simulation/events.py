@@ -84,7 +84,7 @@ def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[
     """
     zones = simulation.scenario.world.zones
     step_time = float(simulation.scenario.world.step_time)
-    found = []
+    events = []
     state = simulation.state
     rows = state.events(world, start)
     within = simulation.scenario.world.contacts == "swept" or any(row[0] in BETWEEN_STEPS for row in rows)
@@ -94,15 +94,15 @@ def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[
         time = step * step_time if when == 1.0 else (step - 1 + when) * step_time
         name = simulation.names[first]
         if kind in _CROSSINGS:
-            found.append(Event("line_crossing", time, step, name, None, x, y, zones[second].name, _CROSSINGS[kind]))
+            events.append(Event("line_crossing", time, step, name, None, x, y, zones[second].name, _CROSSINGS[kind]))
         elif kind in ("zone_entry", "zone_exit"):
-            found.append(Event(kind, time, step, name, None, x, y, zones[second].name))  # type: ignore[arg-type]
+            events.append(Event(kind, time, step, name, None, x, y, zones[second].name))  # type: ignore[arg-type]
         elif kind in BETWEEN_STEPS:
-            found.append(Event(kind, time, step, name, simulation.names[second], x, y, depth=depth))
+            events.append(Event(kind, time, step, name, simulation.names[second], x, y, depth=depth))
         else:
             partner = simulation.names[second] if second >= 0 else None
-            found.append(Event(kind, time, step, name, partner, x, y))  # type: ignore[arg-type]
-    return sorted(found, key=lambda event: event.time) if within else found
+            events.append(Event(kind, time, step, name, partner, x, y))  # type: ignore[arg-type]
+    return sorted(events, key=lambda event: event.time) if within else events
 
 
 def first_events(events: list[Event], kind: str) -> dict[str, Event]:

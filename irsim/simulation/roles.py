@@ -42,11 +42,11 @@ def social_groups(records: Sequence[ObjectRecord]) -> list[tuple[int, ...]]:
     members: dict[int, list[int]] = {}
     for index, record in enumerate(records):
         members.setdefault(record.group, []).append(index)
-    found = []
+    groups = []
     for mine in members.values():
         together = getattr(records[mine[0]].group_behavior, "social_groups", None) or ()
-        found += [tuple(mine[place] for place in group if place < len(mine)) for group in together]
-    return found
+        groups += [tuple(mine[place] for place in group if place < len(mine)) for group in together]
+    return groups
 
 
 def travelling_humans(records: Sequence[ObjectRecord]) -> frozenset[str]:

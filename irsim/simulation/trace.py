@@ -246,11 +246,11 @@ def sensors(simulation: Simulation) -> list[tuple[str, slice]]:
     """Return, for each sensor with beams, its key ``<object>/<number>`` and the slice of its beams in the ranges."""
     records = simulation.scenario.objects
     numbers: dict[int, int] = {}
-    found = []
+    columns = []
     for owner, first, count in simulation.world.scans():
         number = numbers[owner] = numbers.get(owner, -1) + 1
-        found.append((f"{records[owner].name}/{number}", slice(first, first + count)))
-    return found
+        columns.append((f"{records[owner].name}/{number}", slice(first, first + count)))
+    return columns
 
 
 def past_poses(simulation: Simulation, row: int) -> Floats | None:
@@ -308,6 +308,6 @@ def past_goals(simulation: Simulation, row: int) -> Floats | None:
 
 def all_poses(simulation: Simulation) -> Floats | None:
     """Return the (T + 1, N, 3) poses of all objects; None if :func:`past_poses` lacks one of them."""
-    found = [past_poses(simulation, row) for row in range(simulation.objects)]
-    known = [poses for poses in found if poses is not None]
-    return np.stack(known, axis=1) if known and len(known) == len(found) else None
+    paths = [past_poses(simulation, row) for row in range(simulation.objects)]
+    known = [poses for poses in paths if poses is not None]
+    return np.stack(known, axis=1) if known and len(known) == len(paths) else None

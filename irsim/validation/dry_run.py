@@ -80,12 +80,12 @@ def dry_run(
         affordable = max(1, int(budget / max(1.0, step_work(scenario, env.simulation))))
         wanted = min(horizon, affordable if steps is None else min(steps, affordable))
         trace, late = _simulate(env.simulation, wanted, seconds)
-        found = _summarise(
+        answer = _summarise(
             env, scenario, trace, env.seed, None if source == "limits" else horizon, seconds if late else None
         )
         if skipped := crowded_message(crowded):
-            found.summary += f"; {skipped}"
-        return found
+            answer.summary += f"; {skipped}"
+        return answer
     finally:
         env.end(ending_time=0.0)
 
@@ -179,7 +179,7 @@ def _find_stuck(
     env: Env, trace: Trace, robots: Sequence[int], events: Sequence[Event], held: dict[str, Event]
 ) -> tuple[list[Stuck], int]:
     """Find robots that make no progress at the end of the trace: the first ones, and their number."""
-    found, count = list[Stuck](), 0
+    stuck, count = list[Stuck](), 0
     records, views = env.scenario.objects, {view.row: view for view in env.robot_list}
     for index in robots:
         if trace.arrived[-1, index]:
@@ -201,11 +201,11 @@ def _find_stuck(
             else:
                 continue
         count += 1
-        if len(found) < _MAX_LISTED:
+        if len(stuck) < _MAX_LISTED:
             why = why or _certain_cause(env, record, trace, index, events) or _likely_cause(env, trace, index, held)
             time, (x, y) = float(trace.time[since]), (float(value) for value in place[:2])
-            found.append(Stuck(name=record.name, doing=doing, since=time, x=x, y=y, why=why))
-    return found, count
+            stuck.append(Stuck(name=record.name, doing=doing, since=time, x=x, y=y, why=why))
+    return stuck, count
 
 
 def _is_undriven(record: ObjectRecord) -> bool:

@@ -89,15 +89,15 @@ def find_passages(scenario: ResolvedScenario, state: core.State, world: int, see
         {record.id: [[float(x) for x in goal] for goal in state.goals(first + k)] for k, record in enumerate(records)},
         [(parts, (0.0, 0.0, 0.0))] if parts else [],
     )
-    found: list[ScenePassage] = []
+    narrow: list[ScenePassage] = []
     legs = passages_of_legs(scenario, places)
     for record in records:
         own = [passage for (key, _), passages in legs.items() if key == record.id for passage in passages]
         least = min((gap for gap, _ in own), default=0.0)
         for gap, place in own:
             if gap < least + _TOLERANCE_M:
-                _add(found, record.name, _width(record), gap, place)
-    return _joined(sorted(found, key=lambda passage: passage.gap - passage.width))
+                _add(narrow, record.name, _width(record), gap, place)
+    return _joined(sorted(narrow, key=lambda passage: passage.gap - passage.width))
 
 
 def passages_of_legs(
@@ -124,7 +124,7 @@ def passages_of_legs(
         return {}
     routes = planned_routes(scenario, places.seed, places.pose, asked)
     grounds: dict[tuple[str, ...], _Ground | None] = {}
-    found: dict[tuple[int, int], list[tuple[float, Point]]] = {}
+    by_leg: dict[tuple[int, int], list[tuple[float, Point]]] = {}
     legs = 0
     for record in robots:
         width, here = _width(record), _point(places.pose[record.id])
@@ -141,9 +141,9 @@ def passages_of_legs(
             line = ground.shortest(here, there, width / 2, record.goal_threshold) if mine is None else mine[leg]
             passages = [] if line is None or len(line) < 2 else _narrowest_ones(line, ground.outlines, width)
             if passages:
-                found[record.id, leg] = passages
+                by_leg[record.id, leg] = passages
             here = there
-    return found
+    return by_leg
 
 
 def _is_measured(record: ObjectRecord) -> bool:
@@ -170,15 +170,15 @@ def _part_of(zone: Zone) -> Any:
     return core.Polygon(vertices=zone.points)
 
 
-def _add(found: list[ScenePassage], name: str, width: float, gap: float, place: Point) -> None:
+def _add(passages: list[ScenePassage], name: str, width: float, gap: float, place: Point) -> None:
     """Add a passage of a robot, or the robot to the same passage of others as wide as itself."""
-    for passage in found:
+    for passage in passages:
         near = math.dist(passage.places[0], place) < gap
         if near and abs(passage.gap - gap) + abs(passage.width - width) < _TOLERANCE_M:
             if name not in passage.names:
                 passage.names.append(name)
             return
-    found.append(ScenePassage(names=[name], width=width, gap=gap, places=[place]))
+    passages.append(ScenePassage(names=[name], width=width, gap=gap, places=[place]))
 
 
 def _joined(passages: list[ScenePassage]) -> list[ScenePassage]:
@@ -235,17 +235,17 @@ def _narrowest_ones(line: Floats, obstacles: Any, width: float) -> list[tuple[fl
     import shapely
 
     pieces: list[Any] = [shapely.LineString(line).simplify(width / 16)]
-    found: list[tuple[float, Point]] = []
-    while pieces and len(found) < _MAX_EQUAL:
+    passages: list[tuple[float, Point]] = []
+    while pieces and len(passages) < _MAX_EQUAL:
         piece = pieces.pop(0)
         passage = _narrowest(piece, obstacles, width)
-        if passage is None or (found and passage[0] > found[0][0] + _TOLERANCE_M):
+        if passage is None or (passages and passage[0] > passages[0][0] + _TOLERANCE_M):
             continue
-        found.append(passage)
+        passages.append(passage)
         rest = shapely.difference(piece, shapely.Point(passage[1]).buffer(max(passage[0], width)))
         pieces += [part for part in shapely.get_parts(rest) if part.length > width]
-    least = min((gap for gap, _ in found), default=0.0)
-    return [passage for passage in found if passage[0] < least + _TOLERANCE_M]
+    least = min((gap for gap, _ in passages), default=0.0)
+    return [passage for passage in passages if passage[0] < least + _TOLERANCE_M]
 
 
 def _narrowest(way: Any, obstacles: Any, width: float) -> tuple[float, Point] | None:

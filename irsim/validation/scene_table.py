@@ -242,13 +242,13 @@ def lidar_hits(scenario: ResolvedScenario, seed: int) -> list[LidarHits]:
     built = build_world(replace(scenario, objects=records, world=world), 1)
     state = core.State(built, np.array([seed], dtype=np.uint64), False)
     state.look()
-    found = []
+    rows = []
     for row, first, count in built.scans():
         hits = Counter(state.hits[first : first + count].tolist())
         missed = hits.pop(-1, 0)
         names = [(called(scenario, scenario.objects[k].name).strip("'"), beams) for k, beams in hits.most_common()]
-        found.append(LidarHits(name=records[row].name, beams=count, hit=count - missed, hits=dict(names)))
-    return found
+        rows.append(LidarHits(name=records[row].name, beams=count, hit=count - missed, hits=dict(names)))
+    return rows
 
 
 def _lidars(sensors: Iterable[Any]) -> list[Any]:

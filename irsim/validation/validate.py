@@ -132,20 +132,20 @@ def report_of(reading: Reading, file: str) -> ValidationReport:
     if reading.scenario is None:
         return report(file, reading.diagnostics)
     counts = counts_of(reading.scenario)
-    found = report(file, reading.diagnostics, in_words(counts))
-    found.counts = counts
-    return found
+    answer = report(file, reading.diagnostics, in_words(counts))
+    answer.counts = counts
+    return answer
 
 
-def report(file: str, found: Sequence[Diagnostic], valid: str | None = None) -> ValidationReport:
+def report(file: str, diagnostics: Sequence[Diagnostic], valid: str | None = None) -> ValidationReport:
     """The report on a file of any kind.
 
     Args:
         file: The file.
-        found: Its problems.
+        diagnostics: Its problems.
         valid: Content of a file without errors, in words.
     """
-    count = Counter(item.severity for item in found)
+    count = Counter(item.severity for item in diagnostics)
     summary = _counted(count["error"], count["warning"])
     if valid is not None:
         warnings = f"; {plural(count['warning'], 'warning')}" if count["warning"] else ""
@@ -157,7 +157,7 @@ def report(file: str, found: Sequence[Diagnostic], valid: str | None = None) -> 
         errors=count["error"],
         warnings=count["warning"],
         hints=count["hint"],
-        findings=[Finding.of(item) for item in found],
+        findings=[Finding.of(item) for item in diagnostics],
     )
 
 

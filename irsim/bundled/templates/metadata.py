@@ -77,14 +77,16 @@ class Parameter(_Metadata):
         Raises:
             TemplateError: The value has another type or is out of range.
         """
-        found = self._convert(value)
-        if found is None:
+        converted = self._convert(value)
+        if converted is None:
             raise TemplateError("bad-parameter", f"{name} cannot be {value!r}.", f"give {self.allowed()}.")
-        if isinstance(found, (int, float)) and not isinstance(found, bool):
+        if isinstance(converted, (int, float)) and not isinstance(converted, bool):
             low, high = -math.inf if self.min is None else self.min, math.inf if self.max is None else self.max
-            if not low <= found <= high:
-                raise TemplateError("bad-parameter", f"{name} = {found:g} is out of range.", f"give {self.allowed()}.")
-        return found
+            if not low <= converted <= high:
+                raise TemplateError(
+                    "bad-parameter", f"{name} = {converted:g} is out of range.", f"give {self.allowed()}."
+                )
+        return converted
 
     def _convert(self, value: object) -> Value | None:
         if self.type == "choice":

@@ -207,8 +207,8 @@ def _made_by(generator: type[GridMapGenerator], size: tuple[int, int], spec: Map
 def _picture(path: str) -> Floats:
     site = MapSite(folders=[Path()], bundled=bundled_map, bundled_names=bundled_names)
     try:
-        found = site.find(path)
-        return np.ascontiguousarray(image_raster(*open_picture(found, path, site)).values())
+        file = site.find(path)
+        return np.ascontiguousarray(image_raster(*open_picture(file, path, site)).values())
     except MapProblem as problem:
         kind = FileNotFoundError if problem.code == "map-not-found" else ValueError
         raise kind(problem.message) from None

@@ -231,8 +231,8 @@ def _resample(
             i = np.floor((c * px + s * py) / meta.resolution).astype(np.int64)
             j = np.floor((-s * px + c * py) / meta.resolution).astype(np.int64)
             known = (i >= 0) & (j >= 0) & (i < values.shape[0]) & (j < values.shape[1])
-            found = values[np.where(known, i, 0), np.where(known, j, 0)]
-            best = np.maximum(best, np.where(known & (found >= 0), found, UNKNOWN))
+            sampled = values[np.where(known, i, 0), np.where(known, j, 0)]
+            best = np.maximum(best, np.where(known & (sampled >= 0), sampled, UNKNOWN))
     return best
 
 

@@ -110,7 +110,7 @@ class MapSite:
         max_bytes: Largest size of a file.
         notes: Hints for the user, as (code, sentence).
         kept: Name -> file to read without looking for it.
-        found: Name -> file that was found, without bundled maps.
+        files: Name -> file that was read, without bundled maps.
     """
 
     width: float | None = None
@@ -124,7 +124,7 @@ class MapSite:
     max_bytes: int = 256 * 1024**2
     notes: list[tuple[str, str]] = field(default_factory=list)
     kept: Mapping[str, str] = field(default_factory=dict)
-    found: dict[str, str] = field(default_factory=dict)
+    files: dict[str, str] = field(default_factory=dict)
 
     def find(self, name: str, beside: Path | None = None) -> Path:
         """The file of that name.
@@ -147,7 +147,7 @@ class MapSite:
         for path in (folder / Path(name).expanduser() for folder in folders):
             try:
                 if path.is_file():
-                    self.found[name] = os.path.abspath(path)
+                    self.files[name] = os.path.abspath(path)
                     return self._check_size(path, name)
             except (OSError, ValueError):
                 continue

@@ -116,10 +116,10 @@ def _compiler() -> Iterator[None]:
     if chosen_by_user(os.environ):
         yield
         return
-    found = find_compiler()
-    if found is not None:
+    compiler = find_compiler()
+    if compiler is not None:
         # Named outright: the compiler that Python was built with, CMake's first choice, need not exist here.
-        with _environment({"CXX": found} if found else {}):
+        with _environment({"CXX": compiler} if compiler else {}):
             yield
         return
     zig = _zig_executable()

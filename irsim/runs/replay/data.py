@@ -140,8 +140,8 @@ def _beginning(trace: Trace, number: int, start: int) -> dict[str, int]:
     """The step ``from`` which an object is in the world, and ``until`` which it stands at its start, if not 0."""
     present = np.flatnonzero(~np.isnan(trace.pose[:, number, 0]))
     steps = trace.step[present[:1]].tolist() or [int(trace.step[-1]) + 1]
-    found = {"from": steps[0], "until": start}
-    return {key: step for key, step in found.items() if step > int(trace.step[0])}
+    bounds = {"from": steps[0], "until": start}
+    return {key: step for key, step in bounds.items() if step > int(trace.step[0])}
 
 
 def _from_the_start(pose: NDArray[np.float64]) -> NDArray[np.float64]:

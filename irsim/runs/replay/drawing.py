@@ -74,15 +74,15 @@ def page_grid(scene: SceneDescription) -> dict[str, Any] | None:
 
 def page_zones(zones: Sequence[Zone]) -> list[dict[str, Any]]:
     """Zones with their ``name``, ``color``, outline, and the place ``at`` of their name."""
-    found = list[dict[str, Any]]()
+    drawn = list[dict[str, Any]]()
     for zone in zones:
         left, _, _, top = zone.bounds
         color = _hex(Palette().zone if zone.color is None else zone.color)
         shape = {"line" if zone.is_line else "rings": _flat(zone.points) if zone.is_line else [_flat(zone.points)]}
         if zone.circle is not None:
             shape = {"circle": [_rounded(value) for value in (*zone.circle.center, zone.circle.radius)]}
-        found.append({"name": clean(zone.name), "color": color, "at": [_rounded(left), _rounded(top)], **shape})
-    return found
+        drawn.append({"name": clean(zone.name), "color": color, "at": [_rounded(left), _rounded(top)], **shape})
+    return drawn
 
 
 def _lidar(lidar: Lidar, row: int) -> dict[str, Any]:

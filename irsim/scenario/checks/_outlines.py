@@ -113,8 +113,8 @@ def repair_outline(vertices: Sequence[Sequence[float]]) -> list[list[list[float]
             valid = make_valid(Polygon(vertices), method="structure", keep_collapsed=False)
         except (GEOSException, ValueError):
             return None
-        found = [valid] if isinstance(valid, Polygon) else list(valid.geoms) if isinstance(valid, MultiPolygon) else []
-        polygons = [polygon for polygon in sorted(found, key=lambda p: p.bounds) if polygon.area > _MIN_AREA]
+        pieces = [valid] if isinstance(valid, Polygon) else list(valid.geoms) if isinstance(valid, MultiPolygon) else []
+        polygons = [polygon for polygon in sorted(pieces, key=lambda p: p.bounds) if polygon.area > _MIN_AREA]
     outlines = [[[float(x), float(y)] for x, y in polygon.exterior.coords[:-1]] for polygon in polygons]
     return outlines or None
 

@@ -32,9 +32,9 @@ def driven_without_goal(scenario: ResolvedScenario, bridges: Sequence[Any]) -> I
     """
     robots = [record.name for record in scenario.robots()]
     driver = {name: bridge.name for bridge in reversed(bridges) for name in bridge.driven(robots)}
-    found = [record for record in scenario.robots() if record.name in driver and _goes_to_default(scenario, record)]
-    for path in dict.fromkeys(record.path for record in found):
-        names = [record.name for record in found if record.path == path]
+    records = [record for record in scenario.robots() if record.name in driver and _goes_to_default(scenario, record)]
+    for path in dict.fromkeys(record.path for record in records):
+        names = [record.name for record in records if record.path == path]
         whose = listed([quoted(name) for name in names], _MAX_NAMED)
         they = "they arrive" if len(names) > 1 else "it arrives"
         yield warning(

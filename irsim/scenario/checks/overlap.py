@@ -45,7 +45,7 @@ def check(context: Context) -> Iterator[Finding]:
         if record.id not in random and has_fixed_shape(record.shape)
     ]
     reported = {path for path, entry, _ in context.entries() if _reports_stacking(entry)}
-    found: dict[tuple[Any, ...], tuple[ObjectRecord, ObjectRecord, int]] = {}
+    overlaps: dict[tuple[Any, ...], tuple[ObjectRecord, ObjectRecord, int]] = {}
     for a, b in _near_pairs(bodies, reported):
         mover, other = (a.record, b.record) if _matters(a.record) else (b.record, a.record)
         if other.unobstructed or (mover.appear_time and not other.static) or other.appear_time:
@@ -53,13 +53,15 @@ def check(context: Context) -> Iterator[Finding]:
         if mover.recorded and mover.role == "obstacle":
             continue  # nothing stops it
         key = (mover.path, other.path)
-        if (len(found) >= _MAX_REPORTED and key not in found) or (key in found and found[key][2] >= _MAX_COUNTED):
+        if (len(overlaps) >= _MAX_REPORTED and key not in overlaps) or (
+            key in overlaps and overlaps[key][2] >= _MAX_COUNTED
+        ):
             continue
         if core.intersects(a.shape.parts, a.record.state[:3], b.shape.parts, b.record.state[:3]):
-            first = found.setdefault(key, (mover, other, 0))
-            found[key] = (*first[:2], first[2] + 1)
+            first = overlaps.setdefault(key, (mover, other, 0))
+            overlaps[key] = (*first[:2], first[2] + 1)
     by_id = {body.record.id: body for body in bodies}
-    for mover, other, count in found.values():
+    for mover, other, count in overlaps.values():
         where = context.entry_path(mover, "state") if context.is_given(mover, "state") else mover.path
         deep, place = _depth_text(by_id[mover.id], by_id[other.id]), _free_place(context, by_id[mover.id], bodies)
         instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"

@@ -34,8 +34,8 @@ def check(context: Context) -> Iterator[Finding]:
             entry_path, known = context.entry_path(record, key), record.id not in random
             if options.within is not None:
                 path = (*entry_path, "within")
-                found = list(_outline(path, options.within))
-                yield from distinct(found or (_ends(path, record, options.within) if known else ()))
+                findings = list(_outline(path, options.within))
+                yield from distinct(findings or (_ends(path, record, options.within) if known else ()))
             yield from _avoided(context, (*entry_path, "avoid"), record, options, known)
 
 

@@ -63,7 +63,7 @@ def check(context: Context) -> Iterator[Finding]:
         if one.record.path in reported or own == 0:  # a line may move along itself
             continue
         band = _band(context, one) if one.record.id not in random else None
-        found = None
+        jump = None
         for other in thin_first:
             step = one.speed * dt if other.speed == 0 else (one.speed + other.speed) * dt
             if step <= own + other.shape.width and other.speed == 0:
@@ -71,11 +71,11 @@ def check(context: Context) -> Iterator[Finding]:
             if other.record is one.record or step <= own + other.shape.width:
                 continue
             if _may_meet(one, other, None if other.record.id in random else band, dt):
-                found = other, own + other.shape.width, step / dt
+                jump = other, own + other.shape.width, step / dt
                 break
-        if found is not None:
+        if jump is not None:
             reported.add(one.record.path)
-            yield _finding(context, one, *found)
+            yield _finding(context, one, *jump)
 
 
 def _finding(context: Context, one: SizedBody, other: SizedBody, least: float, speed: float) -> Finding:

@@ -126,9 +126,9 @@ def _obstacle(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             fix=f"lengths are in metres: {width:.3g} cm are {width / 100:.3g}",
         )
     elif record.shape.name in ("polygon", "linestring"):
-        found = list(_outline(context, record))
-        yield from found
-        if found:
+        findings = list(_outline(context, record))
+        yield from findings
+        if findings:
             return
     x0, y0, x1, y1 = world.bounds
     x, y = record.state[:2]

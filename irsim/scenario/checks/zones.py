@@ -27,8 +27,8 @@ def check(context: Context) -> Iterator[Finding]:
             )
         given = [key for key in OUTLINES if getattr(zone, key) is not None]
         if len(given) == 1:
-            found = list(_outline(path, zone))
-            yield from found or _outside(context, path, zone)
+            findings = list(_outline(path, zone))
+            yield from findings or _outside(context, path, zone)
         elif not given:
             yield error(
                 "missing-key",

@@ -160,13 +160,13 @@ def split_waypoints(path: Path, data: Any) -> Poses | None:
     if not isinstance(points, (list, tuple)) or not isinstance(entry, Mapping):
         return None
     split = [Poses([point]) if _is_pose(point) else split_poses(point) for point in points]
-    found = [poses for poses in split if poses is not None]
-    if len(found) < len(points):
+    readable = [poses for poses in split if poses is not None]
+    if len(readable) < len(points):
         return None
-    sure = all(poses.sure for poses in found)
+    sure = all(poses.sure for poses in readable)
     if path[-2] == "waypoints" and entry.get("number", 1) == len(points) > 1 and not any(map(_is_pose, points)):
-        return Poses([poses.value for poses in found], sure)
-    return Poses([pose for poses in found for pose in poses.value], sure)
+        return Poses([poses.value for poses in readable], sure)
+    return Poses([pose for poses in readable for pose in poses.value], sure)
 
 
 def _is_pose(point: Any) -> bool:

@@ -34,15 +34,15 @@ def translate(
         most: Largest number of findings.
         root: Model of the whole document.
     """
-    found: dict[tuple[str, Path], list[Finding]] = {}
+    findings: dict[tuple[str, Path], list[Finding]] = {}
     for item in failure.errors(include_url=False):
         path = _path(item["loc"])
-        siblings = found.setdefault((item["type"], _list_path(path)), [])
+        siblings = findings.setdefault((item["type"], _list_path(path)), [])
         if siblings and _list_path(path) != path:
             siblings.append(siblings[0])  # only counted
-        elif len(found) <= most:
+        elif len(findings) <= most:
             siblings.append(Explainer(path, item, data, document, root).finding())
-    return [_with_count(siblings) for siblings in found.values() if siblings]
+    return [_with_count(siblings) for siblings in findings.values() if siblings]
 
 
 def located(item: Diagnostic, document: Document) -> Diagnostic:
@@ -93,21 +93,21 @@ def option_problems(
         owner: What has the options, as messages call it.
     """
     where = format_path(place)
-    found = []
+    diagnostics = []
     for item in translate(failure, data, Document(data), _MOST, root):
         one = item.diagnostic
         message = one.message
         if where:
             message = message.replace(f"'{where}'", owner).replace(f"{where}.", "")
         path = one.path[len(place) :] if one.path[: len(place)] == place else one.path
-        found.append(replace(one, path=path, message=message, edit=None))
-    return found
+        diagnostics.append(replace(one, path=path, message=message, edit=None))
+    return diagnostics
 
 
-def option_message(found: Sequence[Diagnostic]) -> tuple[str, str | None]:
+def option_message(diagnostics: Sequence[Diagnostic]) -> tuple[str, str | None]:
     """One sentence about problems, with what is allowed; and the fix of the first one that has one."""
     parts = []
-    for item in found[:_MOST]:
+    for item in diagnostics[:_MOST]:
         key = format_path(item.path) if item.path else ""
         named = not key or f"'{key}'" in item.message or (item.path and f"'{item.path[-1]}'" in item.message)
         text = item.message if named else f"{clean(key, 100)}: {item.message}"
@@ -115,4 +115,4 @@ def option_message(found: Sequence[Diagnostic]) -> tuple[str, str | None]:
         if allowed and allowed not in text and len(allowed) <= _MAX_CHOICES:
             text += f" (allowed: {allowed})"
         parts.append(text)
-    return "; ".join(parts), next((item.fix for item in found if item.fix), None)
+    return "; ".join(parts), next((item.fix for item in diagnostics if item.fix), None)

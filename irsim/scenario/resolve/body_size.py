@@ -77,13 +77,13 @@ def inner_disc(parts: Sequence[Any]) -> tuple[float, float, float]:
     best = (0.0, 0.0, 0.0)
     for part in parts:
         if isinstance(part, core.Circle):
-            found = (part.center[0], part.center[1], part.radius)
+            disc = (part.center[0], part.center[1], part.radius)
         elif isinstance(part, core.Polygon):
-            found = _largest_disc(tuple((x, y) for x, y in part.vertices))
+            disc = _largest_disc(tuple((x, y) for x, y in part.vertices))
         else:
             continue
-        if found[2] > best[2]:
-            best = found
+        if disc[2] > best[2]:
+            best = disc
     return best
 
 

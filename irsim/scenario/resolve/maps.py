@@ -65,11 +65,11 @@ def load_map(
     except MapProblem as problem:
         key = problem.key if problem.key is not None and not isinstance(written, str) else None
         path = _PATH if key is None or hasattr(options, "__array__") else (*_PATH, key)
-        found = error(
+        diagnostic = error(
             problem.code, path, problem.message, given=problem.given, allowed=problem.allowed, fix=problem.fix
         )
-        return LoadedMap(None, world, [found])
-    return LoadedMap(grid, world, [*_notes(site, written), *_check_occupancy(grid, world)], site.found)
+        return LoadedMap(None, world, [diagnostic])
+    return LoadedMap(grid, world, [*_notes(site, written), *_check_occupancy(grid, world)], site.files)
 
 
 def _is_simulated(name: str) -> bool:

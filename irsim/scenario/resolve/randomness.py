@@ -14,15 +14,15 @@ _SAMPLING_PLANNERS = ("rrt", "rrt_star", "informed_rrt_star", "prm")
 
 def random_parts(scenario: ResolvedScenario) -> list[str]:
     """The parts of a run that depend on the seed, in words; empty if every seed gives the same run."""
-    found: dict[str, None] = {}
+    names: dict[str, None] = {}
     if scenario.placements:
-        found["placement"] = None
+        names["placement"] = None
     generator: Any = scenario.world.obstacle_map
     if getattr(generator, "seed", 0) is None:
-        found["map"] = None
+        names["map"] = None
     for record in scenario.objects:
-        found.update(dict.fromkeys(_of_object(record)))
-    return list(found)
+        names.update(dict.fromkeys(_of_object(record)))
+    return list(names)
 
 
 def _of_object(record: ObjectRecord) -> list[str]:

@@ -20,8 +20,8 @@ _QUOTED_OR_COMMENT = re.compile(
 
 def comments(text: str) -> list[str]:
     """Comments of a YAML text, in order, each from its ``#`` on; a ``#`` inside quotes does not start one."""
-    found = (match["comment"] for match in _QUOTED_OR_COMMENT.finditer(text))
-    return [comment.strip() for comment in found if comment is not None]
+    matched = (match["comment"] for match in _QUOTED_OR_COMMENT.finditer(text))
+    return [comment.strip() for comment in matched if comment is not None]
 
 
 def keeps_comments(before: str, after: str) -> bool:
@@ -48,7 +48,7 @@ def places_of_comments(document: Document) -> list[tuple[str, list[Path]]]:
     for path, line in _nodes(document.tree(), ()):
         there[line].append(_list_path(path[len(document.prefix) :], document))
     occupied, lines = sorted(there), document.text.splitlines()
-    found: list[tuple[str, list[Path]]] = []
+    placed: list[tuple[str, list[Path]]] = []
     line, read, known = 1, 0, dict[tuple[int, int], int]()
     for match in _QUOTED_OR_COMMENT.finditer(document.text):
         if match["comment"] is None:
@@ -60,8 +60,8 @@ def places_of_comments(document: Document) -> list[tuple[str, list[Path]]]:
             if spot not in known:
                 known[spot] = _line_of(*spot, occupied, lines)
             about = known[spot]
-        found.append((match["comment"].strip(), there.get(about, [])))
-    return found
+        placed.append((match["comment"].strip(), there.get(about, [])))
+    return placed
 
 
 def _line_of(at: int, indent: int, occupied: list[int], lines: list[str]) -> int:

@@ -167,10 +167,10 @@ class _Composer:
         name = event.anchor
         if name not in self.anchors:
             self._stop("yaml-syntax", f"there is no anchor '&{name}' above the alias '*{name}'", event)
-        found = self.anchors[name]
-        if found is None:
+        anchor = self.anchors[name]
+        if anchor is None:
             self._stop("recursive-alias", f"the alias '*{name}' is inside the value that it refers to", event)
-        assert found is not None
+        assert anchor is not None
         self.aliases += 1
         if self.aliases > self.limits.aliases:
             self._stop(
@@ -179,7 +179,7 @@ class _Composer:
                 event,
                 fix="write the objects with 'number' and 'distribution' instead of repeating aliases",
             )
-        self.expanded += found.size
+        self.expanded += anchor.size
         if self.expanded > self.limits.expansion:
             self._stop(
                 "alias-expansion",
@@ -187,9 +187,9 @@ class _Composer:
                 event,
                 fix="write the objects with 'number' and 'distribution' instead of repeating aliases",
             )
-        if len(self.stack) + found.height > self.limits.depth:
+        if len(self.stack) + anchor.height > self.limits.depth:
             self._stop("too-deep", f"nested more than {self.limits.depth} levels deep", event)
-        self._add(found.value, found.size, found.height, found.node, event=event)
+        self._add(anchor.value, anchor.size, anchor.height, anchor.node, event=event)
 
     def _add(
         self, value: Any, size: int, height: int, node: Node | None, *, plain: bool = False, event: Any = None

@@ -97,8 +97,8 @@ def changed_lines(a: str | None, b: str | None) -> tuple[int, int]:
     """Number of lines that were removed and added."""
     if a is None or b is None:
         return 0, 0
-    found = list(difflib.unified_diff(a.splitlines(), b.splitlines(), lineterm="", n=0))[2:]
-    return sum(line.startswith("-") for line in found), sum(line.startswith("+") for line in found)
+    lines = list(difflib.unified_diff(a.splitlines(), b.splitlines(), lineterm="", n=0))[2:]
+    return sum(line.startswith("-") for line in lines), sum(line.startswith("+") for line in lines)
 
 
 def changed_comments(a: Document, b: Document, pairs: Mapping[str, Pairs]) -> tuple[list[str], list[CommentChange]]:
@@ -117,7 +117,7 @@ def changed_comments(a: Document, b: Document, pairs: Mapping[str, Pairs]) -> tu
     if a.text is None or b.text is None:
         return [], []
     entries: dict[Path, Path] = {
-        (role, i): (role, j) for role, found in pairs.items() for i, j in found if i is not None and j is not None
+        (role, i): (role, j) for role, matched in pairs.items() for i, j in matched if i is not None and j is not None
     }
     old = [
         (text, {(*entries.get(path[:2], path[:2]), *path[2:]) for path in about})
@@ -155,7 +155,7 @@ def _without_equal(old: Sequence[Comment], new: Sequence[Comment]) -> tuple[list
             there[old[i][0]].pop(0)
         else:
             rest.append(i)
-    return rest, sorted(j for found in there.values() for j in found)
+    return rest, sorted(j for indices in there.values() for j in indices)
 
 
 def comments_message(there: bool, lost: Sequence[str], edited: Sequence[CommentChange]) -> str:
@@ -167,7 +167,7 @@ def comments_message(there: bool, lost: Sequence[str], edited: Sequence[CommentC
         edited: The edited comments.
     """
     parts = [
-        f"{plural(len(found), 'comment')} {what}" for what, found in (("lost", lost), ("changed", edited)) if found
+        f"{plural(len(texts), 'comment')} {what}" for what, texts in (("lost", lost), ("changed", edited)) if texts
     ]
     if there and not lost:
         parts.insert(0, "no comment lost")

@@ -82,15 +82,15 @@ def _group_behaviors(env: Env) -> dict[int, tuple[Any, list[int]]]:
 def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact: bool) -> dict[str, Any]:
     record = view.record
     group_behavior, members = led.get(view.index, (None, []))
-    found: dict[str, Any] = {"name": view.name, "entry": format_path(record.path), "index": record.index}
-    found |= {key: _plain(getattr(record, key)) for key in _RECORD}
+    facts: dict[str, Any] = {"name": view.name, "entry": format_path(record.path), "index": record.index}
+    facts |= {key: _plain(getattr(record, key)) for key in _RECORD}
     if record.state_dim != len(getattr(record.kinematics, "state_rows", _POSE)):
-        found["state_dim"] = record.state_dim
+        facts["state_dim"] = record.state_dim
     if record.group_name != f"{record.role}_{record.group}":
-        found["group_name"] = record.group_name
+        facts["group_name"] = record.group_name
     if contact:
-        found |= {key: _plain(getattr(record, key)) for key in _CONTACT}
-    found |= {
+        facts |= {key: _plain(getattr(record, key)) for key in _CONTACT}
+    facts |= {
         "kinematics": _options(record.kinematics),
         "shape": _shape(record),
         "footprint": _footprint(view),
@@ -100,18 +100,18 @@ def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact:
         "goals": [] if record.static else [_plain(goal[:, 0]) for goal in view.goals],
     }
     if record.appear_time:
-        found["appear_time"] = _plain(record.appear_time)
+        facts["appear_time"] = _plain(record.appear_time)
     if not record.static:
-        found |= {key: _plain(getattr(view, key)[:, 0]) for key in ("vel_min", "vel_max", "acce")}
-        found["angle_range"] = _plain(list(record.angle_range))
+        facts |= {key: _plain(getattr(view, key)[:, 0]) for key in ("vel_min", "vel_max", "acce")}
+        facts["angle_range"] = _plain(list(record.angle_range))
         if record.start_time:
-            found["start_time"] = _plain(record.start_time)
-        found |= {"behavior": _options(record.behavior), "group_behavior": _options(group_behavior)}
-        found["group_members"] = members
+            facts["start_time"] = _plain(record.start_time)
+        facts |= {"behavior": _options(record.behavior), "group_behavior": _options(group_behavior)}
+        facts["group_members"] = members
         if record.wander:
-            found |= {"range_low": _plain(record.range_low), "range_high": _plain(record.range_high)}
-    found["sensors"] = [_options(sensor, "type") for sensor in record.sensors]  # `type` repeats the name
-    return found
+            facts |= {"range_low": _plain(record.range_low), "range_high": _plain(record.range_high)}
+    facts["sensors"] = [_options(sensor, "type") for sensor in record.sensors]  # `type` repeats the name
+    return facts
 
 
 def _options(model: BaseModel | None, *without: str) -> Any:

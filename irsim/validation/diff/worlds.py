@@ -87,14 +87,14 @@ def changed_worlds(
     for i, j in twins:
         name, entry = new["objects"][j]["name"], listed(new["objects"][j]["entry"])
         written = [*about[entry], *about[entry.partition("[")[0]]]
-        found = list(object_facts(old["objects"][i], new["objects"][j]))
-        if not any(key == "group_behavior" for key, _, _ in found):
-            found += _changed_group(old["objects"], new["objects"], i, j, same)
+        facts = list(object_facts(old["objects"][i], new["objects"][j]))
+        if not any(key == "group_behavior" for key, _, _ in facts):
+            facts += _changed_group(old["objects"], new["objects"], i, j, same)
         changes += [
             WorldChange(
                 object=name, change="changed", key=k, before=was, after=now, direct=_direct(entry, k, now, written)
             )
-            for k, was, now in found
+            for k, was, now in facts
         ]
     return changes
 
@@ -211,7 +211,9 @@ def match_objects(
     Returns:
         Pairs of indices in ``a`` and ``b``, sorted by the first.
     """
-    places = {f"{role}[{i}]": f"{role}[{j}]" for role, found in pairs.items() for i, j in found if None not in (i, j)}
+    places = {
+        f"{role}[{i}]": f"{role}[{j}]" for role, matched in pairs.items() for i, j in matched if None not in (i, j)
+    }
     left, right = dict.fromkeys(range(len(a))), dict.fromkeys(range(len(b)))
     twins = []
 
@@ -279,11 +281,11 @@ def _count_differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
 def object_facts(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
     """Properties that differ between two objects; the footprint only if no other difference explains it."""
     before, after = ({key: value for key, value in item.items() if key not in _SHIFTING} for item in (a, b))
-    found = list(differing(before, after))
+    facts = list(differing(before, after))
     if a["name"] != b["name"] and not (_NUMBERED.match(a["name"]) and _NUMBERED.match(b["name"])):
-        found.insert(0, ("name", a["name"], b["name"]))
-    explained = any(key.partition(".")[0] in ("pose", "shape", "wheelbase") for key, _, _ in found)
-    yield from (fact for fact in found if not (explained and fact[0].startswith("footprint")))
+        facts.insert(0, ("name", a["name"], b["name"]))
+    explained = any(key.partition(".")[0] in ("pose", "shape", "wheelbase") for key, _, _ in facts)
+    yield from (fact for fact in facts if not (explained and fact[0].startswith("footprint")))
 
 
 def differing(a: Any, b: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:

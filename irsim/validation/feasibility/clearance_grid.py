@@ -153,7 +153,7 @@ def narrowest_gap(grid: ClearanceGrid, start: Point, goal: Point) -> Gap | None:
     lower = np.concatenate([[True], along[1:] <= along[:-1]]) & np.concatenate([along[:-1] <= along[1:], [True]])
     tight = np.flatnonzero(lower & (along <= width + grid.half))
     tight = tight[np.argsort(along[tight], kind="stable")][:_MAX_MEASURED]
-    return min((_measure_gap(grid, way, int(k)) for k in tight), key=lambda found: found.width)
+    return min((_measure_gap(grid, way, int(k)) for k in tight), key=lambda gap: gap.width)
 
 
 def _measure_gap(grid: ClearanceGrid, way: NDArray[np.float64], k: int) -> Gap:

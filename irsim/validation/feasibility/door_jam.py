@@ -33,8 +33,8 @@ def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, l
     places = Places(scene.seed, scene.pose, scene.goals, scene.owner.things)
     shared: list[tuple[tuple[float, float], float, list[Mover]]] = []
     for mover in robots[:_MAX_ROBOTS]:
-        found = passages_of_legs(context.resolved, places, mover.record.id)
-        for width, place in [one for passages in found.values() for one in passages]:
+        by_leg = passages_of_legs(context.resolved, places, mover.record.id)
+        for width, place in [one for passages in by_leg.values() for one in passages]:
             known = next((users for at, _, users in shared if math.dist(at, place) < _SAME_M), None)
             if known is None:
                 shared.append((place, width, [mover]))

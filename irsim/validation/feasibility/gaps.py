@@ -86,9 +86,9 @@ class Gaps:
         Args:
             ways: Start and end of each path [m]; neither may be in or at an obstacle.
         """
-        found = [Opening(math.inf, goal) for _, goal in ways]
+        openings = [Opening(math.inf, goal) for _, goal in ways]
         if not ways or not len(self.first):
-            return found
+            return openings
         crossed = self._crossings(np.array(ways, dtype=float))
         packed = np.packbits(crossed, axis=1, bitorder="little")
         masks = [int.from_bytes(row.tobytes(), "little") for row in packed]
@@ -113,10 +113,10 @@ class Gaps:
                 opening = Opening(float(self.width[k]), self._middle(k))
                 for way in range(len(ways)):
                     if closed >> way & 1:
-                        found[way] = opening
+                        openings[way] = opening
                 if not left:
                     break
-        return found
+        return openings
 
     def _crossings(self, ways: Floats) -> NDArray[np.bool_]:
         """(P, K) whether the connection through each gap crosses each straight line an odd number of times.
@@ -259,12 +259,12 @@ class Passages:
 
     Attributes:
         barriers: The obstacles and the gaps between them.
-        found: (object id, index of the goal) -> the narrowest gap on the widest path (None if all gaps are wide), and
+        gaps: (object id, index of the goal) -> the narrowest gap on the widest path (None if all gaps are wide), and
             whether that gap is too narrow for the body. Paths that were not examined are missing.
     """
 
     barriers: Gaps
-    found: dict[tuple[int, int], tuple[Gap | None, bool]]
+    gaps: dict[tuple[int, int], tuple[Gap | None, bool]]
 
 
 def passages_of(
@@ -292,7 +292,7 @@ def passages_of(
         return None
     ways: list[tuple[Point, Point]] = []
     asked: list[tuple[tuple[int, int], Mover, float, range]] = []
-    found: dict[tuple[int, int], tuple[Gap | None, bool]] = {}
+    gaps: dict[tuple[int, int], tuple[Gap | None, bool]] = {}
     for mover in movers:
         if mover.record.wander:
             continue
@@ -302,7 +302,7 @@ def passages_of(
             if (mover.record.id, index) in blocked_goals or len(ways) + len(places) > barriers.max_paths:
                 break
             if not places:  # the arrival region is too large to sample
-                found[mover.record.id, index] = None, False
+                gaps[mover.record.id, index] = None, False
                 start = (goal[0], goal[1])
                 continue
             asked.append(((mover.record.id, index), mover, radius, range(len(ways), len(ways) + len(places))))
@@ -313,8 +313,8 @@ def passages_of(
         widest = max((openings[k] for k in of_mover), key=lambda opening: opening.width)
         closed = widest.width < 2 * radius * (1 - _SLACK)
         narrow = closed or 2 * mover.radius <= widest.width < 2 * ease * mover.radius
-        found[pair] = (Gap(widest.width, widest.place, 0.0) if narrow else None, closed)
-    return Passages(barriers, found)
+        gaps[pair] = (Gap(widest.width, widest.place, 0.0) if narrow else None, closed)
+    return Passages(barriers, gaps)
 
 
 def _arrival_places(scene: Scene, mover: Mover, goal: Point) -> tuple[list[Point], float]:

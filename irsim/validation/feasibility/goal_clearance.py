@@ -27,9 +27,9 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
     Returns:
         Their (object id, index of the goal) pairs.
     """
-    found: set[tuple[int, int]] = set()
+    blocked: set[tuple[int, int]] = set()
     if not scene.things:
-        return found
+        return blocked
     known: dict[tuple[float, float, float, float], bool] = {}
     for mover in movers:
         if mover.record.wander:
@@ -37,7 +37,7 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
         goals = scene.goals[mover.record.id]
         for index, goal in enumerate(goals):
             if _behind_walls(context, scene, mover, goal):
-                found.add((mover.record.id, index))
+                blocked.add((mover.record.id, index))
                 x0, y0, x1, y1 = scene.bounds
                 tally.add(
                     "goal-unreachable",
@@ -55,7 +55,7 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
                 known[key] = fits_at(scene, mover, (goal[0], goal[1]))
             if known[key]:
                 continue
-            found.add((mover.record.id, index))
+            blocked.add((mover.record.id, index))
             what = _goal_term(goals, index)
             place = free_place(grid_of(scene, movers), (goal[0], goal[1]), mover.shape.around, _start(scene, mover))
             instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
@@ -76,7 +76,7 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
                 serious=mover.record.role == "robot",
             )
             break
-    return found
+    return blocked
 
 
 def _goal_term(goals: list[list[float]], index: int) -> str:

@@ -63,7 +63,7 @@ class Mover(SizedBody):
 
 def movers_of(context: Context) -> list[Mover]:
     """Movers whose body has a filled part and is the same in every scene."""
-    found: list[Mover] = []
+    movers: list[Mover] = []
     shapes: dict[int, SizedShape] = {}
     for record in context.entry_objects:
         if record.static or record.kinematics is None or not has_fixed_shape(record.shape):
@@ -73,11 +73,11 @@ def movers_of(context: Context) -> list[Mover]:
         if record.behavior is None and record.group_behavior is None and not _has_goal(context, record):
             continue  # a program drives it to a goal that the scenario does not name
         shape = shapes.setdefault(id(record.shape), SizedShape(record.shape))
-        if shape.disc <= 0 or len(found) >= _MAX_MOVERS:
+        if shape.disc <= 0 or len(movers) >= _MAX_MOVERS:
             continue
         path = _goal_path(context, record)
-        found.append(Mover(record, shape, path, context.has_goals(path)))
-    return found
+        movers.append(Mover(record, shape, path, context.has_goals(path)))
+    return movers
 
 
 def _has_goal(context: Context, record: ObjectRecord) -> bool:

@@ -39,7 +39,7 @@ def report_no_path(
     mover: Mover,
     start: Point,
     index: int,
-    found: Gap | None,
+    gap: Gap | None,
     tally: Tally,
 ) -> None:
     """Report a goal to which no path leads over cells that are fine enough."""
@@ -50,7 +50,7 @@ def report_no_path(
     if context.scenario.world.boundary == "none":
         wider = grid_of(scene, movers, 4 * max(m.shape.around for m in movers) + 2 * grid.cell)
         outside = wider.clearance.widest(start, (x, y), mover.reach)[0] >= mover.radius - wider.half
-    add_unreachable(context, scene, mover, index, found, place, outside, tally)
+    add_unreachable(context, scene, mover, index, gap, place, outside, tally)
 
 
 def add_unreachable(
@@ -58,7 +58,7 @@ def add_unreachable(
     scene: Scene,
     mover: Mover,
     index: int,
-    found: Gap | None,
+    widest: Gap | None,
     place: Point | None,
     outside: bool,
     tally: Tally,
@@ -70,7 +70,7 @@ def add_unreachable(
         scene: The initial poses and goals.
         mover: The mover.
         index: Index of the goal.
-        found: The narrowest gap on the widest path, None if there is no opening at all.
+        widest: The narrowest gap on the widest path, None if there is no opening at all.
         place: Another goal that can be reached, if one is known [m].
         outside: Whether a path leads outside the world, over its open edge.
         tally: Collects the finding.
@@ -79,19 +79,19 @@ def add_unreachable(
     goal, need = goals[index], 2 * mover.radius
     what = f"waypoint {index + 1} at" if len(goals) > 1 else "its goal"
     fixes = [] if place is None else [f"another goal: it can get to ({place[0]:.2f}, {place[1]:.2f})"]
-    if found is None or found.width <= 0:
+    if widest is None or widest.width <= 0:
         why = "obstacles separate them completely, without a gap even for a thinner robot"
         fixes = ["an opening in the obstacles between them", *fixes]
     else:
-        x, y = found.place
+        x, y = widest.place
         wide = (
-            f"a gap of {metres(found.width, unlike=need)} at ({x:.2f}, {y:.2f})"
-            if found.width < need
+            f"a gap of {metres(widest.width, unlike=need)} at ({x:.2f}, {y:.2f})"
+            if widest.width < need
             else "too narrow a gap"
         )
         why = f"the widest path has {wide}, and the robot needs {'' if mover.is_disc else 'at least '}{metres(need)}"
         gap = f"a gap of more than {metres(need)} ({metres(EASE * need)} to pass with ease)"
-        fixes = [*fixes, "a narrower robot"] if _is_drawn(context, scene, found) else [gap, "a narrower robot", *fixes]
+        fixes = [*fixes, "a narrower robot"] if _is_drawn(context, scene, widest) else [gap, "a narrower robot", *fixes]
     if hasattr(context.scenario.world.obstacle_map, "fill"):
         fixes.append("a map with another 'seed' or a lower 'fill'")
     if outside:
@@ -111,7 +111,7 @@ def report_narrow(
     context: Context,
     mover: Mover,
     index: int,
-    found: Gap,
+    gap: Gap,
     scene: Scene,
     tally: Tally,
     grid: ClearanceGrid | None = None,
@@ -123,14 +123,14 @@ def report_narrow(
         context: The scenario.
         mover: The robot.
         index: Index of the goal.
-        found: The narrowest gap on the widest path.
+        gap: The narrowest gap on the widest path.
         scene: The initial poses and goals.
         tally: Collects the finding.
         grid: Distances to obstacles, if cells are fine enough to look for another goal.
         start: Where the leg begins [m].
     """
     need, name = 2 * mover.radius, mover.record.name
-    width, places = _driven_gaps(context, scene, mover, index, found)
+    width, places = _driven_gaps(context, scene, mover, index, gap)
     at = " and ".join(f"({x:.2f}, {y:.2f})" for x, y in places[:_MAX_PLACES])
     gaps = "a gap" if len(places) == 1 else f"{len(places)} gaps"
     what = (
@@ -147,7 +147,7 @@ def report_narrow(
         planner = f"its planner '{missed.planner}'{cells}"
         what += (
             f". Even alone it gets stuck on the path of {planner}"
-            if missed.found
+            if missed.has_path
             else f". It does not move, because {planner} does not find that path"
         )
         fix = other
@@ -157,7 +157,7 @@ def report_narrow(
 
 
 def _driven_gaps(
-    context: Context, scene: Scene, mover: Mover, index: int, found: Gap
+    context: Context, scene: Scene, mover: Mover, index: int, narrowest: Gap
 ) -> tuple[float, list[tuple[float, float]]]:
     """Width and places of the narrowest gaps on the way that a robot drives, as the table of a scenario tells them.
 
@@ -170,9 +170,9 @@ def _driven_gaps(
         places = Places(scene.seed, scene.pose, scene.goals, scene.owner.things)
         kept[key] = passages_of_legs(context.resolved, places, mover.record.id)
     own = kept.get(key, {}).get((mover.record.id, index), [])
-    width = min((gap for gap, _ in own), default=found.width)
+    width = min((gap for gap, _ in own), default=narrowest.width)
     if not own or not _MIN_SHARE * 2 * mover.radius <= width < EASE * 2 * mover.radius:
-        return found.width, [found.place]
+        return narrowest.width, [narrowest.place]
     return width, [place for _, place in own]
 
 
@@ -227,13 +227,13 @@ class Missed:
 
     Attributes:
         planner: Name of the planner.
-        found: Whether the planner finds a path, on which the robot nevertheless gets stuck.
+        has_path: Whether the planner finds a path, on which the robot nevertheless gets stuck.
         cell: Cell size of the planner, None if it has no cells [m].
         finer: Cell size with which `astar` leads the robot to its goal; None if none was found or tried [m].
     """
 
     planner: str
-    found: bool
+    has_path: bool
     cell: float | None
     finer: float | None
 

@@ -131,23 +131,23 @@ def check(
             if arrival is None:
                 break
             least = mover.radius - grid.half
-            found = None
+            gap = None
             if grid.clearance.widest(start, to, mover.reach)[0] >= least and kept.get("gaps", 0) < _MAX_GAPS:
-                measured, found = _narrowest_on_path(grid, scene, mover, start, arrival)
+                measured, gap = _narrowest_on_path(grid, scene, mover, start, arrival)
                 kept["gaps"] = kept.get("gaps", 0) + measured
-            if found is not None and found.width + found.slack < 2 * mover.radius:
-                report_no_path(context, grid, scene, movers, mover, start, index, found, tally)
+            if gap is not None and gap.width + gap.slack < 2 * mover.radius:
+                report_no_path(context, grid, scene, movers, mover, start, index, gap, tally)
                 break
             if grid.clearance.widest(start, to, mover.reach)[0] < least:
                 ends = _open_ends(grid, mover, start, arrival)
                 key = f"gap {ends}"
                 if key not in kept:
                     kept[key] = narrowest_gap(grid, *ends)
-                found = kept[key]
-                report_no_path(context, grid, scene, movers, mover, start, index, found, tally)
+                gap = kept[key]
+                report_no_path(context, grid, scene, movers, mover, start, index, gap, tally)
                 break
-            if found is not None and mover.record.role == "robot":
-                report_narrow(context, mover, index, found, scene, tally, grid, start)
+            if gap is not None and mover.record.role == "robot":
+                report_narrow(context, mover, index, gap, scene, tally, grid, start)
             made.append(Leg(mover, start, to, _is_line_blocked(grid, mover, start, to), index))
             start = grid.clearance.climb(arrival, mover.radius)
     return legs
@@ -192,11 +192,11 @@ def _narrowest_on_path(
         key = f"gap {need} {round(width, 9)} {len(closed)}"
         if key not in scene.owner.kept:
             scene.owner.kept[key] = narrowest_gap(grid, start_top, goal_top)
-        found: Gap | None = scene.owner.kept[key]
-        if found is None or found.width + found.slack >= need:
-            narrow = found is not None and found.width < EASE * need
-            return len(closed) + 1, found if narrow else None
-        closed.append(found)
+        gap: Gap | None = scene.owner.kept[key]
+        if gap is None or gap.width + gap.slack >= need:
+            narrow = gap is not None and gap.width < EASE * need
+            return len(closed) + 1, gap if narrow else None
+        closed.append(gap)
         grid = with_gaps_closed(grid, closed)
     return len(closed), None
 
@@ -219,20 +219,20 @@ def _check_passages(
     goal = scene.goals[mover.record.id][index]
     to = (goal[0], goal[1])
     pair = (mover.record.id, index)
-    if passages is None or pair not in passages.found:
+    if passages is None or pair not in passages.gaps:
         if mover.record.role == "robot" and _is_swept_line_blocked(scene, mover, start, to):
             _report_unchecked(mover, index, grid, scene, tally)
         return True
-    found, closed = passages.found[pair]
+    gap, closed = passages.gaps[pair]
     if closed:
         outside = False
         if context.scenario.world.boundary == "none":
             inner = find_gaps(scene.owner, most=2 * mover.radius, open_edge=False)
             outside = inner is not None and inner.openings([(start, to)])[0].width >= 2 * mover.radius
-        add_unreachable(context, scene, mover, index, found, None, outside, tally)
+        add_unreachable(context, scene, mover, index, gap, None, outside, tally)
         return False
-    if found is not None and mover.record.role == "robot":
-        report_narrow(context, mover, index, found, scene, tally)
+    if gap is not None and mover.record.role == "robot":
+        report_narrow(context, mover, index, gap, scene, tally)
     return True
 
 

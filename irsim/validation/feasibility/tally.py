@@ -65,11 +65,11 @@ class Tally:
             entry: The entry of the scenario that it counts for; default: the object's.
         """
         key = code, record.path if entry is None else entry
-        found = self.entries.setdefault(key, _Entry(path, message, fix, serious, seed))
-        if serious and not found.serious:
-            found.path, found.message, found.fix, found.serious, found.seed = path, message, fix, True, seed
-        found.scenes.add(seed)
-        found.others.add(record.id)
+        kept = self.entries.setdefault(key, _Entry(path, message, fix, serious, seed))
+        if serious and not kept.serious:
+            kept.path, kept.message, kept.fix, kept.serious, kept.seed = path, message, fix, True, seed
+        kept.scenes.add(seed)
+        kept.others.add(record.id)
 
     def findings(self) -> Iterator[Finding]:
         """One finding for each code and entry of the scenario."""

@@ -28,18 +28,18 @@ def rock_around(rock: Grid) -> NDArray[np.int_]:
 
 def reachable(free: Grid, start: tuple[int, int]) -> Grid:
     """The free cells that can be reached from ``start``."""
-    found = np.zeros_like(free)
-    found[start] = True
+    reached = np.zeros_like(free)
+    reached[start] = True
     while True:
-        grown = found.copy()
-        grown[1:] |= found[:-1]
-        grown[:-1] |= found[1:]
-        grown[:, 1:] |= found[:, :-1]
-        grown[:, :-1] |= found[:, 1:]
+        grown = reached.copy()
+        grown[1:] |= reached[:-1]
+        grown[:-1] |= reached[1:]
+        grown[:, 1:] |= reached[:, :-1]
+        grown[:, :-1] |= reached[:, 1:]
         grown &= free
-        if (grown == found).all():
-            return found
-        found = grown
+        if (grown == reached).all():
+            return reached
+        reached = grown
 
 
 def cave(seed: int = 2024) -> Image.Image:
