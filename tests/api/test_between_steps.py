@@ -46,46 +46,46 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def printed(*arguments: str) -> str:
-    found = CliRunner().invoke(app, list(arguments))
-    assert found.exit_code == 0, found.output
-    return " ".join(found.output.split())
+    result = CliRunner().invoke(app, list(arguments))
+    assert result.exit_code == 0, result.output
+    return " ".join(result.output.split())
 
 
 def test_a_success_that_passed_a_wall_says_so_first() -> None:
-    found = irsim.run(text=scene())
-    assert found.outcome == "success"  # contacts count at the ends of steps
-    assert found.summary.startswith(f"{THROUGH}, one of 2 contacts between steps {CURE}; the robot arrived at 3.3 s")
-    assert "without touching" not in found.summary
-    assert (found.reason, found.decisive_step) == (None, None)
-    [runner] = found.robots
+    result = irsim.run(text=scene())
+    assert result.outcome == "success"  # contacts count at the ends of steps
+    assert result.summary.startswith(f"{THROUGH}, one of 2 contacts between steps {CURE}; the robot arrived at 3.3 s")
+    assert "without touching" not in result.summary
+    assert (result.reason, result.decisive_step) == (None, None)
+    [runner] = result.robots
     assert (runner.collision_count, runner.contacts_between_steps, runner.passed_through) == (0, 2, ["board"])
-    assert found.contacts_between_steps == 2
-    told = [(event.kind, event.step, event.object, event.partner) for event in found.events]
+    assert result.contacts_between_steps == 2
+    told = [(event.kind, event.step, event.object, event.partner) for event in result.events]
     assert told == [
         ("contact_between_steps", 14, "runner", "post"),
         ("passed_through", 24, "runner", "board"),
         ("arrival", 33, "runner", None),
     ]
-    graze, through, _ = found.events
+    graze, through, _ = result.events
     assert graze.time == pytest.approx(1.32, abs=1e-3)  # 0.09 m before the post, of 0.3 m per step
     assert graze.depth == pytest.approx(0.03, abs=1e-6)
     assert through.time == pytest.approx(2.3133, abs=1e-3)
 
 
 def test_the_reason_of_a_failure_begins_with_it() -> None:
-    found = irsim.run(text=scene(limit=2.8))
-    assert found.outcome == "timeout"
-    assert found.reason is not None
-    assert found.reason.startswith(f"{THROUGH}, one of 2 contacts between steps {CURE}; at 2.8 s (world.time_limit) ")
-    assert found.summary.startswith(f"{THROUGH}, one of 2 contacts between steps; the robot did not arrive")
-    assert found.decisive_step == 24
+    result = irsim.run(text=scene(limit=2.8))
+    assert result.outcome == "timeout"
+    assert result.reason is not None
+    assert result.reason.startswith(f"{THROUGH}, one of 2 contacts between steps {CURE}; at 2.8 s (world.time_limit) ")
+    assert result.summary.startswith(f"{THROUGH}, one of 2 contacts between steps; the robot did not arrive")
+    assert result.decisive_step == 24
 
 
 def test_a_graze_is_told_with_its_overlap() -> None:
-    found = irsim.run(text=scene(board=", unobstructed: true"))
+    result = irsim.run(text=scene(board=", unobstructed: true"))
     what = "'runner' and 'post' touched between two steps at 1.32 s near (5.02, 3.08), overlapping by 0.03 m "
-    assert found.summary.startswith(what + CURE)
-    assert found.robots[0].passed_through == []
+    assert result.summary.startswith(what + CURE)
+    assert result.robots[0].passed_through == []
 
 
 def test_a_failure_whose_robot_only_grazed_something_is_not_decided_by_that() -> None:
@@ -106,11 +106,11 @@ def test_nothing_is_told_of_what_others_pass_through_or_where_steps_are_short() 
 def test_swept_contacts_are_collisions_and_told_once() -> None:
     """They are not told as contacts between steps, too, and nothing is counted twice."""
     text = scene().replace("step_time: 0.1", "step_time: 0.1, contacts: swept")
-    found = irsim.run(text=text)
-    assert (found.outcome, found.decisive_step) == ("collision", 14)
-    assert found.reason == "'runner' hit 'post' at 1.32 s near (5.02, 3.08)"
-    assert (found.robots[0].collision_count, found.contacts_between_steps) == (1, 0)
-    assert "between" not in found.summary
+    result = irsim.run(text=text)
+    assert (result.outcome, result.decisive_step) == ("collision", 14)
+    assert result.reason == "'runner' hit 'post' at 1.32 s near (5.02, 3.08)"
+    assert (result.robots[0].collision_count, result.contacts_between_steps) == (1, 0)
+    assert "between" not in result.summary
     driven = irsim.run(text=text.replace("contacts: swept", "contacts: swept, collision_mode: unobstructed"))
     assert driven.outcome == "collision"  # it drives on and arrives, after both
     assert driven.reason == "'runner' hit 'post' at 1.32 s near (5.02, 3.08)"
@@ -126,10 +126,10 @@ def test_robots_that_pass_through_each_other() -> None:
         f"  - {{name: ann, {fast}, {limits}, state: [1, 3, 0], goal: [11, 3]}}\n"
         f"  - {{name: bob, {fast}, {limits}, state: [11, 3, 0], goal: [1, 3]}}\n"
     )
-    found = irsim.run(text=text)
-    assert found.summary.startswith("'ann' passed through 'bob' between two steps at 0.5")
-    assert {robot.name: robot.passed_through for robot in found.robots} == {"ann": ["bob"], "bob": ["ann"]}
-    assert found.contacts_between_steps == 1
+    result = irsim.run(text=text)
+    assert result.summary.startswith("'ann' passed through 'bob' between two steps at 0.5")
+    assert {robot.name: robot.passed_through for robot in result.robots} == {"ann": ["bob"], "bob": ["ann"]}
+    assert result.contacts_between_steps == 1
 
 
 def test_people_that_touch_each_other_between_steps_are_counted_after_the_robots() -> None:
@@ -141,10 +141,10 @@ def test_people_that_touch_each_other_between_steps_are_counted_after_the_robots
         f"  - {{name: ann, {walk}, {limits}, state: [1, 3, 0], goal: [11, 3]}}\n"
         f"  - {{name: bob, {walk}, {limits}, state: [11, 3, 0], goal: [1, 3]}}\n"
     )
-    found = irsim.run(text=text)
-    assert not found.summary.startswith("'ann'")
-    assert "; 1 contact between steps without a robot" in found.summary
-    assert (found.contacts_between_steps, found.robots[0].contacts_between_steps) == (1, 0)
+    result = irsim.run(text=text)
+    assert not result.summary.startswith("'ann'")
+    assert "; 1 contact between steps without a robot" in result.summary
+    assert (result.contacts_between_steps, result.robots[0].contacts_between_steps) == (1, 0)
 
 
 def test_they_stay_among_the_events_of_a_long_run() -> None:
@@ -173,8 +173,8 @@ def test_the_command_shows_them_in_its_table_and_in_json(workspace: Path) -> Non
     shown = printed("run", "tunnel.yaml", "--record")
     assert "collisions between steps" in shown
     assert f"success: {THROUGH}" in shown
-    found = json.loads(CliRunner().invoke(app, ["run", "tunnel.yaml", "--json"]).stdout)
-    assert (found["contacts_between_steps"], found["robots"][0]["passed_through"]) == (2, ["board"])
+    result = json.loads(CliRunner().invoke(app, ["run", "tunnel.yaml", "--json"]).stdout)
+    assert (result["contacts_between_steps"], result["robots"][0]["passed_through"]) == (2, ["board"])
     assert "between steps" not in printed("run", "tunnel.yaml", "--policy", "orca")  # which is slower at the post
     rows = list(
         csv.DictReader(
@@ -212,9 +212,9 @@ def test_runs_that_differ_only_in_them_are_told_apart(workspace: Path) -> None:
     first, second = (open_run(str(irsim.run("tunnel.yaml", record=True).run_id)) for _ in range(2))
     assert diff_runs(first, second).same
     second.__dict__["events"] = [event for event in second.events if event.kind != "passed_through"]
-    found = diff_runs(first, second)
-    assert not found.same
-    assert [(event.kind, event.partner) for event in found.events_before] == [("passed_through", "board")]
+    difference = diff_runs(first, second)
+    assert not difference.same
+    assert [(event.kind, event.partner) for event in difference.events_before] == [("passed_through", "board")]
 
 
 def test_exports_flag_them(workspace: Path) -> None:
@@ -229,18 +229,18 @@ def test_exports_flag_them(workspace: Path) -> None:
 
 
 def test_a_benchmark_counts_them(workspace: Path) -> None:
-    found = irsim.benchmark(["tunnel.yaml"], policies=["dash"], seeds=1)
-    [episode] = found.episodes
+    result = irsim.benchmark(["tunnel.yaml"], policies=["dash"], seeds=1)
+    [episode] = result.episodes
     assert (episode.outcome, episode.metrics["contacts_between_steps"], episode.metrics["collision_count"]) == (
         "success", 2.0, 0.0,
     )  # fmt: skip
-    assert found.incidents == ["robots touched something between steps in 1 of 1 episodes (seed 0)"]
-    assert found.rows[0].incidents == {"contacts_between_steps": 1}
+    assert result.incidents == ["robots touched something between steps in 1 of 1 episodes (seed 0)"]
+    assert result.rows[0].incidents == {"contacts_between_steps": 1}
     assert "between" in printed("benchmark", "tunnel.yaml", "--policies", "dash", "--seeds", "1")
 
 
 def test_a_dry_run_tells_them() -> None:
-    found = irsim.validate(text=scene(), simulate=True).dry_run
-    assert found is not None
-    assert [event.kind for event in found.contacts_between_steps] == ["contact_between_steps", "passed_through"]
-    assert THROUGH in found.summary
+    dry_run = irsim.validate(text=scene(), simulate=True).dry_run
+    assert dry_run is not None
+    assert [event.kind for event in dry_run.contacts_between_steps] == ["contact_between_steps", "passed_through"]
+    assert THROUGH in dry_run.summary

@@ -27,17 +27,17 @@ obstacle:
 
 
 def test_the_collision_of_robots_decides_and_not_an_earlier_one_of_obstacles() -> None:
-    found = irsim.run(text=TOUCH)
-    first = found.events[0]
+    result = irsim.run(text=TOUCH)
+    first = result.events[0]
     assert (first.kind, first.object, first.step) == ("collision", "p", 4)
-    assert found.outcome == "collision"
-    assert found.decisive_step == 48
-    assert "'a' hit 'b' at 4.8 s near (6.00, 3.00), and both have stood still since" in found.summary
+    assert result.outcome == "collision"
+    assert result.decisive_step == 48
+    assert "'a' hit 'b' at 4.8 s near (6.00, 3.00), and both have stood still since" in result.summary
 
 
 def test_success_has_no_decisive_step() -> None:
-    found = irsim.run(text=f"world: {{width: 9, height: 4}}\nrobot: {{{BODY}, state: [1, 2, 0], goal: [4, 2]}}\n")
-    assert (found.outcome, found.decisive_step) == ("success", None)
+    result = irsim.run(text=f"world: {{width: 9, height: 4}}\nrobot: {{{BODY}, state: [1, 2, 0], goal: [4, 2]}}\n")
+    assert (result.outcome, result.decisive_step) == ("success", None)
 
 
 def test_a_jump_over_the_goal_decides_a_time_out() -> None:
@@ -45,9 +45,9 @@ def test_a_jump_over_the_goal_decides_a_time_out() -> None:
 world: {{width: 12, height: 6}}
 robot: {{{BODY}, state: [1, 3, 0], goal: [9.93, 3], vel_max: [2, 1.5], vel_min: [-2, -1.5], goal_threshold: 0.06}}
 """
-    found = irsim.run(text=text)
-    assert (found.outcome, found.decisive_step) == ("timeout", 45)
-    assert "at no step nearer than 0.07 m" in found.summary
+    result = irsim.run(text=text)
+    assert (result.outcome, result.decisive_step) == ("timeout", 45)
+    assert "at no step nearer than 0.07 m" in result.summary
 
 
 def test_a_robot_that_is_caught_is_decided_when_it_ceases_to_get_on() -> None:
@@ -57,10 +57,10 @@ robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1,
         behavior: {name: sfm}}
 obstacle: {shape: {name: linestring, vertices: [[-5, 2], [0, 2], [0, -2], [-5, -2]]}, state: [5, 3, 0]}
 """
-    found = irsim.run(text=text)
-    assert found.outcome == "timeout"
-    assert found.decisive_step is not None
-    assert 20 < found.decisive_step < 120
+    result = irsim.run(text=text)
+    assert result.outcome == "timeout"
+    assert result.decisive_step is not None
+    assert 20 < result.decisive_step < 120
 
 
 def test_a_robot_that_passed_its_goal_and_came_back_is_in_the_summary() -> None:
@@ -70,9 +70,9 @@ robot: {name: fast, kinematics: {name: omni, noise: true, alpha: [0.1, 0.1]}, sh
         state: [1, 3, 0], goal: [9.93, 3], vel_max: [1.5, 1.5], vel_min: [-1.5, -1.5], goal_threshold: 0.05,
         behavior: {name: dash}}
 """
-    found = irsim.run(text=text, seed=0)
-    assert (found.outcome, found.jumped) == ("success", [])
-    assert "'fast' passed its goal between two steps at 6.1 s, came back and arrived at 6.3 s" in found.summary
+    result = irsim.run(text=text, seed=0)
+    assert (result.outcome, result.jumped) == ("success", [])
+    assert "'fast' passed its goal between two steps at 6.1 s, came back and arrived at 6.3 s" in result.summary
 
 
 def test_a_picture_beyond_the_end_of_the_episode_says_so() -> None:
@@ -102,11 +102,11 @@ def test_a_robot_that_creeps_without_touching_anything_is_decided_when_it_begins
         ahead[:, 1] = np.where(seen.pose[:, 0] < 5, 0.0, 0.04)
         return ahead
 
-    found = irsim.run(text=CREEPER, policy=FunctionPolicy(creep, output="velocity"))
-    assert found.outcome == "timeout"
-    assert found.decisive_step == pytest.approx(34, abs=6)
-    assert "still moved at 0.04 m/s" in str(found.reason)
-    assert "hardly nearer than at 3" in str(found.reason)
+    result = irsim.run(text=CREEPER, policy=FunctionPolicy(creep, output="velocity"))
+    assert result.outcome == "timeout"
+    assert result.decisive_step == pytest.approx(34, abs=6)
+    assert "still moved at 0.04 m/s" in str(result.reason)
+    assert "hardly nearer than at 3" in str(result.reason)
 
 
 def test_a_robot_that_goes_to_and_fro_is_decided_too_and_one_on_a_detour_is_not() -> None:

@@ -34,13 +34,13 @@ def diff(before: str, after: str) -> irsim.results.validation.ScenarioDiff:
     return irsim.diff(before_text=before, after_text=after)
 
 
-def keys(found: irsim.results.validation.ScenarioDiff) -> list[tuple[str, str]]:
-    return [(change.change, change.path) for change in found.keys]
+def keys(difference: irsim.results.validation.ScenarioDiff) -> list[tuple[str, str]]:
+    return [(change.change, change.path) for change in difference.keys]
 
 
-def world(found: irsim.results.validation.ScenarioDiff) -> list[tuple[str, str | None, str | None]]:
-    assert found.world is not None
-    return [(change.change, change.object, change.key) for change in found.world]
+def world(difference: irsim.results.validation.ScenarioDiff) -> list[tuple[str, str | None, str | None]]:
+    assert difference.world is not None
+    return [(change.change, change.object, change.key) for change in difference.world]
 
 
 def test_a_file_does_not_differ_from_itself_written_otherwise() -> None:
@@ -49,33 +49,33 @@ def test_a_file_does_not_differ_from_itself_written_otherwise() -> None:
         "- {shape: {name: circle, radius: 0.5}, state: [5, 1, 0]}\n"
         + BASE.partition("obstacle:")[0].replace("   #", "  #")
     )
-    found = diff(BASE, other)
-    assert (found.same, found.keys, found.world, found.comments_lost) == (True, [], [], [])
+    difference = diff(BASE, other)
+    assert (difference.same, difference.keys, difference.world, difference.comments_lost) == (True, [], [], [])
 
 
 def test_one_value_is_one_key_and_one_fact() -> None:
-    found = diff(BASE, BASE.replace("number: 90", "number: 181"))
-    assert keys(found) == [("changed", "robot[0].sensors[0].number")]
-    assert world(found) == [("changed", "scout", "sensors[0].number")]
-    change = found.keys[0]
-    assert (change.before, change.after, found.lines_removed, found.lines_added) == (90, 181, 1, 1)
+    difference = diff(BASE, BASE.replace("number: 90", "number: 181"))
+    assert keys(difference) == [("changed", "robot[0].sensors[0].number")]
+    assert world(difference) == [("changed", "scout", "sensors[0].number")]
+    change = difference.keys[0]
+    assert (change.before, change.after, difference.lines_removed, difference.lines_added) == (90, 181, 1, 1)
 
 
 def test_what_comes_before_does_not_shift_the_rest() -> None:
     entry = "  - {shape: {name: circle, radius: 0.2}, state: [8, 2, 0]}\n"
-    found = diff(BASE, BASE.replace("obstacle:\n", f"obstacle:\n{entry}"))
-    assert keys(found) == [("added", "obstacle[0]")]
-    assert world(found) == [("added", "obstacle_1", None)]
+    difference = diff(BASE, BASE.replace("obstacle:\n", f"obstacle:\n{entry}"))
+    assert keys(difference) == [("added", "obstacle[0]")]
+    assert world(difference) == [("added", "obstacle_1", None)]
     back = diff(BASE.replace("obstacle:\n", f"obstacle:\n{entry}"), BASE)
     assert keys(back) == [("removed", "obstacle[0]")]
     assert [item[0] for item in world(back)] == ["removed"]
 
 
 def test_a_default_written_out_changes_the_file_but_not_the_world() -> None:
-    found = diff(BASE, BASE.replace("goal: [9, 4]", "goal: [9, 4]\n    goal_threshold: 0.1"))
-    assert keys(found) == [("added", "robot[0].goal_threshold")]
-    assert world(found) == []
-    assert not found.same
+    difference = diff(BASE, BASE.replace("goal: [9, 4]", "goal: [9, 4]\n    goal_threshold: 0.1"))
+    assert keys(difference) == [("added", "robot[0].goal_threshold")]
+    assert world(difference) == []
+    assert not difference.same
 
 
 def test_entries_are_the_same_with_decimal_points_and_keys_in_another_order() -> None:
@@ -87,8 +87,8 @@ def test_entries_are_the_same_with_decimal_points_and_keys_in_another_order() ->
 
 
 def test_a_sensor_is_the_same_by_either_word() -> None:
-    found = diff(BASE, BASE.replace("name: lidar2d", "type: lidar2d"))
-    assert found.world == []
+    difference = diff(BASE, BASE.replace("name: lidar2d", "type: lidar2d"))
+    assert difference.world == []
 
 
 PAIR = (
@@ -103,10 +103,10 @@ SINGLES = "robot:\n" + "".join(
 
 
 def test_an_entry_for_two_robots_is_two_entries() -> None:
-    for found in (diff(PAIR, SINGLES), diff(SINGLES, PAIR)):
-        assert found.keys
-        assert found.world == []
-        assert found.summary.endswith("; the worlds are the same")
+    for difference in (diff(PAIR, SINGLES), diff(SINGLES, PAIR)):
+        assert difference.keys
+        assert difference.world == []
+        assert difference.summary.endswith("; the worlds are the same")
 
 
 def test_what_changes_while_an_entry_is_split_is_told() -> None:
@@ -124,21 +124,21 @@ def test_one_of_several_is_the_one_that_is_gone() -> None:
 
 
 def test_lost_comments_are_told() -> None:
-    found = diff(BASE, BASE.replace("   # by the door", ""))
-    assert (found.same, found.comments_lost) == (True, ["# by the door"])
+    difference = diff(BASE, BASE.replace("   # by the door", ""))
+    assert (difference.same, difference.comments_lost) == (True, ["# by the door"])
 
 
 def test_another_drive_changes_what_follows_from_it() -> None:
-    found = diff(BASE, BASE.replace("{name: diff}", "{name: omni}"))
-    assert keys(found) == [("changed", "robot[0].kinematics.name")]
-    assert ("changed", "scout", "kinematics") in world(found)
+    difference = diff(BASE, BASE.replace("{name: diff}", "{name: omni}"))
+    assert keys(difference) == [("changed", "robot[0].kinematics.name")]
+    assert ("changed", "scout", "kinematics") in world(difference)
 
 
 def test_with_an_invalid_file_only_the_keys_are_compared() -> None:
-    found = diff(BASE, BASE.replace("radius: 0.3", "radius: -1"))
-    assert keys(found) == [("changed", "robot[0].shape.radius")]
-    assert found.world is None
-    assert "invalid" in found.summary
+    difference = diff(BASE, BASE.replace("radius: 0.3", "radius: -1"))
+    assert keys(difference) == [("changed", "robot[0].shape.radius")]
+    assert difference.world is None
+    assert "invalid" in difference.summary
 
 
 def test_facts_that_only_repeat_a_key_are_marked() -> None:
@@ -159,18 +159,20 @@ def test_what_follows_from_a_key_is_not_marked() -> None:
     unlimited = BASE.replace("    vel_max: [1.0, 1.5]\n", "").replace("    vel_min: [-1.0, -1.5]\n", "")
     default = [fact for fact in diff(BASE, unlimited).world or [] if fact.key == "vel_max"]
     assert [fact.direct for fact in default] == [False]  # the key says only that it is gone
-    found = diff(unlimited, unlimited.replace("{name: diff}", "{name: acker, wheelbase: 1}"))
-    told = {fact.key: fact.direct for fact in found.world or []}
+    difference = diff(unlimited, unlimited.replace("{name: diff}", "{name: acker, wheelbase: 1}"))
+    told = {fact.key: fact.direct for fact in difference.world or []}
     assert told["kinematics"]
     assert not all(told.values())
-    assert "which also changes scout" in found.summary
+    assert "which also changes scout" in difference.summary
 
 
 def test_an_edited_comment_is_not_lost() -> None:
-    found = diff(BASE, BASE.replace("# by the door", "# by the back door"))
-    assert found.comments_lost == []
-    assert [(item.before, item.after) for item in found.comments_changed] == [("# by the door", "# by the back door")]
-    assert found.summary.endswith("no comment lost, 1 comment changed")
+    difference = diff(BASE, BASE.replace("# by the door", "# by the back door"))
+    assert difference.comments_lost == []
+    assert [(item.before, item.after) for item in difference.comments_changed] == [
+        ("# by the door", "# by the back door")
+    ]
+    assert difference.summary.endswith("no comment lost, 1 comment changed")
 
 
 @pytest.mark.parametrize(
@@ -178,16 +180,16 @@ def test_an_edited_comment_is_not_lost() -> None:
 )
 def test_a_comment_about_the_same_thing_is_edited(before: str, after: str) -> None:
     old = BASE.replace("robot:\n", "# who moves\nrobot:\n")
-    found = diff(old, old.replace(before, after))
-    assert found.comments_lost == []
-    assert [(item.before, item.after) for item in found.comments_changed] == [(before, after)]
+    difference = diff(old, old.replace(before, after))
+    assert difference.comments_lost == []
+    assert [(item.before, item.after) for item in difference.comments_changed] == [(before, after)]
     invalid = diff(old, old.replace(before, after).replace("radius: 0.3", "radius: -1"))
     assert [(item.before, item.after) for item in invalid.comments_changed] == [(before, after)]
 
 
 def test_another_comment_about_something_else_does_not_replace_one() -> None:
-    found = diff(BASE, BASE.replace("   # by the door", "").replace("goal: [9, 4]", "goal: [9, 4]   # east"))
-    assert (found.comments_lost, found.comments_changed) == (["# by the door"], [])
+    difference = diff(BASE, BASE.replace("   # by the door", "").replace("goal: [9, 4]", "goal: [9, 4]   # east"))
+    assert (difference.comments_lost, difference.comments_changed) == (["# by the door"], [])
 
 
 @pytest.mark.parametrize(
@@ -202,9 +204,9 @@ def test_a_comment_goes_with_its_entry() -> None:
     entries = ["  # slow\n  - {state: [5, 1, 0]}\n", "  - {state: [5, 6, 0]}   # fast\n"]
     before = f"obstacle:\n{entries[0]}{entries[1]}"
     after = f"obstacle:\n{entries[1].replace('fast', 'quick')}{entries[0].replace('slow', 'dawdling')}"
-    found = diff(before, after)
-    assert found.comments_lost == []
-    assert {(item.before, item.after) for item in found.comments_changed} == {
+    difference = diff(before, after)
+    assert difference.comments_lost == []
+    assert {(item.before, item.after) for item in difference.comments_changed} == {
         ("# slow", "# dawdling"),
         ("# fast", "# quick"),
     }
@@ -214,9 +216,9 @@ def test_a_comment_goes_with_its_entry() -> None:
 
 def test_equal_comments_stand_for_themselves() -> None:
     before = "obstacle:\n  - {state: [5, 1, 0]}   # here\n  - {state: [5, 6, 0]}   # here\n"
-    found = diff(before, before.replace("# here", "# 5, 1", 1))
-    assert [(item.before, item.after) for item in found.comments_changed] == [("# here", "# 5, 1")]
-    assert found.comments_lost == []
+    difference = diff(before, before.replace("# here", "# 5, 1", 1))
+    assert [(item.before, item.after) for item in difference.comments_changed] == [("# here", "# 5, 1")]
+    assert difference.comments_lost == []
 
 
 def test_an_entry_that_is_gone_is_named_as_in_the_file_before() -> None:
@@ -225,8 +227,8 @@ def test_an_entry_that_is_gone_is_named_as_in_the_file_before() -> None:
         for x, radius in ((5, 0.4), (6, 0.5), (7, 0.6))
     )
     lines = before.splitlines(keepends=True)
-    found = diff(before, "".join([*lines[:2], lines[3].replace("0.6", "0.7")]))
-    assert found.summary == "2 keys differ: obstacle[1].shape.radius, former obstacle[1]"
+    difference = diff(before, "".join([*lines[:2], lines[3].replace("0.6", "0.7")]))
+    assert difference.summary == "2 keys differ: obstacle[1].shape.radius, former obstacle[1]"
     result = diff(BASE, BASE.replace("    goal: [9, 4]\n", ""))
     assert result.summary.startswith("1 key differs: robot[0].goal;")
 
@@ -257,11 +259,13 @@ def test_a_change_of_order_is_told() -> None:
     entry = "  - {name: %s, kinematics: {name: diff}, state: [%d, 1, 0], goal: [%d, 5], behavior: {name: dash}}\n"
     lines = [entry % (name, x, x) for name, x in (("a", 1), ("b", 3), ("c", 5))]
     before, swapped = ("robot:\n" + "".join(lines[i] for i in order) for order in ((0, 1, 2), (1, 0, 2)))
-    found = irsim.diff(before_text=before, after_text=swapped)
-    assert not found.same
-    assert [(key.change, key.before, key.after) for key in found.keys] == [("moved", "robot[1]", "robot[0]")]
-    assert found.summary.startswith("no key differs but for the order: robot[1] is now robot[0], which changes ids")
-    assert found.summary.endswith("which robot env.step(action) drives")
+    difference = irsim.diff(before_text=before, after_text=swapped)
+    assert not difference.same
+    assert [(key.change, key.before, key.after) for key in difference.keys] == [("moved", "robot[1]", "robot[0]")]
+    assert difference.summary.startswith(
+        "no key differs but for the order: robot[1] is now robot[0], which changes ids"
+    )
+    assert difference.summary.endswith("which robot env.step(action) drives")
     without = "robot:\n" + "".join(lines[1:])
     assert [key.change for key in irsim.diff(before_text=before, after_text=without).keys] == ["removed"]
     edited = swapped.replace("[1, 5]", "[2, 5]")
@@ -283,9 +287,11 @@ LED = (
 )
 
 
-def told(found: irsim.results.validation.ScenarioDiff) -> dict[tuple[str | None, str | None], tuple[object, object]]:
+def told(
+    difference: irsim.results.validation.ScenarioDiff,
+) -> dict[tuple[str | None, str | None], tuple[object, object]]:
     """What changed in the world, by object and fact; of options their name."""
-    facts = found.world or []
+    facts = difference.world or []
     return {(fact.object, fact.key): (_name(fact.before), _name(fact.after)) for fact in facts}
 
 
@@ -294,9 +300,9 @@ def _name(value: object) -> object:
 
 
 def test_who_leaves_a_group_is_no_longer_led_by_its_behavior() -> None:
-    found = diff(LED, LED.replace("[9, 6], group: 0", "[9, 6], group: 1"))
-    assert told(found) == {("robot_2", "group_behavior"): ("orca", None)}
-    assert found.summary == "1 key differs: robot[2].group; which also changes robot_2"
+    difference = diff(LED, LED.replace("[9, 6], group: 0", "[9, 6], group: 1"))
+    assert told(difference) == {("robot_2", "group_behavior"): ("orca", None)}
+    assert difference.summary == "1 key differs: robot[2].group; which also changes robot_2"
     back = diff(LED.replace("[9, 6], group: 0", "[9, 6], group: 1"), LED)
     assert told(back) == {("robot_2", "group_behavior"): (None, "orca")}
 
@@ -330,10 +336,10 @@ def test_people_are_told_of_options_by_their_name(tmp_path: Path) -> None:
 
 def test_of_many_entries_that_all_changed_each_is_recognised() -> None:
     before = "robot:\n" + "".join(robot(2 + i) for i in range(120))
-    found = diff(f"world: {{height: 200}}\n{before}", f"world: {{height: 200}}\n{before.replace('0.3', '0.4')}")
-    assert {change for change, _ in keys(found)} == {"changed"}
-    assert len(found.keys) == len(found.world or []) == 120
-    assert all(fact.direct for fact in found.world or [])
+    difference = diff(f"world: {{height: 200}}\n{before}", f"world: {{height: 200}}\n{before.replace('0.3', '0.4')}")
+    assert {change for change, _ in keys(difference)} == {"changed"}
+    assert len(difference.keys) == len(difference.world or []) == 120
+    assert all(fact.direct for fact in difference.world or [])
 
 
 def test_a_group_behavior_that_nobody_follows_changes_no_world() -> None:
@@ -345,15 +351,15 @@ def test_a_group_behavior_that_nobody_follows_changes_no_world() -> None:
 
 def test_an_obstacle_taken_out_of_the_group_of_the_robots_is_told() -> None:
     obstacle = "obstacle: {kinematics: {name: omni}, state: [5, 1, 0], goal: [5, 9], shape: {name: circle, radius: 0.2}"
-    found = diff(f"{LED}{obstacle}, group: 0}}\n", f"{LED}{obstacle}, group: 1}}\n")
-    assert told(found) == {("obstacle_3", "group_behavior"): ("orca", None)}
+    difference = diff(f"{LED}{obstacle}, group: 0}}\n", f"{LED}{obstacle}, group: 1}}\n")
+    assert told(difference) == {("obstacle_3", "group_behavior"): ("orca", None)}
 
 
 def test_another_group_of_the_same_behavior_is_other_company() -> None:
     leader = robot(7, ", group: 1, group_behavior: {name: orca}") + robot(8, ", group: 1")
     two = LED.replace("robot:\n", f"robot:\n{leader}")
-    found = diff(two, two.replace("[9, 6], group: 0", "[9, 6], group: 1"))
-    assert told(found) == {
+    difference = diff(two, two.replace("[9, 6], group: 0", "[9, 6], group: 1"))
+    assert told(difference) == {
         ("robot_4", "group_members"): (["robot_2", "robot_3", "robot_4"], ["robot_0", "robot_1", "robot_4"])
     }
     first = diff(LED + leader, (LED + leader).replace("[9, 6], group: 0", "[9, 6], group: 1"))  # it leads now
@@ -371,8 +377,8 @@ def test_another_group_of_the_same_behavior_is_other_company() -> None:
 )
 def test_small_facts_are_facts(before: str, after: str, fact: str) -> None:
     text = "robot:\n" + robot(2, ", behavior: {name: dash}").replace("diff", "acker, wheelbase: 1")
-    found = diff(text, text.replace(before, after))
-    assert [(item.object, item.key) for item in found.world or []] == [("robot_0", fact)]
+    difference = diff(text, text.replace(before, after))
+    assert [(item.object, item.key) for item in difference.world or []] == [("robot_0", fact)]
 
 
 def test_a_finding_of_an_entry_that_has_moved_is_known_from_the_base() -> None:

@@ -36,22 +36,22 @@ def scenarios(draw: st.DrawFn) -> dict[str, Any]:
 
     def entry(role: str) -> dict[str, Any]:
         number = draw(st.integers(1, 3))
-        found: dict[str, Any] = {"number": number, "shape": draw(st.sampled_from(SHAPES))}
-        found["state"] = [[*next(free), draw(st.sampled_from([0, 0.5, -1]))] for _ in range(number)]
+        keys: dict[str, Any] = {"number": number, "shape": draw(st.sampled_from(SHAPES))}
+        keys["state"] = [[*next(free), draw(st.sampled_from([0, 0.5, -1]))] for _ in range(number)]
         if draw(st.booleans()):
-            found["name"] = [f"{role} {next(named)}" for _ in range(number)]
+            keys["name"] = [f"{role} {next(named)}" for _ in range(number)]
         if role == "robot":
             drive = draw(st.sampled_from(DRIVES))
-            found["kinematics"] = {"name": drive, "wheelbase": 0.3} if drive == "acker" else {"name": drive}
-            found["goal"] = [[x + 0.5, y + 0.5] for x, y, _ in found["state"]]
-            found["group"] = draw(st.integers(0, 2))
-            found["behavior"] = {"name": draw(st.sampled_from(["dash", "orca"]))}
-            found["vel_max"] = draw(st.sampled_from([[1, 0.5], [2, 1]]))
+            keys["kinematics"] = {"name": drive, "wheelbase": 0.3} if drive == "acker" else {"name": drive}
+            keys["goal"] = [[x + 0.5, y + 0.5] for x, y, _ in keys["state"]]
+            keys["group"] = draw(st.integers(0, 2))
+            keys["behavior"] = {"name": draw(st.sampled_from(["dash", "orca"]))}
+            keys["vel_max"] = draw(st.sampled_from([[1, 0.5], [2, 1]]))
             if draw(st.booleans()):
-                found["group_behavior"] = {"name": "orca", "safe_radius": draw(st.sampled_from([0.1, 0.2]))}
+                keys["group_behavior"] = {"name": "orca", "safe_radius": draw(st.sampled_from([0.1, 0.2]))}
             if draw(st.booleans()):
-                found["sensors"] = [{"name": "lidar2d", "range_max": draw(st.sampled_from([3, 4]))}]
-        return found
+                keys["sensors"] = [{"name": "lidar2d", "range_max": draw(st.sampled_from([3, 4]))}]
+        return keys
 
     return {
         "world": {"width": 20, "height": 20},
@@ -125,12 +125,12 @@ def test_other_ways_to_write_a_world_are_the_same_world(data: dict[str, Any], se
         if rng.random() < 0.7:
             other = change(other, rng)
     before, after = written(data, rng), written(other, rng)
-    for found in (
+    for difference in (
         irsim.diff(before_text=before, after_text=after),
         irsim.diff(before_text=after, after_text=before),
     ):
-        assert found.world == [], (before, after, found.summary)
-        assert "the worlds are the same" in found.summary
+        assert difference.world == [], (before, after, difference.summary)
+        assert "the worlds are the same" in difference.summary
     assert irsim.diff(before_text=before, after_text=written(shuffled(data, rng), rng)).same
 
 
@@ -152,11 +152,11 @@ def test_objects_that_move_otherwise_are_told(data: dict[str, Any], edit: st.Dat
     robots = [*data["robot"]]
     robots[number] = robots[number] | {key: edit.draw(EDITS[key])}
     other = data | {"robot": robots}
-    found = irsim.diff(before_text=yaml.safe_dump(data), after_text=yaml.safe_dump(other))
+    difference = irsim.diff(before_text=yaml.safe_dump(data), after_text=yaml.safe_dump(other))
     if not np.array_equal(_ways(data), _ways(other)):
-        assert found.world, (data, other)
-    if not found.world:
-        assert "the worlds are the same" in found.summary
+        assert difference.world, (data, other)
+    if not difference.world:
+        assert "the worlds are the same" in difference.summary
 
 
 def _ways(data: dict[str, Any]) -> Any:
@@ -285,13 +285,13 @@ def test_what_changes_the_world_is_told(key: str) -> None:
 
 def _compare(before: dict[str, Any], after: dict[str, Any], *, always: bool = False, same: bool = False) -> None:
     resolved = _resolved(before), _resolved(after)
-    found = irsim.diff(before_text=yaml.safe_dump(before), after_text=yaml.safe_dump(after))
-    assert found.world is not None
+    difference = irsim.diff(before_text=yaml.safe_dump(before), after_text=yaml.safe_dump(after))
+    assert difference.world is not None
     if same:
-        assert "the worlds are the same" in found.summary
+        assert "the worlds are the same" in difference.summary
     elif always or _objects(resolved[0]) != _objects(resolved[1]):
-        assert found.world, found.summary
-        assert "the worlds are the same" not in found.summary
+        assert difference.world, difference.summary
+        assert "the worlds are the same" not in difference.summary
 
 
 def _resolved(data: dict[str, Any]) -> ResolvedScenario | None:

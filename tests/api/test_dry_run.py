@@ -43,19 +43,20 @@ def tried(
 
 
 def test_tells_who_arrived() -> None:
-    found = tried()
-    assert (found.arrived, found.collisions, found.stuck, found.left, found.ended) == (["rover"], [], [], [], "done")
-    assert found.sim_time == pytest.approx(8.0, abs=0.3)  # 8 m at 1 m/s
-    assert "1 of 1 robots arrived" in found.summary
+    outcome = tried()
+    assert (outcome.arrived, outcome.ended) == (["rover"], "done")
+    assert (outcome.collisions, outcome.stuck, outcome.left) == ([], [], [])
+    assert outcome.sim_time == pytest.approx(8.0, abs=0.3)  # 8 m at 1 m/s
+    assert "1 of 1 robots arrived" in outcome.summary
 
 
 def test_tells_who_hit_whom_when_and_where() -> None:
-    found = tried(obstacle="{name: pillar, shape: {name: circle, radius: 0.5}, state: [5, 4, 0]}")
-    hit = found.collisions[0]
+    outcome = tried(obstacle="{name: pillar, shape: {name: circle, radius: 0.5}, state: [5, 4, 0]}")
+    hit = outcome.collisions[0]
     assert {hit.object, hit.partner} == {"rover", "pillar"}
     assert hit.time == pytest.approx(3.2, abs=0.2)  # 4 m less both radii
     assert hit.x == pytest.approx(4.5, abs=0.2)
-    assert "pillar" in found.summary
+    assert "pillar" in outcome.summary
 
 
 @pytest.mark.parametrize(
@@ -72,18 +73,18 @@ def test_tells_who_hit_whom_when_and_where() -> None:
     ],
 )
 def test_tells_why_a_robot_is_stuck(settings: dict[str, str], why: str) -> None:
-    found = tried(**settings)
-    assert [item.name for item in found.stuck] == ["rover"]
-    assert why in found.stuck[0].why
-    assert found.stuck[0].since == pytest.approx(0.0, abs=0.5)
-    assert (found.stuck[0].x, found.stuck[0].y) == pytest.approx((1, 4), abs=0.2)
+    outcome = tried(**settings)
+    assert [item.name for item in outcome.stuck] == ["rover"]
+    assert why in outcome.stuck[0].why
+    assert outcome.stuck[0].since == pytest.approx(0.0, abs=0.5)
+    assert (outcome.stuck[0].x, outcome.stuck[0].y) == pytest.approx((1, 4), abs=0.2)
 
 
 def test_tells_who_left_the_world() -> None:
-    found = tried(state="[1.05, 4, 0]", goal="[20, 4]")
-    assert [item.name for item in found.left] == ["rover"]
-    assert found.left[0].time == pytest.approx(9.0, abs=0.3)
-    assert "'rover' left the world at 9 s ('world.boundary: walls' would keep it in)" in found.summary
+    outcome = tried(state="[1.05, 4, 0]", goal="[20, 4]")
+    assert [item.name for item in outcome.left] == ["rover"]
+    assert outcome.left[0].time == pytest.approx(9.0, abs=0.3)
+    assert "'rover' left the world at 9 s ('world.boundary: walls' would keep it in)" in outcome.summary
     assert tried(goal="[20, 4]", world="{width: 10, height: 8, boundary: walls}").left == []
 
 
@@ -131,11 +132,11 @@ robot:
 def test_what_is_tried_does_not_depend_on_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     scenario, _ = read_scenario(text=CROWD.format(behavior="sfm", sensor="{name: lidar2d, number: 360}"), strict=True)
     begin = time.monotonic()
-    found = dry_run(scenario, seed=1, budget=30_000)
+    outcome = dry_run(scenario, seed=1, budget=30_000)
     assert time.monotonic() - begin < 5
-    assert found.ended == "budget"
+    assert outcome.ended == "budget"
     monkeypatch.setattr("irsim.validation.dry_run._CLOCK_PERIOD_S", 1e-6)  # as on a machine that is far slower
-    assert dry_run(scenario, seed=1, budget=30_000) == found
+    assert dry_run(scenario, seed=1, budget=30_000) == outcome
 
 
 @pytest.mark.parametrize(
@@ -181,9 +182,9 @@ def test_the_clock_is_the_last_resort_and_told() -> None:
 
 def test_how_often_it_looks_at_the_clock_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     scenario, _ = read_scenario(scenario_file("circle-swap"), strict=True)
-    found = dry_run(scenario)
+    outcome = dry_run(scenario)
     monkeypatch.setattr("irsim.validation.dry_run._CLOCK_PERIOD_S", 0.0)  # after each step
-    assert dry_run(scenario) == found
+    assert dry_run(scenario) == outcome
 
 
 def test_a_world_without_objects_is_tried_too() -> None:
@@ -287,10 +288,10 @@ robot:
      vel_max: [0.001, 1], behavior: {name: dash}}
 """
     report = irsim.validate(text=text, simulate=True, limits=Limits(steps=100))
-    found = report.dry_run
-    assert found is not None
-    assert (found.ended, found.stuck) == ("budget", [])
-    assert found.summary.startswith("in the first 10 s only: ")
+    outcome = report.dry_run
+    assert outcome is not None
+    assert (outcome.ended, outcome.stuck) == ("budget", [])
+    assert outcome.summary.startswith("in the first 10 s only: ")
     assert "still moved at 0.001 m/s" in str(irsim.run(text=text, steps=50).reason)
 
 
@@ -304,9 +305,9 @@ robot:
 """
     report = irsim.validate(text=car, simulate=True)
     assert report.dry_run is not None
-    [found] = report.dry_run.stuck
-    assert found.doing == "circles its goal"
-    assert "raise goal_threshold" in found.why
+    [stuck] = report.dry_run.stuck
+    assert stuck.doing == "circles its goal"
+    assert "raise goal_threshold" in stuck.why
     assert "'car' circles its goal since" in report.dry_run.summary
     result = irsim.run(text=car)
     assert "'car' circles its goal: radius 1.5 m, never nearer than 1.16 m" in str(result.reason)

@@ -101,9 +101,9 @@ def test_what_starts_outside_has_not_left() -> None:
     ],
 )
 def test_failures_say_why(scenario: str, reason: str) -> None:
-    found = irsim.run(text=scenario).reason
-    assert found is not None
-    assert reason in found
+    said = irsim.run(text=scenario).reason
+    assert said is not None
+    assert reason in said
 
 
 def test_a_horizon_beyond_the_limit_is_cut_and_said() -> None:
@@ -229,10 +229,10 @@ def test_what_a_robot_came_nearest_to() -> None:
 @pytest.mark.parametrize("name", ["circle-swap", "bottleneck", "mixed-fleet"])
 def test_the_nearest_is_that_of_the_metrics(name: str) -> None:
     file = templates.scenario_file(name)
-    found = irsim.run(file, seed=2, steps=100)
+    result = irsim.run(file, seed=2, steps=100)
     [episode] = irsim.benchmark(str(file), seeds=[2], steps=100).episodes
-    least = [robot.min_clearance for robot in found.robots if robot.min_clearance is not None]
-    assert len(least) == len(found.robots)
+    least = [robot.min_clearance for robot in result.robots if robot.min_clearance is not None]
+    assert len(least) == len(result.robots)
     assert min(least) == pytest.approx(episode.metrics["min_clearance"])
 
 

@@ -39,10 +39,12 @@ def result_of(text: str, tmp_path: Path) -> RunResult:
 
 
 def test_the_explored_share_is_told(tmp_path: Path) -> None:
-    found = result_of(FOG, tmp_path)
-    assert found.explored is not None
-    assert 0.9 < found.explored <= 1
-    assert f"explored {100 * found.explored:.0f} % of the area of the world, insides of obstacles incl" in found.summary
+    result = result_of(FOG, tmp_path)
+    assert result.explored is not None
+    assert 0.9 < result.explored <= 1
+    assert (
+        f"explored {100 * result.explored:.0f} % of the area of the world, insides of obstacles incl" in result.summary
+    )
 
 
 def test_the_error_of_a_heading_that_counts_and_the_walls_are_told(tmp_path: Path) -> None:
@@ -78,7 +80,7 @@ def test_the_place_of_a_collision_is_right_though_others_drive_on() -> None:
                    "state": state, "goal": goal, "vel_max": [1, 1], "behavior": {"name": "dash"}}
                   for name, state, goal in robots],
     })  # fmt: skip
-    found = {robot.name: robot for robot in run(text=text, seed=0).robots}
+    by_name = {robot.name: robot for robot in run(text=text, seed=0).robots}
     for name, x in (("a", 4.75), ("b", 5.25)):
-        assert found[name].outcome == "collision"
-        assert found[name].nearest_at == pytest.approx((x, 5), abs=0.11)
+        assert by_name[name].outcome == "collision"
+        assert by_name[name].nearest_at == pytest.approx((x, 5), abs=0.11)

@@ -55,19 +55,19 @@ def lines(text: str, tmp_path: Path) -> str:
 
 
 def test_sensors_and_their_beams_are_told(tmp_path: Path) -> None:
-    found = lines(WATCH, tmp_path)
-    assert "fmcw_lidar2d 120 deg, 10 m, 241 beams, motion_compensate, velocity noise 0.05" in found
-    (line,) = [line for line in found.splitlines() if line.startswith("Lidar of 'watcher'")]
+    table = lines(WATCH, tmp_path)
+    assert "fmcw_lidar2d 120 deg, 10 m, 241 beams, motion_compensate, velocity noise 0.05" in table
+    (line,) = [line for line in table.splitlines() if line.startswith("Lidar of 'watcher'")]
     hit, box = int(line.split(": ")[1].split(" of ")[0]), int(line.split("'box' ")[1].split(",")[0])
     assert 0 < box <= hit < 241
     assert abs(box - 241 * 2 * 23.96 / 120) < 3  # the box is seen under atan(2 / 4.5) to both sides
 
 
 def test_goals_whose_heading_counts_and_waypoints_are_told(tmp_path: Path) -> None:
-    found = lines(WATCH, tmp_path)
-    assert "goal (9.00, 1.00, 3.14), heading counts" in found
-    assert "2 waypoints, first (15.00, 8.00), last (12.00, 8.00)" in found
-    assert "appears at 2.5 s" in found
+    table = lines(WATCH, tmp_path)
+    assert "goal (9.00, 1.00, 3.14), heading counts" in table
+    assert "2 waypoints, first (15.00, 8.00), last (12.00, 8.00)" in table
+    assert "appears at 2.5 s" in table
 
 
 def test_seeds_in_which_goals_overlap_are_counted(tmp_path: Path) -> None:

@@ -100,7 +100,7 @@ def test_moving_obstacles_are_told() -> None:
         "  - {name: walker, kinematics: {name: omni}, state: [2, 1], goal: [2, 3], shape: {name: circle},"
         " behavior: {name: dash}}\n"
     )
-    (found,) = snapshot(text=walker, steps=5, draw=False).moving
-    assert found.name == "walker"
-    assert found.velocity == pytest.approx((0, 1), abs=1e-6)
-    assert found.pose[:2] == pytest.approx((2, 1.5), abs=1e-6)
+    (mover,) = snapshot(text=walker, steps=5, draw=False).moving
+    assert mover.name == "walker"
+    assert mover.velocity == pytest.approx((0, 1), abs=1e-6)
+    assert mover.pose[:2] == pytest.approx((2, 1.5), abs=1e-6)

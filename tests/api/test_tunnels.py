@@ -53,14 +53,14 @@ def test_on_the_command_line(file: Path) -> None:
 
 
 def test_in_python(file: Path) -> None:
-    found = irsim.run(file.name)
-    assert (found.outcome, found.contacts_between_steps, found.robots[0].passed_through) == (
+    result = irsim.run(file.name)
+    assert (result.outcome, result.contacts_between_steps, result.robots[0].passed_through) == (
         "success",
         1,
         ["obstacle_1"],
     )
-    assert found.summary.startswith(f"{TOLD} {CURE}; ")
-    assert "without touching" not in found.summary
+    assert result.summary.startswith(f"{TOLD} {CURE}; ")
+    assert "without touching" not in result.summary
     env = irsim.make(file.name, display=False, headless=True)
     while not env.done():
         env.step()
@@ -73,9 +73,9 @@ def test_a_swept_contact_stops_it_at_the_wall(file: Path) -> None:
     shown = CliRunner().invoke(app, ["run", file.name, "--require-success"])
     assert shown.exit_code == 1
     assert "'robot_0' hit 'obstacle_1' at 3.13 s near (9.99, 5.00)" in " ".join(shown.stdout.split())
-    found = irsim.run(file.name)
-    assert (found.outcome, found.contacts_between_steps) == ("collision", 0)
-    assert found.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)  # its radius before the face of the wall
+    result = irsim.run(file.name)
+    assert (result.outcome, result.contacts_between_steps) == ("collision", 0)
+    assert result.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)  # its radius before the face of the wall
 
 
 @pytest.mark.parametrize("step_time", [0.1, 0.5, 1])
@@ -84,7 +84,7 @@ def test_nothing_passes_in_contact_mode(file: Path, step_time: float) -> None:
     shown = " ".join(CliRunner().invoke(app, ["run", file.name]).stdout.split())
     assert "timeout: the robot did not arrive within 30 s" in shown
     assert "stands still 8.11 m from its goal, and it pushes against 'obstacle_1'" in shown
-    found = irsim.run(file.name)
-    assert (found.outcome, found.contacts_between_steps) == ("timeout", 0)
-    assert found.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)
-    assert "without touching" not in found.summary  # it leans on the wall
+    result = irsim.run(file.name)
+    assert (result.outcome, result.contacts_between_steps) == ("timeout", 0)
+    assert result.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)
+    assert "without touching" not in result.summary  # it leans on the wall

@@ -37,11 +37,11 @@ def validator() -> Any:
 
 def extremes(template: Template) -> list[dict[str, object]]:
     """Settings with one parameter at an end of its range, or at another choice."""
-    found: list[dict[str, object]] = []
+    settings: list[dict[str, object]] = []
     for name, parameter in template.parameters.items():
         ends = [*parameter.choices, parameter.min, parameter.max]
-        found += [{name: end} for end in ends if end is not None and end != parameter.default]
-    return found
+        settings += [{name: end} for end in ends if end is not None and end != parameter.default]
+    return settings
 
 
 SITUATIONS = [

@@ -76,17 +76,17 @@ def test_the_box_encloses_all_parts(simulation: Simulation) -> None:
 def test_shapely_core_and_box_agree(simulation: Simulation, shape: str) -> None:
     import irsim._core as core
 
-    found = outline(simulation.state, row_of(simulation, shape), world_frame=True)
-    low, high = found.box()
-    geometry = found.shapely()
+    body = outline(simulation.state, row_of(simulation, shape), world_frame=True)
+    low, high = body.box()
+    geometry = body.shapely()
     if shape == "map":  # its box is that of the picture, its geometry the outline of the occupied cells
         assert geometry.bounds == pytest.approx((4, 4, 6, 6))
     else:
         assert geometry.bounds == pytest.approx((*low, *high), abs=1e-12)
     x, y = geometry.representative_point().coords[0]
     still = [0.0, 0.0, 0.0]
-    assert core.intersects(found.core(), still, [core.Circle(radius=1e-6, center=(x, y))], still)
-    assert not core.intersects(found.core(), still, [core.Circle(radius=0.01, center=(-5, -5))], still)
+    assert core.intersects(body.core(), still, [core.Circle(radius=1e-6, center=(x, y))], still)
+    assert not core.intersects(body.core(), still, [core.Circle(radius=0.01, center=(-5, -5))], still)
 
 
 def test_the_hull_encloses_circles_and_runs_counterclockwise(simulation: Simulation) -> None:

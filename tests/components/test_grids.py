@@ -189,8 +189,10 @@ def test_generators_of_user_code(tmp_path, stripes) -> None:
 def test_generators_that_fail(tmp_path, stripes) -> None:
     with pytest.raises(ScenarioError, match="ArithmeticError: no period"):
         make(tmp_path, "{name: stripes, resolution: 0.5, period: 0}")
-    found = read(scenario(tmp_path, "{name: stripes, resolution: 0.5, perod: 1}"), strict=True).diagnostics
-    assert [(item.code, item.path[-1]) for item in found if item.severity == "error"] == [("unknown-key", "perod")]
+    diagnostics = read(scenario(tmp_path, "{name: stripes, resolution: 0.5, perod: 1}"), strict=True).diagnostics
+    assert [(item.code, item.path[-1]) for item in diagnostics if item.severity == "error"] == [
+        ("unknown-key", "perod")
+    ]
     with pytest.raises(ValueError, match="built-in"):
         type("Mine", (GridMapGenerator,), {"name": "ros", "__module__": "mine"})
 
@@ -212,8 +214,8 @@ def test_resolving_by_hand() -> None:
 
 
 def codes(path: Path, limits: Limits | None = None) -> list[tuple[str, str, int | None]]:
-    found = read(path, limits=limits or Limits()).diagnostics
-    return [(item.code, item.severity, item.line) for item in found if item.code != "initial-overlap"]
+    diagnostics = read(path, limits=limits or Limits()).diagnostics
+    return [(item.code, item.severity, item.line) for item in diagnostics if item.code != "initial-overlap"]
 
 
 def test_what_is_wrong_with_a_map_is_said(tmp_path) -> None:

@@ -177,9 +177,9 @@ def test_oblong_cells_become_square(tmp_path) -> None:
 def test_wrong_files_are_refused(tmp_path, change, said) -> None:
     write(tmp_path, corner(), **change)
     (tmp_path / "s.yaml").write_text("world: {obstacle_map: {name: ros, path: map.yaml}}\n")
-    [found] = read(tmp_path / "s.yaml").diagnostics
-    assert (found.code, found.severity, found.line) == ("map-unreadable", "error", 1)
-    assert said in found.message
+    [diagnostic] = read(tmp_path / "s.yaml").diagnostics
+    assert (diagnostic.code, diagnostic.severity, diagnostic.line) == ("map-unreadable", "error", 1)
+    assert said in diagnostic.message
     with pytest.raises(MapFileError, match=said):
         import_map(tmp_path / "map.yaml", tmp_path / "out.yaml")
 
@@ -196,9 +196,9 @@ def test_no_map_no_picture_no_escape(tmp_path) -> None:
     write(tmp_path, corner())
     write(inside, corner(), image="../map.pgm")
     (inside / "s.yaml").write_text("world: {obstacle_map: {name: ros, path: map.yaml}}\n")
-    found = read(inside / "s.yaml", limits=Limits(root=str(inside)))
-    assert found.scenario is None or found.scenario.grid is None
-    assert [item.code for item in found.diagnostics] == ["path-outside-workspace"]
+    reading = read(inside / "s.yaml", limits=Limits(root=str(inside)))
+    assert reading.scenario is None or reading.scenario.grid is None
+    assert [item.code for item in reading.diagnostics] == ["path-outside-workspace"]
 
 
 def test_the_command(tmp_path, monkeypatch) -> None:

@@ -293,7 +293,7 @@ def time_to_wall(view: View, a: np.ndarray, b: np.ndarray, w: np.ndarray) -> flo
 
 def cones(o: Any, view: View) -> list[tuple[np.ndarray, float, float]]:
     """Apex, left and right edge of every velocity obstacle."""
-    found = []
+    result = []
     for centre, velocity, radius in view.discs:
         way = centre - view.position
         distance, both = np.linalg.norm(way), view.radius + radius + 0.1
@@ -306,7 +306,7 @@ def cones(o: Any, view: View) -> list[tuple[np.ndarray, float, float]]:
             lean = math.sin(left - math.atan2(*(a - b)[::-1])) / math.sin(0.01 if opening == 0 else opening)
             shift = np.linalg.norm(a - b) * lean * np.array([math.cos(right), math.sin(right)])
             apex = a - shift if cross(way, view.velocity - a) <= 0 else b + shift
-        found.append((apex, left, right))
+        result.append((apex, left, right))
     for a, b in view.lines:
         if np.linalg.norm(b - a) < 1e-6:
             continue
@@ -314,8 +314,8 @@ def cones(o: Any, view: View) -> list[tuple[np.ndarray, float, float]]:
         if cross(a, b) < 0:
             a, b = b, a
         wide = [math.asin(min(1.0, view.radius / max(np.linalg.norm(p), view.radius))) for p in (a, b)]
-        found.append((np.zeros(2), math.atan2(b[1], b[0]) + wide[1], math.atan2(a[1], a[0]) - wide[0]))
-    return found
+        result.append((np.zeros(2), math.atan2(b[1], b[0]) + wide[1], math.atan2(a[1], a[0]) - wide[0]))
+    return result
 
 
 def samples(speed: float, acce: float, limit: float) -> np.ndarray:

@@ -162,7 +162,7 @@ def assert_scan(
     for i, angle in enumerate(angles):
         c, s, ch, sh = math.cos(angle), math.sin(angle), math.cos(heading), math.sin(heading)
         beam = np.array([c * ch - s * sh, c * sh + s * ch])
-        found, hit = float(state.ranges[beams][i]), int(state.hits[beams][i])
+        seen, hit = float(state.ranges[beams][i]), int(state.hits[beams][i])
         right, answers, own = False, [], []
         for slack in (-1e-9, 1e-12, 1e-9):
             each = {row: distances(state, row, origin, beam, slack) for row in rows}
@@ -175,8 +175,8 @@ def assert_scan(
                 hits.add(-1)
             answers.append((range_, hits))
             own.append(each.get(hit, math.inf))
-            right |= hit in hits and math.isclose(found, range_, rel_tol=1e-12, abs_tol=1e-12)
-        if not right and error is None and found <= answers[0][0] + 1e-9:  # before what it surely hits
-            grazed = any(math.isclose(found, distance, rel_tol=1e-12) for distance in own)
-            right = grazed or runs_along(state, hit, origin, beam, found)
-        assert right, (i, found, hit, answers)
+            right |= hit in hits and math.isclose(seen, range_, rel_tol=1e-12, abs_tol=1e-12)
+        if not right and error is None and seen <= answers[0][0] + 1e-9:  # before what it surely hits
+            grazed = any(math.isclose(seen, distance, rel_tol=1e-12) for distance in own)
+            right = grazed or runs_along(state, hit, origin, beam, seen)
+        assert right, (i, seen, hit, answers)

@@ -86,10 +86,10 @@ def clearance(a: Body, b: Body, times: Floats) -> Floats:
 def least_clearance(a: Body, b: Body) -> float:
     """The smallest clearance within the step [m], to 1e-7 m."""
     times = np.linspace(0.0, 1.0, SAMPLES)
-    found = clearance(a, b, times)
-    least = float(found.min())
-    inner = np.flatnonzero((found <= np.r_[np.inf, found[:-1]]) & (found <= np.r_[found[1:], np.inf]))
-    for k in inner[np.argsort(found[inner])][:4].tolist():
+    distances = clearance(a, b, times)
+    least = float(distances.min())
+    inner = np.flatnonzero((distances <= np.r_[np.inf, distances[:-1]]) & (distances <= np.r_[distances[1:], np.inf]))
+    for k in inner[np.argsort(distances[inner])][:4].tolist():
         at, width = float(times[k]), 1.0 / (SAMPLES - 1)
         for _ in range(ZOOMS):
             near = np.clip(np.linspace(at - width, at + width, 33), 0.0, 1.0)

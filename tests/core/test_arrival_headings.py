@@ -165,8 +165,8 @@ def test_a_car_backs_into_a_bay() -> None:
 def test_a_car_under_another_behavior_is_told_at_once(behavior: str) -> None:
     text = CAR.format(state="[4, 10, 0]", goal="[12, 11, 1.57]", back=-1, acce="[2, 2]", local="dash")
     text = text.replace("{name: follow, local: dash}", f"{{name: {behavior}}}")
-    (found,) = [finding for finding in irsim.validate(text=text).findings if finding.code == "heading-not-reached"]
-    assert f"behavior: {{name: follow, local: {behavior}}}" in (found.fix or "")
+    (diagnostic,) = [finding for finding in irsim.validate(text=text).findings if finding.code == "heading-not-reached"]
+    assert f"behavior: {{name: follow, local: {behavior}}}" in (diagnostic.fix or "")
 
 
 def test_a_car_without_reverse_says_that_no_path_leads_to_the_heading_of_its_goal() -> None:

@@ -35,9 +35,9 @@ def boxes(grid: core.OccupancyGrid) -> list[shapely.Polygon]:
 
 
 def meets(grid: core.OccupancyGrid, parts, pose) -> bool:
-    found = core.intersects([core.GridCells(grid=grid)], ORIGIN, parts, pose)
-    assert core.intersects(parts, pose, [core.GridCells(grid=grid)], (3.0, 1.0, 2.0)) == found  # maps do not move
-    return found
+    touching = core.intersects([core.GridCells(grid=grid)], ORIGIN, parts, pose)
+    assert core.intersects(parts, pose, [core.GridCells(grid=grid)], (3.0, 1.0, 2.0)) == touching  # maps do not move
+    return touching
 
 
 @settings(max_examples=examples(200))
@@ -105,11 +105,11 @@ def test_beams_stop_at_the_outline(grid, x, y, angle) -> None:
     expected = nearest_of(grid, (x, y), direction, limit)
     assume(expected > 1e-6)
     assume(not math.isclose(expected, limit, abs_tol=1e-6))
-    found = grid.cast((x, y), direction, limit)
-    if math.isclose(found, expected, abs_tol=1e-9):
+    measured = grid.cast((x, y), direction, limit)
+    if math.isclose(measured, expected, abs_tol=1e-9):
         return
     # a beam that grazes a corner may go either way, within rounding
-    point = shapely.Point(x + min(found, expected) * direction[0], y + min(found, expected) * direction[1])
+    point = shapely.Point(x + min(measured, expected) * direction[0], y + min(measured, expected) * direction[1])
     corners = shapely.MultiPoint(np.concatenate(grid.outline()))
     assert point.distance(corners) < 1e-7
 
@@ -136,8 +136,8 @@ def test_beams_do_not_slip_between_cells_that_share_a_corner() -> None:
             corner = np.array([k * cell, (20 - k) * cell])
             for start in (0.3, 1.7, 2.5):
                 origin = corner - start * cell * np.array([1, 1])
-                found = grid.cast(tuple(origin), (diagonal, diagonal), 100.0)
-                assert found == pytest.approx(start * cell / diagonal, abs=1e-9)
+                measured = grid.cast(tuple(origin), (diagonal, diagonal), 100.0)
+                assert measured == pytest.approx(start * cell / diagonal, abs=1e-9)
 
 
 def test_from_inside_the_way_out_is_seen() -> None:

@@ -33,12 +33,12 @@ def between(a, pose_a, b, pose_b) -> float:
 @given(a=shape(), b=shape(), pose_a=POSE, pose_b=POSE)
 def test_apart_as_far_as_shapely_says(a, b, pose_a, pose_b) -> None:
     gap = placed(a[1], pose_a).distance(placed(b[1], pose_b)) - a[2] - b[2]
-    found = between([a[0]], pose_a, [b[0]], pose_b)
-    assert found == pytest.approx(between([b[0]], pose_b, [a[0]], pose_a), abs=1e-12)
+    distance = between([a[0]], pose_a, [b[0]], pose_b)
+    assert distance == pytest.approx(between([b[0]], pose_b, [a[0]], pose_a), abs=1e-12)
     if gap > 1e-9:
-        assert found == pytest.approx(gap, abs=1e-9)
+        assert distance == pytest.approx(gap, abs=1e-9)
     else:
-        assert found <= 1e-9
+        assert distance <= 1e-9
 
 
 @settings(max_examples=examples(50))

@@ -165,13 +165,13 @@ def test_the_stub_names_what_there_is() -> None:
     stub = ast.parse(Path(__file__).parents[2].joinpath("irsim", "_core.pyi").read_text())
 
     def names(body: list[ast.stmt]) -> set[str]:
-        found = set()
+        named = set()
         for node in body:
             if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
-                found.add(node.name)
+                named.add(node.name)
             elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-                found.add(node.target.id)
-        return {name for name in found if not name.startswith("_")}
+                named.add(node.target.id)
+        return {name for name in named if not name.startswith("_")}
 
     def public(thing: object) -> set[str]:
         return {name for name in vars(thing) if not name.startswith("_")}

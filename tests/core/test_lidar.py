@@ -162,11 +162,11 @@ def test_compounds_show_the_boundary_of_their_union(parts, x: float, y: float, t
     if boundary.distance(origin) < 1e-3:
         return
     wrong = 0
-    for angle, found in zip(state.beam_angles + theta, state.ranges, strict=True):
+    for angle, measured in zip(state.beam_angles + theta, state.ranges, strict=True):
         end = (x + 10 * math.cos(angle), y + 10 * math.sin(angle))
         hit = shapely.LineString([(x, y), end]).intersection(boundary)
         expected = 10.0 if hit.is_empty else origin.distance(hit)
-        wrong += abs(found - expected) > 1e-3
+        wrong += abs(measured - expected) > 1e-3
     assert wrong <= 1  # a beam that grazes an edge, or a round part, which shapely has as a polygon
 
 

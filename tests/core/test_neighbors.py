@@ -57,8 +57,8 @@ def test_neighbors_are_those_within_reach(count: int, reach: float) -> None:
             np.testing.assert_allclose(centroid, (x, y), atol=1e-12)
     for _ in range(20):
         centre = rng.uniform(-3, 23, 2)
-        found = [row[0] for row in core.neighbors(world, state, 0, tuple(centre), reach)]
-        assert found == sorted(r for r, at in bounds.items() if math.dist(at, centre) <= reach)
+        rows = [row[0] for row in core.neighbors(world, state, 0, tuple(centre), reach)]
+        assert rows == sorted(r for r, at in bounds.items() if math.dist(at, centre) <= reach)
 
 
 def test_velocities_are_of_the_present_command_and_pose() -> None:
@@ -78,8 +78,8 @@ def test_far_away_and_broken_positions_do_no_harm() -> None:
     state.pose[3, 0] = 1e300
     state.pose[4, 0] = math.nan
     state.pose[5, 1] = -math.inf
-    found = [row[0] for row in core.neighbors(world, state, 0, (0.0, 0.0), 1.0)]
-    assert found == [0, 1, 2, *range(6, 11)]
+    rows = [row[0] for row in core.neighbors(world, state, 0, (0.0, 0.0), 1.0)]
+    assert rows == [0, 1, 2, *range(6, 11)]
 
 
 def test_outlines_run_counter_clockwise_whatever_way_they_are_written() -> None:

@@ -75,19 +75,19 @@ def all_depths(planes: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 def corners(planes: np.ndarray, max_speed: float, preferred: np.ndarray) -> np.ndarray:
     """(K, 2) every velocity that can be the answer: the preferred one, its feet, and where borders meet."""
-    found = [preferred, preferred * min(1.0, max_speed / max(np.linalg.norm(preferred), 1e-12))]
+    points = [preferred, preferred * min(1.0, max_speed / max(np.linalg.norm(preferred), 1e-12))]
     for x, y, dx, dy in planes:
         p, d = np.array([x, y]), np.array([dx, dy])
-        found.append(p + d * (d @ (preferred - p)))
+        points.append(p + d * (d @ (preferred - p)))
         chord = max_speed**2 - (p @ np.array([-dy, dx])) ** 2
         if chord >= 0:
-            found += [p + d * (-(p @ d) + sign * math.sqrt(chord)) for sign in (-1, 1)]
+            points += [p + d * (-(p @ d) + sign * math.sqrt(chord)) for sign in (-1, 1)]
     for a, b in itertools.combinations(planes, 2):
         sine = a[2] * b[3] - a[3] * b[2]
         if abs(sine) > 1e-12:
             gap = a[:2] - b[:2]
-            found.append(a[:2] + a[2:] * ((b[2] * gap[1] - b[3] * gap[0]) / sine))
-    return np.array(found)
+            points.append(a[:2] + a[2:] * ((b[2] * gap[1] - b[3] * gap[0]) / sine))
+    return np.array(points)
 
 
 def allowed(planes: np.ndarray, max_speed: float, preferred: np.ndarray, slack: float = 1e-9) -> np.ndarray:
@@ -124,13 +124,13 @@ def test_where_nothing_is_free_the_largest_violation_is_least(planes: Any, walls
     v, soft = np.array([x, y]), np.array(planes)
     assert np.linalg.norm(v) <= max_speed + 1e-7  # half-planes that nearly face each other lose digits
     assert all((depths(np.array([h]), v) >= -1e-7).all() for h in hard)
-    found = -depths(soft, v).min()
+    violation = -depths(soft, v).min()
     # nothing in a fine fan of velocities is better
     angle, speed = np.meshgrid(np.linspace(-math.pi, math.pi, 73), np.linspace(0, max_speed, 21))
     fan = np.stack([speed * np.cos(angle), speed * np.sin(angle)], axis=-1).reshape(-1, 2)
     for plane in hard:
         fan = fan[all_depths(np.array([plane]), fan)[:, 0] >= 0]
-    assert (found <= -all_depths(soft, fan).min(axis=1) + 1e-6).all()
+    assert (violation <= -all_depths(soft, fan).min(axis=1) + 1e-6).all()
 
 
 def test_the_nearest_of_many() -> None:
@@ -153,9 +153,9 @@ def test_of_equally_near_points_those_on_the_right_come_first_wherever_they_are_
         for ahead, first in (((1, 0), (0, -3)), ((0, 2), (3, 0)), ((-1, 0), (0, 3))):
             points = [*far, *order]
             for most in (1, 4):
-                found = core.nearest_points(points, (0, 0), ahead, 40, most)
-                assert points[found[0]] == first
-                assert len(found) == most
+                indices = core.nearest_points(points, (0, 0), ahead, 40, most)
+                assert points[indices[0]] == first
+                assert len(indices) == most
 
 
 # the law

@@ -32,8 +32,8 @@ def test_following_a_velocity_turns_to_the_heading_of_the_goal_as_behaviors_do()
 def test_bounding_circles_are_those_of_the_placed_shapes() -> None:
     rear = robot(parts=[rectangle(2.0, 1.0)], pose=[1.0, 2.0, PI / 2])
     world, state = scene(robot(parts=[circle(0.2, (1.0, 0.0))], pose=[1.0, 2.0, PI / 2]), rear)
-    found = core.bounding_circles(world, state)
-    np.testing.assert_allclose(found, [[1.0, 3.0, 0.2], [1.0, 2.0, math.sqrt(1.25)]], atol=1e-12)
+    circles = core.bounding_circles(world, state)
+    np.testing.assert_allclose(circles, [[1.0, 3.0, 0.2], [1.0, 2.0, math.sqrt(1.25)]], atol=1e-12)
 
 
 def test_extents_are_how_far_footprints_reach_toward_each_other() -> None:
@@ -43,14 +43,14 @@ def test_extents_are_how_far_footprints_reach_toward_each_other() -> None:
     world, state = scene(long_one, across, ahead)
     none = [0] * 3
     looking = core.Looking(2, math.inf, False, True, steered=none, first_beam=none, beams=0, range_max=0.0)
-    found = core.find_neighbors(world, state, looking, np.array([0]))
-    index, extent, own_extent = found[1], found[8], found[9]
+    columns = core.find_neighbors(world, state, looking, np.array([0]))
+    index, extent, own_extent = columns[1], columns[8], columns[9]
     assert index.tolist() == [[2, 1]]
     np.testing.assert_allclose(extent, [[0.3, 0.2]], atol=1e-12)
     np.testing.assert_allclose(own_extent, [[1.0, 0.5]], atol=1e-12)
 
 
-def found(
+def nearest_of(
     world: core.World, state: core.State, rows: list[int], most: int, reach: float, statics: bool
 ) -> list[list[int]]:
     """Indices of the nearest objects of rows."""
@@ -71,7 +71,7 @@ def test_nearest_objects_are_sorted_by_gap_then_index() -> None:
     world, state = scene(*things, seeds=(0, 1))
 
     def nearest(most: int, reach: float = math.inf, statics: bool = False) -> list[list[int]]:
-        return found(world, state, [0, 6], most, reach, statics)
+        return nearest_of(world, state, [0, 6], most, reach, statics)
 
     assert nearest(4) == [[2, 1, 3, -1]] * 2
     assert nearest(2) == [[2, 1]] * 2
@@ -84,7 +84,7 @@ def test_nearest_objects_are_of_the_role_that_a_robot_targets() -> None:
     others = [robot(pose=[1.0, 0.0, 0.0]), robot(pose=[2.0, 0.0, 0.0], role=1)]
     for roles, expected in ((0, [1, 2]), (1, [1, -1]), (2, [2, -1])):
         world, state = scene(robot(target_roles=roles), *others)
-        assert found(world, state, [0], 2, math.inf, False) == [expected]
+        assert nearest_of(world, state, [0], 2, math.inf, False) == [expected]
 
 
 def test_gaps_are_those_between_footprints() -> None:

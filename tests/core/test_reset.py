@@ -110,15 +110,15 @@ def test_only_masked_worlds_are_reset() -> None:
 def test_resets_do_not_depend_on_the_number_of_threads(next_scene: bool) -> None:
     seeds = list(range(20))
     mask = np.array([k % 3 != 0 for k in seeds], np.uint8)
-    found = []
+    results = []
     for threads in (1, 3, 50):
         world, state = crowd(seeds)
         core.advance(world, state, 5)
         state.reset(mask, next_scene, threads)
         core.advance(world, state, 3)
-        found.append(everything(state))
-    assert_identical(found[0], found[1])
-    assert_identical(found[0], found[2])
+        results.append(everything(state))
+    assert_identical(results[0], results[1])
+    assert_identical(results[0], results[2])
 
 
 def test_set_initial() -> None:

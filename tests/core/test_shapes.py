@@ -42,12 +42,12 @@ def test_radius_is_the_minimum_bounding_circle_of_the_vertices(points) -> None:
 @settings(max_examples=examples(40))
 @given(st.lists(st.tuples(COORDINATE, COORDINATE, st.sampled_from([0.0, 0.5, 1.0, 2.7])), min_size=1, max_size=5))
 def test_radius_of_a_union_of_discs_is_the_smallest_that_holds_them(discs) -> None:
-    found = radius_of(*(circle(r, (x, y)) for x, y, r in discs))
+    radius = radius_of(*(circle(r, (x, y)) for x, y, r in discs))
     edge = [
         (x + r * math.cos(a), y + r * math.sin(a)) for x, y, r in discs for a in np.linspace(0, 2 * np.pi, 241)[:-1]
     ]
     inner = shapely.minimum_bounding_radius(shapely.MultiPoint(edge))
-    assert inner - 1e-6 <= found <= inner + 3e-3
+    assert inner - 1e-6 <= radius <= inner + 3e-3
 
 
 @settings(max_examples=examples(40))

@@ -120,11 +120,11 @@ def cells_of_picture(rng: np.random.Generator, file: Path) -> list[Outline]:
         else:
             picture[row - 9 : row + 10, column] = 0
     Image.fromarray(picture).save(file)
-    found = []
+    cells = []
     for row, column in np.argwhere(picture == 0).tolist():
         left, low = column * CELL, SIZE - (row + 1) * CELL
-        found.append(Outline(shapely.box(left, low, left + CELL, low + CELL)))
-    return found
+        cells.append(Outline(shapely.box(left, low, left + CELL, low + CELL)))
+    return cells
 
 
 def episode(seed: int, folder: Path) -> Episode:
@@ -168,7 +168,7 @@ def expected(bodies: dict[str, list[Outline]], before: Floats, after: Floats, ex
     """Verdict of every pair that may meet within a step; None where less than the slack decides."""
     moved = {name: motions(before[k], after[k], exact) for k, name in enumerate(bodies)}
     starts = dict(zip(bodies, before, strict=True))
-    found: dict[frozenset[str], Any] = {}
+    verdicts: dict[frozenset[str], Any] = {}
     for a, b in itertools.combinations(bodies, 2):
         if not any(moved[a][0]) and not moved[a][1] and not any(moved[b][0]) and not moved[b][1]:
             continue
@@ -185,11 +185,11 @@ def expected(bodies: dict[str, list[Outline]], before: Floats, after: Floats, ex
             continue
         ends = np.min([clearance(first, second, ENDS) for first, second in pairs], axis=0)
         if (ends <= SLACK).any():
-            found[frozenset((a, b))] = None if ends.all() and (ends > -SLACK).all() else False  # 0: outlines overlap
+            verdicts[frozenset((a, b))] = None if ends.all() and (ends > -SLACK).all() else False  # 0: outlines overlap
             continue
         told = [verdict(first, second) for first, second in pairs]
-        found[frozenset((a, b))] = True if True in told else None if None in told else False
-    return found
+        verdicts[frozenset((a, b))] = True if True in told else None if None in told else False
+    return verdicts
 
 
 def compare(seed: int, folder: Path) -> tuple[int, int]:
@@ -210,12 +210,12 @@ def compare(seed: int, folder: Path) -> tuple[int, int]:
             after = poses()
             events = env.events[told:]
             told += len(events)
-            found = {frozenset((e.object, e.partner)) for e in events if e.kind in BETWEEN_STEPS}
+            reported = {frozenset((e.object, e.partner)) for e in events if e.kind in BETWEEN_STEPS}
             wanted = expected(bodies, before, after, exact)
             for pair, verdict_ in wanted.items():
-                assert verdict_ is None or verdict_ == (pair in found), (seed, step, sorted(pair), verdict_)
-            assert found <= set(wanted), (seed, step)
-            contacts, looked, before = contacts + len(found), looked + len(wanted), after
+                assert verdict_ is None or verdict_ == (pair in reported), (seed, step, sorted(pair), verdict_)
+            assert reported <= set(wanted), (seed, step)
+            contacts, looked, before = contacts + len(reported), looked + len(wanted), after
     finally:
         env.end()
     return contacts, looked

@@ -60,8 +60,8 @@ def of_core(a: Body, b: Body) -> tuple[bool, float]:
         controls.append([(cosine * x + sine * y) / STEP, (cosine * y - sine * x) / STEP, body.turn / STEP])
     command(state, *controls)
     core.advance(world, state, 1)
-    found = [k for k, event in enumerate(state.events(0)) if event[0] in BETWEEN]
-    return bool(found), state.moments(0)[found[0]][0] if found else 2.0
+    events = [k for k, event in enumerate(state.events(0)) if event[0] in BETWEEN]
+    return bool(events), state.moments(0)[events[0]][0] if events else 2.0
 
 
 def apart_at_both_ends(a: Body, b: Body) -> bool:
@@ -71,12 +71,12 @@ def apart_at_both_ends(a: Body, b: Body) -> bool:
 def judge(a: Body, b: Body) -> tuple[bool | None, bool]:
     """The oracle's verdict, and whether that of the core differs."""
     expected = verdict(a, b)
-    found, when = of_core(a, b)
+    meets, when = of_core(a, b)
     swapped, _ = of_core(b, a)
-    assert found == swapped or expected is None
+    assert meets == swapped or expected is None
     if expected and least_clearance(a, b) < -1e-3:
         assert when == pytest.approx(first_time(a, b), abs=1e-4)
-    return expected, expected is not None and found != expected
+    return expected, expected is not None and meets != expected
 
 
 def compare(seed: int, pairs: int, exact: bool) -> None:

@@ -151,7 +151,7 @@ def test_two_circles_side_by_side_are_a_dead_end_that_is_announced(
 ) -> None:
     half = radius + gap / 2
     text = scene([robot(law, drive, 0)], [pillar(radius, y=10 + aside + side * half) for side in (-1, 1)])
-    assert [found.code for found in irsim.validate(text=text).findings] == ["needs-planning"]
+    assert [finding.code for finding in irsim.validate(text=text).findings] == ["needs-planning"]
     result = irsim.run(text=text, seed=0)
     assert result.outcome == "timeout"
     assert "name: follow" in (result.reason or "")

@@ -113,7 +113,7 @@ RIGHT, LEFT = "crossing_to_right", "crossing_to_left"
 
 
 @pytest.mark.parametrize(
-    ("way", "found"),
+    ("way", "crossings"),
     [
         ([(4, 5), (6, 5)], [(RIGHT, 1)]),
         ([(6, 5), (4, 5)], [(LEFT, 1)]),
@@ -129,8 +129,8 @@ RIGHT, LEFT = "crossing_to_right", "crossing_to_left"
         ([(3, 5), (99, 5)], [(RIGHT, 1)]),  # in one long step
     ],
 )
-def test_the_centre_crosses_a_line(way: list[tuple[float, float]], found: list[tuple[str, int]]) -> None:
-    assert kinds(drive(way, zones=[DOOR])) == found
+def test_the_centre_crosses_a_line(way: list[tuple[float, float]], crossings: list[tuple[str, int]]) -> None:
+    assert kinds(drive(way, zones=[DOOR])) == crossings
 
 
 def test_a_crossing_has_the_place_where_the_path_meets_the_line() -> None:

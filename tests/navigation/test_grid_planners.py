@@ -73,12 +73,12 @@ def test_shortest_on_a_grid(grid: NDArray[np.float64], data: st.DataObject) -> N
     expected = dijkstra(free, start, goal, rx, ry) if free[goal] else math.inf
     assert (path is None) == math.isinf(expected)
     assert (jumped is None) == (math.isinf(expected) or not free[start])
-    for found, planner in ((path, astar), (jumped, jps)):
-        if found is None:
+    for line, planner in ((path, astar), (jumped, jps)):
+        if line is None:
             continue
-        assert np.allclose(found[:, [0, -1]], np.column_stack([b, a])), "paths run from the goal to the start"
-        assert length(found) == pytest.approx(expected, abs=1e-9) == planner.end.cost
-        steps = np.abs(np.diff(found, axis=1)) / [[rx], [ry]]
+        assert np.allclose(line[:, [0, -1]], np.column_stack([b, a])), "paths run from the goal to the start"
+        assert length(line) == pytest.approx(expected, abs=1e-9) == planner.end.cost
+        steps = np.abs(np.diff(line, axis=1)) / [[rx], [ry]]
         assert (steps.round(6).max(axis=0, initial=0) <= 1).all(), "cell by cell"
 
 

@@ -41,12 +41,12 @@ def test_there_are_many() -> None:
 def test_findings(path: Path) -> None:
     expected = header(path, "# expect: ")
     reading = read(path, strict=True)
-    found = [
+    lines = [
         f"{item.severity} {item.code} {format_path(item.path)} {item.line}"
         for item in reading.diagnostics
         if item.code not in LATER or any(item.code in line for line in expected)
     ]
-    assert found == expected, f"if this is what should be found, write it into the header of {path}"
+    assert lines == expected, f"if this is what should be found, write it into the header of {path}"
     assert (reading.scenario is None) == any(item.severity == "error" for item in reading.diagnostics)
 
 

@@ -38,14 +38,14 @@ FOLLOW = "behavior: {name: follow, local: {name: footprint_orca, timeHorizon: 1.
     ],
 )  # fmt: skip
 def test_horizons_shorter_than_braking_are_named(more: str, says: str | None, fix: str | None) -> None:
-    found = [one for one in irsim.validate(text=BRAKES + more).findings if one.code == "brakes-too-late"]
+    hints = [one for one in irsim.validate(text=BRAKES + more).findings if one.code == "brakes-too-late"]
     if says is None:
-        assert not found
+        assert not hints
         return
-    assert len(found) == 1
-    assert found[0].severity == "hint"
-    assert says in found[0].message
-    assert found[0].fix == fix
+    assert len(hints) == 1
+    assert hints[0].severity == "hint"
+    assert says in hints[0].message
+    assert hints[0].fix == fix
 
 
 @pytest.mark.parametrize("behavior", ["orca", "avocado"])

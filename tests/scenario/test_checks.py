@@ -97,13 +97,13 @@ SANE: list[dict[str, Any]] = [
 @pytest.mark.parametrize("data", SANE, ids=lambda data: str(data)[:60])
 def test_sane_scenarios_give_nothing(data: dict[str, Any]) -> None:
     stacked_random = "center_range" in str(data)
-    found = findings(data)
-    assert [f for f in found if not (stacked_random and f[1] == "stacked")] == []
+    rows = findings(data)
+    assert [f for f in rows if not (stacked_random and f[1] == "stacked")] == []
 
 
 @pytest.mark.parametrize("path", sorted(ROOT.glob("templates/*/scenario.yaml")), ids=lambda path: path.parent.name)
 def test_templates_give_nothing(path: Path) -> None:
-    assert [found for found in findings(path) if found[1] != "no-behavior"] == []
+    assert [row for row in findings(path) if row[1] != "no-behavior"] == []
 
 
 CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
@@ -268,8 +268,8 @@ def test_only_the_first_members_group_behavior_counts() -> None:
 )  # fmt: skip
 def test_what_makes_it_move_is_no_second_key(keys: dict[str, Any], fix: str) -> None:
     entry = {"shape": {"name": "circle"}, "state": [5, 8, 0], "goal": [5, 2], "behavior": {"name": "dash"}, **keys}
-    found = read({"obstacle": [entry]}, strict=True).diagnostics
-    assert [item.fix for item in found if item.code == "behavior-without-kinematics"] == [fix]
+    diagnostics = read({"obstacle": [entry]}, strict=True).diagnostics
+    assert [item.fix for item in diagnostics if item.code == "behavior-without-kinematics"] == [fix]
 
 
 def test_who_is_driven_by_a_group_does_not_stand_still() -> None:

@@ -13,7 +13,7 @@ ROBOT = "kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [2
 CODE = "driven-without-goal"
 
 
-def found(robots: str, bridges: str) -> list[tuple[str, str, str]]:
+def findings(robots: str, bridges: str) -> list[tuple[str, str, str]]:
     report = irsim.validate(text=f"{WORLD}robot: {robots}\nbridges: {bridges}\n")
     assert report.valid, report.findings
     return [(f.code, f.severity, f.path) for f in report.findings if f.code in (CODE, "default-goal", "outside-world")]
@@ -27,12 +27,12 @@ def found(robots: str, bridges: str) -> list[tuple[str, str, str]]:
     ],
 )  # fmt: skip
 def test_a_program_may_drive_a_robot_without_a_goal(bridge: str) -> None:
-    assert found(f"[{{{ROBOT}}}]", f"[{bridge}]") == [(CODE, "warning", "robot[0]")]
+    assert findings(f"[{{{ROBOT}}}]", f"[{bridge}]") == [(CODE, "warning", "robot[0]")]
 
 
 @pytest.mark.parametrize("bridge", ["{name: rosbag}", "{name: mujoco}", "{name: carla}", "{name: ros2, robots: [b]}"])
 def test_bridges_that_do_not_drive_it(bridge: str) -> None:
-    assert found(f"[{{name: a, {ROBOT}}}, {{name: b, {ROBOT}, goal: [8, 8]}}]", f"[{bridge}]") == []
+    assert findings(f"[{{name: a, {ROBOT}}}, {{name: b, {ROBOT}, goal: [8, 8]}}]", f"[{bridge}]") == []
 
 
 @pytest.mark.parametrize(
@@ -43,12 +43,12 @@ def test_bridges_that_do_not_drive_it(bridge: str) -> None:
     ],
 )  # fmt: skip
 def test_robots_that_it_is_not_said_of(keys: str) -> None:
-    assert found(f"[{{{ROBOT}, {keys}}}]", "[{name: ros2}]") == []
+    assert findings(f"[{{{ROBOT}, {keys}}}]", "[{name: ros2}]") == []
 
 
 def test_one_warning_takes_the_place_of_the_hint_and_names_robots_of_an_entry() -> None:
     robots = f"[{{number: 2, {ROBOT.replace('[2, 2, 0]', '[[2, 2, 0], [4, 2, 0]]')}, behavior: {{name: dash}}}}]"
-    assert found(robots, "[{name: ros2}]") == [(CODE, "warning", "robot[0]")]
+    assert findings(robots, "[{name: ros2}]") == [(CODE, "warning", "robot[0]")]
     [told] = [
         f for f in irsim.validate(text=f"{WORLD}robot: {robots}\nbridges: [{{name: ros2}}]").findings if f.code == CODE
     ]
@@ -60,7 +60,7 @@ def test_one_warning_takes_the_place_of_the_hint_and_names_robots_of_an_entry() 
 
 def test_a_robot_with_a_behavior_is_told_of_a_goal_outside() -> None:
     keys = f"{ROBOT}, goal: [1000, 0], behavior: {{name: dash}}"
-    assert found(f"[{{{keys}}}]", "[{name: ros2}]") == [("outside-world", "hint", "robot[0].goal")]
+    assert findings(f"[{{{keys}}}]", "[{name: ros2}]") == [("outside-world", "hint", "robot[0].goal")]
 
 
 def test_a_bridge_of_the_command_is_checked_too() -> None:

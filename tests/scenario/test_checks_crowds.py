@@ -48,9 +48,9 @@ def stopped(tmp_path: Path, text: str) -> int:
     ],
 )
 def test_a_crowd_that_freezes_is_told_of_with_the_mode_that_lets_it_go_on(text: str, fix: str) -> None:
-    (found,) = [finding for finding in irsim.validate(text=text).findings if finding.code == "crowd-stops"]
-    assert found.severity == "hint"
-    assert f"collision_mode: {fix}" in (found.fix or "")
+    (hint,) = [finding for finding in irsim.validate(text=text).findings if finding.code == "crowd-stops"]
+    assert hint.severity == "hint"
+    assert f"collision_mode: {fix}" in (hint.fix or "")
 
 
 @pytest.mark.parametrize(

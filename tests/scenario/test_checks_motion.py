@@ -166,10 +166,10 @@ SANE = [
 @pytest.mark.parametrize(("data", "code"), FOUND, ids=[f"{code}-{i}" for i, (_, code) in enumerate(FOUND)])
 def test_finds(data: Any, code: str) -> None:
     reading = read(data, strict=True)
-    found = [d for d in reading.diagnostics if d.code == code]
-    assert len(found) == 1, reading.diagnostics
-    assert found[0].severity in ("warning", "hint")
-    assert found[0].fix
+    matching = [d for d in reading.diagnostics if d.code == code]
+    assert len(matching) == 1, reading.diagnostics
+    assert matching[0].severity in ("warning", "hint")
+    assert matching[0].fix
     assert code in irsim.diagnostics.codes.CODES
 
 
@@ -229,8 +229,8 @@ def test_objects_reported_to_jump_through_a_wall_do() -> None:
         "obstacle: [{{shape: {{name: rectangle, length: 0.1, width: 6}}, state: [5.4, 5, 0]}}]\n"
     )
     assert irsim.run(text=text.format(0.1), seed=0).outcome == "success"
-    found = next(d for d in read(text.format(0.1)).diagnostics if d.code == "jumps-through")
-    step = float(str(found.fix).split()[1])
+    diagnostic = next(d for d in read(text.format(0.1)).diagnostics if d.code == "jumps-through")
+    step = float(str(diagnostic.fix).split()[1])
     assert step == pytest.approx(0.06)
     assert irsim.run(text=text.format(step), seed=0).outcome == "collision"
 
@@ -242,8 +242,8 @@ def test_what_is_said_to_jump_through_the_walls_round_the_world_leaves_it() -> N
         "robot: {{kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.3}}, behavior: {{name: dash}}, "
         "state: [1, 5, 0], goal: [{}, 5], vel_max: [4, 1], vel_min: [0, -1], goal_threshold: {}}}\n"
     )
-    (found,) = [d for d in read(text.format(18, 0.1)).diagnostics if d.code == "jumps-through"]
-    assert "the walls round the world" in found.message
+    (diagnostic,) = [d for d in read(text.format(18, 0.1)).diagnostics if d.code == "jumps-through"]
+    assert "the walls round the world" in diagnostic.message
     assert irsim.run(text=text.format(18, 0.1), seed=0).left
     beside = text.format(13, 2.1).replace("boundary: walls", "").replace("[1, 5, 0]", "[6, 5, 0]") + (
         "obstacle: [{shape: {name: linestring, vertices: [[0, 15], [20, 15]]}, state: [0, 0, 0]}]\n"

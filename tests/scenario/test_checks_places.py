@@ -64,15 +64,15 @@ def test_steering_angles_in_degrees() -> None:
     ],
 )
 def test_words_that_people_write_for_keys(data: Any, key: str) -> None:
-    found = next(d for d in read(data, strict=True).diagnostics if d.code == "unknown-key")
-    assert found.fix == f"rename it to '{key}'"
+    diagnostic = next(d for d in read(data, strict=True).diagnostics if d.code == "unknown-key")
+    assert diagnostic.fix == f"rename it to '{key}'"
 
 
 def test_parked_robots_that_overlap() -> None:
     parked = {"shape": {"name": "circle", "radius": 0.5}, "number": 3, "state": [[2, 2, 0], [2.5, 2, 0], [3.2, 2, 0]]}
-    found = [d for d in read({"robot": [parked]}).diagnostics if d.code == "initial-overlap"]
-    assert len(found) == 1
-    assert "1 more such pairs" in found[0].message
+    overlaps = [d for d in read({"robot": [parked]}).diagnostics if d.code == "initial-overlap"]
+    assert len(overlaps) == 1
+    assert "1 more such pairs" in overlaps[0].message
     assert not findings({"obstacle": [parked]})
 
 
@@ -106,8 +106,8 @@ def test_in_unobstructed_mode_sharing_a_place_is_a_hint() -> None:
 def test_touching_is_not_measured() -> None:
     """Rounding may leave a sliver of an overlap, of which no depth is worth telling."""
     post = {"shape": {"name": "rectangle", "length": 0.2, "width": 0.2}, "state": [1.3, 1, 0]}
-    found = read({"robot": [{**DIFF, "state": [1, 1, 0]}], "obstacle": [post]}, strict=True).diagnostics
-    assert all("e-" not in item.message for item in found)
+    diagnostics = read({"robot": [{**DIFF, "state": [1, 1, 0]}], "obstacle": [post]}, strict=True).diagnostics
+    assert all("e-" not in item.message for item in diagnostics)
 
 
 def test_a_very_long_body_in_a_large_world_is_a_hint_and_in_a_small_one_a_warning() -> None:

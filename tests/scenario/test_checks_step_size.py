@@ -32,11 +32,11 @@ def findings(
 
 def test_a_step_longer_than_half_of_the_body() -> None:
     assert not findings(top="[2, 1]", low="[-2, -1]")  # 0.2 m of 0.4 m
-    (found,) = findings(top="[2.1, 1]", low="[-2.1, -1]")
-    assert found.severity == "hint"
-    assert "0.21 m in a step of 0.1 s, more than half of its size (0.4 m)" in found.message
-    assert "it decides, and contacts are judged, only that often" in found.message
-    assert "world.step_time: 0.09 or less" in (found.fix or "")
+    (finding,) = findings(top="[2.1, 1]", low="[-2.1, -1]")
+    assert finding.severity == "hint"
+    assert "0.21 m in a step of 0.1 s, more than half of its size (0.4 m)" in finding.message
+    assert "it decides, and contacts are judged, only that often" in finding.message
+    assert "world.step_time: 0.09 or less" in (finding.fix or "")
     assert findings(dt=0.09, top="[2.1, 1]", low="[-2.1, -1]") == []
     assert len(findings(top="[2.1, 1]", low="[-2.1, -1]", integration="exact")) == 1  # arcs are as long
 
@@ -46,11 +46,11 @@ def test_a_step_longer_than_half_of_the_body() -> None:
 )
 def test_a_turn_by_more_than_half_a_radian(drive: str, top: str, low: str) -> None:
     assert not findings(drive=drive, top=top, low=low)
-    (found,) = findings(0.2, drive, top=top, low=low)
-    assert "0.6 rad in a step of 0.2 s" in found.message
-    assert "off by up to 0.04 m" in found.message
-    assert "integration: exact" in (found.fix or "")
-    assert "world.step_time: 0.1 or less" in (found.fix or "")
+    (finding,) = findings(0.2, drive, top=top, low=low)
+    assert "0.6 rad in a step of 0.2 s" in finding.message
+    assert "off by up to 0.04 m" in finding.message
+    assert "integration: exact" in (finding.fix or "")
+    assert "world.step_time: 0.1 or less" in (finding.fix or "")
     assert not findings(0.2, drive, top=top, low=low, integration="exact")
 
 
@@ -59,17 +59,17 @@ def test_a_turn_by_more_than_half_a_radian(drive: str, top: str, low: str) -> No
 @pytest.mark.parametrize("dt", [0.1, 0.3, 1.0])
 def test_each_fix_cures(speed: float, rate: float, dt: float) -> None:
     limits = {"top": f"[{speed}, {rate}]", "low": f"[{-speed}, {-rate}]"}
-    for found in findings(dt, **limits):
-        (step,) = re.findall(r"world.step_time: ([0-9.]+) or less", found.fix)
+    for finding in findings(dt, **limits):
+        (step,) = re.findall(r"world.step_time: ([0-9.]+) or less", finding.fix)
         assert not findings(float(step), **limits)
-        if "integration: exact" in found.fix:
+        if "integration: exact" in finding.fix:
             assert not findings(dt, integration="exact", **limits)
 
 
 @pytest.mark.parametrize("world", ["contacts: swept", "collision_mode: contact"])
 def test_where_contacts_within_steps_count(world: str) -> None:
-    (found,) = findings(top="[2.1, 1]", low="[-2.1, -1]", world=world)
-    assert "(0.4 m): it decides only that often" in found.message
+    (finding,) = findings(top="[2.1, 1]", low="[-2.1, -1]", world=world)
+    assert "(0.4 m): it decides only that often" in finding.message
 
 
 @pytest.mark.parametrize("low", ["[-1]", "[]"])

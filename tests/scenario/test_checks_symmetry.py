@@ -129,9 +129,9 @@ def car(threshold: float, reverse: bool) -> str:
 
 def test_a_car_on_a_route_is_warned_of_a_goal_narrower_than_its_step() -> None:
     for reverse, words in ((True, "shunt"), (False, "never get to its goal")):
-        found = [f for f in irsim.validate(text=car(0.1, reverse)).findings if f.code == "goal-overshoot"]
-        assert [f.severity for f in found] == ["warning"]
-        assert words in found[0].message
+        overshoots = [f for f in irsim.validate(text=car(0.1, reverse)).findings if f.code == "goal-overshoot"]
+        assert [f.severity for f in overshoots] == ["warning"]
+        assert words in overshoots[0].message
     assert "goal-overshoot" not in codes(car(0.3, True))
 
 

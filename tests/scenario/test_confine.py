@@ -87,12 +87,12 @@ def test_every_file_of_a_scenario_is_looked_at(root: Path) -> None:
         "robot:\n  - {number: 2, state: [[1, 1], [5, 5]], description: [car_blue.png, /etc/car.png]}\n"
         "obstacle: {description: ../wall.png}\n"
     )
-    found = {
+    lines = {
         format_path(item.path): item.line
         for item in read(load_text(text, limits=Limits(root=str(root)))).errors
         if item.code == "path-outside-workspace"
     }
-    assert found == {"world.obstacle_map.path": 1, "robot[0].description[1]": 3, "obstacle.description": 4}
+    assert lines == {"world.obstacle_map.path": 1, "robot[0].description[1]": 3, "obstacle.description": 4}
     assert not [item for item in read(load_text(text)).errors if item.code == "path-outside-workspace"]
 
 

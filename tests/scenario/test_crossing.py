@@ -63,10 +63,10 @@ def crossing(name: str = "circle_crossing", number: int = 5, **keys: Any) -> dic
     ("number", "code"), [(5, None), (15, None), (20, "placement-tight"), (60, "placement-impossible")]
 )
 def test_a_full_circle_is_found_by_arithmetic(number: int, code: str | None) -> None:
-    found = [c for _, c, _ in findings(crossing(number=number, radius=4))]
-    assert [c for c in found if c.startswith("placement")] == ([code] if code else [])
-    found = [c for _, c, _ in findings(crossing("square_crossing", 2 * number, width=5))]
-    assert [c for c in found if c.startswith("placement")] == ([code] if code else [])
+    codes = [c for _, c, _ in findings(crossing(number=number, radius=4))]
+    assert [c for c in codes if c.startswith("placement")] == ([code] if code else [])
+    codes = [c for _, c, _ in findings(crossing("square_crossing", 2 * number, width=5))]
+    assert [c for c in codes if c.startswith("placement")] == ([code] if code else [])
 
 
 def test_a_circle_beyond_the_world_and_keys_without_effect() -> None:
@@ -88,9 +88,9 @@ def test_a_seed_without_room_says_what_to_change(number: int, distribution: str,
     text = WORLD + f"obstacle: {{{PERSON}, number: {number}, distribution: {distribution}}}\n"
     with pytest.raises(PlacementError) as caught:
         scene_of(text)
-    (found,) = caught.value.diagnostics
-    assert found.code == "placement-crowded"
-    assert said in found.message
-    assert "`clearance`" in found.fix
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "placement-crowded"
+    assert said in diagnostic.message
+    assert "`clearance`" in diagnostic.fix
     (crowded,) = [item for item in validate(text=text).findings if item.code == "placement-crowded"]
     assert said in crowded.message

@@ -28,8 +28,8 @@ def one(**keys: Any) -> ObjectRecord:
 
 def test_ids_names_and_groups_of_lists() -> None:
     scenario = resolved({"robot": [DIFF, {**DIFF, "number": 2, "group": 7}], "obstacle": [{}, {"number": 2}]})
-    found = [(o.id, o.role, o.name, o.group, o.group_name, o.path, o.index) for o in scenario.objects]
-    assert found == [
+    rows = [(o.id, o.role, o.name, o.group, o.group_name, o.path, o.index) for o in scenario.objects]
+    assert rows == [
         (0, "robot", "robot_0", 0, "robot_0", ("robot", 0), 0),
         (1, "robot", "robot_1", 7, "robot_7", ("robot", 1), 0),
         (2, "robot", "robot_2", 7, "robot_7", ("robot", 1), 1),

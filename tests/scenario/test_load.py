@@ -77,9 +77,9 @@ def test_without_libyaml(monkeypatch: pytest.MonkeyPatch) -> None:
     text = "world: &w {height: 1.5, tags: [a, 'b']}\ncustom: *w\n"
     expected = compose(text, DEFAULT_LIMITS, positions=True)
     monkeypatch.setattr(compose_module.yaml, "__with_libyaml__", False)
-    found = compose(text, DEFAULT_LIMITS, positions=True)
-    assert found.data == expected.data
-    assert found.root == expected.root
+    document = compose(text, DEFAULT_LIMITS, positions=True)
+    assert document.data == expected.data
+    assert document.root == expected.root
     assert compose("a: [1", DEFAULT_LIMITS).problems[0].code == "yaml-syntax"
 
 

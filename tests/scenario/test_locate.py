@@ -26,8 +26,8 @@ def places(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Path]:
 def test_order(places: dict[str, Path]) -> None:
     for name in ("script", "first", "here"):
         (places[name] / "a.yaml").write_text("", encoding="utf-8")
-        found = Path(locate("a.yaml")).resolve()
-        assert found == (places[name] / "a.yaml").resolve()
+        path = Path(locate("a.yaml")).resolve()
+        assert path == (places[name] / "a.yaml").resolve()
 
 
 def test_absolute_and_below(places: dict[str, Path]) -> None:

@@ -198,15 +198,15 @@ def test_goals_of_several_objects_do_not_become_the_way_of_each() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "found"),
+    ("text", "expected"),
     [
         ("a: 1  # b\n# c\n#d\ne: 'f # g'  # h", ["# b", "# c", "#d", "# h"]),
         ("a: it's  # don't\nb: [\"#\", 'it''s #']  # \"c\"", ["# don't", '# "c"']),
         ("a: x#y\n", []),
     ],
 )
-def test_comments_of_a_text(text: str, found: list[str]) -> None:
-    assert comments(text) == found
+def test_comments_of_a_text(text: str, expected: list[str]) -> None:
+    assert comments(text) == expected
 
 
 def test_keys_of_follow_written_into_its_local_behavior_move_one_level_up() -> None:

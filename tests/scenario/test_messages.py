@@ -70,8 +70,8 @@ def test_a_report_reads_like_a_compiler() -> None:
     ],
 )  # fmt: skip
 def test_a_word_alone_or_in_the_wrong_place(line: str, fix: str, wrote: Any) -> None:
-    found = read(f"robot: {{{line}, shape: {{name: circle}}}}\n", strict=True).diagnostics
-    item = next(d for d in reversed(found) if d.severity == "error")
+    diagnostics = read(f"robot: {{{line}, shape: {{name: circle}}}}\n", strict=True).diagnostics
+    item = next(d for d in reversed(diagnostics) if d.severity == "error")
     assert fix in str(item.fix)
     sure = item.edit.value if item.edit is not None and item.edit.safe else None
     assert sure == wrote
@@ -129,8 +129,8 @@ def test_long_lines_are_cut_around_the_place() -> None:
     ],
 )
 def test_numbers_written_as_text(text: str, unit: str, value: float | None) -> None:
-    found = read_number(text, unit).value
-    assert found == (None if value is None else pytest.approx(value))
+    answer = read_number(text, unit).value
+    assert answer == (None if value is None else pytest.approx(value))
 
 
 @pytest.mark.parametrize(
@@ -324,8 +324,8 @@ DIFF = "kinematics: {name: diff}, behavior: {name: dash}"
     ],
 )
 def test_decimal_commas_are_recognised(keys: str, code: str, fix: str | None) -> None:
-    found = read(f"{ROOM}robot: {{{DIFF}, {keys}}}\n", strict=True).diagnostics
-    (item,) = [item for item in found if item.code == code]
+    diagnostics = read(f"{ROOM}robot: {{{DIFF}, {keys}}}\n", strict=True).diagnostics
+    (item,) = [item for item in diagnostics if item.code == code]
     assert item.fix == fix
     assert item.severity == ("hint" if code == "state-truncated" and fix is None else item.severity)
 
@@ -387,8 +387,8 @@ def test_a_mistake_behind_an_anchor_is_told_once() -> None:
 
 def test_speeds_may_be_meant_in_kilometres_an_hour() -> None:
     keys = "vel_max: [50, 1], vel_min: [-50, -1], state: [1, 1, 0], goal: [9, 9]"
-    found = read(f"{ROOM}robot: {{{DIFF}, {keys}}}\n", strict=True).diagnostics
-    (item,) = [item for item in found if item.code == "speed-in-centimetres"]
+    diagnostics = read(f"{ROOM}robot: {{{DIFF}, {keys}}}\n", strict=True).diagnostics
+    (item,) = [item for item in diagnostics if item.code == "speed-in-centimetres"]
     assert item.fix == "speeds are in m/s: 50 km/h are 13.89, 50 cm/s are 0.5"
 
 

@@ -41,8 +41,8 @@ def hall() -> ResolvedScenario:
 
 def spreads(scenario: ResolvedScenario, given: object) -> dict[str, Spreads]:
     """Spreads of the objects that have some, by name."""
-    found = perturbed(scenario, read_perturbations(given)).objects
-    return {record.name: record.spreads for record in found if record.spreads is not None}
+    records = perturbed(scenario, read_perturbations(given)).objects
+    return {record.name: record.spreads for record in records if record.spreads is not None}
 
 
 @pytest.mark.parametrize(
@@ -60,9 +60,9 @@ def spreads(scenario: ResolvedScenario, given: object) -> dict[str, Spreads]:
     ],
 )
 def test_what_can_be_given(given: object, text: str) -> None:
-    [found] = read_perturbations(given)
-    assert perturbation_text(found) == text
-    assert read_perturbations(text) == (found,)
+    [perturbation] = read_perturbations(given)
+    assert perturbation_text(perturbation) == text
+    assert read_perturbations(text) == (perturbation,)
 
 
 def test_several_in_a_list_or_in_one_text() -> None:
@@ -79,8 +79,8 @@ def test_several_in_a_list_or_in_one_text() -> None:
     | st.lists(st.text(st.characters(max_codepoint=0x2FF), min_size=1, max_size=8), min_size=1, max_size=3),
 )
 def test_the_text_of_a_perturbation_means_the_same(values, speed: float, heading: float, objects) -> None:
-    [found] = read_perturbations({**values, "speed": speed, "heading": heading, "objects": objects})
-    assert read_perturbations(perturbation_text(found)) == (found,)
+    [perturbation] = read_perturbations({**values, "speed": speed, "heading": heading, "objects": objects})
+    assert read_perturbations(perturbation_text(perturbation)) == (perturbation,)
 
 
 @pytest.mark.parametrize(
@@ -114,9 +114,9 @@ def test_everything_that_is_wrong_is_said_at_once(given: object, words: list[str
 
 def test_everybody_that_can_move(hall: ResolvedScenario) -> None:
     """Static objects, the walls round the world and random starts stay; what has no drive has no speed and no delay."""
-    found = spreads(hall, "position=0.1,speed=0.2,delay=3")
+    by_name = spreads(hall, "position=0.1,speed=0.2,delay=3")
     everything = Spreads(0.1, 0.0, 0.2, 3.0)
-    assert found == {
+    assert by_name == {
         "scout": everything,
         "car": everything,
         "robot_2": Spreads(speed=0.2, delay=3.0),
@@ -142,10 +142,10 @@ def test_by_name_tag_and_role(hall: ResolvedScenario, objects: str, names: set[s
 
 
 def test_of_two_for_one_object_the_later_counts(hall: ResolvedScenario) -> None:
-    found = spreads(hall, "position=0.1,delay=1; position=0,heading=4deg,objects=scout; delay=5,objects=walker")
-    assert found["scout"].heading == pytest.approx(math.radians(4))
-    assert (found["scout"].position, found["scout"].delay) == (0.0, 1.0)
-    assert (found["walker"].position, found["walker"].delay) == (0.1, 5.0)
+    by_name = spreads(hall, "position=0.1,delay=1; position=0,heading=4deg,objects=scout; delay=5,objects=walker")
+    assert by_name["scout"].heading == pytest.approx(math.radians(4))
+    assert (by_name["scout"].position, by_name["scout"].delay) == (0.0, 1.0)
+    assert (by_name["walker"].position, by_name["walker"].delay) == (0.1, 5.0)
 
 
 def test_the_scenario_itself_stays_as_it_is(hall: ResolvedScenario) -> None:

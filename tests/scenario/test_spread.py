@@ -91,5 +91,5 @@ def test_objects_get_what_the_rule_says(states: list[list[int]], colors: list[st
     reading = read({"obstacle": {"number": count, "state": states, "color": colors, "shape": [{"name": "circle"}]}})
     assert reading.scenario is not None
     expected = zip(spread(states, count), spread(colors, count), strict=True)
-    found = [(record.state[:2], record.color) for record in reading.scenario.objects]
-    assert found == [([float(x), float(y)], color) for (x, y), color in expected]
+    rows = [(record.state[:2], record.color) for record in reading.scenario.objects]
+    assert rows == [([float(x), float(y)], color) for (x, y), color in expected]

@@ -39,17 +39,17 @@ DISC = {"kinematics": {"name": "diff"}, "shape": {"name": "circle", "radius": 0.
 ROBOT = {**DISC, "state": [2, 5, 0], "goal": [10, 5]}
 
 
-def found(data: Any) -> list[Diagnostic]:
+def findings(data: Any) -> list[Diagnostic]:
     return list(read(data, strict=True, feasibility=feasibility_findings).diagnostics)
 
 
 def codes(data: Any) -> list[str]:
-    return [d.code for d in found(data)]
+    return [d.code for d in findings(data)]
 
 
 def one(data: Any, code: str) -> Diagnostic:
-    matching = [d for d in found(data) if d.code == code]
-    assert len(matching) == 1, found(data)
+    matching = [d for d in findings(data) if d.code == code]
+    assert len(matching) == 1, findings(data)
     assert matching[0].fix
     return matching[0]
 
@@ -69,7 +69,7 @@ def door(width: float, **world: Any) -> dict[str, Any]:
 
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda p: p.parent.name if p.name == "scenario.yaml" else p.stem)
 def test_no_false_alarms(path: Path) -> None:
-    alarms = {d.code for d in found(path) if d.severity != "hint"}
+    alarms = {d.code for d in findings(path) if d.severity != "hint"}
     assert alarms == SHOWN.get(path.stem, set())
 
 
@@ -89,7 +89,7 @@ def test_a_door_wide_enough(width: float, hint: bool) -> None:
     data = door(width)
     assert codes(data) == (["narrow-passage"] if hint else [])
     if hint:
-        assert float(re.findall(r"gap of ([\d.]+) m", found(data)[0].message)[0]) == pytest.approx(width, abs=0.008)
+        assert float(re.findall(r"gap of ([\d.]+) m", findings(data)[0].message)[0]) == pytest.approx(width, abs=0.008)
 
 
 def test_what_is_unreachable_is_not_reached_and_the_other_is() -> None:
@@ -300,7 +300,7 @@ def test_the_scenarios_own_seed_counts() -> None:
             works = True
         except irsim.ScenarioError:
             works = False
-        errors = [d for d in found(data) if d.code == "placement-crowded"]
+        errors = [d for d in findings(data) if d.code == "placement-crowded"]
         assert bool(errors) is not works
         outcome.add(works)
         if outcome == {True, False}:

@@ -43,17 +43,17 @@ def door(size: float, gap: float, **more: Any) -> dict[str, Any]:
     return world(size, line((x, 0), (x, y)), line((x, y + gap), (x, size)), **more)
 
 
-def found(data: Any) -> list[Diagnostic]:
+def findings(data: Any) -> list[Diagnostic]:
     return list(read(data, strict=True, feasibility=feasibility_findings).diagnostics)
 
 
 def codes(data: Any) -> list[str]:
-    return [d.code for d in found(data)]
+    return [d.code for d in findings(data)]
 
 
 @pytest.mark.parametrize(("size", "radius"), [(60, 0.15), (100, 0.3), (400, 0.3), (3000, 0.2)])
 def test_a_wall_across_a_world_is_found_however_large_it_is(size: float, radius: float) -> None:
-    (item,) = found(world(size, line((size / 2, 0), (size / 2, size)), radius=radius))
+    (item,) = findings(world(size, line((size / 2, 0), (size / 2, size)), radius=radius))
     assert (item.code, item.severity) == ("goal-unreachable", "warning")
     assert "obstacles separate them completely" in item.message
 
@@ -63,17 +63,17 @@ def test_a_wall_across_a_world_is_found_however_large_it_is(size: float, radius:
     ("gap", "code"), [(0.5, "goal-unreachable"), (0.58, "goal-unreachable"), (0.66, "narrow-passage"), (0.8, None)]
 )
 def test_a_door_is_measured_in_worlds_of_every_size(size: float, gap: float, code: str | None) -> None:
-    items = found(door(size, gap))
+    items = findings(door(size, gap))
     assert [item.code for item in items] == ([code] if code else [])
     if size > 100 and code:
         assert f"a gap of {gap:g} m at ({size / 2:.2f}, {0.7 * size:.0f}." in items[0].message
 
 
 def test_an_open_edge_is_no_way_and_told() -> None:
-    (item,) = found(world(300, line((150, 0), (150, 300)), boundary="none"))
+    (item,) = findings(world(300, line((150, 0), (150, 300)), boundary="none"))
     assert "only outside the world" in item.message
     ring = line((280, 280), (299, 280), (299, 299), (280, 299), (280, 280))
-    (item,) = found(world(300, ring, boundary="none"))
+    (item,) = findings(world(300, ring, boundary="none"))
     assert (item.code, "outside of the world" in item.message) == ("goal-unreachable", False)
 
 
@@ -107,7 +107,7 @@ def test_what_is_too_much_is_told_and_costs_little() -> None:
     data["robot"][0]["goal"] = [2, 1.4]  # nothing in between
     assert codes(data) == []
     begin = time.process_time()
-    found(data)
+    findings(data)
     assert time.process_time() - begin < 2
 
 
@@ -198,6 +198,6 @@ def test_a_goal_between_walls_that_the_body_just_touches_can_be_reached() -> Non
         "goal_threshold": 0.05,
     }
     data = {"world": {"width": 12, "height": 6}, "robot": [robot], "obstacle": walls}
-    assert "goal-blocked" not in {finding.code for finding in found(data)}
+    assert "goal-blocked" not in {finding.code for finding in findings(data)}
     walls[0]["state"] = [8, 3.79, 0]
-    assert "goal-blocked" in {finding.code for finding in found(data)}
+    assert "goal-blocked" in {finding.code for finding in findings(data)}

@@ -13,7 +13,7 @@ import irsim
 from irsim.env import Env
 from irsim.scenario.read import read
 from irsim.validation.feasibility.check import feasibility_findings
-from tests.validation.test_findings import DISC, ROBOT, ROOT, codes, door, found, one, scenario
+from tests.validation.test_findings import DISC, ROBOT, ROOT, codes, door, findings, one, scenario
 
 
 def test_too_little_time() -> None:
@@ -95,7 +95,7 @@ def test_one_finding_for_many_robots() -> None:
 
 def test_the_same_findings_every_time() -> None:
     path = ROOT / "templates/random-polygons/scenario.yaml"
-    assert found(path) == found(path)
+    assert findings(path) == findings(path)
 
 
 PLACES = np.random.default_rng(5)
@@ -161,7 +161,7 @@ def test_a_pocket_stops_who_plans_no_way_and_a_single_wall_does_not(behavior: st
     wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 4}, "state": [6, 5, 0]}
     for thing, stuck in ((pocket, True), (wall, False)):
         data = scenario(robot, thing)
-        told = [d for d in found(data) if d.code == "needs-planning"]
+        told = [d for d in findings(data) if d.code == "needs-planning"]
         assert bool(told) is stuck
         assert not told or "(5.80, 5.00)" in told[0].message
         env = Env(read(data).scenario, headless=True, seed=0)
@@ -280,7 +280,7 @@ def test_robots_that_share_a_door_are_told_which_behaviors_jam(local: str) -> No
     robots = [{**ROBOT, "state": [2, y, 0], "goal": [10, y], "behavior": behavior} for y in (4, 5, 6)]
     data = scenario(robots[0], *_wall(4.5, 5.5))
     data["robot"] = robots
-    jams = [item for item in found(data) if item.code == "door-jam"]
+    jams = [item for item in findings(data) if item.code == "door-jam"]
     assert len(jams) == (local != "orca")
     for item in jams:
         assert "2 other robots drive through a gap of 1 m at (6" in item.message
