@@ -1,1 +1,1 @@
-"""What ships with the package: the scenario templates and the agent skills."""
+"""Files that ship with the package: the scenario templates and the agent skills."""

@@ -47,7 +47,7 @@ class Skill:
 
     Attributes:
         name: Name of the skill and its folder.
-        description: What the skill does and when to use it.
+        description: Purpose of the skill and when to use it.
         version: Version of the package that contains it.
         folder: Path of the folder.
     """
@@ -70,7 +70,7 @@ class Installed:
 
     Attributes:
         name: Name of the skill.
-        action: What was done; ``kept`` means that the folder is a link or contains changes by the user, and was not
+        action: Action taken; ``kept`` means that the folder is a link or contains changes by the user, and was not
             touched.
         folder: Path of the folder.
         version: Version of the skill in this package.

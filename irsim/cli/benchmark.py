@@ -146,7 +146,7 @@ def benchmark(
 
     The table shows the rates of success, collision and time-out with 95 % intervals, and mean times, speeds and paths.
     --json and --csv contain all metrics. A suite and every benchmark with -o writes each episode into a folder as soon
-    as it is done; after an interruption, --resume goes on there, and the results equal those of an undisturbed run.
+    as it is done; after an interruption, --resume goes on there, and the results equal an undisturbed run's.
     """
     if json_output and csv_output:
         raise InputError("--json and --csv cannot be combined", "give one of them")

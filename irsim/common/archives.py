@@ -32,16 +32,16 @@ _HEADER_BYTES = 4096
 _MAX_SIDES = 4
 _BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError, KeyError, OSError,
            OverflowError, SyntaxError, TypeError, MemoryError, IndexError, AttributeError, struct.error)  # fmt: skip
-"""What the modules that read archives and headers of arrays raise on broken files."""
+"""Exceptions of the modules that read archives and array headers, on broken files."""
 
 
 class ContentError(Exception):
     """The content of a file cannot be used.
 
     Attributes:
-        message: What is wrong.
+        message: The problem.
         given: The value that is wrong, as text; may be empty.
-        allowed: What is accepted, as text; empty if the message says so.
+        allowed: Accepted values, as text; empty if the message says so.
         place: Name of the entry, the array or the like; empty for the file.
     """
 
@@ -56,8 +56,8 @@ def opened_archive(
 ) -> Iterator[zipfile.ZipFile]:
     """A ZIP archive whose directory is within the limits: no entry twice, none encrypted.
 
-    The end of the file is looked at first, because :mod:`zipfile` reads a directory however long it is. What
-    :mod:`zipfile` raises about a broken archive, also later while it is open, becomes a ``ContentError``.
+    The end of the file is looked at first, because :mod:`zipfile` reads a directory however long it is.
+    Exceptions of :mod:`zipfile` for a broken archive, also later while it is open, become a ``ContentError``.
 
     Args:
         source: The content of the file, or its path.
@@ -147,7 +147,7 @@ def unpack_arrays(
         most_arrays: Largest number of arrays.
 
     Raises:
-        ContentError: It is no such file, or it is over the limits.
+        ContentError: The file is of another kind, or over the limits.
     """
     with opened_archive(content, most_bytes=most_bytes, most_entries=most_arrays) as archive:
         entries = archive.infolist()

@@ -1,6 +1,6 @@
 """Child processes: starting, talking to, limiting and ending them; each ends with its parent.
 
-What a limit does depends on the system:
+The effect of a limit depends on the system:
 
 ==================  ==========================================  ===========================================
 limit               Linux, macOS                                Windows

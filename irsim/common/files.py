@@ -75,7 +75,7 @@ def check_new(target: Path, *, overwrite: bool) -> None:
 
 
 def make_folder_of(target: Path) -> None:
-    """Make the folder of a file that is written, if there is none.
+    """Make the folder of a file to write, if it does not exist.
 
     Raises:
         TargetError: A part of its path is a file.
@@ -87,7 +87,7 @@ def make_folder_of(target: Path) -> None:
 
 
 def _no_folder(path: Path) -> TargetError:
-    return TargetError("file-access", f"'{clean(path, 200)}' is no folder", "name another file with -o")
+    return TargetError("file-access", f"'{clean(path, 200)}' is not a folder", "name another file with -o")
 
 
 def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:

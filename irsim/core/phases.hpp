@@ -12,8 +12,8 @@ void integrate(const World& world, State& state, int w);
 /// Push overlapping bodies apart (`collision_mode: contact`).
 void push_apart(const World& world, State& state, int w, Workspace& work);
 void finish(const World& world, State& state, int w);
-/// Put objects whose time has come at their starts, in their order, each as soon as its place is free; those that
-/// replay a recording do not wait.
+/// Put objects whose time has come at their starts, in their order, each as soon as its place is free; replayed
+/// recordings do not wait.
 void appear(const World& world, State& state, int w);
 /// Take objects whose time is over out of the world.
 void vanish(const World& world, State& state, int w);
@@ -26,7 +26,7 @@ void watch(const World& world, State& state, int w, Workspace& work);
 /// Find the contacts of a pair of objects a < b within the step, and keep it in `Scene::meetings`. They are apart at
 /// its end.
 void meet(const World& world, State& state, int w, int a, int b);
-/// Where contacts within a step count as collisions (`world.contacts: swept`): find those of the pairs in
+/// Where contacts within a step count as collisions (`world.contacts: swept`): find them among the pairs in
 /// `Scene::near`, and put objects that stop at a collision back to where they first touched something.
 void judge(const World& world, State& state, int w);
 /// Log the meetings of the step, and count them for each object.

@@ -274,4 +274,4 @@ def closeness_message(robots: Sequence[RobotResult]) -> str | None:
     (name, other), more = names[0], len(names) - 1
     others = f" and {more} more robot{'s' * (more > 1)}" if more else ""
     beside = f" {other}" if other else " something"
-    return f"{quoted(name)}{others} came within 5 mm of{beside} without touching: that is no collision"
+    return f"{quoted(name)}{others} came within 5 mm of{beside} without touching: that is not a collision"

@@ -81,7 +81,7 @@ def runner() -> Pages:
         ),
         "exports": make_page(
             "Formats of recorded runs",
-            "What `irsim export` and `irsim.export_run` write.",
+            "Files that `irsim export` and `irsim.export_run` write.",
             *map(_format, format_names()),
         ),
         "bridges": make_page(

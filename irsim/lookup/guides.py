@@ -67,7 +67,7 @@ GUIDES: dict[str, Guide] = {
         "with the same seeds, and times of decisions come with the result. The MCP tool is benchmark, with "
         "scenarios and policies. For robots with a differential drive that cross a free square, take the suite "
         "random_polygons_v1, or one of its scenarios, such as random_polygons_v1/robots-10/freeze. Its tables with 5 "
-        "to 25 robots, beside those of the IR-SIM paper, and what a decision costs: "
+        "to 25 robots, beside the IR-SIM paper's, and what a decision costs: "
         "skills/irsim-benchmark/results/policies_of_the_paper.md (for MCP hosts: "
         "skill://irsim-benchmark/results/policies_of_the_paper.md). No policy there does better than footprint_orca, "
         "which takes 3 to 5 times as long as orca to decide and touches no other robot. Where arrived robots "
@@ -123,7 +123,7 @@ GUIDES: dict[str, Guide] = {
         "needs no record. Tables: csv, npz, parquet. ROS 2: mcap, rosbag2. Learning: minari. Isaac Sim, Blender: usd; "
         "ways of people for Isaac Sim: isaac_people. Gazebo: sdf. MuJoCo: mjcf. CARLA, esmini: openscenario. Planners: "
         "commonroad. Cameras that look where robots go: colmap, nerfstudio, poses. --set KEY=VALUE gives a format its "
-        "options, --objects chooses robots, people or names, --force replaces a file. What each of them writes: "
+        "options, --objects chooses robots, people or names, --force replaces a file. Contents of each format: "
         "references/exports.md of the skill irsim-runner.",
         "irsim run hall.yaml --record && irsim export last --to usd -o hall.usdc",
         ("export", "export formats", "formats", "irsim export", "other programs", "recorded run as a file"),
@@ -175,7 +175,7 @@ GUIDES: dict[str, Guide] = {
         "dash drives straight and avoids nothing. rvo, orca, footprint_orca, avocado and sfm avoid other objects and "
         "walls (behavior, or group_behavior for all but rvo) and pass single ones, but find no path: see dead-ends. "
         "follow plans a path and follows it with one of these: among walls, use follow with local: {name: orca}, "
-        "for cars too. No behavior guarantees success: crowds can jam. What is lost, by drive: diff brakes and turns "
+        "for cars too. No behavior guarantees success: crowds can jam. Losses, by drive: diff brakes and turns "
         "before it can go sideways; omni loses nothing; acker cannot turn on the spot, so it needs room beside it, a "
         "circle of radius wheelbase / tan(largest steering angle). In dense crowds of robots take footprint_orca, "
         "above all if arrived robots stay where they are (after_arrival: freeze): it knows true outlines, goes round "
@@ -298,7 +298,7 @@ GUIDES: dict[str, Guide] = {
         "judged at the ends of steps: two objects that touch within a step and are apart at both ends have an event "
         "contact_between_steps, or passed_through. The summary, and after a failure the reason, begins with the first "
         "of a robot; world.contacts: swept makes them collisions. The summary also counts contacts between people, "
-        "objects that left the world, and those that jumped over their goal: passed it within goal_threshold between "
+        "objects that left the world, or jumped over their goal: passed it within goal_threshold between "
         "two steps (event overshoot) and never arrived. In a benchmark, a seed without room for an object is "
         "placement-crowded and counts in no rate. "
         "Object names are numbered through, robots first: obstacle_3 in a file with one robot is the third obstacle; "

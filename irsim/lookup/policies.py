@@ -1,4 +1,4 @@
-"""Answers about policies: what drives robots and is no part of their scenario."""
+"""Answers about policies, which drive robots and are not part of a scenario."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def policies_answer() -> Answer:
     return Answer(
         topic="policies",
         kind="index",
-        title="Policies: what drives robots and is no part of their scenario",
+        title="Policies: they drive robots and are not part of the scenario",
         text="A policy sees observations of all robots that decide now and returns controls, or velocities in the "
         "world frame. The same policy drives one run, a batch, a benchmark and a loop of your own; changing it never "
         "changes the scenario, its obstacles or its noise. Behaviors are policies, too.",

@@ -182,7 +182,7 @@ def approaches(
     *,
     seed: int = 0,
 ) -> list[list[Approach]]:
-    """Closest approaches of some objects to others, the closest first.
+    """Closest approaches of some objects to other objects, the closest first.
 
     Args:
         trace: A trace, or its (T, N, 3) poses.

@@ -20,7 +20,7 @@ OUTLINE_ALIASES = {
     "box": "rectangle",
     "rect": "rectangle",
 }
-"""What these keys are also called, in regions and in other areas."""
+"""Other names of these keys, in regions and in other areas."""
 
 
 def _check_points(value: Any) -> Any:

@@ -91,7 +91,7 @@ class Select:
         self.null, self.empty, self.short, self.trait = null, empty, short, trait
 
     def names(self) -> list[str]:
-        """Every name accepted here, with those of user code."""
+        """Every name accepted here, with names of user code."""
         custom = self.custom.names() if self.custom is not None else []
         return sorted({*(n for n in self.registry.names() if n not in self.exclude), *custom})
 

@@ -66,7 +66,7 @@ def inspect_run(
             ``world.zones`` from when to when, and who crossed a line in which direction; ``sight``: who saw whom from
             when to when.
         robot: Name of one robot, or of another object; ``all`` (all objects that can move), ``robots``, ``obstacles``
-            (those that can move), a tag, or several of these, separated by commas; default: all robots, in ``zones``
+            (that can move), a tag, or several of these, separated by commas; default: all robots, in ``zones``
             and ``sight`` all objects.
         from_step: First step.
         to_step: Last step; default: the last step of the run.

@@ -25,7 +25,7 @@ class Repair:
 
     Attributes:
         finding: The finding that was repaired; its line refers to the text before this repair.
-        change: What was changed, in words.
+        change: The change, in words.
     """
 
     finding: Diagnostic

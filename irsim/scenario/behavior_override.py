@@ -114,7 +114,7 @@ def read_with_behavior(
 
     Args:
         document: The scenario as written.
-        behavior: What to write under ``behavior`` of every robot; None leaves everything as it is.
+        behavior: Value to write under ``behavior`` of every robot; None leaves everything as it is.
         strict: Treat what IR-SIM 2.12 ignores as an error.
 
     Returns:
@@ -167,7 +167,7 @@ def _set_behavior(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:
 
 
 def merged_options(own: Any, group: Any, behavior: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of a behavior for a robot that keeps what its own behavior, or that of its group, tells it to do."""
+    """The keys of a behavior for a robot that keeps what its own or its group's behavior tells it to do."""
     own, group = _mapping(own), _mapping(group)
     kept = {key: source[key] for source in (group, own) for key in _KEPT if key in source}
     return {**kept, **behavior}

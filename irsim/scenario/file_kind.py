@@ -39,7 +39,7 @@ class FileKind(Generic[Model]):
 
     Attributes:
         key: Top-level key that every such file has, and no other file.
-        model: What the file contains.
+        model: Model of its content.
         folder: Folder of the bundled ones, ``<name>.yaml`` each.
         error: Makes the exception of a document with problems.
         explain: Says what a validation found wrong.

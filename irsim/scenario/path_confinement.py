@@ -29,7 +29,7 @@ def why_outside(name: str, root: Path, bases: Iterable[Path] = ()) -> str | None
         bases: Further folders, inside ``root``, that the name may be relative to.
 
     Returns:
-        What is wrong, worded to follow the name: ``"leads upwards ('..')"``; None if the name is allowed.
+        The problem, worded to follow the name: ``"leads upwards ('..')"``; None if the name is allowed.
     """
     if any(unicodedata.category(character) in _INVISIBLE for character in name):
         return "contains a control character"

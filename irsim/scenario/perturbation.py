@@ -80,7 +80,7 @@ class Perturbation(Options):
 
 
 Perturbations = str | Mapping[str, Any] | Perturbation | Sequence[str | Mapping[str, Any] | Perturbation]
-"""What :func:`read_perturbations` reads."""
+"""Input of :func:`read_perturbations`."""
 _SPREADS = ("position", "heading", "speed", "delay")
 _ALLOWED = {
     "position": "a number ≥ 0 [m]",

@@ -23,7 +23,7 @@ def read_object(
 ) -> tuple[ObjectRecord, list[Diagnostic]]:
     """The object that an entry with these keys makes.
 
-    The defaults differ from those of an entry in a file: the object starts at the origin, has no goal and follows no
+    The defaults differ from an entry in a file: the object starts at the origin, has no goal and follows no
     group behavior, and a list of goals means waypoints.
 
     Args:

@@ -41,7 +41,7 @@ class Event(NamedTuple):
     Attributes:
         kind: ``arrival`` (the last goal is reached), ``waypoint`` (a goal is reached and another follows),
             ``collision`` (a contact of two objects begins; reported once per contact, not per step), ``no_path``
-            (``follow`` has found no path, or none round the object ``partner``, which stands for good), ``overshoot``
+            (``follow`` finds no path, or no way round the object ``partner``, which stands for good), ``overshoot``
             (the object passed its goal within the threshold between two steps without arriving; reported once per
             goal), ``zone_entry`` and ``zone_exit`` (the body of an object that can move begins or ceases to touch a
             region of ``world.zones``), ``line_crossing`` (its centre crosses a line of ``world.zones``),

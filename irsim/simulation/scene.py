@@ -1,4 +1,4 @@
-"""What is in a world, in plain data: what does not change during an episode, free of anything of the engine."""
+"""Contents of a world that do not change during an episode, as plain data without types of the engine."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class SceneObject:
         moves: Whether it can move.
         pose: x, y [m], yaw [rad] at the start, world frame.
         goals: Its goals x, y [m], yaw [rad], world frame.
-        parts: Its footprint, body frame; a map has none.
+        parts: Its footprint, body frame; a map has no parts.
         radius: Radius of the circle around its center that encloses the footprint [m].
         low, high: Limits of its controls, in the words of the drive.
         acceleration: Limits of the change of its controls [1/s]; infinite without.
@@ -150,11 +150,11 @@ class SceneDescription:
         name: Name of the scenario.
         step_time: Period [s].
         low, high: Corners of the world [m].
-        agents: All objects but the map, those of states in the same order.
+        agents: All objects but the map, in the order of states.
         grid: The map; None without one.
         walls: Whether walls surround the world.
         seed: Seed of the episode.
-        about: What else is worth keeping: text of the scenario, versions.
+        about: Further facts: text of the scenario, versions.
         version: Version of this description.
         maps: The map as an object of traces; it has no parts.
     """

@@ -315,7 +315,7 @@ class Simulation:
             self.drives.move_row(row)
 
     def first_scan(self, index: int) -> int:
-        """Return the index, among those of the world, of the first native sensor of an object; its others follow."""
+        """Return the index in the world of the first native sensor of an object; its other sensors follow."""
         return self._first_scan.get(index, 0)
 
     # all rows ---------------------------------------------------------------------------------------------------------

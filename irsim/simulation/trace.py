@@ -116,7 +116,7 @@ def record(simulation: Simulation, steps: int, *, until_done: bool = True, scans
 def record_worlds(simulation: Simulation, steps: Sequence[int]) -> list[Trace]:
     """Advance all worlds until every robot of each has arrived or stopped, and return their traces.
 
-    The traces, which include the present state, equal those that :func:`record` returns for the worlds alone. While
+    The traces include the present state, and equal what :func:`record` returns for the worlds alone. While
     Python code takes part, worlds that are done move on until the last one is done.
 
     Args:

@@ -71,7 +71,7 @@ def find_passages(scenario: ResolvedScenario, state: core.State, world: int, see
     """Find the narrowest passages on the way of each robot to each of its goals.
 
     A passage is the least distance between what stands left and what stands right of a way. Passages wider than a
-    few robots are left out. Equal passages of the same robots are one, as are those of several robots at one place.
+    few robots are left out. Equal passages of the same robots are one, and so are passages of robots at one place.
 
     Args:
         scenario: The scenario.
@@ -105,8 +105,8 @@ def passages_of_legs(
 ) -> dict[tuple[int, int], list[tuple[float, Point]]]:
     """Find the narrowest passages on each leg of the ways of robots.
 
-    The way of a robot under `follow` is the route that it plans and drives; other robots take the shortest one. What
-    a robot keeps out of (`avoid`) is as solid as an obstacle.
+    The way of a robot under `follow` is the route that it plans and drives; other robots take the shortest one.
+    Zones that a robot keeps out of (`avoid`) are as solid as obstacles.
 
     Args:
         scenario: The scenario.
@@ -114,7 +114,7 @@ def passages_of_legs(
         only: Id of the robot; by default all robots.
 
     Returns:
-        (object id, number of the leg) -> width [m] and middle of the narrowest passage, and of others as narrow; legs
+        (object id, number of the leg) -> width [m] and middle of the narrowest passage and of equally narrow ones; legs
         without a narrow passage are missing.
     """
     robots = [r for r in scenario.objects if _is_measured(r) and only in (None, r.id)]
@@ -171,7 +171,7 @@ def _part_of(zone: Zone) -> Any:
 
 
 def _add(passages: list[ScenePassage], name: str, width: float, gap: float, place: Point) -> None:
-    """Add a passage of a robot, or the robot to the same passage of others as wide as itself."""
+    """Add a passage of a robot, or add the robot to that passage of equally wide robots."""
     for passage in passages:
         near = math.dist(passage.places[0], place) < gap
         if near and abs(passage.gap - gap) + abs(passage.width - width) < _TOLERANCE_M:
@@ -194,7 +194,7 @@ def _joined(passages: list[ScenePassage]) -> list[ScenePassage]:
 
 
 class _Ground:
-    """What stands, and shortest ways of discs between it.
+    """Standing obstacles, and shortest ways of discs between them.
 
     Args:
         bounds: Extent of the world: left, bottom, right, top [m].
@@ -269,7 +269,7 @@ def _narrowest(way: Any, obstacles: Any, width: float) -> tuple[float, Point] | 
 
 
 def _ground(bounds: tuple[float, float, float, float], things: Sequence[Thing], radius: float) -> _Ground | None:
-    """What stands; None without anything, and if it has too many corners."""
+    """The standing obstacles; None without any, or with too many corners."""
     outlines = _outlines(things)
     return None if outlines is None else _Ground(bounds, things, outlines, radius)
 

@@ -38,7 +38,7 @@ def validate(
     Args:
         path: Path of the scenario file.
         text: Text of the scenario, instead of ``path``.
-        strict: What IR-SIM would ignore is an error (default) or a warning.
+        strict: Input that IR-SIM would ignore is an error (default) or a warning.
         base: Path of a file to compare with: ``changes`` then lists the differences from it.
         base_text: Text to compare with, instead of ``base``.
         simulate: Also simulate the first steps of a valid scenario: ``dry_run`` then summarises them.
@@ -71,7 +71,7 @@ def fix(
     Args:
         path: Path of the scenario file.
         text: Text of the scenario, instead of ``path``.
-        strict: What IR-SIM would ignore is an error (default) or a warning.
+        strict: Input that IR-SIM would ignore is an error (default) or a warning.
         limits: Tighter or wider limits of the loader.
 
     Returns:
@@ -166,7 +166,7 @@ def _counted(errors: int, warnings: int) -> str:
 
 
 def _mark_old(findings: list[Finding], base: Reading) -> None:
-    """Mark the findings that the base scenario also has: those of the same code with the same path or message."""
+    """Mark the findings that the base scenario also has, with the same code and the same path or message."""
     known = {(item.code, text) for item in base.diagnostics for text in (format_path(item.path), item.message)}
     for finding in findings:
         finding.in_base = bool({(finding.code, finding.path), (finding.code, finding.message)} & known)

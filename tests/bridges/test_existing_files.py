@@ -88,7 +88,7 @@ def test_names_that_are_no_files(call: Callable[[str], Result], name: str) -> No
         assert "is a folder" in done.output, done.output
     done = call(COMMANDS[name].format(folder="scene.yaml"))
     assert done.exit_code in (1, 2)
-    assert "is no folder" in done.output, done.output
+    assert "is not a folder" in done.output, done.output
     assert Path("scene.yaml").read_text() == SCENE
 
 

@@ -33,7 +33,7 @@ class FootprintOrca(BehaviorOptions):
     maxNeighbors: Count = 8
     """Number of moving objects that choose its velocity, nearest first; it touches none of the others."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 1.5
-    """Time horizon for moving objects; twice this for those of other behaviors."""
+    """Time horizon for moving objects; doubled if they run another behavior."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 0.5
     """Time horizon for walls and all that has stopped; it brakes in time with any."""
     safe_distance: Annotated[Meters, Field(ge=0)] = 0.02

@@ -43,7 +43,7 @@ class Orca(BehaviorOptions):
     """Largest speed; null is what the object can reach in every direction, also the upper limit."""
     responsibility: Annotated[Fraction, Field(gt=0)] | None = None
     """Share of that change of velocity that it makes for a moving object; null is half for one that runs a kind of orca
-    and sees it, all for others. Most other programs always take 0.5."""
+    and sees it, else all. Most other programs always take 0.5."""
     approach_time: Annotated[Seconds, Field(gt=0)] | None = None
     """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
     speed."""

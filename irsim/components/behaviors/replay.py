@@ -64,7 +64,7 @@ class Replay(BehaviorOptions):
         for number, (before, after) in enumerate(itertools.pairwise(self.times), 1):
             if not after > before:
                 what = f"times must increase, but times[{number}] = {after:g} follows {before:g}"
-                raise problem("invalid-value", what, fix="sort the rows by time, and leave out those that come twice")
+                raise problem("invalid-value", what, fix="sort the rows by time, and leave out repeated times")
         return self
 
     @property

@@ -30,7 +30,7 @@ TOPIC_KEYS = (
 )  # fmt: skip
 """Keys of the table of topics."""
 TOPIC_NAME = re.compile(r"(/[A-Za-z_~{][A-Za-z0-9_{}]*)+")
-"""What a topic may be called; ``{robot}`` and ``{n}`` stand for something else."""
+"""Valid names of topics; ``{robot}`` and ``{n}`` are placeholders."""
 
 T = TypeVar("T")
 RadiansPerSecondSquared = Annotated[float, unit("rad/s^2")]
@@ -49,7 +49,7 @@ class QosOptions(Options):
 
 
 class ShownOptions(BridgeOptions):
-    """What is shown of a scene, and how."""
+    """Choices of how a scene is shown."""
 
     objects: ClassVar[tuple[str, ...]] = ("robots",)
     robots_only: ClassVar[tuple[str, ...]] = ("robots",)
@@ -60,7 +60,7 @@ class ShownOptions(BridgeOptions):
     """Names of the robots that have topics; empty for all robots."""
     topics: dict[str, str | None] = {}
     """Other names of topics, by their key in the table of topics: `{robot}` is the name of the robot, `{n}` is empty
-    for its first lidar and `_1` for the second one, null is no topic. Example: `{cmd_vel: /cmd_vel, tf: null}`."""
+    for its first lidar and `_1` for the second one, null omits a topic. Example: `{cmd_vel: /cmd_vel, tf: null}`."""
     qos: dict[str, QosOptions] = {}
     """Other qualities of service of topics, by their key in the table of topics."""
     frame: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_/]*$")] = "map"
@@ -98,7 +98,7 @@ class RosOptions(ShownOptions):
     """Time after which a command counts no more. In `sim` mode the robot then stands still. In `real` mode it is the
     time after which a separate process sends zero commands if irsim hangs."""
     after_command: Literal["stop", "behavior"] = "stop"
-    """What a simulated robot does when no command comes any more: it stops, or its behavior takes over again."""
+    """When a simulated robot gets no more commands, it stops, or its behavior takes over again."""
     dry_run: Bool = True
     """In `real` mode: whether commands go to `<robot>/cmd_vel_preview` instead of `<robot>/cmd_vel`, so that nothing
     moves. Set it to false when all values look right."""

@@ -30,7 +30,7 @@ class CarlaLidar(Options):
     """Lidars of CARLA on robots, whose points become the scans that policies see."""
 
     robots: list[Name] | None = None
-    """Robots whose lidars are those of CARLA; null is all that are in the town and have one."""
+    """Robots with CARLA's lidars; null is all robots in the town that have a lidar."""
     height: Meters = 1.0
     """Height of the sensor above the ground."""
     low: Meters = 0.2
@@ -40,13 +40,13 @@ class CarlaLidar(Options):
     channels: Annotated[Integer, Field(ge=1, le=256)] = 1
     """Number of rays above each other; a scan has the nearest point of them."""
     upper: Annotated[Degrees, Field(ge=-90, le=90)] = 0.0
-    """Elevation of the highest ray; that of a single one."""
+    """Elevation of the highest ray, or of the only one."""
     lower: Annotated[Degrees, Field(ge=-90, le=90)] = 0.0
     """Elevation of the lowest ray."""
     points: Annotated[Integer, Field(ge=16, le=100_000)] | None = None
     """Points of a ray in a full turn; null is four for each beam of the scan."""
     dropoff: Bool = False
-    """Let CARLA leave out points at random, and those of weak reflections, as it does by default."""
+    """Let CARLA leave out weak reflections, and points at random, as it does by default."""
 
     def model_post_init(self, context: Any) -> None:
         """Check what keys mean together."""
@@ -91,14 +91,14 @@ class Carla(BridgeOptions):
     transform: Placement = Placement()
     """Where the origin of the scenario is in the town."""
     ground: Literal["project", "road"] | Meters = "project"
-    """Height of the ground: found by a ray from above, that of the nearest road, or one number for all places."""
+    """Height of the ground: where a ray from above hits, at the nearest road, or one number for all places."""
     walkers: list[Name] | None = None
     """Objects that are pedestrians; null is all that can move and are neither vehicles nor followed."""
     vehicles: list[Name] | None = None
     """Objects that are vehicles; null is all with the drive `acker`."""
     follow: dict[Name, Name | Annotated[Integer, Field(ge=1)]] = {}
-    """Objects that are where actors of others are: the name of the object, and the `role_name` or the id of an actor
-    that is in the town already."""
+    """Objects that follow existing actors: the name of the object, and the `role_name` or the id of an actor that is in
+    the town already."""
     walker_blueprint: Name = "walker.pedestrian.*"
     """Blueprints of pedestrians, a name or a pattern; pedestrians take turns."""
     vehicle_blueprint: Name = "vehicle.tesla.model3"
@@ -107,7 +107,7 @@ class Carla(BridgeOptions):
     """How vehicles move. With `ackermann` (speed and steering angle) and `velocity` CARLA moves them and the scenario
     has them where CARLA does; with `transform` the scenario moves them, and CARLA only shows them."""
     wheelbase: Annotated[Meters, Field(gt=0)] | None = None
-    """Distance between the axles of the vehicle in CARLA, for steering angles; null is that of the robot."""
+    """Distance between the axles of the vehicle in CARLA, for steering angles; null is the robot's."""
     correction: Annotated[Meters, Field(gt=0)] = 0.3
     """A pedestrian that is farther than this from where it should be is put there instead of walking there."""
     lidar: CarlaLidar | None = None
@@ -119,7 +119,7 @@ class Carla(BridgeOptions):
     """Draw the town; without, a server is faster and shows nothing."""
 
     def driven(self, robots: Sequence[str]) -> Sequence[str]:
-        """Those that follow actors."""
+        """Objects that follow actors."""
         return tuple(self.follow)
 
 

@@ -36,7 +36,7 @@ class Mujoco(BridgeOptions):
     """Coefficient of friction between wheels and ground; 0.1 is ice. It also limits the acceleration of omnidirectional
     robots."""
     mass: Annotated[Kilograms, Field(gt=0)] | None = None
-    """Mass of each robot; null is that of the scenario, which is 1 kg unless it says so."""
+    """Mass of each robot; null is its mass in the scenario, by default 1 kg."""
     lag: Annotated[Seconds, Field(gt=0, le=10)] = 0.02
     """Time constant of motors: how fast wheels take on the speed that is wanted."""
     slip: Fraction = 0.0
@@ -47,7 +47,7 @@ class Mujoco(BridgeOptions):
     command_noise: Annotated[Number, Field(ge=0, le=10)] = 0.0
     """Standard deviation of the noise of the motors' speeds, relative to the speed."""
     lidar: Literal["compare", "replace", "off"] = "compare"
-    """What MuJoCo's rays are used for: `compare` reports their difference to irsim's ranges, with all robots upright;
+    """Use of MuJoCo's rays: `compare` reports their difference to irsim's ranges, with all robots upright;
     `replace` gives robots MuJoCo's ranges, in which robots on wheels pitch a little; `off` casts none."""
     range_noise: Annotated[Meters, Field(ge=0)] = 0.0
     """Standard deviation of the noise of ranges, with `lidar: replace`."""

@@ -12,7 +12,7 @@ from irsim.options.registry import BRIDGES
 
 
 class Ros1(RosOptions):
-    """Take part in ROS 1 (Noetic, or that of Debian) with the topics of `ros2`; roscore must run."""
+    """Take part in ROS 1 (Noetic or Debian's) with the topics of `ros2`; roscore must run."""
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros1"}]}
 
@@ -20,7 +20,7 @@ class Ros1(RosOptions):
     master: Annotated[str, Field(pattern=r"^http://[^\s/]+:[0-9]{1,5}/?$")] | None = Field(
         default=None, examples=["http://192.168.1.20:11311"]
     )
-    """Address of the master; default: that of the variable `ROS_MASTER_URI`."""
+    """Address of the master; default: the variable `ROS_MASTER_URI`."""
 
 
 BRIDGES.register(Ros1)(opened_by("ros"))

@@ -30,7 +30,7 @@ class Ros2(RosOptions):
     distro: Literal["humble", "jazzy"] = "humble"
     """Release of ROS 2 of the other nodes, `jazzy` also for later ones. Only `ros2 node list` depends on it."""
     domain: Annotated[Integer, Field(ge=0, le=101)] | None = None
-    """Number of the domain; default: that of the variable `ROS_DOMAIN_ID`, else 0."""
+    """Number of the domain; default: the variable `ROS_DOMAIN_ID`, else 0."""
     loopback: Bool = False
     """With `dds`: whether to speak to nodes on this computer only, as also with the variables of ROS 2
     `ROS_LOCALHOST_ONLY=1` and `ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST`."""

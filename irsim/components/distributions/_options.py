@@ -22,7 +22,7 @@ class DistributionOptions(Options):
 
 
 class WorldExtent(Protocol):
-    """What a distribution may ask of the world: its size [m] and its middle."""
+    """World data that a distribution may use: size [m] and middle."""
 
     @property
     def width(self) -> float:

@@ -21,7 +21,7 @@ _PALETTE = {"robot": ROBOT_COLOR, "robot_acker": ACKER_COLOR, "obstacle": OBSTAC
 
 
 class KinematicsHandler(ABC):
-    """A drive: how the state follows from a control. Attributes and methods default to those of a differential drive.
+    """A drive: how the state follows from a control. Attributes and methods default to a differential drive.
 
     States are columns (state_dim, 1): x, y [m], heading [rad], further rows as the drive needs them; controls are
     columns (action_dim, 1).

@@ -69,7 +69,7 @@ def read_meta(path: Path, name: str) -> RosMeta:
     """The YAML file of a map.
 
     Raises:
-        MapProblem: The file is not that of a map, or has a wrong value; the message names the key.
+        MapProblem: The file describes no map, or has a wrong value; the message names the key.
     """
     try:
         with path.open("rb") as file:

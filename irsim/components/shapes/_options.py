@@ -39,7 +39,7 @@ class RandomOutline(ShapeOptions):
     irregularity_range: Annotated[list[Annotated[Component, Field(ge=0, le=1)]], vector(("1", "1"), 2)] = [0.0, 1.0]
     """Range of the unevenness of the angles between vertices: 0 is even, 1 very uneven."""
     spikeyness_range: Annotated[list[Annotated[Component, Field(ge=0, le=1)]], vector(("1", "1"), 2)] | None = None
-    """Range of the variation of the distances from the middle: 0 is none; null is [0, 1], or [0, 0] if convex."""
+    """Range of the variation of distances from the middle (0: no variation); null is [0, 1], or [0, 0] if convex."""
     num_vertices_range: Annotated[list[Annotated[Integer, Field(ge=3)]], vector(("1", "1"), 2)] = [4, 10]
     """Range of the number of vertices: the smallest number, and one more than the largest."""
     number: Annotated[Integer, Field(ge=1, le=1)] = 1

@@ -1,4 +1,4 @@
-"""Build backend: scikit-build-core, with a C++ compiler from PyPI where the machine has none.
+"""Build backend: scikit-build-core, with a C++ compiler from PyPI on machines without one.
 
 pip calls the functions of PEP 517 and PEP 660 in this module (``build-backend`` in ``pyproject.toml``). Each calls
 scikit-build-core, which requires CMake and ninja where they are missing. Where a C++ compiler is missing, this module
@@ -60,13 +60,13 @@ COMPILERS = ("c++", "g++", "clang++")
 
 
 def get_requires_for_build_wheel(config_settings: ConfigSettings | None = None) -> list[str]:
-    """What building a wheel needs beyond ``build-system.requires``."""
+    """Requirements of a wheel beyond ``build-system.requires``."""
     with _zig_generator():
         return skbuild.get_requires_for_build_wheel(_plain(config_settings)) + _compiler_requirement()
 
 
 def get_requires_for_build_editable(config_settings: ConfigSettings | None = None) -> list[str]:
-    """What an editable install needs beyond ``build-system.requires``."""
+    """Requirements of an editable install beyond ``build-system.requires``."""
     with _zig_generator():
         return skbuild.get_requires_for_build_editable(_plain(config_settings)) + _compiler_requirement()
 

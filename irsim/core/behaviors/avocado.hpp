@@ -21,7 +21,7 @@ struct AvocadoOptions : OrcaSettings {
   double attention_time;              // kappa: time to a collision that gets most of the attention [s]
   double attention_step;              // delta: share of the attention that is renewed in a step
   double noise;                       // eta: largest error of an observed velocity, without attention [m/s]
-  std::optional<bool> keep_gap;       // whether a step takes only a share of a gap; none: those of robots after a tie
+  std::optional<bool> keep_gap;       // whether a step takes only a share of a gap; unset: for robots after a tie
 
   static constexpr auto fields() {
     using O = AvocadoOptions;

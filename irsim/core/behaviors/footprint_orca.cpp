@@ -15,7 +15,7 @@ namespace {
 constexpr double kOutlineDistance = 0.5;   // gap of bounding circles from which these stand for outlines [m]
 constexpr double kRestingSpeed = 0.1;      // an arrived object that is slower rests [m/s]
 constexpr double kStrangerDistance = 0.1;  // distance kept in addition from movers that do something else [m]
-constexpr double kStrangerHorizons = 2.0;  // time horizon for them, in those of the options
+constexpr double kStrangerHorizons = 2.0;  // time horizon for them, in time horizons of the options
 constexpr double kWayReach = 5.0;          // half the side of the box in which static obstacles block a way [m]
 constexpr double kRestingReach = 10.0;     // farther bodies that rest do not block a way [m]
 

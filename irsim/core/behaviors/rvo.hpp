@@ -24,7 +24,7 @@ struct RvoOptions {
   // angle to the right of the wanted velocity while something moving is ahead [degrees]; none: only ties are broken
   std::optional<double> sidestep;
   RvoTurning turning;
-  std::optional<bool> keep_gap;  // whether a step takes only a share of a gap; none: those of robots do
+  std::optional<bool> keep_gap;  // whether a step takes only a share of a gap; unset: for robots
 
   static constexpr auto fields() {
     using R = RvoOptions;

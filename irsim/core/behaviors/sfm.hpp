@@ -21,7 +21,7 @@ struct SfmOptions {
   double safety_radius;  // [m]
   // angle to the right of the wanted velocity while something moving is ahead [degrees]; none: only ties are broken
   std::optional<double> sidestep;
-  std::optional<bool> keep_gap;  // whether a step takes only a share of a gap; none: those of robots do
+  std::optional<bool> keep_gap;  // whether a step takes only a share of a gap; unset: for robots
   // forces between members of a group behavior
   std::optional<std::vector<std::vector<int>>> social_groups;  // indices in Decision::members
   double force_factor_coherence, force_factor_group_repulsion;

@@ -38,7 +38,7 @@ struct SeenRows {
   Given<double, 2> pose, velocity, commanded, control, low, high, goal;
   Given<double, 1> steering, yaw_rate, goal_threshold, radius;
   Given<std::uint8_t, 1> arrived;
-  std::size_t neighbors = 0;  // those of each robot; the arrays below have no memory without any
+  std::size_t neighbors = 0;  // of each robot; the arrays below have no memory without any
   Given<std::uint8_t, 2> present, neighbor_arrived, is_robot;
   Given<double, 3> position, neighbor_velocity;
   Given<double, 2> heading, neighbor_radius, extent, own_extent;

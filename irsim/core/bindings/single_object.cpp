@@ -64,8 +64,8 @@ Numbers drive_deviation(const Drive& drive, const Numbers& control) {
   return {sigma[0], sigma[1], sigma[2]};
 }
 
-/// Impose a control on a row for the next step, and return whether limits of speed or acceleration will cut it. What
-/// the drive itself refuses does not count, nor does an excess below `kRounding`, which is a rounding error.
+/// Impose a control on a row for the next step, and return whether limits of speed or acceleration will cut it.
+/// Refusals of the drive itself do not count, nor does an excess below `kRounding`, which is a rounding error.
 bool impose_row(const World& world, BoundState& bound, int row, const Numbers& control) {
   constexpr double kRounding = 1e-9;
   State& state = bound.of(world);

@@ -45,7 +45,7 @@ void push_in_parts(const World& world, State& state, int w, Workspace& work, con
     for (const Contact& contact : scene.contacts) touched[contact.a] = touched[contact.b] = 1;
     merge_contacts(buffers.merged, scene.contacts, share);
   };
-  // What the last step left in an overlap parts as fast as in a step that is not divided.
+  // Overlaps left by the last step are resolved as fast as in a step that is not divided.
   Resolution some{std::max(kFewSweeps, options.sweeps / parts), kExtraSweeps / parts, options.slop, world.step_time};
   buffers.from.clear(), buffers.turned.assign(world.moving.size(), 0.0);
   for (const int i : world.moving) buffers.from.push_back(state.pose[first + i]);

@@ -21,7 +21,7 @@ struct Resolution {
   int extra_sweeps;  // maximum number of further sweeps while bodies visibly overlap
   double slop;       // gap left between bodies that were pushed apart [m]
   double step_time;  // [s]
-  // In parts of a step: no contact makes a body faster than the fastest one [m/s]. What remains of older overlaps
+  // In parts of a step: no contact makes a body faster than the fastest one [m/s]. The rest of older overlaps
   // would, because it goes in the time of a part; only this share of it counts.
   double fastest = kInfinity;
   double share = 1.0;

@@ -215,7 +215,7 @@ bool breaks_ties(const Behavior& behavior) {
 /// differ by at most 2 kLeanSpeed times the sum of both speeds, and no speed exceeds 1 + speed2.
 double same_speed2(double speed2) { return 4.0 * kLeanSpeed * (2.0 + speed2); }
 
-/// What an object has found about ties with its neighbors.
+/// Ties of an object with its neighbors.
 struct Ties {
   bool any = false;      // whether it is one of a mirrored pair
   bool on_line = false;  // whether it meets the other one of a pair head-on

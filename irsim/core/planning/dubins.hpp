@@ -16,7 +16,7 @@ struct DubinsWay {
 
 /// The six ways of which the shortest of all is one (Dubins: On curves of minimal length with a constraint on average
 /// curvature, 1957; formulas of Shkel, Lumelsky: Classification of the Dubins set, 2001). `visit(way)` is called for
-/// those that exist.
+/// each that exists.
 template <class Visit>
 void for_dubins_ways(const Pose& from, const Pose& to, double radius, Visit&& visit) {
   const auto positive = [](double angle) {

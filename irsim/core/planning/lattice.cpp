@@ -39,7 +39,7 @@ bool OpenCells::own_cells(const Shapes& shapes, int id) const {
   return norm(grid.cell() - cell) <= 1e-9 * norm(cell) && norm(gap) <= 1e-6 * norm(cell);
 }
 
-/// Whether no obstacle is near enough to matter for steps to and from a node. Cells of a map that are those of this
+/// Whether no obstacle is near enough to matter for steps to and from a node. Cells of a map that coincide with this
 /// lattice do not matter: each is as large as a step, so steps between free nodes meet none of them.
 bool OpenCells::clear_around(int i, int j) const {
   const Box& own = space_.body.box();

@@ -15,7 +15,7 @@ struct Side {
   double offset;  // [m]
 };
 
-/// What the movers of one world cover until they stand: scratch memory, by id.
+/// Areas that movers of one world cover until they stand: scratch memory, by id.
 struct StopHulls {
   Hulls all;
   std::vector<int> body, stop;  // hulls of the body, and of all its places if it brakes now; -1: unknown

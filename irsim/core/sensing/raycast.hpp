@@ -9,7 +9,7 @@ namespace irsim {
 
 /// Casts all beams of one scan. An edge is tested only against the beams between the bearings of its ends, nearer
 /// bodies are tested first, and bodies hidden behind earlier hits are skipped. The results equal the ones from testing
-/// every beam against every edge: the nearest hit counts, among equal ones that of the lowest object id.
+/// every beam against every edge: the nearest hit counts, among equal ones the lowest object id.
 class Fan {
  public:
   /// `heading`: cosine and sine of the sensor heading, world frame; `reach` [m].

@@ -27,7 +27,7 @@ struct NearestRows {
 
 /// The indices of up to `most` other objects of the world of a row, nearest first by the distance between bounding
 /// circles, then by index. An object counts if this distance is at most `reach`, and if the row targets its role.
-/// Static objects count with `statics`, except unobstructed ones, maps and the walls round a world. `circles`: those of
+/// Static objects count with `statics`, except unobstructed ones, maps and the walls round a world. `circles` belong to
 /// this world.
 void nearest_objects(const World& world, const State& state, const std::vector<BoundingCircle>& circles, int row,
                      int most, double reach, bool statics, NearestRows& out);

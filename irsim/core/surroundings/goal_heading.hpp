@@ -17,8 +17,8 @@ double yaw_rate_to_goal(const World& world, const State& state, int row, int obj
 
 /// Let an object that must reach a heading at its goal turn to it there.
 ///
-/// `diff` brakes before its goal, stands while it turns, and stays there, unless its behavior avoids somebody who would
-/// otherwise run into it soon. `omni_angular` moves as its behavior wants, and turns where the behavior rests or
+/// `diff` brakes before its goal, stands while it turns, and stays there, unless its behavior avoids an object that
+/// would otherwise run into it soon. `omni_angular` moves as its behavior wants, and turns where the behavior rests or
 /// oscillates.
 ///
 /// Args:

@@ -70,10 +70,10 @@ struct TieWay {
 };
 
 /// The sine of the angle from the way of the first object of a mirrored pair to the other one, positive on the left;
-/// nothing if the objects are no mirror images or their ways do not meet.
+/// nothing if the objects are not mirror images or their ways do not meet.
 ///
 /// Velocities and directions to the goals must mirror each other. Two that stand without a goal, two that drive side by
-/// side, and one that follows another are no such pair.
+/// side, and one that follows another are not such a pair.
 std::optional<double> mirrored(const State& state, const MirrorPair& pair);
 
 /// The rest of `tied`, for a pair that passes `may_mirror`.

@@ -46,8 +46,8 @@ struct Walls {
   void facing(Vec2 centre, double reach, FacingWalls& last) const;
 };
 
-/// The outlines of static objects other than circles. Linestrings have walls on both sides, also those that are
-/// `unobstructed`; other shapes that are do not. The parts of a compound make one outline, in which a polygon stands
+/// The outlines of static objects other than circles. Linestrings have walls on both sides, `unobstructed` ones
+/// too; other `unobstructed` shapes have no walls. The parts of a compound make one outline, in which a polygon stands
 /// for a circle. Outlines of maps are left out if no behavior avoids obstacles.
 Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed);
 

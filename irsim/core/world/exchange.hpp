@@ -15,7 +15,7 @@ struct Origin {
 };
 
 /// Let `state`, which is new and has one world, continue from `before`. Clock, keys and events come from `before`;
-/// each object has the pose, goals, flags, history and shape of its origin. Flags are those of the last step; sensors
+/// each object has the pose, goals, flags, history and shape of its origin. Flags are from the last step; sensors
 /// take a new scan.
 void continue_from(const World& world, State& state, const World& world_before, const State& before,
                    const std::vector<Origin>& origins);

@@ -9,7 +9,7 @@ __all__ = ["OBJECTS"]
 OBJECTS: dict[str, Code] = {
     "duplicate-name": Code(
         "name used twice",
-        "Names must be unique. With 'number' give a list of names, one per object (the last one is repeated), or none.",
+        "Names must be unique. With 'number' give a list of names, one per object (the last one is repeated), or no name.",
     ),
     "role-mismatch": Code(
         "role does not fit the section",
@@ -253,7 +253,7 @@ OBJECTS: dict[str, Code] = {
         "people who stop for good when they touch",
         "Under 'sfm' people push each other away, but now and then they touch, whatever the safety_radius. In "
         "collision_mode stop, the default, a contact stops both for good, so a crowd freezes bit by bit. With "
-        "unobstructed_obstacles people walk on and only robots stop, with unobstructed nobody stops; contacts are "
+        "unobstructed_obstacles people walk on and only robots stop, with unobstructed nothing stops; contacts are "
         "counted all the same. People with 'orca' do not touch.",
     ),
     "region-left": Code(

@@ -15,7 +15,7 @@ path of the value in the file::
 
 ``fix`` is the advice in words. ``edit`` is the same repair for ``irsim validate --fix``, which applies it to errors
 and warnings if the finding then disappears and no comment is lost; ``safe=False`` marks an edit that only the author
-can choose, and ``Edit("remove", path)`` deletes a key. The path of a nested value continues that of its entry's key.
+can choose, and ``Edit("remove", path)`` deletes a key. The path of a nested value extends the path of its entry.
 The code has a title, an explanation (``irsim/diagnostics/codes/``) and an example with its repair
 (``irsim/diagnostics/examples.py``). Tests have scenarios with and without the finding, and correct the headers of
 files in ``tests/bad``. A new family is a module with ``check(context)``, added to ``_FAMILIES``.

@@ -67,7 +67,7 @@ def _heading_not_reached(context: Context, path: Path, records: list[ObjectRecor
             if off < record.goal_threshold:
                 continue
             message = (
-                f"'{record.name}' keeps its heading and never turns to that of its goal, which is {off:.3g} rad off"
+                f"'{record.name}' keeps its heading and never turns to the goal's heading, which is {off:.3g} rad off"
             )
             fix = "kinematics: {name: omni_angular}, or {name: diff}"
         elif drive.steered and behavior.name != "follow":

@@ -87,8 +87,8 @@ def _unused_behavior(context: Context, group: int, members: list[ObjectRecord]) 
         yield hint(
             "group-behavior-unused",
             context.entry_path(later, "group_behavior"),
-            f"group {group} takes the group behavior of its first member, '{members[0].name}', which has none: this "
-            "one has no effect",
+            f"group {group} takes the group behavior of its first member, '{members[0].name}', which has no such key: "
+            "this one has no effect",
         )
 
 

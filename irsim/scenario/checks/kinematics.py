@@ -126,7 +126,7 @@ def _limits_order(context: Context, record: ObjectRecord) -> Iterator[Finding]:
                 context.entry_path(record, written),
                 f"component {i}: the lower limit {low:g}{other} is above the upper limit {high:g}",
                 given=getattr(record, written),
-                fix="each number of vel_min must not exceed that of vel_max",
+                fix="no number of vel_min may exceed the one in vel_max",
             )
             return
     if record.kinematics is None or context.is_given(record, "vel_min") or not context.is_given(record, "vel_max"):

@@ -49,7 +49,7 @@ def _avoided(context: Context, path: Path, record: ObjectRecord, options: Follow
             yield error(
                 "unknown-zone",
                 where,
-                f"no zone is called '{name}'" + ("" if zones else ": world.zones has none"),
+                f"no zone is called '{name}'" + ("" if zones else ": world.zones is empty"),
                 given=name,
                 allowed=list(zones)[:_MAX_NAMES] or None,
                 fix=f"write '{near}'"

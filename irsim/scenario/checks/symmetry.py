@@ -17,9 +17,9 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 _SIDESTEPPING = ("orca", "avocado", "rvo", "sfm")
 """Behaviors with the key ``sidestep``. By default they break ties between two that are each other's mirror images."""
 _PASSING = ("rvo", "sfm")
-"""Those of them that pass a slower object straight ahead all the same; `sfm` only where it breaks ties."""
+"""Of these, behaviors that pass a slower object straight ahead all the same; `sfm` only where it breaks ties."""
 _NOT_FOR_CARS = ("rvo", "sfm")
-"""Those of them that choose velocities which a car cannot take up, whatever side they choose."""
+"""Of these, behaviors that choose velocities which a car cannot take up, whatever side they choose."""
 _CROWDED = 4.0
 """Social forces wedge rings of bodies that are so wide, side by side, and stand on their circles for ever [m]."""
 _ANGLE = 10.0

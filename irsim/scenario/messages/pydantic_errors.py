@@ -165,7 +165,7 @@ class Explainer:
         )
 
     def _after_comma(self, key: Any, written: Any) -> str | None:
-        """What to write for ``{radius: 0,3}``, which YAML reads as ``{radius: 0, 3: null}``."""
+        """The fix for ``{radius: 0,3}``, which YAML reads as ``{radius: 0, 3: null}``."""
         keys = list(written) if isinstance(written, Mapping) else []
         position = next((i for i, other in enumerate(keys) if str(other) == key), 0)
         if not str(key).isdigit() or position == 0 or written[keys[position]] is not None:

@@ -87,10 +87,10 @@ def option_problems(
 
     Args:
         failure: The exception of ``model_validate`` of the root.
-        data: What was validated.
+        data: The validated data.
         root: The model that has validated it.
         place: Where the options are in the data; paths of the problems start there.
-        owner: What has the options, as messages call it.
+        owner: Owner of the options, as messages call it.
     """
     where = format_path(place)
     diagnostics = []

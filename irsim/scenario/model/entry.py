@@ -154,7 +154,7 @@ class Entry(Options):
     sqrt(dx^2 + dy^2 + turn^2), in metres and radians, must be below it, so 0.15 means under 0.15 m and under 0.15 rad
     (8.6 degrees), and less of each if both are off."""
     arrive_mode: Annotated[Any, PerObject(Literal["position", "state"])] = "position"
-    """What must match at the goal: `position` alone, or `state`, which includes the heading that a goal of three
+    """Required match at the goal: `position` alone, or `state`, which includes the heading that a goal of three
     numbers [x, y, heading] gives. `state` has no tolerance of its own: sqrt(dx^2 + dy^2 + turn^2), in metres and
     radians, must be below `goal_threshold`, so 0.1 allows at most 0.1 rad. `diff` and `omni_angular` turn to it at
     their goal under every built-in behavior, and a car comes in with it under `follow`."""

@@ -51,7 +51,7 @@ INEXPRESSIBLE: dict[str, str] = {
 
 
 def json_schema(*, user_code: bool = True) -> dict[str, Any]:
-    """The schema of scenario files, with all built-in features and those of installed plug-ins.
+    """The schema of scenario files, with all features, built in or of installed plug-ins.
 
     Args:
         user_code: Include the features that user code has registered in this process.
@@ -76,7 +76,7 @@ def json_schema(*, user_code: bool = True) -> dict[str, Any]:
         "$id": SCHEMA_ID,
         "title": "irsim scenario",
         "description": "A scenario of the robot-navigation simulator irsim: a world with robots and obstacles in it.",
-        "$comment": f"Written by 'irsim schema'. What it does not express: {rules}.",
+        "$comment": f"Written by 'irsim schema'. It does not express: {rules}.",
         "anyOf": [{"$ref": "#/$defs/Scenario"}, {"$ref": "#/$defs/Wrapped"}],
         "$defs": {name: definitions[name] for name in sorted(definitions)},
     }
@@ -84,7 +84,7 @@ def json_schema(*, user_code: bool = True) -> dict[str, Any]:
 
 
 def _definitions(user_code: bool) -> dict[str, Any]:
-    """The schemas of all models: those of the scenario itself and of all features that it can name."""
+    """The schemas of all models: the scenario itself and all features that it can name."""
     makers: dict[str, Callable[[], dict[str, Any]]] = {"Scenario": Scenario.model_json_schema}
     definitions: dict[str, Any] = {}
     collecting = SCHEMA_PARTS.set(SchemaParts(makers, user_code))

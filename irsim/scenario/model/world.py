@@ -156,7 +156,7 @@ class WorldModel(Options):
     """Who moves the objects: the simulator (`internal`), or the calling program (`external`), which sets their
     states."""
     control_mode: Annotated[Literal["auto", "keyboard"], OrNull("auto")] = "auto"
-    """What drives the robot chosen in `gui.keyboard`: its behavior (`auto`) or the `keyboard`."""
+    """Driver of the robot chosen in `gui.keyboard`: its behavior (`auto`) or the `keyboard`."""
     collision_mode: Literal["stop", "unobstructed", "unobstructed_obstacles", "reactive", "contact"] = "stop"
     """Effect of a collision: it stops both objects (`stop`), has no effect (`unobstructed`, `reactive`), stops robots
     only (`unobstructed_obstacles`), or lets bodies push and slide (`contact`)."""

@@ -90,7 +90,7 @@ def resolve(
 
 
 def named(objects: Sequence[ObjectRecord], name: str) -> list[ObjectRecord]:
-    """The object of that name or, if there is none, the members of the group of that name."""
+    """The object of that name or, without one, the members of the group of that name."""
     own = [record for record in objects if record.name == name]
     return own or [record for record in objects if record.group_name == name]
 

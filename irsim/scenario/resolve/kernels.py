@@ -104,7 +104,7 @@ def placement_kernel(distribution: str) -> type[Any]:
     """The class of the core that holds placements of a distribution.
 
     Raises:
-        LookupError: The distribution has none.
+        LookupError: The distribution has no class.
     """
     feature = DISTRIBUTIONS.get(distribution)
     if feature is None or feature.kernel is None:

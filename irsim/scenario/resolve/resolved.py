@@ -86,7 +86,7 @@ class ObjectRecord:
     restitution: float
     drive_tau: float  # effective: kinematics first, then world
     tags: tuple[str, ...] = ()
-    watches: bool = False  # whether `fov` is written, and the field of view is not just that of its lidar
+    watches: bool = False  # whether `fov` is written; else the field of view is its lidar's
     joined: bool = True  # whether it follows the behavior of its group
     start_time: float = 0.0  # until then it stands still [s]
     appear_time: float = 0.0  # until then it is not in the world [s]
@@ -127,8 +127,8 @@ class ObjectRecord:
 class Placement:
     """The objects of one entry whose places are drawn for each scene, such as ``distribution: random``.
 
-    ``range_low``, ``range_high``, ``min_distance`` and ``clear_of`` are those of :class:`Drawn`, ``options`` its
-    ``kernel``, where ``Drawn`` is that of :mod:`irsim.components.distributions._options`.
+    ``range_low``, ``range_high``, ``min_distance`` and ``clear_of`` are fields of ``Drawn`` in
+    :mod:`irsim.components.distributions._options`, and ``options`` is its ``kernel``.
     """
 
     objects: list[int]  # ids

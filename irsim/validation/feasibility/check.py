@@ -1,6 +1,6 @@
 """All feasibility checks of a scenario.
 
-``irsim.validate`` adds these findings to those of :mod:`irsim.scenario.checks`. All work is bounded by counts, never by
+``irsim.validate`` reports these findings besides :mod:`irsim.scenario.checks`. All work is bounded by counts, never by
 a clock, so the same scenario gives the same findings on every machine.
 """
 

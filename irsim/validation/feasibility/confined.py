@@ -19,7 +19,7 @@ _MAX_SCENES = 3
 
 
 def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
-    """Report goals to which a path leads, but none that stays in ``within`` and out of ``avoid``."""
+    """Report goals that can be reached only by leaving ``within`` or entering ``avoid``."""
     confined = {
         mover.record.id: mover
         for mover in movers
@@ -57,7 +57,7 @@ def _report(mover: Mover, index: int, scene: Scene, tally: Tally) -> None:
     zones = ", ".join(f"'{name}'" for name in options.avoid)
     rules = " and ".join(filter(None, [stays, f"keeps out of {zones}" if zones else ""]))
     fixes = ["a wider 'within'"] if stays else []
-    fixes += [f"a smaller zone than {zones}, or none in 'avoid'"] if zones else []
+    fixes += [f"a smaller zone than {zones}, or no zone in 'avoid'"] if zones else []
     fixes.append("more room beside the obstacles")
     tally.add(
         "goal-unreachable",

@@ -198,7 +198,7 @@ def _other_goal(scene: Scene, mover: Mover, index: int, grid: ClearanceGrid | No
 _DEFAULT_CELL_M = 0.1
 """Cell size [m] of grid planners without a resolution and without a map."""
 _MAX_COMMON_AREA = 2500.0
-"""Largest world with a map [m^2] in which `follow` tries cells of the default size before those of the map."""
+"""Largest world with a map [m^2] in which `follow` tries cells of the default size before the map's cells."""
 _FINER_CELLS_M = (0.05, 0.03, 0.02)
 """Cell sizes [m] that are tried if the planner finds no path."""
 _MAX_CELLS = 1_000_000

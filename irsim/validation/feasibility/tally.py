@@ -58,8 +58,8 @@ class Tally:
             code: Code of the finding.
             path: Where it is written in the scenario.
             record: The object.
-            message: What is wrong.
-            fix: What to write instead.
+            message: The problem.
+            fix: The advice.
             seed: Seed of the scene.
             serious: Whether it is a warning, not a hint; a serious finding replaces one that is not.
             entry: The entry of the scenario that it counts for; default: the object's.

@@ -261,7 +261,7 @@ def test_the_command(scene, tmp_path, monkeypatch) -> None:
     assert call("flat.navmesh", "-o", "none/b.yaml").exit_code == 0
     assert Path("none/b.bridge.json").exists(), "the folder is made"
     lost = call("flat.navmesh", "-o", "b.yaml/c.yaml")
-    assert (lost.exit_code, "'b.yaml' is no folder" in lost.output) == (1, True)
+    assert (lost.exit_code, "'b.yaml' is not a folder" in lost.output) == (1, True)
 
 
 def test_the_map_is_where_the_scene_is(scene, tmp_path) -> None:
