@@ -290,7 +290,7 @@ LED = (
 def told(
     difference: irsim.results.validation.ScenarioDiff,
 ) -> dict[tuple[str | None, str | None], tuple[object, object]]:
-    """What changed in the world, by object and fact; of options their name."""
+    """Changes of the world, by object and fact; of options their name."""
     facts = difference.world or []
     return {(fact.object, fact.key): (_name(fact.before), _name(fact.after)) for fact in facts}
 

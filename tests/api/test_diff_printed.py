@@ -1,4 +1,4 @@
-"""What a difference prints."""
+"""The printed form of a difference."""
 
 from __future__ import annotations
 

@@ -190,7 +190,7 @@ LED: dict[str, Any] = {
 OTHER: dict[str, Any] = {
     "number": 2,
     "distribution": {"name": "circle", "radius": 4},
-    "name": "somebody",
+    "name": "walker",
     "tags": ["pedestrian"],
     "state": [3, 12, 0.2],
     "goal": [12, 3],
@@ -232,7 +232,7 @@ NO_EFFECT = {
         "start_time",
     },
 }  # fmt: skip
-"""Only the first of a group leads it; what never moves follows nobody, and has no goals or limits."""
+"""Only the first of a group leads it; what never moves follows no object, and has no goals or limits."""
 NOT_OF_THE_WORLD = {"role", "plot"}
 """The section says the role already; how a thing is drawn is not in the world."""
 WORLD: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""What the result of a run says about fog, maps, people and headings."""
+"""Sentences in the result of a run about fog, maps, people and headings."""
 
 from __future__ import annotations
 

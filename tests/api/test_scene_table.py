@@ -1,4 +1,4 @@
-"""What the table of a scenario says about goals, sensors and beams."""
+"""Lines in the table of a scenario about goals, sensors and beams."""
 
 from __future__ import annotations
 

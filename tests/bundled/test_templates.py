@@ -103,7 +103,7 @@ def test_the_default_parameters_give_the_file_itself(template: Template) -> None
 
 
 HINTS = {"perlin-forest": ["narrow-passage"], "random-polygons": ["dash-into-obstacle"]}
-"""What is meant so."""
+"""Findings that are meant so."""
 
 
 def test_valid_without_a_warning(template: Template, validator: Any) -> None:

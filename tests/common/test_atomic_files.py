@@ -1,4 +1,4 @@
-"""Files are written in one step: whoever looks sees the old content or the new one, and nothing else is left."""
+"""Files are written in one step: a reader sees the old content or the new one, and nothing else is left."""
 
 from __future__ import annotations
 

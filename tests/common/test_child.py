@@ -75,7 +75,7 @@ def test_a_child_ends_with_a_parent_that_is_killed() -> None:
 
 
 def is_running(pid: int) -> bool:
-    """Whether a process runs; one that has ended but that nobody has waited for does not."""
+    """Whether a process runs; one that has ended but has not been waited for does not."""
     try:
         return Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()[0] != "Z"
     except (OSError, IndexError):

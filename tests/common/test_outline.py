@@ -79,7 +79,7 @@ def test_shapely_core_and_box_agree(simulation: Simulation, shape: str) -> None:
     body = outline(simulation.state, row_of(simulation, shape), world_frame=True)
     low, high = body.box()
     geometry = body.shapely()
-    if shape == "map":  # its box is that of the picture, its geometry the outline of the occupied cells
+    if shape == "map":  # its box is the picture's, its geometry the outline of the occupied cells
         assert geometry.bounds == pytest.approx((4, 4, 6, 6))
     else:
         assert geometry.bounds == pytest.approx((*low, *high), abs=1e-12)

@@ -1,4 +1,4 @@
-"""What `sfm` and `rvo` should decide, written out with NumPy and without any cleverness."""
+"""Decisions that `sfm` and `rvo` should make, written out with NumPy and without any cleverness."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Ring:
 
 @dataclass
 class View:
-    """What one object sees, world frame: radii of others as they are, its own padded by 0.1 m."""
+    """The view of one object, world frame: other radii as they are, its own padded by 0.1 m."""
 
     position: np.ndarray
     velocity: np.ndarray
@@ -102,7 +102,7 @@ def obstacle_force(o: Any, view: View) -> np.ndarray:
 
 
 def on_free_way(o: Any, view: View, desired: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """The force of walls without what holds somebody whose way is free for 3 m: at most half the pull is left."""
+    """The force of walls without what holds back an object whose way is free for 3 m: at most half the pull is left."""
     speed = np.linalg.norm(desired)
     if not speed > 0:
         return force
@@ -117,7 +117,7 @@ def on_free_way(o: Any, view: View, desired: np.ndarray, force: np.ndarray) -> n
 def past_walls(view: View, wanted: np.ndarray, reach: float = 3.0) -> np.ndarray:
     """The wanted velocity turned to the tangent of what is in the way within `reach` and before the goal.
 
-    The side is that of the shorter way over the corner to the goal.
+    The side is where the way over the corner to the goal is shorter.
     """
     look = min(reach, view.goal)
     ahead = math.atan2(wanted[1], wanted[0])

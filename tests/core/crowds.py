@@ -99,7 +99,7 @@ class Crowd:
         return self.state.vertices(i, 0, True).mean(axis=0)
 
     def view(self, i: int, *, grouped: bool = False) -> oracle.View:
-        """What object i sees."""
+        """The view of object i."""
         spec = self.specs[i]
         position, goal = np.array(spec["pose"][:2]), np.array(spec["goals"][0][:2])
         way, top = goal - position, np.array(spec["vel_max"][:2])
@@ -132,7 +132,7 @@ class Crowd:
         return view
 
     def control(self, i: int, velocity: np.ndarray, turning: dict[str, float], fastest: float = math.inf) -> np.ndarray:
-        """What the drive does about a wanted velocity; no faster along the heading than `fastest`."""
+        """The control of the drive for a wanted velocity; no faster along the heading than `fastest`."""
         drive, spec = str(self.drives[i]), self.specs[i]
         theta = spec["pose"][2]
         if drive.startswith("omni"):

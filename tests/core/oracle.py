@@ -1,4 +1,4 @@
-"""What the core should compute, written out with NumPy and without any cleverness."""
+"""Results that the core should compute, written out with NumPy and without any cleverness."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def distances(state: core.State, row: int, origin: np.ndarray, beam: np.ndarray,
 
 
 def outline(state: core.State, row: int) -> np.ndarray:
-    """Corners of a polygon or line, those of a polygon with the first once more."""
+    """Corners of a polygon or line; a polygon ends with its first corner again."""
     v = state.vertices(row, 0, True)
     return np.vstack([v, v[:1]]) if state.parts(row)[0] == "polygon" else v
 

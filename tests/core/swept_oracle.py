@@ -29,7 +29,7 @@ class Body:
 
     Attributes:
         core: Its outline in the body frame without `radius`: a point, a line, or a polygon.
-        radius: Of a disc [m]; 0 for others.
+        radius: Of a disc [m]; 0 for other shapes.
         start: x, y [m], heading [rad].
         by: Displacement of the origin under Euler's law [m].
         turn: Change of the heading [rad].

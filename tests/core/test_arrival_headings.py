@@ -187,7 +187,7 @@ obstacle:
 
 
 def test_whoever_turns_at_its_goal_lets_others_pass() -> None:
-    """Two others pass the place where a robot turns; nobody touches it, and it arrives in the end."""
+    """Two others pass the place where a robot turns; no object touches it, and it arrives in the end."""
     text = (
         "world: {width: 20, height: 10, time_limit: 60}\nrobot:\n"
         "  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [6, 5, 3], goal: [8, 5, 3.1], "

@@ -81,7 +81,7 @@ def test_opinion_of_one_that_never_reacts_has_a_closed_form() -> None:
     world, state = watching(behavior)
     no_reaction = math.tanh(0.7 * math.tanh(-3.22 / 2))
     first, attention = decide_with(world, state, 3.0, (-1.0, 0.0))
-    assert (first, attention) == (0.0, 1.0)  # one look is no evidence
+    assert (first, attention) == (0.0, 1.0)  # one look is not evidence
     for n in range(1, 12):
         opinion, _ = decide_with(world, state, 3.0, (-1.0, 0.0))
         assert opinion == pytest.approx(no_reaction * (1 - (1 - 0.1 * 2.0) ** n), abs=1e-12)

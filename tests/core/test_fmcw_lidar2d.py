@@ -1,4 +1,4 @@
-"""FMCW lidar: ranges are those of a lidar, radial velocities those of the closed form."""
+"""FMCW lidar: ranges equal a lidar's, radial velocities equal the closed form."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_every_beam_reads_the_projected_velocity(seed: int, compensate: bool, mo
 
 
 def test_noise_has_its_streams() -> None:
-    """Range, direction and velocity errors are those of the published draws; velocity noise needs no `noise`."""
+    """Range, direction and velocity errors equal the published draws; velocity noise needs no `noise`."""
     n, wall = 400, obstacle(pose=[4, 0, 0], parts=[rectangle(1, 60)])
     sensors = [
         lidar(3),

@@ -1,4 +1,4 @@
-"""follow: plans once, drives along the path on every drive, stands still and says so where there is none."""
+"""follow: plans once, drives along the path on every drive, stands still and says so without one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`footprint_orca` plans with the limits of its drive: it can always stop where nobody else may be."""
+"""`footprint_orca` plans with the limits of its drive: it can always stop where no other object may be."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def test_a_step_is_the_limit_of_fine_steps(drive: str, theta: float, psi: float,
     expected = fine(drive, np.array([1, 2, theta]), psi, np.array(u), dt)
     same_pose(state.pose[0], expected, 1e-7)
     _, psi_after, twist = oracle.move(drive, np.array([1, 2, theta]), psi, np.array(u), dt)
-    np.testing.assert_allclose(state.twist[0], twist, atol=1e-12)  # that of the start of the step, as under Euler
+    np.testing.assert_allclose(state.twist[0], twist, atol=1e-12)  # the start of the step counts, as under Euler
     if drive in ("steer", "angular"):
         assert state.extra[0, 0] == pytest.approx(psi_after, abs=1e-12)
 

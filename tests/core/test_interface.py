@@ -1,4 +1,4 @@
-"""What Python sees: fields, shapes, errors; and input that must not crash, hang or spread."""
+"""The interface to Python: fields, shapes, errors; and input that must not crash, hang or spread."""
 
 from __future__ import annotations
 

@@ -74,7 +74,11 @@ def test_in_any_pose(a, b, pose_a, pose_b) -> None:
         (circle(1, (0, 0)), line((1, -3), (1, 3)), True),
         (circle(1, (0, 0)), line((1.000001, -3), (1.000001, 3)), False),
         (circle(0.1, (0, 0)), rectangle(4, 4), True),  # inside
-        (circle(0.1, (0, 0)), line((-2, -2), (2, -2), (2, 2), (-2, 2), (-2, -2)), False),  # a closed line is no area
+        (
+            circle(0.1, (0, 0)),
+            line((-2, -2), (2, -2), (2, 2), (-2, 2), (-2, -2)),
+            False,
+        ),  # a closed line is not an area
         (rectangle(1, 1), rectangle(9, 9), True),
         (rectangle(2, 2), polygon((1, 1), (2, 1), (2, 2)), True),  # a corner
         (rectangle(2, 2), polygon((1, -0.5), (2, -0.5), (2, 0.5), (1, 0.5)), True),  # part of an edge

@@ -191,7 +191,7 @@ def test_noise(angle_std: float) -> None:
         np.testing.assert_allclose(state.beam_angles[5:], nominal, atol=1e-15)
         aim, error = nominal + angle_std * angle_error, 0.2 * range_error
         oracle.assert_scan(state, slice(5, None), range(1, 6), state.pose[0], 10.0, aim, error)
-        oracle.assert_scan(state, slice(0, 5), range(1, 6), state.pose[0], 10.0)  # std without noise is no noise
+        oracle.assert_scan(state, slice(0, 5), range(1, 6), state.pose[0], 10.0)  # std alone makes no noise
 
 
 def test_carriers_may_be_static_and_several() -> None:

@@ -340,7 +340,7 @@ def test_what_arrives_or_passes_too_far_away_does_not_overshoot() -> None:
     for y, kinds in ((5.11, []), (5.09, ["overshoot"])):
         _, state = passing(7.0, y=y)
         assert [event[0] for event in state.events(0)] == kinds
-    _, state = passing(7.0, arrive_mode=1, goals=[[5, 5, 0]])  # where the heading counts, passing is no near miss
+    _, state = passing(7.0, arrive_mode=1, goals=[[5, 5, 0]])  # where the heading counts, passing is not a near miss
     assert state.events(0) == []
 
 

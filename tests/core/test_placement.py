@@ -1,4 +1,4 @@
-"""Random placement: room for everybody, or a report."""
+"""Random placement: room for all objects, or a report."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_nothing_overlaps(seed: int, distance: float) -> None:
     for points in (state.pose[2:10, :2], state.pose[10:, :2], state.goal[2:10, :2]):
         gaps = np.linalg.norm(points[:, None] - points, axis=2)[np.triu_indices(8, 1)]
         assert (gaps >= distance).all()
-    # goals: clear of what stands still and of each other; those of static objects are anywhere
+    # goals: clear of what stands still and of each other; static objects have them anywhere
     assert np.isfinite(state.goal[10:]).all()
     parts = [[SHAPES[k % 3]] for k in range(8)]
     goals, poses = state.goal[2:10].tolist(), state.pose.tolist()

@@ -1,4 +1,4 @@
-"""`replay`: where a recording says, at its times, whoever is in the way."""
+"""`replay`: where a recording says, at its times, whatever is in the way."""
 
 from __future__ import annotations
 

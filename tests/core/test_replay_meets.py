@@ -65,7 +65,7 @@ def test_a_recorded_obstacle_takes_who_stands_in_its_way_along() -> None:
     for _ in range(25):
         env.step()
         gap = float(np.hypot(*(env.robot.state[:2, 0] - env.obstacle_list[0].state[:2, 0])))
-        assert gap > 0.6 - 1e-3, "nobody is inside of it"
+        assert gap > 0.6 - 1e-3, "no robot is inside of it"
 
 
 def test_a_robot_that_ends_where_it_began_arrives_when_its_recording_ends() -> None:

@@ -145,7 +145,7 @@ def room(width: float, height: float, thickness: float = 0.2) -> list[core.Objec
 @pytest.mark.parametrize("drive", ["diff", "omni", "omni_angular"])
 @pytest.mark.parametrize("seed", range(4))
 def test_goals_in_a_closed_room_of_rectangles_are_reached(drive: str, seed: int) -> None:
-    """Also close to the walls, from everywhere, with somebody else on the way."""
+    """Also close to the walls, from everywhere, with another robot on the way."""
     rng = np.random.default_rng(seed)
     starts = [(1.0, 1.0), (5.0, 1.0), (1.0, 5.0), (5.0, 5.0)]
     goals = [(5.45, 5.0), (0.55, 5.4), (5.4, 0.6), (0.6, 0.6)]

@@ -127,7 +127,7 @@ def test_a_block_of_a_map_is_a_box(behavior: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("local", ["dash", *BEHAVIORS])
 @pytest.mark.parametrize("start", [0.0, 0.4])
 def test_follow_goes_round_a_block_of_a_map_as_round_a_box(local: str, start: float, tmp_path: Path) -> None:
-    picture = np.full((400, 400), 255, dtype=np.uint8)  # cells of 5 cm: they are not those of the planner
+    picture = np.full((400, 400), 255, dtype=np.uint8)  # cells of 5 cm: not the planner's
     picture[172:206, 180:220] = 0  # 2 m by 1.7 m at (10, 10.55); the first row is the top
     Image.fromarray(picture).save(tmp_path / "block.png")
     boxes = [scene("follow", "diff", shape, [10, 10.55, 0], start) for shape in spellings_of_a_box(2, 1.7)]

@@ -76,7 +76,7 @@ def test_other_modes(mode: int) -> None:
     world, state = swept(robot(**FAST), robot(pose=[1.0, 0.1, 0.0], behavior=None, role=1, mass=np.inf), mode=mode)
     command(state, [20.0])
     core.advance(world, state, 1)
-    if mode == 1:  # nobody stops, and both are told
+    if mode == 1:  # neither stops, and both are told
         assert state.pose[0, 0] == 2.0
         assert kinds(state) == ["collision", "passed_through"]
         assert state.collided.tolist() == [1, 1]

@@ -69,7 +69,7 @@ def apart_at_both_ends(a: Body, b: Body) -> bool:
 
 
 def judge(a: Body, b: Body) -> tuple[bool | None, bool]:
-    """The oracle's verdict, and whether that of the core differs."""
+    """The oracle's verdict, and whether the core's differs."""
     expected = verdict(a, b)
     meets, when = of_core(a, b)
     swapped, _ = of_core(b, a)

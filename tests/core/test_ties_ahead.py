@@ -1,4 +1,4 @@
-"""Ties with what stands exactly ahead, and crossings of two that are mirror images: nobody waits for ever."""
+"""Ties with what stands exactly ahead, and crossings of two that are mirror images: no object waits for ever."""
 
 from __future__ import annotations
 

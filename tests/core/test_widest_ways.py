@@ -85,7 +85,7 @@ def test_widest_ways_are_those_of_flooding(seed: int) -> None:
             continue
         levels = np.unique(distance[distance > 0])
         levels = levels[:: max(1, len(levels) // 60)]
-        # What is joined at a level is joined at every lower one.
+        # Places joined at a level are joined at every lower one.
         apart = bisect.bisect_left(range(len(levels)), True, key=lambda i: not joined_at(distance, levels[i], a, b))
         if math.isinf(room):
             assert apart == 0

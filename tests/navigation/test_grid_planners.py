@@ -65,7 +65,7 @@ def test_shortest_on_a_grid(grid: NDArray[np.float64], data: st.DataObject) -> N
     cells = st.tuples(st.integers(0, nx - 1), st.integers(0, ny - 1))
     start, goal = data.draw(cells), data.draw(cells)
     free = open_cells(env_map)
-    assert (free == (grid <= 50)).all(), "a cell is in nobody's way but its own"
+    assert (free == (grid <= 50)).all(), "a cell blocks no other cell"
     rx, ry = 0.5, 0.4
     a, b = (np.array([-1.0 + (i + 0.5) * rx, 2.0 + (j + 0.5) * ry]) for i, j in (start, goal))
     astar, jps = AStarPlanner(env_map), JPSPlanner(env_map)

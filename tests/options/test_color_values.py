@@ -1,4 +1,4 @@
-"""Colors as numbers are those that matplotlib draws, and most need no drawing library."""
+"""Colors as numbers are as matplotlib draws them, and most need no drawing library."""
 
 from __future__ import annotations
 

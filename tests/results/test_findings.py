@@ -1,4 +1,4 @@
-"""What every finding has, whoever reports it: its place, the word that was meant, an edit that is safe to make."""
+"""Parts of every finding, from any reporter: its place, the word that was meant, an edit that is safe to make."""
 
 from __future__ import annotations
 

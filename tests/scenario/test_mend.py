@@ -59,7 +59,7 @@ obstacle:
 def test_mends_slips_and_keeps_every_other_character() -> None:
     mended = repair_text(FLAWED)
     assert mended.text == MENDED
-    assert [item.code for item in mended.reading.errors] == ["unknown-key"]  # 'wheels': nobody knows what was meant
+    assert [item.code for item in mended.reading.errors] == ["unknown-key"]  # 'wheels': its meaning is unknown
     changes = {repair.change for repair in mended.repairs}
     assert {"renamed 'widht' to 'width'", "wrote 0.1", "wrote diff", "removed 'state'"} <= changes
 
@@ -101,7 +101,7 @@ ROBOT = "state: [1, 5, 0], goal: [9, 5], behavior: {name: dash}"
         ("sensors: [{name: lidar2d, angle_range: 270}]", "sensors: [{name: lidar2d, angle_range: 4.71238898}]"),
         ("sensors: [{name: lidar2d, angle_range: 360}]", "sensors: [{name: lidar2d, angle_range: 6.283185307}]"),
         ("fov: 90, fov_radius: 3", "fov: 1.570796327, fov_radius: 3"),
-        ("sensors: [{name: lidar2d, angle_range: 7}]", None),  # nobody knows what was meant
+        ("sensors: [{name: lidar2d, angle_range: 7}]", None),  # its meaning is unknown
         ("sensors: [{name: lidar2d, range: 5, range_max: 6}]", None),  # would be there twice
         ("shape: {type: rectangle, length: 0.6, width: 0.4}", "shape: {name: rectangle, length: 0.6, width: 0.4}"),
         ("shape: {name: circle, diameter: 0.6}", None),

@@ -1,4 +1,4 @@
-"""What diagnostics say: in the words of the language, with a way out, and edits that work."""
+"""Messages of diagnostics: in the words of the language, with a way out, and edits that work."""
 
 from __future__ import annotations
 
@@ -351,7 +351,7 @@ def test_decimal_commas_are_recognised(keys: str, code: str, fix: str | None) ->
     ],
 )
 def test_waypoints_that_run_into_each_other(written: str, meant: Any) -> None:
-    """What the fix says is what the edit writes, and it is right; without it the author decides."""
+    """The edit writes what the fix says, and it is right; without it the author decides."""
     text = f"{ROOM}robot: {{{DIFF}, state: [1, 5, 0], waypoints: {written}}}\n"
     (item,) = {str(item.edit): item for item in read(text, strict=True).errors}.values()
     if meant is None:

@@ -42,7 +42,7 @@ DRIVES: dict[str, dict[str, Any]] = {
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of the episodes of one setting, by seed."""
+    """Outcomes of the episodes of one setting, by seed."""
 
     arrived: np.ndarray  # (seeds,) robots at their goal
     collided: np.ndarray  # (seeds,) robots that touched another
@@ -172,7 +172,7 @@ HEADER = """\
 LEGEND = """
 all arrived: episodes in which every robot reached its goal; collided: robots that touched another, in all episodes;
 freely: those for which no infeasible step was reported before; time: mean length of episodes in which all arrived;
-infeasible: share of robot steps in which the behavior found no velocity that avoids everybody (only orca says so)."""
+infeasible: share of robot steps in which the behavior found no velocity that avoids all objects (only orca says so)."""
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""A cell that is exactly half occupied is free, for everybody who reads the map: 51 of 100 is occupied, 50 is not."""
+"""A cell that is exactly half occupied is free, for every reader of the map: 51 of 100 is occupied, 50 is not."""
 
 from __future__ import annotations
 

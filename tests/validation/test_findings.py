@@ -1,4 +1,4 @@
-"""Findings that need the world: each where it should be, with the right numbers, and none where all is well."""
+"""Findings that need the world: each where it should be, with the right numbers, and no finding where all is well."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ __all__ = ["OBJECTS"]
 OBJECTS: dict[str, Code] = {
     "duplicate-name": Code(
         "name used twice",
-        "Names must be unique. With 'number' give a list of names, one per object (the last one is repeated), or no name.",
+        "Names must be unique. With 'number' give a list of names, one each (the last one is repeated), or no name.",
     ),
     "role-mismatch": Code(
         "role does not fit the section",

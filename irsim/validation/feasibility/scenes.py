@@ -96,7 +96,7 @@ class Drawn:
 
 
 def scenes_of(context: Context) -> Drawn:
-    """The one scene of a scenario in which nothing is random; else the scenes of its own seed and of seeds from 0 on."""
+    """The one scene of a scenario without randomness; else the scenes of its own seed and of the seeds from 0 on."""
     resolved, own = context.resolved, context.scenario.world.seed
     placed = bool(resolved.placements)
     free = [record for record in resolved.objects if not has_fixed_shape(record.shape)]
