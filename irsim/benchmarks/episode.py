@@ -30,7 +30,7 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
 from irsim.simulation.events import Event, first_collisions, first_events, partner_of, read_events
 from irsim.simulation.outcome import explored_share
-from irsim.simulation.roles import travelling_humans
+from irsim.simulation.roles import humans_of, travelling_humans
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import Trace, cut_trace, join_traces, next_rows, present_row, record
 
@@ -263,7 +263,8 @@ def measure(
         hits = {name: event for name, event in hits.items() if event.step == last}
         trace, events = cut_trace(trace, slice(last + 1)), [event for event in events if event.step <= last]
     steps = int(trace.step[-1])
-    measured, incidents = episode_metrics(trace, scene.simulation, events, ways=ways), find_incidents(records, events)
+    humans = {record.name for record in humans_of(records)}
+    measured, incidents = episode_metrics(trace, scene.simulation, events, ways=ways), find_incidents(humans, events)
     measured.episode["explored"] = _explored(task, episode, simulation, steps)
     measured.episode["pedestrian_delay"] = _pedestrian_delay(task, episode, scene, simulation)
     robots = measured.robots

@@ -16,7 +16,7 @@ from irsim.episodes.obstructions import find_jammed
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.simulation.events import Event, passable_names
 from irsim.simulation.outcome import explored_share
-from irsim.simulation.roles import HUMAN, kinds_of
+from irsim.simulation.roles import humans_of
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
@@ -42,7 +42,7 @@ class EpisodeFacts:
         between: Contacts between steps.
         parked: Names of the robots that cannot move and have no goal of their own.
         jammed: Name of each moving obstacle that a collision has stopped -> that collision.
-        humans: Records of the humans (:func:`irsim.simulation.roles.kinds_of`).
+        humans: Records of the humans (:func:`irsim.simulation.roles.humans_of`).
         incidents: Incidents besides the outcomes of robots.
         steps: Number of executed steps.
         step_time: Period of a step [s].
@@ -82,8 +82,7 @@ class EpisodeFacts:
         robots = {row: record for row, record in enumerate(scenario.objects) if record.role == "robot"}
         names, passable = {record.name for record in robots.values()}, passable_names(simulation)
         hits, counts = _collisions(events, names, passable)
-        kinds = kinds_of(scenario.objects)
-        humans = [record for record, kind in zip(scenario.objects, kinds, strict=True) if kind == HUMAN]
+        humans = humans_of(scenario.objects)
         return cls(
             simulation=simulation,
             events=events,

@@ -55,7 +55,7 @@ class Incidents(NamedTuple):
     """Incidents of an episode besides outcomes.
 
     Attributes:
-        human_contacts: Events of the contacts that began between two humans .
+        human_contacts: Events of the contacts that began between two humans.
         jumps: Name of each object that jumped over a goal and has not reached one since -> its last event
             ``overshoot``, in order of time.
         returns: Name of each object that jumped over its last goal, came back and arrived -> these two events.

@@ -17,6 +17,7 @@ __all__ = [
     "KINDS",
     "ROBOT",
     "STATIC",
+    "humans_of",
     "kinds_of",
     "social_groups",
     "travelling_humans",
@@ -49,14 +50,15 @@ def social_groups(records: Sequence[ObjectRecord]) -> list[tuple[int, ...]]:
     return groups
 
 
+def humans_of(records: Sequence[ObjectRecord]) -> list[ObjectRecord]:
+    """Records of the humans (:func:`kinds_of`)."""
+    return [record for record, kind in zip(records, kinds_of(records), strict=True) if kind == HUMAN]
+
+
 def travelling_humans(records: Sequence[ObjectRecord]) -> frozenset[str]:
     """Names of the humans that have a last goal, unlike objects that wander or loop."""
-    kinds = kinds_of(records)
-    return frozenset(
-        record.name
-        for record, kind in zip(records, kinds, strict=True)
-        if kind == HUMAN and not record.static and record.goals and not record.wander and not record.loop
-    )
+    moving = (record for record in humans_of(records) if not record.static)
+    return frozenset(record.name for record in moving if record.goals and not record.wander and not record.loop)
 
 
 def _kind(record: ObjectRecord) -> int:

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 from irsim.common.lazy import module_names
 
 if TYPE_CHECKING:
+    from mcp.server.mcpserver.tools import Tool
+
     from irsim_mcp.services import Services
-    from irsim_mcp.tool import StrictTool
 
 __all__ = ["make_tools"]
 
 
-def make_tools(services: Services, *, writing: bool) -> list[StrictTool]:
+def make_tools(services: Services, *, writing: bool) -> list[Tool]:
     """Make all tools, in the order of their places; those with ``WRITES`` only if the server writes."""
     modules = [import_module(f"{__name__}.{name}") for name in module_names(__name__)]
     offered = [module for module in modules if writing or not getattr(module, "WRITES", False)]
