@@ -113,7 +113,7 @@ def render(
     if size is not None:
         env._env_plot.set_size(size)
     if animated:
-        horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
+        horizon, _ = horizon_of(env.simulation, steps, limits or DEFAULT_LIMITS)
         files = animate(env, horizon, target, progress)
         frames = env._env_plot.frames_written
     else:

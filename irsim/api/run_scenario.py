@@ -111,8 +111,8 @@ def run(
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
-    driver, behavior = opened_policy(path, policy, behavior, limits)
     perturbations = read_perturbations(perturb)
+    driver, behavior = opened_policy(path, policy, behavior, limits)
     try:
         scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior)
     except InputError as error:
@@ -121,13 +121,14 @@ def run(
         raise
     if driver is not None:
         warnings = findings_under_policy(warnings, scenario)
-    scenario = perturbed(scenario, perturbations)
+    scenario = perturbed(scenario, perturbations) if perturbations else scenario
     chosen, hidden = seed_of(scenario, seed), save is None and not show
     env, crowded = first_with_room(
         lambda drawn: Env(scenario, seed=drawn, display=show, headless=hidden, log_level="ERROR", policy=driver),
         (fresh_seed() for _ in range(MAX_TRIES)) if chosen is None else [chosen],
     )
-    horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
+    simulation = env.simulation
+    horizon, source = horizon_of(simulation, steps, limits or DEFAULT_LIMITS)
     added = read_bridges(bridges) if bridges else []
     opened = _allowed_bridges([*scenario.bridges, *added], limits) if scenario.bridges or added else []
     plan = RunPlan(
@@ -144,7 +145,6 @@ def run(
         added_bridges=[bridge_text(one) for one in added],
     )
     targets = _check_exports([export] if isinstance(export, (str, Path)) else export, overwrite=overwrite)
-    simulation = env.simulation
     with (
         _kept_or_temporary(record, targets) as kept,
         connect(env, opened) if opened else nullcontext() as connection,

@@ -136,7 +136,7 @@ def snapshot_of(
     if strip is not None:
         moments_of(0, strip)
         steps = steps or None
-    horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
+    horizon, _ = horizon_of(env.simulation, steps, limits or DEFAULT_LIMITS)
     chosen: list[int] | None = None
     if strip is None or steps is None:
         advance(env, horizon, progress, until_done=steps is None)

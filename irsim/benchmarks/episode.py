@@ -189,7 +189,7 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
     job = task.job
     try:
         env = environment_of(job, task.seed)
-        horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
+        horizon, _ = horizon_of(env.simulation, job.steps, Limits(**dict(job.limits)))
     except PlacementError:
         return crowded()
     driver = driver_of(env.simulation)

@@ -91,7 +91,7 @@ def _scene(job: Job, seeds: Sequence[int]) -> tuple[Env | None, dict[int, int]]:
                 _draw(scene, seed)
         except PlacementError:
             continue
-        horizons[seed], _ = horizon_of(scene.scenario, scene, job.steps, limits)
+        horizons[seed], _ = horizon_of(scene.simulation, job.steps, limits)
     return scene, horizons
 
 

@@ -72,8 +72,8 @@ class Env(EnvState):
         policy: PolicySource | None = None,
     ) -> None:
         self.id = next(_IDS)
-        self.logger = Logger(log_level, log_file)
         self.path_param = PathParam()
+        self.logger = Logger(log_level, log_file)
         self.palette_param = Palette()
         use(self)
         self._strict, self._wanted_mode, self._wanted_seed = strict, step_mode, seed

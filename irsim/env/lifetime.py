@@ -37,8 +37,8 @@ def open_world(env: EnvState, world_name: str | Path | ResolvedScenario | None) 
     mode = checked_step_mode(env._wanted_mode if env._wanted_mode is not None else scenario.world.step_mode)
     chosen = env._wanted_seed if env._wanted_seed is not None else scenario.world.seed
     chosen = next_seed() if chosen is None else chosen
-    seed = fresh_seed() if chosen is None else check_seed(chosen)
     plain, scenario = scenario, driven(scenario, env._policy)
+    seed = fresh_seed() if chosen is None else check_seed(chosen)
     simulation = Simulation(scenario, [seed], history=True)
     simulation.report = env.logger.error_once
     simulation.owner = ref(env)

@@ -18,6 +18,7 @@ from irsim.simulation.build import steps_until
 
 if TYPE_CHECKING:
     from irsim.simulation.protocols import EpisodeRecorder
+    from irsim.simulation.simulation import Simulation
 
 __all__ = [
     "HORIZON_FACTOR",
@@ -46,15 +47,17 @@ def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
     return 0 if chosen is None and not random_parts(scenario) else chosen
 
 
-def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
-    """Time limit [s] of a scenario without one: 4 times the longest straight route at top speed, at least 30 s.
+def default_time_limit(simulation: Simulation) -> float:
+    """Time limit [s] of a scenario that gives none: 4 times the longest straight route at top speed, at least 30 s.
 
     The latest start of a robot is added: its ``start_time`` or ``appear_time``, and the longest delay if starts are
     perturbed.
     """
-    longest, starts, state = 0.0, [0.0], env.simulation.state
-    for view in env.robot_list:
+    longest, starts, state = 0.0, [0.0], simulation.state
+    for view in simulation.views():
         record, goals = view.record, state.goals(view.row)
+        if record.role != "robot":
+            continue
         start: Sequence[float] = state.initial_state(view.row)[:2].tolist()
         way = sum(math.dist(a, b) for a, b in itertools.pairwise([start, *(goal[:2] for goal in goals)]))
         if (speed := view.max_speed) > 0:
@@ -63,7 +66,7 @@ def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
     return max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(starts)
 
 
-def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: Limits) -> tuple[int, HorizonSource]:
+def horizon_of(simulation: Simulation, steps: int | None, limits: Limits) -> tuple[int, HorizonSource]:
     """Greatest number of steps of an episode, and what determines it.
 
     A horizon that is derived from the scenario is cut to the limits; one that was asked for must be within them.
@@ -72,6 +75,7 @@ def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: 
         OverLimitError: ``steps`` exceeds the limits.
         InputError: ``steps`` is not a whole number, or negative.
     """
+    scenario = simulation.scenario
     most, what = _most_steps(len(scenario.objects), limits)
     if steps is not None:
         steps = check_whole_number("steps", steps)
@@ -79,7 +83,7 @@ def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: 
             raise OverLimitError(f"{steps:,} steps are too many: at most {what}", f"ask for at most {most:,} steps")
         return steps, "argument"
     limit = scenario.world.time_limit
-    seconds = default_time_limit(scenario, env) if limit is None else limit
+    seconds = default_time_limit(simulation) if limit is None else limit
     horizon = steps_until(seconds, scenario.world.step_time)
     if most is not None and horizon > most:
         return most, "limits"

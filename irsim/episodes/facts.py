@@ -80,9 +80,13 @@ class EpisodeFacts:
         """
         scenario, steps = simulation.scenario, int(simulation.count[0])
         robots = {row: record for row, record in enumerate(scenario.objects) if record.role == "robot"}
-        names, passable = {record.name for record in robots.values()}, passable_names(simulation)
+        names = {record.name for record in robots.values()}
+        parked, random = (
+            [record.name for record in robots.values() if scenario.is_parked(record)],
+            random_parts(scenario),
+        )
+        passable, humans, explored = passable_names(simulation), humans_of(scenario.objects), explored_share(simulation)
         hits, counts = _collisions(events, names, passable)
-        humans = humans_of(scenario.objects)
         return cls(
             simulation=simulation,
             events=events,
@@ -91,15 +95,15 @@ class EpisodeFacts:
             hits=hits,
             hit_counts=counts,
             between=find_between_steps(events, names, passable),
-            parked=[record.name for record in robots.values() if scenario.is_parked(record)],
+            parked=parked,
             jammed=find_jammed(simulation, events),
             humans=humans,
             incidents=find_incidents({record.name for record in humans}, events),
             steps=steps,
             step_time=scenario.world.step_time,
             time=steps * scenario.world.step_time,
-            random=random_parts(scenario),
-            explored=explored_share(simulation),
+            random=random,
+            explored=explored,
             is_small=(steps + 1) * simulation.objects <= _MAX_POSES,
         )
 

@@ -155,7 +155,8 @@ def goal_visible_ratio(positions: Floats, goals: Floats, simulation: Simulation,
     if not known.any():
         return math.nan
     records = simulation.scenario.objects
-    blocking = (kinds_of(records) == STATIC) & np.array([record.static for record in records], dtype=bool)
+    static = np.array([record.static for record in records], dtype=bool)
+    blocking = static & (kinds_of(records) == STATIC)
     if not blocking.any():
         return 1.0
     free = core.free_lines(

@@ -13,7 +13,7 @@ import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.kinematics._handler import handler_class
 from irsim.options.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
-from irsim.scenario.resolve.kernels import kernels_of, parts_of, placement_kernel
+from irsim.scenario.resolve.kernels import Kernels, kernels_of, parts_of, placement_kernel
 from irsim.simulation.fog import build_fog
 from irsim.simulation.watching import build_targets, build_views, build_zones
 
@@ -99,22 +99,21 @@ def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOption
 
 def build_object(
     record: ObjectRecord,
+    kernels: Kernels,
     group_behavior: BehaviorOptions | None = None,
     *,
     step_time: float,
     contact: bool = False,
-    zones: Sequence[str] = (),
 ) -> core.ObjectSpec:
     """Build one object of the core.
 
     Args:
         record: The object.
+        kernels: What the core runs for it.
         group_behavior: Behavior that drives its group (:func:`group_behaviors`); it replaces the object's own.
         step_time: Period of a step [s].
         contact: Whether the core resolves contacts, which needs the centroid of compounds.
-        zones: Names of the zones of the world.
     """
-    kernels = kernels_of(record, group_behavior, zones)
     return core.ObjectSpec(
         number=record.id,
         role=_ROLES[record.role],
@@ -186,13 +185,17 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
     row = {record.id: index for index, record in enumerate(scenario.objects)}
     before = {} if built is None else built
     now: Built = {}
+    changed = []
     for record in scenario.objects:
         group_behavior = groups.get(record.group) if record.joined else None
         known = before.get(id(record))
         if known is None or known[0] is not record or known[1] is not group_behavior or known[3] != step_time:
-            spec = build_object(record, group_behavior, step_time=step_time, contact=contact, zones=zones)
-            known = record, group_behavior, spec, step_time
-        now[id(record)] = known
+            changed.append((record, kernels_of(record, group_behavior, zones), group_behavior))
+        else:
+            now[id(record)] = known
+    for record, kernels, group_behavior in changed:
+        spec = build_object(record, kernels, group_behavior, step_time=step_time, contact=contact)
+        now[id(record)] = record, group_behavior, spec, step_time
     if built is not None:
         built.clear()
         built.update(now)

@@ -130,11 +130,11 @@ class Simulation:
         self._all = np.ones(self.copies, dtype=np.uint8)
         records = self.scenario.objects
         self.robots = np.array([record.role == "robot" for record in records], dtype=bool)
-        self._robot_columns = range_of(self.robots)
         self.ids = np.array([*(record.id for record in records), -1], dtype=np.int32)
         self.names.update((record.id, record.name) for record in records)
         self.passable -= {record.id for record in records}
         self.passable |= {record.id for record in records if record.unobstructed}
+        self._robot_columns = range_of(self.robots)
 
     def exchange(self, scenario: ResolvedScenario, origins: Sequence[tuple[Simulation, int]]) -> None:
         """Continue with other objects.

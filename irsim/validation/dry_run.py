@@ -76,7 +76,7 @@ def dry_run(
         range(MAX_TRIES) if own is None else [own],
     )
     try:
-        horizon, source = horizon_of(scenario, env, None, limits or DEFAULT_LIMITS)
+        horizon, source = horizon_of(env.simulation, None, limits or DEFAULT_LIMITS)
         affordable = max(1, int(budget / max(1.0, step_work(scenario, env.simulation))))
         wanted = min(horizon, affordable if steps is None else min(steps, affordable))
         trace, late = _simulate(env.simulation, wanted, seconds)

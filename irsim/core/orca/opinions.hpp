@@ -20,7 +20,7 @@ struct Opinion {
 
 /// The opinions of one object.
 struct Opinions {
-  std::int64_t step = -1;   // step in which they were formed
+  std::int64_t step = -1;  // step in which they were formed
   // steps in which the object was last the mirror image of another one, and before that; -1: never
   std::int64_t tied = -1, tied_before = -1;
   std::vector<Opinion> of;  // of the objects considered in that step, nearest first

@@ -139,12 +139,10 @@ def _measure(simulation: Simulation, mask: NDArray[np.bool_] | None) -> None:
 
 def attach_python_sensors(simulation: Simulation) -> None:
     """Let the registered sensors that the scenario names take part in every step, and measure now."""
-    sensors = {
-        str(getattr(options, "name", "")) for record in simulation.scenario.objects for options in record.sensors
-    }
-    features = [feature for name in sensors if (feature := SENSORS.get(name)) is not None]
-    by_users = [f for f in features if f.kernel is None and f.options is not Contact2d]
-    if any(feature.function is not None for feature in by_users):
-        if _measure not in simulation.measurements:
-            simulation.measurements.append(_measure)
-        simulation.measure()
+    names = {str(getattr(options, "name", "")) for record in simulation.scenario.objects for options in record.sensors}
+    for feature in filter(None, map(SENSORS.get, names)):
+        if feature.kernel is None and feature.function is not None and feature.options is not Contact2d:
+            if _measure not in simulation.measurements:
+                simulation.measurements.append(_measure)
+            simulation.measure()
+            return
