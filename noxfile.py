@@ -115,7 +115,9 @@ def run_linters(session: nox.Session) -> None:
     sources = [str(path) for kind in ("cpp", "hpp") for path in sorted(Path("irsim/core").rglob(f"*.{kind}"))]
     timed(session, "ruff format", "ruff", "format", "--check", ".")
     timed(session, "ruff check", "ruff", "check", ".")
-    timed(session, "clang-format", "clang-format", "--dry-run", "-Werror", *sources)
+    listed = Path(session.create_tmp(), "sources")
+    listed.write_text("\n".join(sources), encoding="utf-8")
+    timed(session, "clang-format", "clang-format", "--dry-run", "-Werror", f"--files={listed}")
     timed(session, "mypy", "mypy")
     timed(session, "schema", "irsim", "schema", "--check")
     timed(session, "schema of eval cases", "irsim-evals", "schema", "--check")

@@ -64,7 +64,6 @@ class ManyControls:
         low = np.maximum(limits[0], self.control - change)
         high = np.minimum(limits[1], self.control + change)
         return np.minimum(np.maximum(self.command, low), high)
-        self.command[:] = 0.0
 
 
 class PythonDrives:
