@@ -109,7 +109,7 @@ def build_object(
 
     Args:
         record: The object.
-        kernels: What the core runs for it.
+        kernels: Its options of the core.
         group_behavior: Behavior that drives its group (:func:`group_behaviors`); it replaces the object's own.
         step_time: Period of a step [s].
         contact: Whether the core resolves contacts, which needs the centroid of compounds.

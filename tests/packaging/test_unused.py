@@ -1,4 +1,4 @@
-"""All code is called by other code, by a test or by somebody else's library; vulture finds what is not."""
+"""All code is called, by other code, by a test or by another library; vulture finds code without a caller."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ CALLED_BY_OTHERS = {
 
 @pytest.mark.slow(8)
 def test_all_code_is_called() -> None:
-    """What carries a decorator is registered by it, and fields are read by names that others choose."""
+    """Decorators register code, and fields are read by names that others choose: neither is looked at."""
     names = " ".join(CALLED_BY_OTHERS.values()).split()
     checker = vulture.Vulture(ignore_names=names, ignore_decorators=["@*"])
     checker.scavenge([str(ROOT / path) for path in ("irsim", "mcp_server", "evals/irsim_evals", "noxfile.py", "tests")])
