@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
 from irsim.lookup.full_text import bm25, words_of
 from irsim_evals.baselines.arms import BASELINES, answer
@@ -25,12 +24,14 @@ from irsim_evals.baselines.rules import answer as by_rules
 from irsim_evals.baselines.task import Task
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import case_ids, case_of
-from irsim_evals.cli.app import app
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
-from irsim_evals.results import Trial, trial_of
+from irsim_evals.results import Trial, read_results, trial_of
+from tests.evals.conftest import EVALS, irsim_evals, refusal
 
-SNAPSHOT = Path(__file__).with_name("baselines.json")
+SNAPSHOT: dict[str, dict[str, bool]] = json.loads(
+    Path(__file__).with_name("baselines.json").read_text(encoding="utf-8")
+)
 REGENERATE = "irsim-evals run --arm baselines --verdicts tests/evals/baselines.json"
 QUICK_CASES = 1
 
@@ -51,49 +52,33 @@ sys.addaudithook(refuse)
 
 
 def run_offline(tmp_path: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run ``irsim-evals`` where every socket except on the loopback is refused, in all of its processes."""
+    """Run Python where every socket except on the loopback is refused, in all processes."""
     hooks = tmp_path / "hooks"
-    hooks.mkdir(exist_ok=True)
+    hooks.mkdir()
     (hooks / "sitecustomize.py").write_text(NO_NETWORK, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(hooks), os.environ.get("PYTHONPATH", "")])}
-    command = [sys.executable, "-m", "irsim_evals", *arguments]
     options = {"env": environment, "capture_output": True, "text": True, "encoding": "utf-8", "cwd": tmp_path}
-    return subprocess.run(command, timeout=1500, check=False, **options)
-
-
-def snapshot() -> dict[str, dict[str, bool]]:
-    recorded: dict[str, dict[str, bool]] = json.loads(SNAPSHOT.read_text(encoding="utf-8"))
-    return recorded
-
-
-def flips(verdicts: dict[str, dict[str, bool]]) -> list[str]:
-    """Differences from the snapshot, in words."""
-    words = {True: "passed", False: "failed", None: "was not there"}
-    known = snapshot()
-    return [
-        f"{arm} {words[known.get(arm, {}).get(case)]} {case}, and now it {'passes' if passed else 'fails'}"
-        for arm, cases in verdicts.items()
-        for case, passed in cases.items()
-        if known.get(arm, {}).get(case) is not passed
-    ]
+    return subprocess.run([sys.executable, *arguments], timeout=1500, check=False, **options)
 
 
 def assert_as_recorded(tmp_path: Path, *arguments: str) -> dict[str, Any]:
-    done = run_offline(tmp_path, "run", "--arm", "baselines", "--verdicts", "verdicts.json", "--json", *arguments)
+    command = ("run", "--arm", "baselines", "--verdicts", "verdicts.json", "--json", *arguments)
+    done = run_offline(tmp_path, "-m", "irsim_evals", *command)
     assert done.returncode == 0, done.stderr
     verdicts = json.loads((tmp_path / "verdicts.json").read_text(encoding="utf-8"))
     assert list(verdicts) == list(BASELINES)
-    changed = flips(verdicts)
-    assert not changed, f"{'; '.join(changed)}. If that is meant, run: {REGENERATE}"
+    changed = [
+        f"{arm} on {case}: {passed}"
+        for arm, cases in verdicts.items()
+        for case, passed in cases.items()
+        if SNAPSHOT.get(arm, {}).get(case) is not passed
+    ]
+    assert changed == [], f"if that is meant, run: {REGENERATE}"
     return dict(json.loads(done.stdout))
 
 
 def test_the_hook_refuses_connections_out_of_the_machine(tmp_path):
-    hooks = tmp_path / "sitecustomize.py"
-    hooks.write_text(NO_NETWORK, encoding="utf-8")
-    program = "import socket; socket.create_connection(('192.0.2.1', 9), 1)"
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
+    done = run_offline(tmp_path, "-c", "import socket; socket.create_connection(('192.0.2.1', 9), 1)")
     assert "no network" in done.stderr
 
 
@@ -104,7 +89,7 @@ def test_some_cases_end_as_recorded(tmp_path):
 @pytest.mark.rotates(5)
 @pytest.mark.slow(300)
 def test_all_cases_end_as_recorded(tmp_path):
-    readme = (Path(__file__).resolve().parents[2] / "evals" / "README.md").read_text(encoding="utf-8")
+    readme = (EVALS / "README.md").read_text(encoding="utf-8")
     assert "irsim-evals run --arm baselines --output baselines\n" in readme  # the command that is run here
     rows = assert_as_recorded(tmp_path, "--output", "baselines")["arms"]
     results = json.loads((tmp_path / "baselines" / "results.json").read_text(encoding="utf-8"))
@@ -113,9 +98,8 @@ def test_all_cases_end_as_recorded(tmp_path):
 
 
 def test_each_baseline_passes_more_cases_than_the_one_before():
-    known = snapshot()
-    assert all(list(cases) == case_ids() for cases in known.values()), f"cases have changed; run: {REGENERATE}"
-    passed = [sum(known[arm].values()) for arm in BASELINES]
+    assert all(list(cases) == case_ids() for cases in SNAPSHOT.values()), f"cases have changed; run: {REGENERATE}"
+    passed = [sum(SNAPSHOT[arm].values()) for arm in BASELINES]
     assert passed[0] == 0
     assert passed == sorted(set(passed))
 
@@ -139,10 +123,7 @@ def test_baselines_see_the_request_only(name):
     ],
 )
 def test_bad_input_is_named(arguments, message):
-    done = CliRunner().invoke(app, ["run", *arguments], env={"COLUMNS": "200"})
-    assert done.exit_code == 2
-    assert message in " ".join(done.output.split())
-    assert "Traceback" not in done.output
+    assert message in refusal("run", *arguments)
 
 
 def test_model_arms_get_the_limits_that_are_given(tmp_path, monkeypatch):
@@ -154,17 +135,14 @@ def test_model_arms_get_the_limits_that_are_given(tmp_path, monkeypatch):
 
     monkeypatch.setattr("irsim_evals.harness.run.run_arm", run_arm)
     options = ["--model", "anthropic/some", "--epochs", "3", "--token-limit", "9000", "--cost-limit", "0.5"]
-    command = ["run", "--arm", "skill", "pub-01", *options, "--output", str(tmp_path / "out"), "--json"]
-    done = CliRunner().invoke(app, command)
+    done = irsim_evals("run", "--arm", "skill", "pub-01", *options, "--output", tmp_path / "out", "--json")
     assert done.exit_code == 0, done.output
     ((arm, number, given),) = calls
     assert (arm, number, given["model"], given["epochs"]) == ("skill", 1, "anthropic/some", 3)
     assert (given["token_limit"], given["cost_limit"], given["time_limit"]) == (9000, 0.5, None)
     assert given["log_dir"] == tmp_path / "out" / "logs"
     assert json.loads(done.stdout)["arms"][0]["passed"] == 0
-    without = CliRunner().invoke(app, ["run", "--arm", "skill", "pub-01", "--output", str(tmp_path / "out")])
-    assert without.exit_code == 2
-    assert "--model" in without.output
+    assert "--model" in refusal("run", "--arm", "skill", "pub-01", "--output", tmp_path / "out")
 
 
 def test_rules_answer_whatever_is_said():
@@ -177,12 +155,11 @@ def test_rules_answer_whatever_is_said():
 
 
 def test_trials_are_fresh_instances_and_give_pass_hat_k(tmp_path):
-    done = run_offline(tmp_path, "run", "--arm", "null", "pub-01", "pub-02", "--trials", "3", "--json")
-    row = json.loads(done.stdout)["arms"][0]
+    command = ["run", "--arm", "null", "pub-01", "pub-02", "--trials", "3", "--json", "--output", tmp_path]
+    row = json.loads(irsim_evals(*command).stdout)["arms"][0]
     assert (row["trials"], row["attempts"], row["pass_hat_k"]) == (6, 3, 0)
-    results = json.loads((tmp_path / "evals-results" / "results.json").read_text(encoding="utf-8"))
-    assert [trial["number"] for trial in results["trials"]] == [1, 2, 3, 1, 2, 3]
-    assert [trial["verdict"]["instance"] for trial in results["trials"][:3]] == ["", "1", "2"]
+    trials = read_results(tmp_path).trials
+    assert [(trial.number, trial.verdict.instance) for trial in trials] == [(1, ""), (2, "1"), (3, "2")] * 2
 
 
 def test_bm25_prefers_documents_with_the_rarer_word():

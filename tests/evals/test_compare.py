@@ -7,39 +7,37 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner, Result
 
-from irsim_evals.cli.app import app
 from irsim_evals.report.comparison import compare, smallest_difference
-from tests.evals.trials import file_of, trial
+from irsim_evals.results import Trial
+from tests.evals.conftest import file_of, irsim_evals, refusal, trial
 
 
-def run(*words: object) -> Result:
-    return CliRunner().invoke(app, ["compare", *map(str, words)])
-
-
-def test_nothing_broken(tmp_path: Path) -> None:
-    a = file_of(tmp_path / "a.json", trial("one", True), trial("two", False))
-    b = file_of(tmp_path / "b.json", trial("one", True), trial("two", True))
-    done = run(a, b)
-    assert done.exit_code == 0, done.output
-    assert "FIXED  two: Title of two" in done.output
-    assert "BROKEN" not in done.output
-
-
-def test_a_case_that_fails_now_is_named_with_its_reason(tmp_path: Path) -> None:
-    a = file_of(tmp_path / "a.json", trial("one", True), trial("two", False))
-    b = file_of(tmp_path / "b.json", trial("one", False), trial("two", True))
-    done = run(a, b)
-    assert done.exit_code == 1
-    assert "BROKEN one: Title of one" in done.output
-    assert "size: expected radius 0.2; observed radius 0.3" in done.output
+@pytest.mark.parametrize(
+    ("before", "after", "code", "said"),
+    [
+        ([trial("one", True), trial("two", False)], [trial("one", True), trial("two", True)], 0,
+         ["FIXED  two: Title of two"]),
+        ([trial("one", True), trial("two", False)], [trial("one", False), trial("two", True)], 1,
+         ["BROKEN one: Title of one", "size: expected radius 0.2; observed radius 0.3"]),
+        ([trial("one", k < 3, number=k) for k in range(5)], [trial("one", k < 2, number=k) for k in range(5)], 1,
+         ["BROKEN one: Title of one (60% → 40% of the attempts)"]),
+    ],
+    ids=["fixed", "broken", "most attempts"],
+)  # fmt: skip
+def test_a_case_that_changes_is_named_with_its_reason(
+    before: list[Trial], after: list[Trial], code: int, said: list[str], tmp_path: Path
+) -> None:
+    done = irsim_evals("compare", file_of(tmp_path / "a.json", *before), file_of(tmp_path / "b.json", *after))
+    assert done.exit_code == code, done.output
+    assert [text for text in said if text not in done.output] == []
+    assert ("BROKEN" in done.output) == bool(code)
 
 
 def test_json_says_the_same(tmp_path: Path) -> None:
     a = file_of(tmp_path / "a.json", *(trial(f"case-{k}", k < 8) for k in range(20)))
     b = file_of(tmp_path / "b.json", *(trial(f"case-{k}", k >= 1) for k in range(20)))
-    done = run(a, b, "--json")
+    done = irsim_evals("compare", a, b, "--json")
     assert done.exit_code == 1
     (data,) = json.loads(done.stdout)
     assert (data["pairs"], data["passed"]) == (20, [8, 19])
@@ -55,35 +53,27 @@ def test_json_says_the_same(tmp_path: Path) -> None:
 def test_folders_of_reports_can_be_compared(tmp_path: Path) -> None:
     file_of(tmp_path / "a" / "results.json", trial("one", True))
     file_of(tmp_path / "b" / "results.json", trial("one", False))
-    assert run(tmp_path / "a", tmp_path / "b").exit_code == 1
+    assert irsim_evals("compare", tmp_path / "a", tmp_path / "b").exit_code == 1
 
 
 def test_two_arms_of_one_file(tmp_path: Path) -> None:
     both = file_of(
         tmp_path / "a.json", trial("one", False, "rules"), trial("one", True, "skill"), trial("x", True, "mcp")
     )
-    done = run(both, "--arm", "rules", "--arm", "skill")
+    done = irsim_evals("compare", both, "--arm", "rules", "--arm", "skill")
     assert done.exit_code == 0
     assert "skill passes 1 of 1 cases and rules 0" in done.output
-    assert run(both, "--arm", "skill", "--arm", "rules").exit_code == 1
-    assert run(both).exit_code == 2
+    assert irsim_evals("compare", both, "--arm", "skill", "--arm", "rules").exit_code == 1
+    assert irsim_evals("compare", both).exit_code == 2
 
 
 def test_files_with_several_arms_are_compared_arm_by_arm(tmp_path: Path) -> None:
     a = file_of(tmp_path / "a.json", trial("one", True, "rules"), trial("one", True, "skill"))
     b = file_of(tmp_path / "b.json", trial("one", True, "rules"), trial("one", False, "skill"))
-    done = run(a, b, "--json")
+    done = irsim_evals("compare", a, b, "--json")
     assert done.exit_code == 1
     assert [len(one["broken"]) for one in json.loads(done.stdout)] == [0, 1]
-    assert run(a, b, "--arm", "rules").exit_code == 0
-
-
-def test_a_case_with_several_attempts_passes_if_most_of_them_do(tmp_path: Path) -> None:
-    a = file_of(tmp_path / "a.json", *(trial("one", k < 3, number=k) for k in range(5)))
-    b = file_of(tmp_path / "b.json", *(trial("one", k < 2, number=k) for k in range(5)))
-    done = run(a, b)
-    assert done.exit_code == 1
-    assert "BROKEN one: Title of one (60% → 40% of the attempts)" in done.output
+    assert irsim_evals("compare", a, b, "--arm", "rules").exit_code == 0
 
 
 @pytest.mark.parametrize(
@@ -109,10 +99,7 @@ def test_bad_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[
     file_of(Path("elsewhere.json"), trial("two", True), trial("two", True, "rules"))
     file_of(Path("empty.json"))
     Path("text.json").write_text("[1, 2")
-    done = run(*words)
-    assert done.exit_code == 2, done.output
-    assert message in " ".join(done.output.split())
-    assert "Traceback" not in done.output
+    assert message in refusal("compare", *words)
 
 
 def test_no_change_says_so() -> None:

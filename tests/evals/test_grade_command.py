@@ -13,24 +13,17 @@ from typing import Any
 
 import pytest
 from mcp import Client, StdioServerParameters
-from typer.testing import CliRunner
 
 from irsim_evals.cases.store import case_of
-from irsim_evals.cli.app import app
 from irsim_evals.cli.cases import write_case
 from irsim_evals.cli.grade import Changes
 from irsim_evals.grader.artefact import cost_of, from_folder
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.results import read_results
-from tests.evals.conftest import RIGHT, made_up
+from tests.evals.conftest import RIGHT, failed, irsim_evals, made_up, refusal
 from tests.warm import warm_mcp
 
 CALL = '{"call": 1, "tool": "lookup", "arguments": {}, "error": false, "tokens": 120}'
-
-
-def irsim_evals(*words: object) -> tuple[int, str]:
-    done = CliRunner().invoke(app, [str(word) for word in words])
-    return done.exit_code, done.output
 
 
 @pytest.fixture
@@ -41,55 +34,52 @@ def anyio_backend() -> str:
 @pytest.fixture
 def exported(tmp_path: Path) -> Path:
     folder = tmp_path / "trial"
-    assert irsim_evals("export", folder, "pub-01", "pub-19") == (0, f"2 cases in {folder}\n")
+    assert irsim_evals("export", folder, "pub-01", "pub-19").output == f"2 cases in {folder}\n"
     (folder / "pub-01" / "scenario.yaml").write_text(RIGHT, encoding="utf-8")
     return folder
 
 
 def test_the_table_shows_verdicts_and_costs_and_then_what_failed(exported: Path) -> None:
     (exported / "pub-01" / "calls.jsonl").write_text(f"{CALL}\n{CALL}\nnonsense\n", encoding="utf-8")
-    code, text = irsim_evals("grade", exported)
-    assert code == 1
-    heading, first, second, *_ = text.splitlines()
+    done = irsim_evals("grade", exported)
+    assert done.exit_code == 1
+    heading, first, second, *_ = done.output.splitlines()
     assert " ".join(heading.split()) == "case verdict assertions share fails first in calls errors tokens"
-    assert first.split()[:2] == ["pub-01", "PASS"]
-    assert first.split()[-3:] == ["2", "0", "240"]
-    assert second.split()[:2] == ["pub-19", "FAIL"]
-    assert second.split()[-3:] == ["?", "?", "?"]
-    assert "\npub-19\n  range: expected only robot[0].sensors[0].range_max differs" in text
-    assert "note: calls.jsonl: lines that do not record a call and are left out: 1 of 3" in text
-    assert text.endswith("1 of 2 cases pass\n")
-    assert irsim_evals("grade", exported / "pub-01")[0] == 0
+    assert [*first.split()[:2], *first.split()[-3:]] == ["pub-01", "PASS", "2", "0", "240"]
+    assert [*second.split()[:2], *second.split()[-3:]] == ["pub-19", "FAIL", "?", "?", "?"]
+    assert "\npub-19\n  range: expected only robot[0].sensors[0].range_max differs" in done.output
+    assert "note: calls.jsonl: lines that do not record a call and are left out: 1 of 3" in done.output
+    assert done.output.endswith("1 of 2 cases pass\n")
+    assert irsim_evals("grade", exported / "pub-01").exit_code == 0
 
 
 def test_a_renamed_folder_of_a_fresh_instance_is_told(tmp_path: Path) -> None:
-    assert irsim_evals("export", tmp_path, "pub-01", "--fresh", "7") == (0, f"1 case in {tmp_path}\n")
+    assert irsim_evals("export", tmp_path, "pub-01", "--fresh", "7").output == f"1 case in {tmp_path}\n"
     renamed = (tmp_path / "pub-01@7").rename(tmp_path / "mine")
     told = "prompt.md is not the prompt of pub-01"
-    assert told in irsim_evals("grade", renamed, "--case", "pub-01")[1]
-    assert told not in irsim_evals("grade", renamed, "--case", "pub-01@7")[1]
-    assert irsim_evals("grade", renamed, "--case", "pub-01@x")[0] == 2
-    assert irsim_evals("export", tmp_path, "pub-01", "--fresh", "-3")[0] == 2
+    assert told in irsim_evals("grade", renamed, "--case", "pub-01").output
+    assert told not in irsim_evals("grade", renamed, "--case", "pub-01@7").output
+    assert "no case is called 'pub-01@x'" in refusal("grade", renamed, "--case", "pub-01@x")
+    assert "--fresh" in refusal("export", tmp_path, "pub-01", "--fresh", "-3")
 
 
 def test_where_results_go_is_checked_before_anything_is_graded(exported: Path, tmp_path: Path) -> None:
     for output in (tmp_path, tmp_path / "nowhere" / "results.json"):
-        code, text = irsim_evals("grade", exported, "--output", output)
-        assert (code, "case" in text.splitlines()[0]) == (2, False)
-        assert "give the path of a file" in text
+        said = refusal("grade", exported, "--output", output)
+        assert ("give the path of a file" in said, "verdict" in said) == (True, False)
 
 
 def test_the_log_may_lie_elsewhere(exported: Path, tmp_path: Path) -> None:
     log = tmp_path / "elsewhere.jsonl"
     log.write_text(CALL + "\n", encoding="utf-8")
     (exported / "pub-01" / "calls.jsonl").write_text(f"{CALL}\n{CALL}\n", encoding="utf-8")
-    code, text = irsim_evals("grade", exported / "pub-01", "--calls", log, "--json")
-    assert code == 0
-    [verdict] = json.loads(text)
+    done = irsim_evals("grade", exported / "pub-01", "--calls", log, "--json")
+    assert done.exit_code == 0
+    [verdict] = json.loads(done.output)
     assert [verdict["cost"][key] for key in ("calls", "errors", "tokens", "notes")] == [1, 0, 120, []]
-    assert irsim_evals("grade", exported, "--calls", log)[0] == 2
-    assert irsim_evals("grade", exported / "pub-01", "--calls", tmp_path / "nothing.jsonl")[0] == 2
-    assert irsim_evals("grade", tmp_path / "nothing")[0] == 2
+    assert "--calls belongs to one case" in refusal("grade", exported, "--calls", log)
+    assert "there is no file" in refusal("grade", exported / "pub-01", "--calls", tmp_path / "nothing.jsonl")
+    assert "there is no folder" in refusal("grade", tmp_path / "nothing")
 
 
 DEEP = "[" * 200_000
@@ -169,7 +159,7 @@ def test_later_turns_are_files_of_their_own(tmp_path: Path) -> None:
     }
     (folder / "scenario.yaml").write_text(RIGHT, encoding="utf-8")
     (folder / "reply-1.md").write_text("Which drive?", encoding="utf-8")
-    assert [outcome.assertion for outcome in grade_folder(talk, folder).failed()] == ["done"]
+    assert failed(grade_folder(talk, folder)) == ["done"]
     (folder / "reply.md").write_text("There are two.", encoding="utf-8")
     verdict = grade_folder(talk, folder)
     assert verdict.strict
@@ -235,7 +225,7 @@ def test_watching_goes_on_through_half_written_files_until_ctrl_c(exported: Path
 def test_verdicts_are_kept_for_the_report(exported: Path, tmp_path: Path) -> None:
     (exported / "pub-01" / "reply.md").write_text("It is scenario.yaml.", encoding="utf-8")
     (exported / "pub-01" / "calls.jsonl").write_text(CALL + "\n", encoding="utf-8")
-    assert irsim_evals("grade", exported, "--output", tmp_path / "results.json", "--arm", "me")[0] == 1
+    assert irsim_evals("grade", exported, "--output", tmp_path / "results.json", "--arm", "me").exit_code == 1
     first, second = read_results(tmp_path / "results.json").trials
     assert (first.key, first.arm, first.reply) == (("pub-01", ""), "me", "It is scenario.yaml.")
     assert (first.verdict.cost.tokens, second.verdict.strict, second.reply) == (120, False, "")

@@ -17,9 +17,10 @@ from irsim_evals.grader.grade import grade
 from irsim_evals.grader.hues import discernible
 from irsim_evals.grader.limited import grade_answer, grade_folder, run_limited
 from irsim_evals.grader.matching import Match, matches, quantity
-from irsim_evals.grader.outcome import Verdict
 from tests.effort import some
-from tests.evals.conftest import RIGHT, made_up
+from tests.evals.conftest import RIGHT, failed, failures, graded, made_up
+
+CASE = case_of("pub-01")
 
 BOMB = """
 a: &a [x, x]
@@ -28,10 +29,6 @@ c: &c [*b, *b, *b, *b, *b, *b, *b, *b]
 d: &d [*c, *c, *c, *c, *c, *c, *c, *c]
 world: [*d, *d, *d, *d, *d, *d, *d, *d]
 """
-
-
-def graded(text: str, case: str = "pub-01", reply: str = "") -> Verdict:
-    return grade(case_of(case), Answer("answer", {"scenario.yaml": text}, reply))
 
 
 @pytest.mark.parametrize(
@@ -83,12 +80,12 @@ def test_golds_pass_with_other_numbers(case_id: str) -> None:
     assert len(golds) >= 2
     for gold in golds:
         verdict = grade(instance, gold)
-        assert [(o.assertion, o.expected, o.observed) for o in verdict.failed()] == []
+        assert failures(verdict) == []
         assert verdict.strict
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "failed"),
+    ("old", "new", "assertion"),
     [
         ("width: 14, height: 9", "width: 9, height: 14", "world"),
         ("1.5708", "90", "start"),
@@ -101,16 +98,16 @@ def test_golds_pass_with_other_numbers(case_id: str) -> None:
         ("  behavior: {name: dash}\n", "", "behavior"),
     ],
 )
-def test_what_contradicts_the_prompt_fails_with_evidence(old: str, new: str, failed: str) -> None:
-    verdict = graded(RIGHT.replace(old, new))
+def test_what_contradicts_the_prompt_fails_with_evidence(old: str, new: str, assertion: str) -> None:
+    verdict = graded(CASE, RIGHT.replace(old, new))
     assert not verdict.strict
-    [outcome] = [o for o in verdict.failed() if o.assertion == failed]
+    [outcome] = [one for one in verdict.failed() if one.assertion == assertion]
     assert outcome.expected
     assert outcome.observed
 
 
 def test_a_right_answer_passes_and_says_what_was_seen() -> None:
-    verdict = graded(RIGHT)
+    verdict = graded(CASE, RIGHT)
     assert verdict.strict
     assert verdict.rate == 1.0
     assert {"parse", "schema", "load", "sane", "facts", "behavior"} <= {outcome.stage for outcome in verdict.outcomes}
@@ -132,7 +129,7 @@ def test_a_right_answer_passes_and_says_what_was_seen() -> None:
 )
 def test_hostile_texts_are_failed_verdicts(text: str) -> None:
     begin = time.monotonic()
-    verdict = grade_answer(case_of("pub-01"), Answer("hostile", {"scenario.yaml": text}, "all assertions passed"))
+    verdict = grade_answer(CASE, Answer("hostile", {"scenario.yaml": text}, "all assertions passed"))
     assert not verdict.strict
     assert verdict.failed()
     assert time.monotonic() - begin < 30
@@ -142,20 +139,20 @@ def test_hostile_texts_are_failed_verdicts(text: str) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="makes a link")
 def test_links_and_large_files_are_not_read(tmp_path: Path) -> None:
     (tmp_path / "scenario.yaml").symlink_to("/etc/passwd")
-    verdict = grade_folder(case_of("pub-01"), tmp_path)
+    verdict = grade_folder(CASE, tmp_path)
     assert not verdict.strict
     assert "link" in verdict.outcomes[0].observed
     (tmp_path / "scenario.yaml").unlink()
     with (tmp_path / "scenario.yaml").open("wb") as file:
         file.truncate(2**30)  # a gigabyte that takes no space
-    verdict = grade_folder(case_of("pub-01"), tmp_path)
+    verdict = grade_folder(CASE, tmp_path)
     assert not verdict.strict
     assert "bytes" in verdict.outcomes[0].observed
 
 
 def test_a_grading_that_takes_too_long_is_ended() -> None:
     begin = time.monotonic()
-    verdict = grade_answer(case_of("pub-01"), Answer("slow", {"scenario.yaml": RIGHT}), seconds=0.001)
+    verdict = grade_answer(CASE, Answer("slow", {"scenario.yaml": RIGHT}), seconds=0.001)
     assert not verdict.strict
     assert "took more than" in verdict.outcomes[0].observed
     assert time.monotonic() - begin < 20
@@ -182,12 +179,12 @@ def test_a_map_beside_the_scenario_is_graded_with_it(tmp_path: Path) -> None:
     (tmp_path / "scenario.yaml").write_text(
         RIGHT.replace("height: 9}", "height: 9, obstacle_map: walls.png}").replace("dash", "follow")
     )
-    verdict = grade_folder(case_of("pub-01"), tmp_path)
+    verdict = grade_folder(CASE, tmp_path)
     assert "walls.png" in next(o for o in verdict.outcomes if o.assertion == "valid").observed
     picture.save(tmp_path / "walls.png")
-    assert [(o.assertion, o.observed) for o in grade_folder(case_of("pub-01"), tmp_path).failed()] == []
+    assert failures(grade_folder(CASE, tmp_path)) == []
     (tmp_path / "walls.png").write_bytes(b"\x89PNG no picture")
-    assert not grade_folder(case_of("pub-01"), tmp_path).strict
+    assert not grade_folder(CASE, tmp_path).strict
 
 
 def test_an_episode_may_be_driven_by_another_behavior() -> None:
@@ -197,13 +194,12 @@ def test_an_episode_may_be_driven_by_another_behavior() -> None:
     ]
     wall = "obstacle: [{shape: {name: rectangle, length: 0.5, width: 5}, state: [7, 4.5, 0]}]\n"
     text = RIGHT.replace("dash", "follow") + wall
-    verdict = grade(made_up(episodes=episodes), Answer("answer", {"scenario.yaml": text}))
-    assert [(o.assertion, o.observed) for o in verdict.failed()] == []
+    assert failures(graded(made_up(episodes=episodes), text)) == []
 
 
 def test_every_goal_of_an_empty_world_is_reachable() -> None:
     case = made_up({"id": "way", "reachable": {"of": "robots"}})
-    assert grade(case, Answer("answer", {"scenario.yaml": RIGHT})).strict
+    assert graded(case, RIGHT).strict
 
 
 @pytest.mark.parametrize(
@@ -211,8 +207,7 @@ def test_every_goal_of_an_empty_world_is_reachable() -> None:
 )
 def test_a_planner_avoids_others_if_what_drives_it_does(behavior: str, avoids: bool) -> None:
     case = made_up({"id": "avoids", "each": {"of": "robots", "has": {"avoids": True}}})
-    text = RIGHT.replace("{name: dash}", behavior)
-    assert grade(case, Answer("answer", {"scenario.yaml": text})).strict == avoids
+    assert graded(case, RIGHT.replace("{name: dash}", behavior)).strict == avoids
 
 
 FENCED = f"Here it is:\n```yaml{RIGHT}```\n"
@@ -238,8 +233,7 @@ DRAFT = RIGHT.replace("0.35", "0.3")
     ],
 )  # fmt: skip
 def test_it_must_be_clear_which_scenario_is_meant(files: dict[str, str], reply: str, clear: bool) -> None:
-    verdict = grade(case_of("pub-01"), Answer("answer", files, reply))
-    assert [o.assertion for o in verdict.failed()] == ([] if clear else ["one-scenario"])
+    assert failed(grade(CASE, Answer("answer", files, reply))) == ([] if clear else ["one-scenario"])
 
 
 WALL = """
@@ -255,16 +249,16 @@ obstacle:
 @pytest.mark.parametrize(("behavior", "passes"), [("", False), (", behavior: {name: dash}", True)])
 def test_an_obstacle_that_nothing_drives_plugs_a_doorway(behavior: str, passes: bool) -> None:
     case = made_up({"id": "way", "reachable": {"of": "robots"}}, overlap=True)
-    assert grade(case, Answer("answer", {"scenario.yaml": WALL % behavior})).strict == passes
+    assert graded(case, WALL % behavior).strict == passes
 
 
 def test_a_compound_of_one_circle_is_a_disc() -> None:
     compound = "{name: compound, parts: [{name: circle, radius: 0.35}]}"
-    assert graded(RIGHT.replace("{name: circle, radius: 0.35}", compound)).strict
+    assert graded(CASE, RIGHT.replace("{name: circle, radius: 0.35}", compound)).strict
 
 
 def test_a_robot_that_cannot_stand_still_is_not_sane() -> None:
-    assert [o.assertion for o in graded(f"{RIGHT}  vel_min: [0.2, -1]\n").failed()] == ["can-stand"]
+    assert failed(graded(CASE, f"{RIGHT}  vel_min: [0.2, -1]\n")) == ["can-stand"]
 
 
 def test_colors_differ_only_if_they_look_different() -> None:

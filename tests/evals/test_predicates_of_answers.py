@@ -213,6 +213,7 @@ LOOPED = {f"{name}-{behavior}.yaml": scene_text(number, behavior)
          "no horizon of 40 steps; by the scenarios 400"),
     ], every=3),
 )  # fmt: skip
+@pytest.mark.usefixtures("warm_programs")
 def test_a_comparison_is_fair(files: dict[str, str], observed: str, tmp_path: Path) -> None:
     wanted = Comparison.model_validate(
         {

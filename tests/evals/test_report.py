@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import re
 import time
+from collections.abc import Sequence
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
 
 from irsim_evals.cases.store import case_of, golds_of
-from irsim_evals.cli.app import app
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.outcome import NOT_REACHED, Cost, Mark, Outcome
@@ -24,14 +23,18 @@ from irsim_evals.report.marked_picture import NumberedMark, marked_picture
 from irsim_evals.report.page import page
 from irsim_evals.report.pictures import Drawn, Job, draw_trials
 from irsim_evals.report.summary import summarize
-from irsim_evals.results import Results, read_results, results_of, trial_of
-from tests.evals.trials import file_of, trial
+from irsim_evals.results import Results, Trial, read_results, results_of, trial_of
+from tests.evals.conftest import file_of, irsim_evals, refusal, trial
 
 HOSTILE = "</pre></script><script>alert(1)</script><img src=x onerror=alert(2)>\u202e\x1b[31m"
 
 
-def run(*words: object) -> Result:
-    return CliRunner().invoke(app, [str(word) for word in words])
+def written(tmp_path: Path, *trials: Trial, options: Sequence[object] = ()) -> Path:
+    """Folder of the report on a file with these trials."""
+    results = file_of(tmp_path / "r.json", *trials)
+    done = irsim_evals("report", results, "-o", tmp_path / "out", "--no-pictures", *options)
+    assert done.exit_code == 0, done.output
+    return tmp_path / "out"
 
 
 def report_of(*trials: object, pictures: bool = False) -> str:
@@ -59,7 +62,7 @@ class Elements(HTMLParser):
 
 def test_report_writes_three_files(tmp_path: Path) -> None:
     results = file_of(tmp_path / "r.json", trial("one", True), trial("two", False), trial("one", False, "rules"))
-    done = run("report", results, "-o", tmp_path / "out", "--no-pictures")
+    done = irsim_evals("report", results, "-o", tmp_path / "out", "--no-pictures")
     assert done.exit_code == 0, done.output
     assert "skill: 50 % of 2 cases pass (9 to 91)" in done.output
     text = (tmp_path / "out" / "report.md").read_text()
@@ -72,39 +75,30 @@ def test_report_writes_three_files(tmp_path: Path) -> None:
 
 def test_results_json_has_the_names_of_skill_creator(tmp_path: Path) -> None:
     cost = Cost(calls=4, errors=1, tokens=1200, seconds=8.5)
-    results = file_of(tmp_path / "r.json", trial("one", False, cost=cost))
-    run("report", results, "-o", tmp_path / "out", "--no-pictures")
-    data = json.loads((tmp_path / "out" / "results.json").read_text())
+    data = json.loads((written(tmp_path, trial("one", False, cost=cost)) / "results.json").read_text())
     (one,) = data["runs"]
     assert (one["eval_id"], one["configuration"], one["run_number"]) == ("one", "skill", 1)
     assert one["expectations"][-1] == {"text": "size: radius 0.2", "passed": False, "evidence": "radius 0.3"}
-    assert one["result"]["tool_calls"] == 4
-    assert one["result"]["failed"] == 1
+    assert (one["result"]["tool_calls"], one["result"]["failed"]) == (4, 1)
     assert data["run_summary"]["skill"]["tokens"]["mean"] == 1200
     assert data["aggregates"]["arms"]["skill"]["cost_per_pass"]["tokens"] is None
 
 
 def test_a_report_can_be_read_again(tmp_path: Path) -> None:
-    results = file_of(tmp_path / "r.json", trial("one", True), trial("two", False))
-    assert run("report", results, "-o", tmp_path / "out", "--no-pictures").exit_code == 0
-    assert read_results(tmp_path / "out") == read_results(results)
-    assert run("report", tmp_path / "out", "-o", tmp_path / "again", "--no-pictures").exit_code == 0
+    folder = written(tmp_path, trial("one", True), trial("two", False))
+    assert read_results(folder) == read_results(tmp_path / "r.json")
+    assert irsim_evals("report", folder, "-o", tmp_path / "again", "--no-pictures").exit_code == 0
 
 
 def test_different_cases_are_not_mixed(tmp_path: Path) -> None:
-    a, b = (
-        file_of(tmp_path / "a.json", trial("one", True)),
-        file_of(tmp_path / "b.json", trial("one", True), cases="def"),
-    )
-    done = run("report", a, b, "-o", tmp_path / "out")
-    assert done.exit_code == 2
-    assert "different cases (abc and def)" in " ".join(done.output.split())
+    a, b = (file_of(tmp_path / f"{cases}.json", trial("one", True), cases=cases) for cases in ("abc", "def"))
+    assert "different cases (abc and def)" in refusal("report", a, b, "-o", tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
 def test_attempts_of_several_files_are_numbered_on(tmp_path: Path) -> None:
     a, b = (file_of(tmp_path / name, trial("one", name == "a")) for name in ("a", "b"))
-    done = run("report", a, b, "-o", tmp_path / "out", "--no-pictures", "--json")
+    done = irsim_evals("report", a, b, "-o", tmp_path / "out", "--no-pictures", "--json")
     arm = json.loads(done.stdout)["arms"]["skill"]
     assert (arm["cases"], arm["trials"]) == (1, 2)
     assert arm["pass_hat"] == {"1": 0.5, "2": 0.0}
@@ -114,9 +108,7 @@ def test_attempts_of_several_files_are_numbered_on(tmp_path: Path) -> None:
 def test_a_proof_that_is_none(tmp_path: Path, text: str, message: str) -> None:
     results = file_of(tmp_path / "r.json", trial("one", True))
     (tmp_path / "proof.json").write_text(text)
-    done = run("report", results, "--proof", tmp_path / "proof.json", "-o", tmp_path / "out")
-    assert done.exit_code == 2
-    assert message in " ".join(done.output.split())
+    assert message in refusal("report", results, "--proof", tmp_path / "proof.json", "-o", tmp_path / "out")
 
 
 def test_the_proof_is_summed_up(tmp_path: Path) -> None:
@@ -127,9 +119,8 @@ def test_the_proof_is_summed_up(tmp_path: Path) -> None:
     ]
     wrong = [{"case": "pub-05", "gold": "line", "kind": "pinned mutant", "operator": "halved", "what": "robot[0]"}]
     (tmp_path / "proof.json").write_text(json.dumps({"rows": rows, "wrong": wrong, "cases": [], "seconds": 3.0}))
-    results = file_of(tmp_path / "r.json", trial("one", True))
-    run("report", results, "--proof", tmp_path / "proof.json", "-o", tmp_path / "out", "--no-pictures")
-    words = Elements((tmp_path / "out" / "report.html").read_text()).words
+    folder = written(tmp_path, trial("one", True), options=["--proof", tmp_path / "proof.json"])
+    words = Elements((folder / "report.html").read_text()).words
     assert "wrong answers accepted, of 500: 1 (0.20%" in words
     assert "right answers rejected, of 200: 2 (1.00%" in words
     assert "pub-05 line pinned mutant halved: robot[0]" in words
@@ -167,15 +158,9 @@ def test_funnel_and_cost() -> None:
         trial("three", False, stage="facts"),
     ]
     summary = summarize(trials, "skill")
-    assert [summary.funnel[stage].passed for stage in ("sane", "facts", "relations", "behavior", "reply")] == [
-        3,
-        2,
-        2,
-        1,
-        1,
-    ]
-    assert summary.cost.known == 2
-    assert summary.cost.per_pass == {"tokens": 400}
+    passed = [summary.funnel[stage].passed for stage in ("sane", "facts", "relations", "behavior", "reply")]
+    assert passed == [3, 2, 2, 1, 1]
+    assert (summary.cost.known, summary.cost.per_pass) == (2, {"tokens": 400})
 
 
 def test_lines_of_a_path() -> None:

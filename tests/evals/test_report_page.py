@@ -13,7 +13,7 @@ from irsim_evals.report.load import Proof
 from irsim_evals.report.page import page
 from irsim_evals.results import Results
 from tests.browser import Watched, until
-from tests.evals.trials import SCENARIO, trial
+from tests.evals.conftest import SCENARIO, trial
 
 pytestmark = pytest.mark.browser
 

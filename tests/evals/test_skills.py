@@ -19,9 +19,8 @@ from irsim_evals.cases.store import all_case_ids, case_ids, case_of, folder, raw
 from irsim_evals.cli.cases import write_case
 from irsim_evals.grader.artefact import Answer, from_folder
 from irsim_evals.grader.grade import grade
-from irsim_evals.grader.outcome import NOT_REACHED, Verdict
-from tests.evals.conftest import EVALS, ROOT, SKILLS
-from tests.evals.test_grade_command import irsim_evals
+from irsim_evals.grader.outcome import NOT_REACHED
+from tests.evals.conftest import EVALS, ROOT, SKILLS, failures, irsim_evals
 from tests.warm import warm
 
 ANSWERS: dict[str, dict[str, dict[str, Any]]] = yaml.safe_load(
@@ -56,8 +55,8 @@ def test_tasks_are_cases_that_only_count_if_they_are_named() -> None:
     assert not set(tasks) & set(case_ids())
     assert sorted([*tasks, *case_ids()]) == all_case_ids()
     assert len(list(folder("cases").rglob("*.yaml"))) == len(all_case_ids())
-    assert "library-aisle" not in irsim_evals("cases")[1]
-    assert "library-aisle" in irsim_evals("cases", "irsim-scenario")[1]
+    assert "library-aisle" not in irsim_evals("cases").output
+    assert "library-aisle" in irsim_evals("cases", "irsim-scenario").output
 
 
 @each_task
@@ -103,10 +102,6 @@ def written(skill: str, task: str, where: Path) -> None:
             (where / target).write_text(done.stdout, encoding="utf-8")
     if "reply" in answer:
         (where / "reply.md").write_text(answer["reply"], encoding="utf-8")
-
-
-def failures(verdict: Verdict) -> list[tuple[str, str, str]]:
-    return [(one.assertion, one.expected, one.observed) for one in verdict.failed()]
 
 
 @pytest.mark.parametrize(
@@ -210,16 +205,16 @@ def test_programs_run_only_where_that_is_allowed(tmp_path: Path) -> None:
     (where / "compass.py").write_text(
         (where / "compass.py").read_text(encoding="utf-8") + f"\nopen({str(marker)!r}, 'w').close()\n", encoding="utf-8"
     )
-    code, text = irsim_evals("grade", where)
-    assert code == 1
-    assert 'loads: expected `python -c "import compass"` succeeds; observed it was not run' in text
+    done = irsim_evals("grade", where)
+    assert done.exit_code == 1
+    assert 'loads: expected `python -c "import compass"` succeeds; observed it was not run' in done.output
     assert not marker.exists()
-    assert irsim_evals("grade", where, "--run-programs")[0] == 0
+    assert irsim_evals("grade", where, "--run-programs").exit_code == 0
     assert marker.exists()
     (where / "compass.py").write_text("SENSORS.register\nraise SystemExit('no compass')\n", encoding="utf-8")
-    code, text = irsim_evals("grade", where, "--run-programs")
-    assert code == 1
-    assert "no compass" in text or "NameError" in text
+    done = irsim_evals("grade", where, "--run-programs")
+    assert done.exit_code == 1
+    assert "no compass" in done.output or "NameError" in done.output
 
 
 @each

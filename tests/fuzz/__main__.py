@@ -8,8 +8,8 @@ import sys
 import time
 from pathlib import Path
 
+from tests.fuzz.attempt import try_all
 from tests.fuzz.grammar import document
-from tests.fuzz.pool import try_all
 
 
 def main() -> None:

@@ -1,74 +1,100 @@
-"""One document: load, validate, three steps. Runs in a process of its own, with the limits of a server and less memory.
+"""Documents are tried in processes with the limits of a server and less memory: load, validate, three steps.
 
-Reads one JSON line per document (``{"index": …, "text": …}``) and writes one: what it came to, processor time [s], and
-what is wrong, None if nothing is.
+A process that dies takes only the document along that killed it.
 """
 
 from __future__ import annotations
 
-import json
 import os
-import resource
 import signal
-import sys
 import tempfile
 import time
 import traceback
 import warnings
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-__all__ = ["MEMORY", "SECONDS", "main"]
+import irsim
+from irsim.common.child import limit
+from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError
+from irsim_evals.grader.limited import LimitError, run_all
+from irsim_mcp.limits import ServerLimits, scenario_limits
 
-SECONDS = 10.0
+__all__ = ["Tally", "Wrong", "try_all"]
+
+_SECONDS = 10.0
 """Processor time of one document: twice what the worst ones take, because machines differ, and their days do, too."""
-PATIENCE = 60.0
+_PATIENCE = 60.0
 """Time on the clock of one document, on a machine that does other things as well."""
-MEMORY = 1024**3
-"""Address space of the process."""
-STEPS = 3
+_MEMORY = 1024**3
+"""Address space of a process."""
+_STEPS = 3
+_RENEWED = 1000
+"""Documents after which new processes are started: memory of many adds up to none."""
 
 
-def main() -> None:
-    """Do documents until there are no more."""
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)
-    import irsim
-    from irsim_mcp.limits import ServerLimits, scenario_limits
+@dataclass(frozen=True)
+class Wrong:
+    """A document that should have been answered otherwise."""
 
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    assert irsim.validate
-    warnings.simplefilter("error")
+    index: int
+    text: str
+    what: str
+
+
+@dataclass
+class Tally:
+    """Results of all documents."""
+
+    came_to: Counter[str] = field(default_factory=Counter)
+    wrong: list[Wrong] = field(default_factory=list)
+    slowest: tuple[float, int] = (0.0, -1)
+
+
+def try_all(documents: Iterable[tuple[int, str]], *, workers: int = 2) -> Tally:
+    """Load, validate and run documents.
+
+    Args:
+        documents: (number, text).
+        workers: Processes at a time.
+    """
+    tally, rest = Tally(), iter(documents)
     with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        limits = scenario_limits(ServerLimits(), Path(folder))
-        for line in sys.stdin:
-            item = json.loads(line)
-            # No handlers: the system ends the process, wherever it is.
-            signal.setitimer(signal.ITIMER_PROF, SECONDS)
-            signal.setitimer(signal.ITIMER_REAL, PATIENCE)
-            begin = time.process_time()
-            came_to, wrong = attempt(item["text"], limits)
-            signal.setitimer(signal.ITIMER_PROF, 0.0)
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
-            used = time.process_time() - begin
-            answer = {"index": item["index"], "came_to": came_to, "wrong": wrong, "seconds": used}
-            answers.write(json.dumps(answer) + "\n")
-            answers.flush()
+        while batch := list(islice(rest, _RENEWED)):
+            results = run_all(_limited, [(text, folder) for _, text in batch], workers, _PATIENCE, "document")
+            for (index, text), result in zip(batch, results, strict=True):
+                came_to, wrong, seconds = ("died", str(result), 0.0) if isinstance(result, LimitError) else result
+                tally.came_to[came_to] += 1
+                tally.slowest = max(tally.slowest, (seconds, index))
+                if wrong is not None:
+                    tally.wrong.append(Wrong(index, text, wrong))
+    return tally
 
 
-def attempt(text: str, limits: Any) -> tuple[str, str | None]:
+def _limited(text: str, folder: str) -> tuple[str, str | None, float]:
+    """Try a document in the limited process: its result, what is wrong with it, and the processor time [s]."""
+    os.chdir(folder)
+    limit(memory=_MEMORY)
+    warnings.simplefilter("error")
+    signal.setitimer(signal.ITIMER_PROF, _SECONDS)  # no handler: the system ends the process, wherever it is
+    begin = time.process_time()
+    came_to, wrong = _attempt(text, scenario_limits(ServerLimits(), Path(folder)))
+    signal.setitimer(signal.ITIMER_PROF, 0.0)
+    return came_to, wrong, time.process_time() - begin
+
+
+def _attempt(text: str, limits: Any) -> tuple[str, str | None]:
     """Result of a document, ``invalid``, ``refused`` or ``ran``, and the problem with that result, if any."""
-    import irsim
-    from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError
-
     came_to = "invalid"
     try:
         report = irsim.validate(text=text, limits=limits)
         _check(report)
         try:
-            result = irsim.run(text=text, seed=1, steps=STEPS, limits=limits, strict=report.valid)
+            result = irsim.run(text=text, seed=1, steps=_STEPS, limits=limits, strict=report.valid)
         except IrsimError as error:
             came_to = "refused" if report.valid else "invalid"
             _check_text(str(error))
@@ -105,7 +131,3 @@ def _check_text(text: str) -> None:
 def _place(error: BaseException) -> str:
     frames = [f for f in traceback.extract_tb(error.__traceback__) if "irsim" in f.filename or "fuzz" in f.filename]
     return " < ".join(f"{Path(f.filename).name}:{f.lineno}" for f in reversed(frames[-4:]))
-
-
-if __name__ == "__main__":
-    main()

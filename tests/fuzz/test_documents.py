@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.fuzz.attempt import try_all
 from tests.fuzz.grammar import document
-from tests.fuzz.pool import try_all
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of processes need Linux")
 CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))

@@ -9,6 +9,7 @@ import base64
 import json
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -64,18 +65,26 @@ def _resource(uri: str, kind: str, text: str) -> EmbeddedResource:
 
 
 def add_tools(server: IrsimServer) -> None:
+    def tool(function: Callable[..., Any]) -> None:
+        server.add_tool(function, description=f"Fixture {function.__name__}.", structured_output=False)
+
+    @tool
     def test_simple_text() -> list[TextContent]:
         return [TextContent(text="This is a simple text response for testing.")]
 
+    @tool
     def test_image_content() -> list[ImageContent]:
         return [ImageContent(data=PNG, mime_type="image/png")]
 
+    @tool
     def test_audio_content() -> list[AudioContent]:
         return [AudioContent(data=WAV, mime_type="audio/wav")]
 
+    @tool
     def test_embedded_resource() -> list[EmbeddedResource]:
         return [_resource("test://embedded-resource", "text/plain", "This is an embedded resource content.")]
 
+    @tool
     def test_multiple_content_types() -> list[TextContent | ImageContent | EmbeddedResource]:
         return [
             TextContent(text="Multiple content types test:"),
@@ -83,15 +92,18 @@ def add_tools(server: IrsimServer) -> None:
             _resource("test://mixed-content-resource", "application/json", json.dumps({"test": "data", "value": 123})),
         ]
 
+    @tool
     def test_error_handling() -> str:
         raise ToolError("This tool intentionally returns an error for testing")
 
+    @tool
     async def test_tool_with_progress(ctx: Ctx) -> str:
         for done in (0, 50, 100):
             await ctx.report_progress(done, 100, f"{done} of 100")
             await anyio.sleep(0.05)
         return "done"
 
+    @tool
     def test_missing_capability(ctx: Ctx) -> str:
         declared = ctx.session.client_capabilities
         if declared is None or declared.sampling is None:
@@ -101,37 +113,26 @@ def add_tools(server: IrsimServer) -> None:
             raise MCPError(MISSING_REQUIRED_CLIENT_CAPABILITY, "this tool needs sampling", missing)
         return "the client can sample"
 
+    @tool
     async def test_sampling(prompt: str, ctx: Ctx) -> str:
         message = SamplingMessage(role="user", content=TextContent(text=prompt))
         answer = await ctx.session.create_message(messages=[message], max_tokens=100)
         return f"LLM response: {getattr(answer.content, 'text', '')}"
 
+    @tool
     async def test_elicitation(message: Annotated[str, Field(description="Shown")], ctx: Ctx) -> str:
         answer = await ctx.elicit(message, Response)
         return f"User response: {answer.action}"
 
+    @tool
     async def test_elicitation_sep1034_defaults(ctx: Ctx) -> str:
         answer = await ctx.elicit("Please give your data", Person)
         return f"Elicitation completed: {answer.action}"
 
+    @tool
     def json_schema_2020_12_tool(name: str = "", address: dict[str, str] | None = None) -> str:
         return name
 
-    for tool in (
-        test_simple_text,
-        test_image_content,
-        test_audio_content,
-        test_embedded_resource,
-        test_multiple_content_types,
-        test_error_handling,
-        test_tool_with_progress,
-        test_missing_capability,
-        test_sampling,
-        test_elicitation,
-        test_elicitation_sep1034_defaults,
-        json_schema_2020_12_tool,
-    ):
-        server.add_tool(tool, description=f"Fixture {tool.__name__}.", structured_output=False)
     schemas = {tool.name: tool for tool in server._tool_manager.list_tools()}
     schemas["json_schema_2020_12_tool"].parameters = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -159,46 +160,44 @@ def add_tools(server: IrsimServer) -> None:
 
 
 def add_resources(server: IrsimServer) -> None:
+    @server.resource("test://static-text", mime_type="text/plain")
     def text() -> str:
         return "This is the content of the static text resource."
 
+    @server.resource("test://static-binary", mime_type="image/png")
     def binary() -> bytes:
         return base64.b64decode(PNG)
 
+    @server.resource("test://watched-resource", mime_type="text/plain")
     def watched() -> str:
         return "Watched resource content"
 
+    @server.resource("test://template/{id}/data", mime_type="application/json")
     def template(id: str) -> str:
         return json.dumps({"id": id, "templateTest": True, "data": f"Data for ID: {id}"})
 
-    server.resource("test://static-text", mime_type="text/plain")(text)
-    server.resource("test://static-binary", mime_type="image/png")(binary)
-    server.resource("test://watched-resource", mime_type="text/plain")(watched)
-    server.resource("test://template/{id}/data", mime_type="application/json")(template)
-
 
 def add_prompts(server: IrsimServer) -> None:
+    def prompt(function: Callable[..., Any]) -> None:
+        server.prompt(description=f"Fixture {function.__name__}.")(function)
+
+    @prompt
     def test_simple_prompt() -> str:
         return "This is a simple prompt for testing."
 
+    @prompt
     def test_prompt_with_arguments(arg1: str, arg2: str) -> str:
         return f"Prompt with arguments: arg1='{arg1}', arg2='{arg2}'"
 
+    @prompt
     def test_prompt_with_embedded_resource(resourceUri: str) -> list[UserMessage]:
         content = _resource(resourceUri, "text/plain", "Embedded resource content for testing.")
         return [UserMessage(content=content), UserMessage(content="Please process the embedded resource above.")]
 
+    @prompt
     def test_prompt_with_image() -> list[UserMessage]:
         image = ImageContent(data=PNG, mime_type="image/png")
         return [UserMessage(content=image), UserMessage(content="Please analyze the image above.")]
-
-    for prompt in (
-        test_simple_prompt,
-        test_prompt_with_arguments,
-        test_prompt_with_embedded_resource,
-        test_prompt_with_image,
-    ):
-        server.prompt(description=f"Fixture {prompt.__name__}.")(prompt)
 
 
 def main() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 import subprocess
@@ -43,6 +44,25 @@ def execute(words: list[str], folder: Path) -> str:
     done = subprocess.run(warm(command), cwd=folder, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, f"{words}: {done.stdout}{done.stderr}"
     return done.stdout
+
+
+def script(path: Path, *words: str, folder: Path | None = None, alone: bool = False) -> tuple[int, dict[str, Any]]:
+    """Exit code of a skill's script and its answer; without an answer what it says instead.
+
+    Args:
+        path: The script.
+        words: Its arguments.
+        folder: Folder that it runs in.
+        alone: Whether it must do with the standard library.
+    """
+    command = [sys.executable, str(path), *words]
+    done = subprocess.run(
+        [command[0], "-I", "-S", *command[1:]] if alone else warm(command), cwd=folder, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+    assert "Traceback" not in done.stderr
+    assert len(done.stdout) < 20_000
+    return done.returncode, json.loads(done.stdout) if done.stdout else {"said": done.stderr}
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:

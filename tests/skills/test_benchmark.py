@@ -7,8 +7,6 @@ import json
 import re
 import runpy
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +17,7 @@ import irsim
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import wilson
-from tests.skills.conftest import ROOT, commands, execute, fences, parts, read, spans
+from tests.skills.conftest import ROOT, commands, execute, fences, parts, read, script, spans
 from tests.skills.test_skill import SKELETON, tool_arguments
 
 SKILL = ROOT / "skills" / "irsim-benchmark"
@@ -29,11 +27,7 @@ _, BODY = parts(SKILL / "SKILL.md")
 
 
 def verdict(path: Path, *words: str) -> tuple[int, dict[str, Any]]:
-    done = subprocess.run(
-        [sys.executable, "-I", "-S", str(VERDICT), str(path), *words], capture_output=True, text=True, check=False
-    )
-    assert "Traceback" not in done.stderr
-    return done.returncode, json.loads(done.stdout) if done.stdout else {"said": done.stderr}
+    return script(VERDICT, str(path), *words, alone=True)
 
 
 def shares(row: dict[str, Any]) -> str:

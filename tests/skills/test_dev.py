@@ -18,7 +18,7 @@ import irsim._core as core
 from irsim.diagnostics import codes
 from irsim.options.registry import REGISTRIES
 from tests.packaging.conftest import Environment
-from tests.skills.conftest import ROOT, commands, execute, fences, parts, read, spans
+from tests.skills.conftest import ROOT, commands, execute, fences, parts, read, script, spans
 from tests.warm import warm
 
 SKILL = ROOT / "skills" / "irsim-dev"
@@ -183,9 +183,7 @@ def git(folder: Path, *words: str) -> None:
 
 
 def touched(folder: Path) -> tuple[int, dict[str, list[str]]]:
-    command = [sys.executable, str(SKILL / "scripts" / "touched.py"), str(folder)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    return done.returncode, json.loads(done.stdout)
+    return script(SKILL / "scripts" / "touched.py", str(folder), alone=True)
 
 
 def test_the_script_names_the_steps_a_change_needs(tmp_path: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -11,10 +10,10 @@ import pytest
 
 import irsim
 from irsim.lookup.reference import SKILLS
-from tests.skills.conftest import ROOT, parts
-from tests.warm import warm
+from tests.skills.conftest import ROOT, execute, parts, script
 
 if sys.version_info >= (3, 11):
+    import skills_ref
     import tomllib
 else:
     import tomli as tomllib
@@ -40,7 +39,6 @@ def test_frontmatter_follows_the_specification(skill: Path) -> None:
     front, _ = parts(skill / "SKILL.md")
     assert set(front) <= {"name", "description", "license", "compatibility", "metadata", "allowed-tools"}
     assert front["name"] == skill.name
-    assert isinstance(front["name"], str)
     assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", front["name"])
     assert len(front["name"]) <= 64
     assert isinstance(front["description"], str)
@@ -59,9 +57,7 @@ if sys.version_info >= (3, 11):  # which the validator needs; the test above has
 
     @each
     def test_the_reference_validator_agrees(skill: Path) -> None:
-        command = [sys.executable, "-c", "from skills_ref.cli import main; main()", "validate", str(skill)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stdout + done.stderr
+        assert skills_ref.validate(skill) == []
 
 
 @each
@@ -91,28 +87,19 @@ def test_references_lie_one_level_deep_and_are_small(skill: Path) -> None:
     assert {path.name: len(path.read_bytes()) for path in folder.iterdir() if len(path.read_bytes()) > 20_000} == {}
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
-def test_scripts_explain_themselves_and_refuse_nonsense(script: Path, tmp_path: Path) -> None:
-    def call(*words: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, str(script), *words]
-        return subprocess.run(
-            warm(command), capture_output=True, text=True, cwd=tmp_path, stdin=subprocess.DEVNULL, check=False
-        )
-
-    told = call("--help")
-    assert told.returncode == 0
-    assert told.stdout.startswith("usage: ")
-    assert len(told.stdout) < 4000
-    refused = call("missing-file")
-    assert refused.returncode == 2
-    assert refused.stdout == ""
-    assert "Traceback" not in refused.stderr
-    assert "missing-file" in refused.stderr
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.name)
+def test_scripts_explain_themselves_and_refuse_nonsense(path: Path, tmp_path: Path) -> None:
+    told = execute(["python", str(path), "--help"], tmp_path)
+    assert told.startswith("usage: ")
+    assert len(told) < 4000
+    code, refused = script(path, "missing-file", folder=tmp_path)
+    assert (code, list(refused)) == (2, ["said"])
+    assert "missing-file" in refused["said"]
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
-def test_scripts_name_the_version_they_were_written_for(script: Path) -> None:
-    text = script.read_text(encoding="utf-8")
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.name)
+def test_scripts_name_the_version_they_were_written_for(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
     declared = re.search(r"\A#!.*\n# /// script\n((?:# .*\n)+)# ///\n", text)
     assert declared
     needs_irsim = bool(re.search(r"^(import|from) irsim\b", text, re.MULTILINE))
@@ -124,7 +111,7 @@ def test_scripts_name_the_version_they_were_written_for(script: Path) -> None:
 
 
 def test_each_pack_has_scripts() -> None:
-    assert {script.parents[1].name for script in SCRIPTS} == {skill.name for skill in FOLDERS}
+    assert {path.parents[1].name for path in SCRIPTS} == {skill.name for skill in FOLDERS}
 
 
 def test_each_pack_has_worked_examples() -> None:

@@ -1,4 +1,4 @@
-"""SKILL.md follows the rules of its format, and every file, key, command and tool in it is real."""
+"""The skill ``irsim-scenario``: every file, key, command and tool in it is real, its references are generated."""
 
 from __future__ import annotations
 
@@ -16,10 +16,26 @@ from mcp import Client
 
 import irsim
 from irsim.diagnostics.codes import CODES, TOOL_CODES
+from irsim.lookup.pages import find_gaps
+from irsim.lookup.reference import main, out_of_date
+from irsim.options.registry import REGISTRIES
+from irsim.scenario.model.json_schema import json_schema
 from irsim_mcp.server import build_server
-from tests.skills.conftest import SKILL, execute, fences, parts, spans
+from tests.skills.conftest import ROOT, SKILL, execute, fences, parts, spans
 
 _, BODY = parts()
+REFERENCES = SKILL / "references"
+PAGE_OF = {
+    "behavior": "behaviors",
+    "distribution": "distributions",
+    "kinematics": "kinematics",
+    "map": "world",
+    "planner": "behaviors",
+    "sensor": "sensors",
+    "shape": "shapes",
+}
+RUNNER_BRIDGES = REFERENCES.parents[1] / "irsim-runner" / "references" / "bridges.md"
+"""The page about bridges, which are not part of what happens in a scenario; the skill that runs it has the page."""
 GUIDES = {path.stem: path.read_text(encoding="utf-8") for path in sorted((SKILL / "guides").glob("*.md"))}
 ALL = "\n".join([BODY, *GUIDES.values()])
 [SKELETON] = fences(BODY, "yaml")
@@ -37,12 +53,9 @@ def test_what_most_requests_need_is_short_and_guides_hold_the_rest() -> None:
     assert {name for name, text in GUIDES.items() if len(text) > 5000} == set()
 
 
-def test_the_skeleton_is_valid_without_a_remark_and_succeeds(tmp_path: Path) -> None:
-    report = irsim.validate(text=SKELETON)
-    assert [finding.code for finding in report.findings] == []
-    path = tmp_path / "skeleton.yaml"
-    path.write_text(SKELETON, encoding="utf-8")
-    assert irsim.run(path, seed=3).outcome == "success"
+def test_the_skeleton_is_valid_without_a_remark_and_succeeds() -> None:
+    assert found(SKELETON) == set()
+    assert irsim.run(text=SKELETON, seed=3).outcome == "success"
 
 
 @pytest.mark.slow(17)
@@ -153,46 +166,45 @@ def test_the_other_traps_are_named_by_it(change: tuple[str, str], code: str) -> 
     assert code in found(text)
 
 
-def test_what_it_says_about_loops_and_headings_is_so(tmp_path: Path) -> None:
-    path = tmp_path / "run.yaml"
-    path.write_text(SKELETON.replace("{name: dash}", "{name: dash, loop: true}"), encoding="utf-8")
-    assert irsim.run(path).outcome == "success"
-    drives = {
-        "omni_angular": ("[1, 1, 1]", "dash"),
-        "diff": ("[1, 1.5]", "dash"),
-        "acker, wheelbase: 0.4": ("[1, 0.6]", "follow"),
-    }
-    for drive, (limits, behavior) in drives.items():
-        text = SKELETON.replace("goal: [10.5, 4]", "goal: [10.5, 4, 1.5708]\n    arrive_mode: state")
-        text = text.replace("{name: diff}", f"{{name: {drive}}}").replace("vel_max: [1.0, 1.5]", f"vel_max: {limits}")
-        text = text.replace("{name: dash}", f"{{name: {behavior}}}").replace("    vel_min: [-1.0, -1.5]\n", "")
-        path.write_text(text, encoding="utf-8")
-        result = irsim.run(path)
-        assert result.outcome == "success", drive
-        assert abs(result.robots[0].pose[2] - 1.5708) < 0.1, drive
+def test_what_it_says_about_loops_is_so() -> None:
+    assert irsim.run(text=SKELETON.replace("{name: dash}", "{name: dash, loop: true}")).outcome == "success"
 
 
-def test_a_robot_that_only_watches_is_valid_as_told_and_waits_for_the_time_limit(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("drive", "limits", "behavior"),
+    [
+        ("omni_angular", "[1, 1, 1]", "dash"),
+        ("diff", "[1, 1.5]", "dash"),
+        ("acker, wheelbase: 0.4", "[1, 0.6]", "follow"),
+    ],
+)
+def test_what_it_says_about_headings_is_so(drive: str, limits: str, behavior: str) -> None:
+    text = SKELETON.replace("goal: [10.5, 4]", "goal: [10.5, 4, 1.5708]\n    arrive_mode: state")
+    text = text.replace("{name: diff}", f"{{name: {drive}}}").replace("vel_max: [1.0, 1.5]", f"vel_max: {limits}")
+    text = text.replace("{name: dash}", f"{{name: {behavior}}}").replace("    vel_min: [-1.0, -1.5]\n", "")
+    result = irsim.run(text=text)
+    assert result.outcome == "success"
+    assert abs(result.robots[0].pose[2] - 1.5708) < 0.1
+
+
+def test_a_robot_that_only_watches_is_valid_as_told_and_waits_for_the_time_limit() -> None:
     data = yaml.safe_load(SKELETON)
     [robot] = data["robot"]
     data["robot"] = [{key: robot[key] for key in ("shape", "state")}]
     data["world"]["time_limit"] = 2
     text = yaml.safe_dump(data)
     assert found(text) == set()
-    path = tmp_path / "watch.yaml"
-    path.write_text(text, encoding="utf-8")
-    assert (irsim.run(path).outcome, irsim.run(path).sim_time) == ("timeout", pytest.approx(2.0))
+    result = irsim.run(text=text)
+    assert (result.outcome, result.sim_time) == ("timeout", pytest.approx(2.0))
 
 
-def test_what_it_says_about_horizons_near_walls_is_so(tmp_path: Path) -> None:
-    path = tmp_path / "wall.yaml"
+def test_what_it_says_about_horizons_near_walls_is_so() -> None:
     data = yaml.safe_load(SKELETON)
     data["obstacle"] = [{"shape": {"name": "rectangle", "length": 0.3, "width": 6}, "state": [11.2, 4, 0]}]
     times = []
     for horizon in (10, 1.5):
         data["robot"][0]["behavior"] = {"name": "orca", "timeHorizonObst": horizon}
-        path.write_text(yaml.safe_dump(data), encoding="utf-8")
-        times.append(irsim.run(path).sim_time)
+        times.append(irsim.run(text=yaml.safe_dump(data)).sim_time)
     assert times[0] > 1.5 * times[1]
 
 
@@ -211,3 +223,51 @@ def test_what_the_behaviors_say_about_turning_is_so(behavior: str, fastest: floa
         rates.append(abs(float(env.robot.velocity[1, 0])))
     env.end(ending_time=0)
     assert max(rates) == pytest.approx(fastest)
+
+
+def page(name: str) -> str:
+    return (REFERENCES / f"{name}.md").read_text(encoding="utf-8")
+
+
+def test_references_are_up_to_date() -> None:
+    execute(
+        ["python", "-m", "irsim.lookup.reference", "--check"], ROOT
+    )  # other tests register features in this process
+
+
+def test_a_changed_a_missing_and_a_foreign_page_are_found(tmp_path: Path) -> None:
+    for path in REFERENCES.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    (tmp_path / "world.md").write_text("# World\n", encoding="utf-8")
+    (tmp_path / "plot.md").unlink()
+    (tmp_path / "notes.md").write_text("mine\n", encoding="utf-8")
+    assert {"world.md", "plot.md", "notes.md"} <= {path.name for path in out_of_date(tmp_path)}
+
+
+def test_the_program_that_writes_references_has_help(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--help"])
+    assert ended.value.code == 0
+    assert "--check" in capsys.readouterr().out
+
+
+def test_every_built_in_component_has_its_section() -> None:
+    for kind, registry in REGISTRIES.items():
+        text = RUNNER_BRIDGES.read_text(encoding="utf-8") if kind == "bridge" else page(PAGE_OF[kind])
+        for feature in registry.features():
+            if feature.origin == "built-in":
+                mark = "" if feature.simulated else " \\(not simulated by this version\\)"
+                assert re.search(rf"^##+ {feature.name}{mark}$", text, re.MULTILINE), (kind, feature.name)
+
+
+def test_what_the_validator_refuses_is_listed_and_nothing_else() -> None:
+    gaps = find_gaps(json_schema())
+    components = {"behavior": "behavior", "sensor": "sensors", "shape": "shape", "kinematics": "kinematics"}
+    refused = {(gap.key, gap.value) for gap in gaps if gap.section == "robot"}
+    for kind, key in components.items():
+        for feature in REGISTRIES[kind].features():
+            if feature.origin == "built-in":
+                assert ((key, feature.name) in refused) == (not feature.simulated), feature.name
+    rows = re.findall(r"^\| `(\w+)`.*? \| `(.*?)` \| (.*) \|$", page("not-simulated"), re.MULTILINE)
+    assert bool(rows) == bool(gaps)
+    assert set(rows) <= {(gap.section, gap.example, gap.message) for gap in gaps}

@@ -15,6 +15,8 @@ from tests.speed.learning import main as learning
 from tests.speed.measure import measure
 from tests.speed.scenes import SCENES
 
+pytestmark = pytest.mark.one_python
+
 
 @pytest.mark.parametrize("name", SCENES)
 def test_a_scene_has_the_robots_and_beams_that_are_counted(name: str, tmp_path: Path) -> None:

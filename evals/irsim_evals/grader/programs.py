@@ -126,7 +126,7 @@ def rehearse_program(folder: Path, name: str, seconds: float = SECONDS) -> Print
 
 
 def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
-    command = [sys.executable, "-I", "-m", "irsim_evals.grader.run_program", name, *([str(log)] if log else [])]
+    command = _command(name, *([str(log)] if log else []))
     environment = {"PATH": os.defpath, "MPLBACKEND": "Agg", "HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     with (folder / ".printed").open("wb") as output:
         process = subprocess.Popen(
@@ -138,7 +138,8 @@ def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
         except subprocess.TimeoutExpired:
             code = None
         finally:
-            _end(process)
+            kill_group(process.pid)
+            process.wait()
     with (folder / ".printed").open("rb") as printed:
         text = printed.read(_MAX_PRINTED).decode("utf-8", errors="replace")
     episodes = read_log(log) if log else []
@@ -151,10 +152,8 @@ def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
     return Printed(True, text, episodes=episodes)
 
 
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process with all that it started."""
-    kill_group(process.pid)
-    process.wait()
+def _command(*arguments: str) -> list[str]:
+    return [sys.executable, "-I", "-m", "irsim_evals.grader.run_program", *arguments]
 
 
 def problems_of(text: str) -> list[str]:

@@ -80,12 +80,13 @@ def key(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(autouse=True)
-def connections_of_others() -> Iterator[None]:
+def connections_of_others(request: pytest.FixtureRequest) -> Iterator[None]:
     """Connections that inspect_ai leaves open are collected here, where a warning about them is not an error."""
     yield
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        gc.collect()
+    if request.node.get_closest_marker("evals"):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            gc.collect()
 
 
 def run(instances: list[Instance], api: MessagesApi, folder: Path, arm: str = "no-skill", **more: Any) -> list[Trial]:
