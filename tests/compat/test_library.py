@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
@@ -18,32 +17,20 @@ from irsim.lib import (
     GeometryFactory,
     GroupBehavior,
     SocialForceModelBatch,
+    ackermann_kinematics,
+    differential_kinematics,
     generate_polygon,
+    kinematics_factory,
+    omni_kinematics,
     random_generate_polygon,
     reciprocal_vel_obs,
     register_behavior,
     social_force_model,
 )
-from irsim.lib.algorithm import cast_rays
-from irsim.lib.behavior.behavior_methods import (
-    AckerDash,
-    DiffDash,
-    DiffRVO,
-    OmniAngularDash,
-    OmniDash,
-    OmniRVO,
-    SFMVelocity,
-    beh_acker_dash,
-    beh_diff_dash,
-    beh_diff_rvo,
-    beh_diff_sfm,
-    beh_omni_angular_dash,
-    beh_omni_dash,
-    beh_omni_rvo,
-    beh_omni_sfm,
-)
+from irsim.lib.algorithm import cast_rays, omni_angular_kinematics
+from irsim.lib.behavior import behavior_methods as methods
+from tests.env.driving import Make, take_steps
 
-Make = Callable[..., irsim.Env]
 SCENARIO = """
 robot:
   - {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 1, 0.3], goal: [9, 4],
@@ -63,16 +50,21 @@ OTHERS = [[2, 1.2, -0.3, 0, 0.3], [1.5, 2, 0, -0.4, 0.4]]
 LINES = [[0, 0, 3, 0]]
 
 
+@pytest.fixture
+def env(make: Make) -> Any:
+    return make(SCENARIO)
+
+
 def test_dash_of_arrays() -> None:
     state, goal = np.array([[1.0], [1.0], [0.3]]), np.array([[4.0], [3.0], [0.5]])
     two, three = np.array([[1.0], [2.0]]), np.array([[1.0], [2.0], [0.5]])
     expected = {
-        "diff": (DiffDash(state, goal, two), [0.958813123592, 2.0]),
-        "ramp": (DiffDash(state, goal, two, angular_acce=1.0, dt=0.1), [0.958813123592, 0.331283209846]),
-        "omni": (OmniDash(state, goal, two), [0.958813123592, 0.568075326087]),
-        "acker": (AckerDash(state, goal, two, 0.1, 0.1), [1.0, 0.288002603548]),
-        "turning": (OmniAngularDash(state, goal, three), [0.958813123592, 0.568075326087, 0.5]),
-        "there": (OmniAngularDash(goal - 0.01, goal, three), [0.0, 0.0, 0.0]),
+        "diff": (methods.DiffDash(state, goal, two), [0.958813123592, 2.0]),
+        "ramp": (methods.DiffDash(state, goal, two, angular_acce=1.0, dt=0.1), [0.958813123592, 0.331283209846]),
+        "omni": (methods.OmniDash(state, goal, two), [0.958813123592, 0.568075326087]),
+        "acker": (methods.AckerDash(state, goal, two, 0.1, 0.1), [1.0, 0.288002603548]),
+        "turning": (methods.OmniAngularDash(state, goal, three), [0.958813123592, 0.568075326087, 0.5]),
+        "there": (methods.OmniAngularDash(goal - 0.01, goal, three), [0.0, 0.0, 0.0]),
     }
     for name, (control, numbers) in expected.items():
         assert control.shape == (len(numbers), 1), name
@@ -82,33 +74,32 @@ def test_dash_of_arrays() -> None:
 @pytest.mark.parametrize(
     ("function", "index", "expected"),
     [
-        (beh_diff_dash, 0, [0.6, 0.0]),
-        (beh_omni_dash, 1, [-0.7282569211, 0.685304207539]),
-        (beh_acker_dash, 2, [1.0, -0.578299659005]),
-        (beh_omni_angular_dash, 3, [0.722318278264, -0.691560774542, -1.0]),
+        (methods.beh_diff_dash, 0, [0.6, 0.0]),
+        (methods.beh_omni_dash, 1, [-0.7282569211, 0.685304207539]),
+        (methods.beh_acker_dash, 2, [1.0, -0.578299659005]),
+        (methods.beh_omni_angular_dash, 3, [0.722318278264, -0.691560774542, -1.0]),
         # The corner of the line pushes once and blocks no robot beside a free way, and the turn ends there with
         # 1 rad/s^2 (not as in 2.12).
-        (beh_diff_sfm, 0, [0.512689629309, 0.795829537608]),
-        (beh_omni_sfm, 1, [0.468723987233, 0.58436247764]),
+        (methods.beh_diff_sfm, 0, [0.512689629309, 0.795829537608]),
+        (methods.beh_omni_sfm, 1, [0.468723987233, 0.58436247764]),
     ],
 )
 def test_behaviors_of_objects(make: Make, function: Any, index: int, expected: list[float]) -> None:
     ego = make(SCENARIO).objects[index]
     control = function(ego, ego.external_objects, name="any", wander=False)
-    assert control[:, 0] == pytest.approx(expected, abs=1e-9)
-    assert len(control) == ego.vel_dim
+    assert (control[:, 0], len(control)) == (pytest.approx(expected, abs=1e-9), ego.vel_dim)
 
 
 def test_behaviors_see_only_what_they_are_shown(make: Make) -> None:
     ego = make(SCENARIO).objects[1]
-    alone = beh_omni_sfm(ego, [])
-    assert alone[:, 0] != pytest.approx(beh_omni_sfm(ego, ego.external_objects)[:, 0], abs=1e-3)
-    assert alone[:, 0] == pytest.approx(beh_omni_sfm(ego, [], neighbor_threshold=0.01)[:, 0])
+    alone = methods.beh_omni_sfm(ego, [])
+    assert alone[:, 0] != pytest.approx(methods.beh_omni_sfm(ego, ego.external_objects)[:, 0], abs=1e-3)
+    assert alone[:, 0] == pytest.approx(methods.beh_omni_sfm(ego, [], neighbor_threshold=0.01)[:, 0])
 
 
 def test_a_behavior_of_users_on_top_of_a_built_in_one(make: Make) -> None:
     register_behavior("omni", "careful")(
-        lambda ego_object, external_objects, **keys: 0.5 * beh_omni_sfm(ego_object, external_objects, **keys)
+        lambda ego_object, external_objects, **keys: 0.5 * methods.beh_omni_sfm(ego_object, external_objects, **keys)
     )
     text = SCENARIO.replace("{name: sfm}", "{name: careful}")
     env, plain = make(text), make(SCENARIO)
@@ -119,7 +110,7 @@ def test_a_behavior_of_users_on_top_of_a_built_in_one(make: Make) -> None:
 
 def test_in_a_batch_an_object_is_asked_in_its_own_world(tmp_path: Any) -> None:
     register_behavior("diff", "through")(
-        lambda ego_object, external_objects, **_: beh_diff_dash(ego_object, external_objects)
+        lambda ego_object, external_objects, **_: methods.beh_diff_dash(ego_object, external_objects)
     )
     path = tmp_path / "scenario.yaml"
     text = "robot: {{number: 2, kinematics: {{name: diff}}, distribution: {{name: random}}, behavior: {{name: {0}}}}}"
@@ -127,8 +118,7 @@ def test_in_a_batch_an_object_is_asked_in_its_own_world(tmp_path: Any) -> None:
     for name in ("through", "dash"):
         path.write_text(text.format(name))
         batch = irsim.batch(path, 3, seeds=[1, 2, 3])
-        for _ in range(5):
-            batch.step()
+        take_steps(batch, 5)
         poses.append(batch.pose.copy())
     assert poses[0] == pytest.approx(poses[1], abs=1e-12)
 
@@ -162,15 +152,12 @@ def test_social_forces_of_several_at_once() -> None:
         assert getattr(batch, name)() == pytest.approx(np.array(numbers), abs=1e-9), name
 
 
-def test_velocity_of_social_forces(make: Make) -> None:
-    env = make(SCENARIO)
-    velocity = SFMVelocity([1, 1, 0.477668244562803, 0.14776010333066977, 0.3, 0.9363291775690445, 0.351123441588, 0.3])
-    assert velocity == pytest.approx((0.6630333489209558, 0.2235451151410533), abs=1e-9)
-    env.end()
+def test_velocity_of_social_forces(env: Any) -> None:
+    state = [1, 1, 0.477668244562803, 0.14776010333066977, 0.3, 0.9363291775690445, 0.351123441588, 0.3]
+    assert methods.SFMVelocity(state) == pytest.approx((0.6630333489209558, 0.2235451151410533), abs=1e-9)
 
 
-def test_behavior_objects(make: Make) -> None:
-    env = make(SCENARIO)
+def test_behavior_objects(env: Any) -> None:
     robot = env.robot
     assert Behavior(robot.info, {"name": "dash"}).gen_vel(robot, robot.external_objects)[:, 0].tolist() == [0.6, 0.0]
     assert robot.obj_behavior.gen_vel(robot, [])[:, 0].tolist() == [0.6, 0.0]
@@ -194,7 +181,7 @@ def test_group_behavior_objects(make: Make, capsys: pytest.CaptureFixture[str]) 
 def test_registries_list_what_is_built_in() -> None:
     registry = import_module("irsim.lib.behavior.behavior_registry")
     import_module("irsim.lib.behavior.group_behavior_methods")
-    assert registry.behaviors_map["diff", "dash"] is beh_diff_dash
+    assert registry.behaviors_map["diff", "dash"] is methods.beh_diff_dash
     assert ("omni", "orca") in registry.group_behaviors_class_map
 
 
@@ -219,8 +206,7 @@ def test_registries_list_what_is_built_in() -> None:
 )
 def test_shapes(name: str, keys: Any, area: float, radius: float, size: Any, centroid: Any) -> None:
     made = GeometryFactory.create_geometry(name, **keys)
-    assert made.geometry.area == pytest.approx(area, abs=1e-6)
-    assert made.radius == pytest.approx(radius, abs=1e-6)
+    assert (made.geometry.area, made.radius) == (pytest.approx(area, abs=1e-6), pytest.approx(radius, abs=1e-6))
     assert (made.length, made.width) == pytest.approx(size)
     assert made.original_centroid[:, 0] == pytest.approx(centroid, abs=1e-6)
     assert made.wheelbase == keys.get("wheelbase")
@@ -252,8 +238,7 @@ def test_inequalities() -> None:
         GeometryFactory.create_geometry("circle", size=3)
 
 
-def test_shapes_of_objects(make: Make) -> None:
-    env = make(SCENARIO)
+def test_shapes_of_objects(env: Any) -> None:
     for view in env.objects:
         assert view.gf.geometry.symmetric_difference(view.geometry).area < 0.001
         assert view.gf.radius == pytest.approx(view.radius, abs=1e-9)
@@ -304,24 +289,74 @@ def test_velocity_obstacles_of_arrays(mode: str, free: list[float], with_line: l
         model.cal_vel("sideways")
 
 
-def test_velocity_obstacles_of_objects(make: Make) -> None:
-    env = make(SCENARIO)
-    diff, omni = env.objects[:2]
+def test_velocity_obstacles_of_objects(env: Any, make: Make) -> None:
+    robot, walker = env.objects[:2]
     # The turn of 0.1567 rad ends there with 1 rad/s^2; as in 2.12 it takes 0.2 s, whatever the limits.
-    assert beh_diff_rvo(diff, diff.external_objects)[:, 0] == pytest.approx([0.676291287492, -0.51121479229], abs=1e-9)
+    assert methods.beh_diff_rvo(robot, robot.external_objects)[:, 0] == pytest.approx(
+        [0.6762912875, -0.5112147923], abs=1e-9
+    )
     (at_once,) = make(SCENARIO.replace(", acce: [1, 1]", "")).objects[:1]
-    as_before = beh_diff_rvo(at_once, at_once.external_objects, turning="fixed")
+    as_before = methods.beh_diff_rvo(at_once, at_once.external_objects, turning="fixed")
     assert as_before[:, 0] == pytest.approx([0.676291287492, -0.783644376869], abs=1e-9)
     expected = [0.032500270611, -0.031179356294]
-    assert beh_omni_rvo(omni, omni.external_objects)[:, 0] == pytest.approx(expected, abs=1e-9)
-    far = beh_diff_rvo(diff, env.objects[3:4], vxmax=1.0, acce=0.5, mode="vo", name="rvo", wander=False)
+    assert methods.beh_omni_rvo(walker, walker.external_objects)[:, 0] == pytest.approx(expected, abs=1e-9)
+    far = methods.beh_diff_rvo(robot, env.objects[3:4], vxmax=1.0, acce=0.5, mode="vo", name="rvo", wander=False)
     assert far[:, 0] == pytest.approx([0.989005461439, 0.0], abs=1e-9)
 
 
 def test_velocity_obstacles_in_the_command_frame() -> None:
     ego = [1, 1, 0.477668244562803, 0.14776010333066977, 0.3, 0.9363291775690445, 0.35112344158839165, 0.3]
-    assert DiffRVO(ego, [])[:, 0] == pytest.approx([0.989005461439, 0.0], abs=1e-9)
+    assert methods.DiffRVO(ego, [])[:, 0] == pytest.approx([0.989005461439, 0.0], abs=1e-9)
     behind = [0, 0, 0, 0, 0.3, -1.0, 0.0, 0.0]
-    assert DiffRVO(behind, [])[:, 0] == pytest.approx([0.0, 1.5]), "it turns on the spot without a neighbor"
-    world = OmniRVO(ego, [])[:, 0]
-    assert world == pytest.approx(OmniRVO([*ego[:7], 2.0], [])[:, 0]), "world frame, whatever the heading"
+    assert methods.DiffRVO(behind, [])[:, 0] == pytest.approx([0.0, 1.5]), "it turns on the spot without a neighbor"
+    world = methods.OmniRVO(ego, [])[:, 0]
+    assert world == pytest.approx(methods.OmniRVO([*ego[:7], 2.0], [])[:, 0]), "world frame, whatever the heading"
+
+
+# functions that move a column by one period
+diff, acker, omni, turning = differential_kinematics, ackermann_kinematics, omni_kinematics, omni_angular_kinematics
+STATE, CAR = np.array([[0.0], [0.0], [3.1]]), np.array([[0.0], [0.0], [3.1], [0.2]])
+TWO, THREE = np.array([[1.0], [0.5]]), np.ones((3, 1))
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "expected"),
+    [
+        (diff, (STATE, TWO, 0.1), [-0.09991351502732795, 0.004158066243329049, -3.133185307179586]),
+        (diff, (CAR, TWO, 0.1), [-0.09991351502732795, 0.004158066243329049, -3.133185307179586]),
+        (acker, (CAR, TWO, 0.1), [-0.09991351502732795, 0.004158066243329049, 3.120271003550867, 0.5]),
+        (acker, (CAR, TWO, 0.1, False, None, "angular", 2), [-0.099913515027, 0.004158066243, 3.110135501775, 0.25]),
+        (omni, (STATE, TWO, 0.1), [-0.10199254814899249, -0.045798691270334924, 3.1]),
+        (turning, (STATE, THREE, 0.1), [-0.104071581270657, -0.0957554487839989, -3.083185307179586]),
+    ],
+)
+def test_kinematics_of_columns(function: Any, arguments: tuple[Any, ...], expected: list[float]) -> None:
+    out = function(*arguments)
+    assert (out.shape, out[:, 0]) == ((len(expected), 1), pytest.approx(expected, abs=1e-12))
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "error"),
+    [
+        (diff, (STATE[:2], TWO, 0.1), ValueError),
+        (diff, (STATE, TWO[:1], 0.1), ValueError),
+        (diff, ([0, 0, 0], TWO, 0.1), TypeError),
+        (diff, (STATE, TWO, 0.1, True, [0, 0]), ValueError),
+        (diff, (STATE, TWO, 0.1, False, None, "rk4"), ValueError),
+        (acker, (STATE, TWO, 0.1), ValueError),
+        (acker, (CAR, TWO, 0.1, False, None, "sideways"), ValueError),
+        (turning, (STATE, TWO, 0.1), ValueError),
+    ],
+)
+def test_columns_of_a_wrong_shape_are_refused(function: Any, arguments: Any, error: type[Exception]) -> None:
+    with pytest.raises(error):
+        function(*arguments)
+
+
+def test_noise_of_kinematics_has_the_stated_deviation() -> None:
+    outs = np.array([diff(STATE * 0, TWO, 1.0, True, [0.04, 0.0, 0.0, 0.09])[:, 0] for _ in range(4000)])
+    assert outs[:, [0, 2]].std(axis=0) == pytest.approx([0.2, 0.15], rel=0.1)
+
+
+def test_functions_by_drive() -> None:
+    assert kinematics_factory == {"diff": diff, "acker": acker, "omni": omni}

@@ -10,7 +10,7 @@ from irsim.compat import DIFFERENCES
 from tests.compat.differences import KNOWN
 from tests.compat.scripts import NAMES, play, recorded, same
 from tests.effort import some
-from tests.warm import LIBRARIES, warm
+from tests.warm import warm
 
 pytestmark = pytest.mark.one_python
 
@@ -21,7 +21,7 @@ def _name(fact: str) -> str:
 
 @pytest.mark.parametrize("name", some(NAMES))
 def test_a_script_prints_what_it_printed(name: str) -> None:
-    facts, complaint = play(name, sys.executable, lambda command: warm(command, LIBRARIES))
+    facts, complaint = play(name, sys.executable, warm)
     assert complaint == ""
     expected = recorded(name)
     assert [_name(fact) for fact in facts] == [_name(fact) for fact in expected]

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-import shapely
 
 import irsim
-from irsim import util
+from irsim.diagnostics.errors import ScenarioError
 from irsim.gui import KeyboardControl
 from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 from irsim.util import random as random_numbers
-from irsim.util import util as more
 from irsim.world import World
 from irsim.world.object_base import ObjectBase
+from tests.env.driving import Make, take_steps
 
 TEXT = """
 world: {width: 10, height: 10}
@@ -32,34 +30,28 @@ obstacle:
      shape: {name: circle, radius: 0.3}}
 """
 POSE = np.array([[1.0], [2.0], [0.5]])
-Make = Callable[..., irsim.Env]
-
-
-@pytest.fixture
-def make(tmp_path: Path) -> Make:
-    def made(text: str = TEXT, **keys: Any) -> irsim.Env:
-        (tmp_path / "world.yaml").write_text(text)
-        return irsim.make(tmp_path / "world.yaml", **{"headless": True, "log_level": "WARNING", **keys})
-
-    return made
 
 
 # arguments ------------------------------------------------------------------------------------------------------------
+@pytest.fixture
+def env(make: Make) -> Any:
+    return make(TEXT, log_level="WARNING")
+
+
 def test_env_base_takes_its_arguments_by_position(make: Make, tmp_path: Path) -> None:
     names = list(inspect.signature(irsim.EnvBase.__init__).parameters)[1:12]
     assert names == [
         *("world_name", "display", "disable_all_plot", "save_ani", "ani_kwargs", "full"),
         *("log_file", "log_level", "seed", "step_mode", "headless"),
     ]
-    make()
-    path = tmp_path / "world.yaml"
+    make(TEXT)
+    path = tmp_path / "scenario.yaml"
     env = irsim.EnvBase(path, False, False, True, {"suffix": ".gif"}, False, None, "ERROR", 5, "external", True)
     assert (env.display, env.save_ani, env.ani_kwargs, env.seed) == (False, True, {"suffix": ".gif"}, 5)
     assert (env.step_mode, env.headless) == ("external", True)
 
 
-def test_object_base_takes_its_arguments_by_position(make: Make) -> None:
-    env = make()
+def test_object_base_takes_its_arguments_by_position(env: Any) -> None:
     circle, acce = {"name": "circle", "radius": 0.3}, [0.7, 0.8]
     made = ObjectBase(
         *(circle, {"name": "diff"}, [1, 2, 0], [0, 0], [5, 5, 0], "robot", "r"),
@@ -69,15 +61,13 @@ def test_object_base_takes_its_arguments_by_position(make: Make) -> None:
     env.add_object(made)
     assert (made.role, made.color, made.name, made.group, made.group_name) == ("robot", "r", "guard", 4, "guards")
     assert (made.mass, made.friction, made.goal_threshold, made.lidar.number) == (3.0, 0.4, 0.2, 7)
-    assert (made.fov, made.fov_radius, made.unobstructed) == (1.0, 2.0, True)
-    assert made.info.acce[:, 0].tolist() == acce
+    assert (made.fov, made.fov_radius, made.unobstructed, made.info.acce[:, 0].tolist()) == (1.0, 2.0, True, acce)
     with pytest.raises(TypeError, match="two values for 'static'"):
         ObjectBase(circle, None, None, None, None, "obstacle", "k", True, static=False)
 
 
 # descriptions ---------------------------------------------------------------------------------------------------------
-def test_properties_added_to_info_stay(make: Make) -> None:
-    env = make()
+def test_properties_added_to_info_stay(env: Any) -> None:
     first, second = env.robot_list
     first.info.add_property("x", 3)
     first.info.y = 4
@@ -88,83 +78,8 @@ def test_properties_added_to_info_stay(make: Make) -> None:
     assert not hasattr(first.get_obstacle_info(), "x")
 
 
-# helpers --------------------------------------------------------------------------------------------------------------
-def test_wrap_to_region_keeps_both_ends() -> None:
-    around = [-math.pi, math.pi]
-    wrapped = [util.WrapToRegion(angle, around) for angle in (math.pi, 3 * math.pi, -math.pi, -3 * math.pi)]
-    assert wrapped == [math.pi, math.pi, -math.pi, -math.pi]
-    assert util.WrapToRegion(2 * math.pi, [0, 2 * math.pi]) == 2 * math.pi
-    with pytest.raises(ValueError, match="two numbers"):
-        util.WrapToRegion(1, [0])
-
-
-def test_an_array_is_no_2d_list() -> None:
-    none = (np.zeros((2, 2)), [np.zeros(2)], [], None, (1, 2), "ab")
-    assert [util.is_2d_list(data) for data in none] == [False] * len(none)
-    assert util.is_2d_list([[1]])
-    assert util.is_2d_list(((1, 2),))
-
-
-def test_transforms_of_nothing_are_none() -> None:
-    assert util.vertices_transform(None, POSE) is None
-    assert util.vertices_transform(np.zeros((2, 3)), None) is None
-    assert util.geometry_transform(None, POSE) is None
-    assert util.to_numpy(None) is None
-    assert more.to_numpy(None, np.zeros(2), (2, 1)).shape == (2, 1)
-    assert more.points_to_xy_list(None) == ([], [])
-    assert util.diff_to_omni(0.0, np.array(None)).tolist() == [[0], [0]]
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda: util.transform_point_with_state(None, POSE),
-        lambda: util.transform_point_with_state(POSE, None),
-        lambda: util.geometry_transform(shapely.Point(1, 1), None),
-        lambda: more.get_transform(None),
-        lambda: more.get_affine_transform(None),
-        lambda: util.relative_position(None, POSE),
-        lambda: util.distance(POSE, None),
-        lambda: util.omni_to_diff(0.0, None),
-        lambda: util.vel_world2omni(0.0, None),
-    ],
-)
-def test_points_that_are_none_are_errors(call: Callable[[], Any]) -> None:
-    with pytest.raises(TypeError, match="None"):
-        call()
-
-
-def test_checks_of_arguments_pass_over_none() -> None:
-    @more.validate_shape(state=3)
-    def by_shape(state: Any = None) -> Any:
-        return state
-
-    @more.validate_length(state=3)
-    def by_length(state: Any = None) -> Any:
-        return state
-
-    assert (by_shape(), by_length(None)) == (None, None)
-    with pytest.raises(TypeError, match="sequence"):
-        by_length(3)
-
-
-def test_corners_on_a_straight_line_leave_a_polygon_convex() -> None:
-    points = np.array([[0, 1, 2, 2, 0.0], [0, 0, 0, 1, 1]])
-    assert util.is_convex_and_ordered(points) == (True, "CCW")
-    assert util.is_convex_and_ordered(points[:, ::-1]) == (True, "CW")
-
-
-def test_random_uniform_has_three_rows() -> None:
-    points = util.random_uniform(size=(2, 4))
-    assert points.shape == (3, 4)
-    assert (points[2] == 0).all()
-    assert (points[:2] >= 0.5).all()
-    assert (points[:2] <= 9.5).all()
-
-
 # objects --------------------------------------------------------------------------------------------------------------
-def test_set_laser_color_without_lidar_warns(make: Make, capsys: pytest.CaptureFixture[str]) -> None:
-    env = make()
+def test_set_laser_color_without_lidar_warns(env: Any, capsys: pytest.CaptureFixture[str]) -> None:
     first, second = env.robot_list
     first.set_laser_color([0])
     assert "robot_0: it has no lidar" in capsys.readouterr().out
@@ -177,10 +92,9 @@ def test_set_laser_color_without_lidar_warns(make: Make, capsys: pytest.CaptureF
 def test_gen_behavior_vel_without_behavior_is_zero_and_warns_once(
     make: Make, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    env = make()
+    env = make(TEXT, log_level="WARNING")
     robot = env.robot
-    for _ in range(10):
-        env.step([0.4, 0.4])
+    take_steps(env, 10, [0.4, 0.4])
     capsys.readouterr()
     assert robot.velocity[:, 0].tolist() == pytest.approx([0.4, 0.4])
     for _ in range(2):
@@ -210,7 +124,7 @@ def test_keyboard_control_without_environment_reads_keys(monkeypatch: pytest.Mon
 # randomness -----------------------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("seed", [None, 3])
 def test_the_same_seed_draws_the_same_scene_at_a_random_reset(make: Make, seed: int | None) -> None:
-    env = make(seed=seed)
+    env = make(TEXT, seed=seed)
 
     def scene(drawn: Any) -> list[Any]:
         random_numbers.set_seed(drawn)
@@ -228,9 +142,70 @@ def test_the_same_seed_draws_the_same_scene_at_a_random_reset(make: Make, seed: 
     assert scene(2**70) == scene(2**70)
 
 
+NOISY = """
+world: {width: 10, height: 10, step_time: 0.1}
+robot: {number: 2, distribution: {name: random}, kinematics: {name: diff, noise: true}, behavior: {name: dash},
+        shape: {name: circle, radius: 0.2}, sensors: [{name: lidar2d, number: 3, noise: true, std: 0.5, range_max: 5}]}
+"""
+
+
+def _after_steps(env: Any) -> list[Any]:
+    take_steps(env, 3)
+    return [[view.state[:, 0].tolist(), view.lidar.range_data.tolist()] for view in env.robot_list]
+
+
+@pytest.mark.parametrize("seed", [None, 3])
+def test_set_seed_and_a_plain_reset_repeat_the_noise_of_2_12(make: Make, seed: int | None) -> None:
+    env = make(NOISY, seed=seed)
+
+    def episode() -> list[Any]:
+        random_numbers.set_seed(7)
+        env.reset()
+        return _after_steps(env)
+
+    first = episode()
+    assert episode() == first
+    env.reset()
+    assert _after_steps(env) != first, "a reset alone goes on with other noise"
+    env.reset(random=True)
+    random_numbers.set_seed(8)
+    env.reset()
+    assert _after_steps(env) != first
+
+
+def test_set_seed_before_make_seeds_the_scenes_of_unseeded_environments_as_in_2_12(make: Make) -> None:
+    def scene(**options: Any) -> list[Any]:
+        return [view.state[:, 0].tolist() for view in make(NOISY, **{"seed": None, **options}).robot_list]
+
+    unseeded = make(NOISY, seed=None)  # the environment used last
+    random_numbers.set_seed(7)
+    first, second = scene(), scene()
+    assert first != second
+    unseeded.step()
+    random_numbers.set_seed(7)
+    assert [scene(), scene()] == [first, second]
+    random_numbers.set_seed(7)
+    assert scene(seed=3) != first, "a seed of its own counts"
+    random_numbers.set_seed(7)
+    env = make(NOISY, seed=4)
+    random_numbers.set_seed(7)
+    env.reset(random=True)
+    assert [view.state[:, 0].tolist() for view in env.robot_list] == first
+
+
+def test_set_seed_of_a_seeded_environment_leaves_others_to_chance_as_in_2_12(make: Make) -> None:
+    states = []
+    for _ in range(2):
+        seeded = make(NOISY, seed=3)
+        random_numbers.set_seed(7)
+        states.append([view.state[:, 0].tolist() for view in make(NOISY, seed=None).robot_list])
+        assert seeded.robot_list[0].state[0, 0] == pytest.approx(7.2, abs=0.1)
+    assert states[0] != states[1]
+
+
 # writing through the environment --------------------------------------------------------------------------------------
 def test_a_status_that_is_written_is_shown_until_the_next_step(make: Make) -> None:
-    env = make(headless=False, display=False)
+    env = make(TEXT, headless=False, display=False)
     env._world.status = "Mine"
     env.render()
     assert env.status == env._world.status == "Mine"
@@ -241,8 +216,7 @@ def test_a_status_that_is_written_is_shown_until_the_next_step(make: Make) -> No
     assert World(status="Ready").status == "Ready"
 
 
-def test_the_step_mode_of_the_world_may_be_written(make: Make) -> None:
-    env = make()
+def test_the_step_mode_of_the_world_may_be_written(env: Any) -> None:
     assert env._world.step_mode == "internal"
     env._world.step_mode = "external"
     assert env.step_mode == env.world_param.step_mode == "external"
@@ -261,12 +235,11 @@ def test_the_step_mode_of_the_world_may_be_written(make: Make) -> None:
 def test_what_is_drawn_of_an_object_may_be_written(make: Make) -> None:
     from irsim.objects.drawing.scene_builder import SceneBuilder
 
-    env = make(seed=1)
+    env = make(TEXT, seed=1)
     robot = env.robot_list[1]
     assert (robot.show_goal, robot.show_goal_text, robot.show_sensor) == (False, False, True)
     assert (robot.show_trail, robot.trail_freq) == (False, 2)
-    for _ in range(12):
-        env.step()
+    take_steps(env, 12)
     builder = SceneBuilder(env.simulation)
 
     def drawn() -> dict[str, int]:
@@ -297,16 +270,14 @@ def test_what_is_drawn_of_an_object_may_be_written(make: Make) -> None:
 def test_colours_and_widths_of_an_fmcw_lidar(make: Make) -> None:
     from irsim.objects.sensors.lidar_drawing import draw_scan
 
-    env = make()
+    env = make(TEXT)
     lidar = env.robot_list[1].lidar
-    assert lidar.no_hit_color.tolist() == pytest.approx([0.82745098] * 3)
-    assert lidar.zero_velocity_color.shape == (3,)
+    assert (lidar.no_hit_color.tolist(), lidar.zero_velocity_color.shape) == (pytest.approx([0.82745098] * 3), (3,))
     lidar.no_hit_color, lidar.no_hit_alpha = np.array([1.0, 0.0, 0.0]), 0.5
     lidar.no_hit_linewidth = 3.0
     beams = draw_scan(lidar)
     assert not lidar.valid[4]
-    assert beams.widths[4] == 3.0
-    assert beams.colors[4].tolist() == [1, 0, 0, 0.5]
+    assert (beams.widths[4], beams.colors[4].tolist()) == (3.0, [1, 0, 0, 0.5])
     lidar.positive_velocity_color = "g"
     assert lidar.positive_velocity_color.tolist() == [0, 0.5, 0]
     with pytest.raises(ValueError, match="velocity_color_max"):
@@ -342,5 +313,21 @@ def test_maps_whose_resolution_does_not_divide_warn(
 
 
 def test_planners_have_the_resolution_of_a_map_without_grid(make: Make) -> None:
-    planner = AStarPlanner(make().get_map(0.3))
+    planner = AStarPlanner(make(TEXT).get_map(0.3))
     assert (planner.resolution, planner.x_width, planner.y_width) == (0.3, 33, 33)
+
+
+# worlds ---------------------------------------------------------------------------------------------------------------
+def test_a_world_takes_its_arguments_by_place() -> None:
+    world = World("w", 8, 10, 0.2)
+    assert (world.name, world.height, world.width, world.step_time) == ("w", 8, 10, 0.2)
+    assert World().grid_map is None
+    with pytest.raises(ScenarioError, match="step_tim"):
+        World(step_tim=0.1)
+
+
+def test_a_world_takes_an_array_as_its_map() -> None:
+    values = np.eye(4) * 100
+    world = World("w", 4, 6, obstacle_map=values)
+    assert (world.grid_map == values).all()
+    assert (world.reso.ravel().tolist(), world.obstacle_positions.shape) == ([1.5, 1.0], (2, 4))

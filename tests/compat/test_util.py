@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from irsim import util
 from irsim.config import env_param, palette_param, path_param, world_param
 from irsim.util import util as every
 
+POSE = np.array([[1.0], [2.0], [0.5]])
 ANGLES = st.floats(-1e3, 1e3)
 
 
@@ -64,19 +66,24 @@ def test_frames() -> None:
     assert (util.distance([0, 0], [3, 4]), util.dist_hypot(0, 0, 3, 4)) == (5, 5)
 
 
-def test_polygons() -> None:
-    square = np.array([[0, 1, 1, 0.0], [0, 0, 1, 1]])
-    assert util.is_convex_and_ordered(square) == (True, "CCW")
-    assert util.is_convex_and_ordered(square[:, ::-1]) == (True, "CW")
-    dent = np.array([[0, 2, 0.5, 0.0], [0, 0, 0.5, 2]])
-    assert util.is_convex_and_ordered(dent) == (False, None)
-    assert util.gen_inequal_from_vertex(dent) == (None, None)
-    for corners in (square, square[:, ::-1]):
-        normals, offsets = util.gen_inequal_from_vertex(corners)
-        assert normals is not None
+SQUARE = np.array([[0, 1, 1, 0.0], [0, 0, 1, 1]])
+CORNER_ON_A_LINE = np.array([[0, 1, 2, 2, 0.0], [0, 0, 0, 1, 1]])
+DENT = np.array([[0, 2, 0.5, 0.0], [0, 0, 0.5, 2]])
+
+
+@pytest.mark.parametrize("corners", [SQUARE, CORNER_ON_A_LINE])
+def test_convex_polygons(corners: Any) -> None:
+    for points, order in ((corners, "CCW"), (corners[:, ::-1], "CW")):
+        assert util.is_convex_and_ordered(points) == (True, order)
+        normals, offsets = util.gen_inequal_from_vertex(points)
         assert (normals @ np.array([[0.5], [0.5]]) < offsets).all()
-        assert (normals @ np.array([[1.5], [0.5]]) > offsets).any()
-    assert every.is_convex_polygon(shapely.box(0, 0, 1, 1))
+        assert (normals @ np.array([[2.5], [0.5]]) > offsets).any()
+    assert every.is_convex_polygon(shapely.Polygon(corners.T))
+
+
+def test_polygons_with_a_dent() -> None:
+    assert util.is_convex_and_ordered(DENT) == (False, None)
+    assert util.gen_inequal_from_vertex(DENT) == (None, None)
 
 
 def test_lists_and_checks() -> None:
@@ -88,9 +95,19 @@ def test_lists_and_checks() -> None:
     for wrong in ("a", math.inf, 1):
         with pytest.raises(ValueError, match="x must be"):
             every.check_number(wrong, "x", low=2)
-    assert util.to_numpy([1, 2]).shape == (2, 1)  # type: ignore[union-attr]
+    assert util.to_numpy([1, 2]).shape == (2, 1)
     assert every.points_to_xy_list([[1, 2], [3, 4]]) == ([1, 3], [2, 4])
     assert every.traj_to_xy_list([column(1, 2, 3), column(4, 5, 6)]) == ([1, 4], [2, 5])
+
+
+@pytest.mark.parametrize("data", [[[1]], ((1, 2),)])
+def test_lists_of_lists_are_2d_lists(data: Any) -> None:
+    assert util.is_2d_list(data)
+
+
+@pytest.mark.parametrize("data", [np.zeros((2, 2)), [np.zeros(2)], [], None, (1, 2), "ab"])
+def test_arrays_are_no_2d_lists(data: Any) -> None:
+    assert not util.is_2d_list(data)
 
 
 def test_random_numbers_follow_the_environment_used_last(tmp_path: Any) -> None:
@@ -152,11 +169,72 @@ def test_decorators(capsys: pytest.CaptureFixture[str]) -> None:
         work([1])
 
 
-def test_files(tmp_path: Any) -> None:
-    (tmp_path / "deep").mkdir()
+def test_files(tmp_path: Path) -> None:
     file = tmp_path / "deep" / "a.txt"
-    file.write_text("")
-    assert util.find_file(str(tmp_path), "a.txt") == str(file)
-    assert util.file_check("a.txt", str(tmp_path)) == str(file)
-    assert util.file_check("b.txt", str(tmp_path)) is None
-    assert util.file_check(None) is None
+    file.parent.mkdir()
+    file.touch()
+    assert util.find_file(str(tmp_path), "a.txt") == util.file_check("a.txt", str(tmp_path)) == str(file)
+    assert util.file_check("b.txt", str(tmp_path)) is util.file_check(None) is None
+
+
+def test_wrap_to_region_keeps_both_ends() -> None:
+    around = [-math.pi, math.pi]
+    wrapped = [util.WrapToRegion(angle, around) for angle in (math.pi, 3 * math.pi, -math.pi, -3 * math.pi)]
+    assert wrapped == [math.pi, math.pi, -math.pi, -math.pi]
+    assert util.WrapToRegion(2 * math.pi, [0, 2 * math.pi]) == 2 * math.pi
+    with pytest.raises(ValueError, match="two numbers"):
+        util.WrapToRegion(1, [0])
+
+
+def test_transforms_of_nothing_are_none() -> None:
+    nothing = [
+        util.vertices_transform(None, POSE),
+        util.vertices_transform(np.zeros((2, 3)), None),
+        util.geometry_transform(None, POSE),
+        util.to_numpy(None),
+    ]
+    assert nothing == [None] * 4
+    assert every.to_numpy(None, np.zeros(2), (2, 1)).shape == (2, 1)
+    assert every.points_to_xy_list(None) == ([], [])
+    assert util.diff_to_omni(0.0, np.array(None)).tolist() == [[0], [0]]
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments"),
+    [
+        (util.transform_point_with_state, (None, POSE)),
+        (util.transform_point_with_state, (POSE, None)),
+        (util.geometry_transform, (shapely.Point(1, 1), None)),
+        (every.get_transform, (None,)),
+        (every.get_affine_transform, (None,)),
+        (util.relative_position, (None, POSE)),
+        (util.distance, (POSE, None)),
+        (util.omni_to_diff, (0.0, None)),
+        (util.vel_world2omni, (0.0, None)),
+    ],
+)
+def test_points_that_are_none_are_errors(function: Any, arguments: Any) -> None:
+    with pytest.raises(TypeError, match="None"):
+        function(*arguments)
+
+
+def test_checks_of_arguments_pass_over_none() -> None:
+    @every.validate_shape(state=3)
+    def by_shape(state: Any = None) -> Any:
+        return state
+
+    @every.validate_length(state=3)
+    def by_length(state: Any = None) -> Any:
+        return state
+
+    assert (by_shape(), by_length(None)) == (None, None)
+    with pytest.raises(TypeError, match="sequence"):
+        by_length(3)
+
+
+def test_random_uniform_has_three_rows() -> None:
+    points = util.random_uniform(size=(2, 4))
+    assert points.shape == (3, 4)
+    assert (points[2] == 0).all()
+    assert (points[:2] >= 0.5).all()
+    assert (points[:2] <= 9.5).all()

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 import yaml
@@ -12,8 +9,8 @@ import yaml
 from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import ScenarioError
 from irsim.scenario.read import read
+from tests.env.driving import Make, take_steps
 
-Make = Callable[..., Any]
 HEAD = "kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, goal: [9, 1, 0]"
 PAIR = f"number: 2, state: [[1, 1, 0], [5, 5, 0]], {HEAD}"
 
@@ -23,43 +20,37 @@ def _errors(text: str) -> list[tuple[str, str]]:
     return [(item.code, format_path(item.path)) for item in diagnostics if item.severity == "error"]
 
 
+GROUP_MISTAKES = [
+    ("{timeHorizon: 3}", "missing-key", "name"),
+    ("{name: sfm, gaze_vision_angle: 200}", "out-of-range", "gaze_vision_angle"),
+    ("{name: sfm, relaxation_time: 0}", "out-of-range", "relaxation_time"),
+    ("{name: sfm, social_groups: 3}", "wrong-type", "social_groups"),
+    ("{name: sfm, social_groups: [[0, -1]]}", "out-of-range", "social_groups[0][1]"),
+    ("{name: sfm, social_groups: [[0, 0]]}", "bad-social-group", "social_groups[0][1]"),
+    ("{name: sfm, social_groups: [[0], [2, 1]]}", "bad-social-group", "social_groups[1][0]"),
+    ("{name: orca, maxNeighbors: -1}", "out-of-range", "maxNeighbors"),
+]
+
+
 @pytest.mark.parametrize(
-    ("keys", "code", "place"),
-    [
-        ("group_behavior: {timeHorizon: 3}", "missing-key", "group_behavior.name"),
-        ("group_behavior: {name: sfm, gaze_vision_angle: 200}", "out-of-range", "group_behavior.gaze_vision_angle"),
-        ("group_behavior: {name: sfm, relaxation_time: 0}", "out-of-range", "group_behavior.relaxation_time"),
-        ("group_behavior: {name: sfm, social_groups: 3}", "wrong-type", "group_behavior.social_groups"),
-        ("group_behavior: {name: sfm, social_groups: [[0, -1]]}", "out-of-range", "group_behavior.social_groups[0][1]"),
-        (
-            "group_behavior: {name: sfm, social_groups: [[0, 0]]}",
-            "bad-social-group",
-            "group_behavior.social_groups[0][1]",
-        ),
-        (
-            "group_behavior: {name: sfm, social_groups: [[0], [2, 1]]}",
-            "bad-social-group",
-            "group_behavior.social_groups[1][0]",
-        ),
-        ("group_behavior: {name: orca, maxNeighbors: -1}", "out-of-range", "group_behavior.maxNeighbors"),
-        ("behavior: {name: rvo, acce: 0}", "out-of-range", "behavior.acce"),
-        ("behavior: {name: rvo, acce: -1}", "out-of-range", "behavior.acce"),
-    ],
+    ("key", "options", "code", "place"),
+    [("group_behavior", *row) for row in GROUP_MISTAKES]
+    + [("behavior", f"{{name: rvo, acce: {acce}}}", "out-of-range", "acce") for acce in (0, -1)],
 )
-def test_nobody_moves(make: Make, keys: str, code: str, place: str) -> None:
+def test_robots_with_options_that_cannot_be_used_stand_as_in_2_12(
+    make: Make, key: str, options: str, code: str, place: str
+) -> None:
     """2.12 goes on without a group behavior it cannot make, and with an rvo that finds no velocity."""
-    text = f"robot: {{{PAIR}, {keys}}}"
-    assert _errors(text) == [(code, f"robot.{place}")]
+    text = f"robot: {{{PAIR}, {key}: {options}}}"
+    assert _errors(text) == [(code, f"robot.{key}.{place}")]
     env = make(text)
-    for _ in range(3):
-        env.step()
+    take_steps(env, 3)
     assert [robot.state[:2, 0].round(6).tolist() for robot in env.robot_list] == [[1, 1], [5, 5]]
 
 
 def test_without_its_group_behavior_a_robot_follows_its_own(make: Make) -> None:
     env = make(f"robot: {{{HEAD}, state: [1, 1, 0], behavior: {{name: dash}}, group_behavior: {{timeHorizon: 3}}}}")
-    for _ in range(3):
-        env.step()
+    take_steps(env, 3)
     np.testing.assert_allclose(env.robot.state[:, 0], [1.3, 1, 0])
 
 
@@ -68,8 +59,7 @@ def test_a_velocity_of_the_wrong_length(make: Make, behavior: str, velocity: str
     text = f"robot: {{{HEAD}, state: [1, 1, 0], velocity: {velocity}, behavior: {{name: {behavior}}}}}"
     assert _errors(text) == [("wrong-length", "robot.velocity")]
     env = make(text)
-    for _ in range(3):
-        env.step()
+    take_steps(env, 3)
     np.testing.assert_allclose(env.robot.state[:, 0], [1.3, 1, 0], atol=1e-9)
 
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 
 from irsim.objects.neighbors import centres, discs
-
-Make = Callable[..., Any]
+from tests.env.driving import Make, take_steps
 
 TEXT = """
 world: {width: 20, height: 20, boundary: walls}
@@ -41,21 +40,20 @@ def agree(env: Any) -> None:
         others = [other for other in view.external_objects if not other.unobstructed]
         one_by_one = [[*o.centroid[:, 0], *o.velocity_xy[:, 0], o.radius + 0.1] for o in others]
         np.testing.assert_allclose(view.rvo_neighbors, one_by_one, atol=1e-12)
-        x0, y0, x1, y1 = view.geometry.bounds
-        meets = []
-        for other in others:
-            a0, b0, a1, b1 = other.geometry.bounds
-            if x0 <= a1 + 1e-9 and a0 <= x1 + 1e-9 and y0 <= b1 + 1e-9 and b0 <= y1 + 1e-9:
-                meets.append(other)
+        box = shapely.box(*view.geometry.bounds).buffer(1e-9)
+        meets = [other for other in others if box.intersects(shapely.box(*other.geometry.bounds))]
         if "circle" not in {o.shape for o in (view, *meets)}:  # those are polygons to shapely
             assert view.possible_collision_objects == meets
 
 
-def test_all_at_once_is_as_one_by_one(make: Make) -> None:
-    env = make(TEXT, seed=3)
+@pytest.fixture
+def env(make: Make) -> Any:
+    return make(TEXT, seed=3)
+
+
+def test_all_at_once_is_as_one_by_one(env: Any) -> None:
     agree(env)
-    for _ in range(5):
-        env.step()
+    take_steps(env, 5)
     agree(env)
     env.robot_list[0].set_state([3.3, 7, 1])
     env.obstacle_list[1].set_state([8, 2, 1])
@@ -70,16 +68,14 @@ def test_all_at_once_is_as_one_by_one(make: Make) -> None:
     agree(env)
 
 
-def test_of_an_object_that_is_not_there_yet(make: Make) -> None:
-    env = make(TEXT, seed=3)
+def test_of_an_object_that_is_not_there_yet(env: Any) -> None:
     made = env.create_obstacle(shape={"name": "circle", "radius": 0.3}, state=[3.5, 7, 0])
     expected = [other.rvo_neighbor_state for other in env.objects if not other.unobstructed]
     np.testing.assert_allclose(made.rvo_neighbors, expected, atol=1e-12)
     assert made.possible_collision_objects == [env.obstacle_list[4], env.obstacle_list[-1]]
 
 
-def test_a_view_with_a_state_of_its_own_counts(make: Make) -> None:
-    env = make(TEXT, seed=3)
+def test_a_view_with_a_state_of_its_own_counts(env: Any) -> None:
     other = env.robot_list[1]
 
     class Shifted(type(other)):  # type: ignore[misc]
@@ -91,8 +87,7 @@ def test_a_view_with_a_state_of_its_own_counts(make: Make) -> None:
     assert env.robot.rvo_neighbors[0] == [1, 2, 3, 4, 5]
 
 
-def test_every_world_of_a_batch(make: Make) -> None:
-    env = make(TEXT, seed=3)
+def test_every_world_of_a_batch(env: Any) -> None:
     simulation = env._simulation
     assert discs(simulation, 0).shape == (len(env.objects), 5)
     assert centres(simulation, 0) is centres(simulation, 0)

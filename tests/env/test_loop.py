@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import math
-from collections.abc import Callable
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,8 @@ import pytest
 from PIL import Image
 
 import irsim
-
-Make = Callable[..., Any]
+from irsim.lib import register_behavior
+from tests.env.driving import Make, take_steps
 
 ONE = """
 world: {height: 10, width: 10}
@@ -39,17 +40,19 @@ obstacle:
 """
 
 
-def test_dash_reaches_its_goal_in_closed_form(make: Make) -> None:
-    env = make(ONE)
+@pytest.fixture
+def env(make: Make) -> Any:
+    return make(ONE)
+
+
+def test_dash_reaches_its_goal_in_closed_form(env: Any) -> None:
     steps = 0
     while not env.done():
         env.step()
         steps += 1
     # 1 m/s for 0.1 s a step; arrived once less than 0.05 m are left of the 2 m
     assert steps == 20
-    assert env.robot.state[0, 0] == pytest.approx(3.0, abs=1e-12)
-    assert env.time == 2.0
-    assert env.status == "Arrived"
+    assert (env.robot.state[0, 0], env.time, env.status) == (pytest.approx(3.0, abs=1e-12), 2.0, "Arrived")
     assert env.outcome == "success"
     assert [(e.kind, e.object, e.step) for e in env.events] == [("arrival", "robot_0", 20)]
 
@@ -61,15 +64,11 @@ def test_a_collision_stops_and_is_told(make: Make) -> None:
         if env.done():
             break
     # the disc touches x = 3.5 when its centre is at 3.0
-    assert env.robot.state[0, 0] == pytest.approx(3.0, abs=0.11)
-    assert env.robot.collision
-    assert env.robot.stop_flag
-    assert env.status == "Collision"
-    assert env.outcome == "collision"
+    assert (env.robot.state[0, 0], env.robot.collision) == (pytest.approx(3.0, abs=0.11), True)
+    assert (env.robot.stop_flag, env.status, env.outcome) == (True, "Collision", "collision")
     (event,) = env.events
     assert (event.kind, event.object, event.partner) == ("collision", "robot_0", "obstacle_1")
-    assert event.x == pytest.approx(3.5, abs=0.11)
-    assert event.y == pytest.approx(1.0, abs=0.3)
+    assert (event.x, event.y) == (pytest.approx(3.5, abs=0.11), pytest.approx(1.0, abs=0.3))
     assert [o.name for o in env.robot.collision_obj] == ["obstacle_1"]
     before = env.robot.state
     env.step()
@@ -79,40 +78,24 @@ def test_a_collision_stops_and_is_told(make: Make) -> None:
 
 def test_initial_overlap_is_visible_at_once(make: Make) -> None:
     env = make(WALL.replace("state: [1, 1, 0]", "state: [4, 1, 0]"))
-    assert env.robot.collision
-    assert env.status == "Collision"
-    assert env.done()
+    assert (env.robot.collision, env.status, env.done()) == (True, "Collision", True)
     before = env.robot.state
     env.step()
     assert np.array_equal(env.robot.state, before)
 
 
-def test_reset_repeats_the_scene(make: Make) -> None:
-    env = make(ONE)
+def test_reset_repeats_the_scene(env: Any) -> None:
     first = [env.step() or env.robot.state for _ in range(5)]
     env.reset()
-    assert env.time == 0
-    assert env.status == "Reset"
-    assert env.robot.trajectory == []
-    assert env.events == []
+    assert (env.time, env.status, env.robot.trajectory, env.events) == (0, "Reset", [], [])
     again = [env.step() or env.robot.state for _ in range(5)]
     assert all(np.array_equal(a, b) for a, b in zip(first, again, strict=True))
 
 
-def test_state_is_a_snapshot_that_cannot_be_written(make: Make) -> None:
-    env = make(ONE)
+def test_state_is_a_snapshot_and_the_trajectory_holds_every_step(env: Any) -> None:
     kept = env.get_robot_state()
-    env.step()
+    take_steps(env, 4)
     assert kept[0, 0] == 1.0
-    assert env.robot.state[0, 0] == pytest.approx(1.1)
-    with pytest.raises(ValueError, match="read-only"):
-        kept[0, 0] = 5.0
-
-
-def test_trajectory_holds_every_step(make: Make) -> None:
-    env = make(ONE)
-    for _ in range(4):
-        env.step()
     assert [round(s[0, 0], 9) for s in env.robot.trajectory] == [1.1, 1.2, 1.3, 1.4]
     assert env.robot.trajectory[0].shape == (3, 1)
 
@@ -120,8 +103,7 @@ def test_trajectory_holds_every_step(make: Make) -> None:
 @pytest.mark.parametrize(
     "action", [[0.5, 0.2], (0.5, 0.2), np.array([0.5, 0.2]), np.array([[0.5], [0.2]]), [[0.5, 0.2]]]
 )
-def test_one_action_in_every_spelling(make: Make, action: Any) -> None:
-    env = make(ONE)
+def test_one_action_in_every_spelling(env: Any, action: Any) -> None:
     env.step(action)
     assert env.robot.velocity[:, 0].tolist() == [0.5, 0.2]
     assert env.robot.state[:, 0] == pytest.approx([1.05, 1.0, 0.02], abs=1e-12)
@@ -178,12 +160,10 @@ def test_bad_actions_say_what_is_wrong(make: Make, action: Any, target: Any, err
 def test_external_mode_moves_nothing_but_evaluates(make: Make) -> None:
     env = make(WALL, step_mode="external")
     env.step()
-    assert env.robot.state[0, 0] == 1.0
-    assert env.time == 0.1
+    assert (env.robot.state[0, 0], env.time) == (1.0, 0.1)
     env.robot.set_state([4, 1, 0])
     env.step()
-    assert env.robot.collision
-    assert env.time == 0.2
+    assert (env.robot.collision, env.time) == (True, 0.2)
     with pytest.raises(ValueError, match="external"):
         env.step([0.1, 0.1])
 
@@ -205,17 +185,15 @@ def test_rollout_equals_steps(make: Make) -> None:
 def test_environments_do_not_meet(make: Make) -> None:
     a, b = make(ONE), make(ONE)
     a.step()
-    assert b.time == 0
-    assert b.robot.state[0, 0] == 1.0
+    assert (b.time, b.robot.state[0, 0]) == (0, 1.0)
     a.end()
     b.step()
-    assert b.time == 0.1
     a.step()
     assert (a.time, b.time) == (0.2, 0.1)
 
 
 def test_a_script_may_go_on_after_the_end(make: Make, tmp_path: Path) -> None:
-    env = irsim.make(make(ONE).scenario, display=False, save_ani=True)
+    env = make(ONE, headless=False, display=False, save_ani=True)
     env.path_param.ani_path = str(tmp_path)
     for name, frames in (("a", 2), ("b", 3)):
         for _ in range(frames):
@@ -229,19 +207,15 @@ def test_a_script_may_go_on_after_the_end(make: Make, tmp_path: Path) -> None:
         assert env.time == 0
     assert not (tmp_path / "never.gif").exists()
     assert len(env.rollout(2).time) == 2
-    env.end(0)
 
 
-def test_pause_and_resume(make: Make) -> None:
-    env = make(ONE)
+def test_pause_and_resume(env: Any) -> None:
     env.pause()
     env.step()
-    assert env.time == 0
-    assert env.status == "Pause"
+    assert (env.time, env.status) == (0, "Pause")
     env.resume()
     env.step()
-    assert env.time == 0.1
-    assert env.status == "Running"
+    assert (env.time, env.status) == (0.1, "Running")
 
 
 def test_missing_file_names_places_and_near_matches(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -253,34 +227,29 @@ def test_missing_file_names_places_and_near_matches(tmp_path: Any, monkeypatch: 
 
 
 def test_custom_behavior_registered_as_function(make: Make) -> None:
-    from irsim.lib import register_behavior
-
     @register_behavior("diff", "test_spin")
     def spin(ego_object: Any, external_objects: list[Any], **kwargs: Any) -> Any:
         assert len(external_objects) == 1
-        assert kwargs["speed"] == 0.7
         return np.array([[0.0], [kwargs["speed"]]])
 
-    env = make(WALL.replace("{name: dash}", "{name: test_spin, speed: 0.7}"))
+    text = WALL.replace("{name: dash}", "{name: test_spin, speed: 0.7}")
+    env = make(text)
     env.step()
-    assert env.robot.velocity[:, 0].tolist() == [0.0, 0.7]
-    assert env.robot.state[2, 0] == pytest.approx(0.07)
-    again = make(WALL.replace("{name: dash}", "{name: test_spin, speed: 0.7}"))
-    result = again.rollout(3)
-    assert result.pose[0].tolist() == env.simulation.pose.tolist()
+    assert (env.robot.velocity[:, 0].tolist(), env.robot.state[2, 0]) == ([0.0, 0.7], pytest.approx(0.07))
+    assert make(text).rollout(3).pose[0].tolist() == env.simulation.pose.tolist()
+    with pytest.raises(ValueError, match="not finite"):
+        make(text.replace("0.7", ".nan")).step()
 
 
 def test_unregistered_behavior_fails_at_the_first_step_only(make: Make) -> None:
     text = ONE.replace("{name: dash}", "{name: test_nowhere}")
-    env = make(text)
     with pytest.raises(ValueError, match="test_nowhere"):
-        env.step()
+        make(text).step()
     with pytest.raises(irsim.ScenarioError, match="unknown-behavior"):
         make(text, strict=True)
 
 
-def test_new_initial_values_are_kept_apart(make: Make) -> None:
-    env = make(ONE)
+def test_new_initial_values_are_kept_apart(env: Any) -> None:
     env.step()
     env.robot.set_state([2, 2, 1], init=True)
     env.reset()
@@ -289,20 +258,15 @@ def test_new_initial_values_are_kept_apart(make: Make) -> None:
     env.step()
     env.robot.set_velocity([0.3, 0.2], init=True)
     env.reset()
-    assert env.robot.state[:, 0].tolist() == [2, 2, 1]
-    assert env.robot.velocity[:, 0].tolist() == [0.3, 0.2]
+    assert (env.robot.state[:, 0].tolist(), env.robot.velocity[:, 0].tolist()) == ([2, 2, 1], [0.3, 0.2])
 
 
-def test_a_second_thread_is_turned_away(tmp_path: Any) -> None:
-    import threading
-
-    path = tmp_path / "crowd.yaml"
-    path.write_text(
+def test_a_second_thread_is_turned_away(make: Make) -> None:
+    env = make(
         "world: {width: 60, height: 60}\n"
         "robot: {number: 300, kinematics: {name: diff}, shape: {name: circle, radius: 0.1},"
         " distribution: {name: random, min_distance: 0.3}, behavior: {name: dash, wander: true}}\n"
     )
-    env = irsim.make(str(path), headless=True, seed=1, log_level="CRITICAL")
     refused: list[str] = []
 
     def work() -> None:
@@ -321,18 +285,6 @@ def test_a_second_thread_is_turned_away(tmp_path: Any) -> None:
     assert all("another thread" in message for message in refused)
 
 
-def test_a_behavior_of_ones_own_must_return_controls(make: Make) -> None:
-    from irsim.lib import register_behavior
-
-    @register_behavior("diff", "test_nan")
-    def nan(ego_object: Any, external_objects: list[Any], **kwargs: Any) -> Any:
-        return [[math.nan], [0.0]]
-
-    env = make(ONE.replace("{name: dash}", "{name: test_nan}"))
-    with pytest.raises(ValueError, match="not finite"):
-        env.step()
-
-
 def test_passing_through_something_unobstructed_is_no_collision(make: Make) -> None:
     env = make(WALL.replace("state: [4, 1, 0]}", "state: [4, 1, 0], unobstructed: true}"))
     while not env.done():
@@ -340,8 +292,49 @@ def test_passing_through_something_unobstructed_is_no_collision(make: Make) -> N
     assert env.outcome == "success"
 
 
-def test_environments_are_not_copied_in_secret(make: Make) -> None:
-    import copy
-
+def test_environments_are_not_copied_in_secret(env: Any) -> None:
     with pytest.raises(TypeError, match="seed"):
-        copy.copy(make(ONE))
+        copy.copy(env)
+
+
+LIMITS = """
+world: {height: 10, width: 10}
+robot:
+  - {kinematics: {name: diff}, state: [1, 1, 0], shape: {name: circle, radius: 0.2}}
+  - {kinematics: {name: diff}, state: [1, 5, 0], shape: {name: circle, radius: 0.2}, acce: [1, .inf]}
+  - {kinematics: {name: acker}, state: [5, 5, 0], shape: {name: rectangle, length: 1, width: 0.5, wheelbase: 0.6}}
+  - {kinematics: {name: acker, wheelbase: 0.4}, state: [5, 8, 0],
+     shape: {name: rectangle, length: 1, width: 0.5, wheelbase: 0.6}}
+"""
+
+
+def test_an_action_beyond_the_limits_of_a_drive_is_cut_and_that_is_said_once(make: Make, capsys: Any) -> None:
+    env = make(LIMITS, log_level="WARNING")
+    env.step([1, 1])
+    env.step(np.array([[0.1], [0.2]]), "robot_1")
+    assert "cut" not in capsys.readouterr().out
+    take_steps(env, 3, [5, -5])
+    printed = capsys.readouterr().out
+    assert printed.count("is cut") == 1
+    assert "robot_0: action [5, -5] is cut to the limits of its drive, now [-1, -1] to [1, 1]" in printed
+    assert env.robot.velocity.ravel().tolist() == [1, -1]
+
+
+def test_an_action_beyond_the_acceleration_of_a_drive_is_cut(make: Make, capsys: Any) -> None:
+    env = make(LIMITS, log_level="WARNING")
+    env.step([0.1, 0], 1)
+    assert "cut" not in capsys.readouterr().out
+    env.step([1, 0], 1)
+    assert "robot_1: action [1, 0] is cut" in capsys.readouterr().out
+    assert env.robot_list[1].velocity[0, 0] == pytest.approx(0.2)
+
+
+def test_the_wheelbase_of_an_object_is_that_of_its_shape(make: Make) -> None:
+    robots = make(LIMITS).robot_list
+    assert [robot.wheelbase for robot in robots] == [None, None, 0.6, 0.6]
+    assert (robots[3].kf.wheelbase, robots[3].info.wheelbase) == (0.4, 0.6)
+
+
+def test_the_resolution_of_a_map_is_a_number(env: Any) -> None:
+    with pytest.raises(TypeError, match=r"resolution of a map must be a number \[m\], got 'a'"):
+        env.get_map("a")

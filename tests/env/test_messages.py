@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,8 +11,7 @@ import numpy as np
 import pytest
 
 from irsim import msg
-
-Make = Callable[..., Any]
+from tests.env.driving import Make, take_steps
 
 TEXT = """
 world: {width: 10, height: 10, name: hall}
@@ -28,8 +26,12 @@ obstacle:
 """
 
 
-def test_what_a_message_says(make: Make) -> None:
-    env = make(TEXT)
+@pytest.fixture
+def env(make: Make) -> Any:
+    return make(TEXT)
+
+
+def test_what_a_message_says(env: Any) -> None:
     env.step([[0.5, 0.2], [1, 0.2], [0.5, 0.2, 0.1]])
     message = env.get_msg()
     assert (message.header, message.name, message.status) == (msg.Header(1, 0.1, "world"), "hall", env.status)
@@ -49,8 +51,7 @@ def test_what_a_message_says(make: Make) -> None:
     assert json.loads(json.dumps(message.to_dict()))["objects"][0]["goal"] == [[9], [9], [0]]
 
 
-def test_infinite_ranges(make: Make) -> None:
-    env = make(TEXT)
+def test_infinite_ranges(env: Any) -> None:
     scan = env.get_msg(use_inf=True).objects[0].scan
     assert scan is not None
     assert np.isposinf(scan.ranges).all()
@@ -61,21 +62,18 @@ def test_infinite_ranges(make: Make) -> None:
     assert np.isneginf(scan.ranges).any()
 
 
-def test_a_message_puts_everything_back(make: Make) -> None:
-    env = make(TEXT)
+def test_a_message_puts_everything_back(env: Any) -> None:
     env.step([[0.5, 0.2], [1, 0.2], [0.5, 0.2, 0.1]])
     message, states = env.get_msg(), [view.state for view in env.objects]
     speeds = [view.velocity for view in env.objects]
-    for _ in range(5):
-        env.step([[0.5, 0.2], [1, -0.2], [0.5, 0.2, 0.1]])
+    take_steps(env, 5, [[0.5, 0.2], [1, -0.2], [0.5, 0.2, 0.1]])
     assert env.receive_msg(message) == 4
     for view, state, speed in zip(env.objects, states, speeds, strict=True):
         np.testing.assert_allclose(view.state, state, atol=1e-12)
         np.testing.assert_allclose(view.velocity, speed, atol=1e-12)
 
 
-def test_odometry_of_others(make: Make) -> None:
-    env = make(TEXT)
+def test_odometry_of_others(env: Any) -> None:
     native = SimpleNamespace(
         pose=SimpleNamespace(pose=msg.Pose(msg.Point(2, 3))), twist=SimpleNamespace(twist=msg.Twist())
     )
@@ -93,8 +91,7 @@ def test_odometry_of_others(make: Make) -> None:
     assert car.state[3, 0] == pytest.approx(math.atan(0.6))
 
 
-def test_nothing_changes_when_a_message_is_wrong(make: Make) -> None:
-    env = make(TEXT)
+def test_nothing_changes_when_a_message_is_wrong(env: Any) -> None:
     message = env.get_msg()
     message.objects[0].odom.pose.pose.position.x = 5.0
     message.objects[1].odom.pose.pose.position.x = math.nan

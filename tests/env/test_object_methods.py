@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 import shapely
 
-Make = Callable[..., Any]
+from tests.env.driving import Make, take_steps
 
 TEXT = """
 world: {width: 10, height: 10}
@@ -28,8 +27,12 @@ obstacle:
 """
 
 
-def test_what_avoidance_asks(make: Make) -> None:
-    env = make(TEXT)
+@pytest.fixture
+def env(make: Make) -> Any:
+    return make(TEXT)
+
+
+def test_what_avoidance_asks(env: Any) -> None:
     diff, omni = env.robot_list
     line, polygon = env.obstacle_list[:2]
     assert diff.desired_omni_vel[:, 0].tolist() == [2, 0]
@@ -52,8 +55,7 @@ def test_what_avoidance_asks(make: Make) -> None:
         line.vel_world2body([1, 0])
 
 
-def test_convex_inequalities_hold_for_the_vertices(make: Make) -> None:
-    env = make(TEXT)
+def test_convex_inequalities_hold_for_the_vertices(env: Any) -> None:
     for view in (env.robot, env.obstacle_list[1]):
         for (normals, offsets, cone, convex), vertices in (
             (view.get_init_Gh(), view.original_vertices),
@@ -67,11 +69,10 @@ def test_convex_inequalities_hold_for_the_vertices(make: Make) -> None:
     assert env.obstacle_list[2].get_Gh() == (None, None, None, False)
 
 
-def test_body_frame_geometry(make: Make) -> None:
-    env = make(TEXT)
+def test_body_frame_geometry(env: Any) -> None:
     polygon, compound = env.obstacle_list[1:3]
+    np.testing.assert_allclose(polygon.original_state[:, 0], [*polygon.original_centroid[:, 0], 0])
     np.testing.assert_allclose(polygon.original_centroid[:, 0], [2 / 3, 1 / 3])
-    np.testing.assert_allclose(polygon.original_state[:, 0], [2 / 3, 1 / 3, 0])
     assert [part.shape for part in compound.original_part_vertices] == [(2, 64), (2, 4)]
     np.testing.assert_allclose(env.robot.goal_vertices, [[1, 2, 2, 1], [0.8, 0.8, 1.2, 1.2]])
     assert compound.goal_vertices is None
@@ -91,67 +92,63 @@ def test_outlines_of_disks_and_walls(make: Make) -> None:
 
 
 @pytest.mark.parametrize("name", ["state", "velocity", "goal", "position", "init_state", "vel_max", "velocity_xy"])
-def test_what_is_read_cannot_be_written_into(make: Make, name: str) -> None:
+def test_what_is_read_cannot_be_written_into(env: Any, name: str) -> None:
     with pytest.raises(ValueError, match="read-only"):
-        getattr(make(TEXT).robot, name)[0, 0] = 5.0
+        getattr(env.robot, name)[0, 0] = 5.0
 
 
-def test_what_is_unobstructed_is_not_among_what_it_touches(make: Make) -> None:
-    env = make(TEXT)
-    disc, ghost = env.obstacle_list[3], env.obstacle_list[2]
-    for other in (disc, ghost):
-        other.set_state([1.2, 1, 0])
-    env.step()
-    assert env.robot.collision_obj == [disc]
-
-
-def test_checks_of_arrival(make: Make) -> None:
-    robot = make(TEXT).robot
-    assert not robot.check_arrive(None)
-    assert robot.check_arrive([1, 1])
-    assert not robot.check_arrive(np.array([[1.5], [1], [0]]))
-    assert robot.check_arrive([1.5, 1, 0], threshold=0.6)
-    robot.set_goal([[1, 1, 0], [8, 8, 0]])
-    robot.check_arrive_status()
-    assert (robot.arrive_flag, robot.goal[:, 0].tolist()) == (False, [8, 8, 0])
-    robot.check_arrive_status()
-    assert not robot.arrive_flag, "it is not there yet"
-    robot.set_goal([1, 1, 0])
-    robot.check_status()
-    assert robot.arrive_flag
-    assert robot.done()
-
-
-def test_checks_of_contact(make: Make) -> None:
-    env = make(TEXT)
+def test_checks_of_contact(env: Any) -> None:
     robot, disc, ghost = env.robot, env.obstacle_list[3], env.obstacle_list[2]
-    assert robot.possible_collision_objects == []
-    assert not robot.check_collision(disc)
+
+    def flags() -> tuple[bool, bool]:
+        robot.check_status()
+        return robot.collision_flag, robot.stop_flag
+
+    assert (robot.possible_collision_objects, robot.check_collision(disc)) == ([], False)
     disc.set_state([1.5, 1.2, 0])
-    assert robot.check_collision(disc)
-    assert robot.possible_collision_objects == [disc]
-    robot.check_collision_status()
-    assert (robot.collision_flag, robot.stop_flag) == (True, True)
+    assert (robot.possible_collision_objects, robot.check_collision(disc)) == ([disc], True)
+    assert flags() == (True, True)
     disc.set_state([8, 4, 0])
-    ghost.set_state([1, 1, 0])
-    robot.check_status()
-    assert (robot.collision_flag, robot.stop_flag) == (False, False)
+    ghost.set_state([1, 1, 0])  # unobstructed
+    assert flags() == (False, False)
     env.world_param.collision_mode = "unobstructed"
     disc.set_state([1.5, 1.2, 0])
-    robot.check_collision_status()
-    assert (robot.collision_flag, robot.stop_flag) == (True, False)
+    assert flags() == (True, False)
+    env.step()
+    assert robot.collision_obj == [disc]
 
 
-def test_reset_of_one_object(make: Make) -> None:
-    env = make(TEXT)
+@pytest.mark.parametrize(
+    ("goal", "keys", "arrived"),
+    [
+        (None, {}, False),
+        ([1, 1], {}, True),
+        (np.array([[1.5], [1], [0]]), {}, False),
+        ([1.5, 1, 0], {"threshold": 0.6}, True),
+    ],
+)
+def test_checks_of_arrival(env: Any, goal: Any, keys: dict[str, float], arrived: bool) -> None:
+    assert env.robot.check_arrive(goal, **keys) is arrived
+
+
+def test_a_check_of_arrival_goes_on_to_the_next_goal(env: Any) -> None:
+    robot = env.robot
+    robot.set_goal([[1, 1, 0], [8, 8, 0]])
+    for _ in range(2):
+        robot.check_arrive_status()
+        assert (robot.arrive_flag, robot.goal[:, 0].tolist()) == (False, [8, 8, 0])
+    robot.set_goal([1, 1, 0])
+    robot.check_status()
+    assert (robot.arrive_flag, robot.done()) == (True, True)
+
+
+def test_reset_of_one_object(env: Any) -> None:
     first, second = env.robot_list
-    for _ in range(3):
-        env.step([[1, 0.2], [0.5, 0.5]])
+    take_steps(env, 3, [[1, 0.2], [0.5, 0.5]])
     elsewhere = second.state
     first.reset()
-    assert first.state[:, 0].tolist() == [1, 1, 0.3]
+    assert (first.state[:, 0].tolist(), first.velocity[:, 0].tolist()) == ([1, 1, 0.3], [0, 0])
     assert first.trajectory == []
-    assert first.velocity[:, 0].tolist() == [0, 0]
     np.testing.assert_array_equal(second.state, elsewhere)
     first.set_state()
     first.set_velocity()
@@ -170,8 +167,7 @@ def test_sensors_look_again(make: Make) -> None:
     assert (env.robot.get_lidar_scan()["ranges"] != before).any()
 
 
-def test_what_it_belongs_to(make: Make) -> None:
-    env = make(TEXT)
+def test_what_it_belongs_to(env: Any) -> None:
     assert env.robot.world_param is env.world_param
     assert env.robot.env_param is env.env_param
     assert env.robot.logger is env.logger
@@ -183,37 +179,38 @@ def test_what_it_belongs_to(make: Make) -> None:
     assert env.robot.world_param is env.world_param
 
 
-def test_random_goals(make: Make) -> None:
-    env = make(TEXT, seed=3)
+LIMITS = [[2, 2, -1], [3, 4, 1]]
+
+
+def test_random_goals_lie_within_their_limits_and_repeat(make: Make) -> None:
+    env, again = make(TEXT, seed=3), make(TEXT, seed=3)
     robot = env.robot
-    robot.set_random_goal(env.obstacle_list, init=True, range_limits=[[2, 2, -1], [3, 4, 1]])
+    robot.set_random_goal(env.obstacle_list, init=True, range_limits=LIMITS)
+    again.robot.set_random_goal(again.obstacle_list, range_limits=LIMITS)
     goal = robot.goal[:, 0]
-    assert (goal >= [2, 2, -1]).all()
-    assert (goal <= [3, 4, 1]).all()
+    assert ((LIMITS[0] <= goal) & (goal <= LIMITS[1])).all()
+    np.testing.assert_array_equal(again.robot.goal[:, 0], goal)
     env.reset()
     np.testing.assert_array_equal(robot.goal[:, 0], goal)
+
+
+def test_random_goals_keep_off_objects(env: Any) -> None:
+    robot, disc = env.robot, env.obstacle_list[3]
     robot.set_goal([[1, 1], [2, 2]])
     robot.set_random_goal([])
     assert len(robot.goals) == 2
-    disc = env.obstacle_list[3]
     disc.set_original_geometry(shapely.box(-10, -10, 1, 1))
     disc.set_state([8, 8, 0])
     for _ in range(20):
         robot.set_random_goal([disc], goal_check_radius=0.1)
-        x, y = robot.goal[:2, 0]
-        assert not shapely.box(-2, -2, 9, 9).intersects(shapely.Point(x, y).buffer(0.09))
+        assert not shapely.box(-2, -2, 9, 9).intersects(shapely.Point(*robot.goal[:2, 0]).buffer(0.09))
     robot.set_random_goal([disc], goal_check_radius=100)  # gives up in the end
-    again = make(TEXT, seed=3)
-    again.robot.set_random_goal(again.obstacle_list, range_limits=[[2, 2, -1], [3, 4, 1]])
-    np.testing.assert_array_equal(again.robot.goal[:, 0], goal)
 
 
-def test_another_body(make: Make) -> None:
-    env = make(TEXT)
+def test_another_body(env: Any) -> None:
     disc = env.obstacle_list[3]
     disc.set_original_geometry(shapely.Polygon([(-1, -1), (1, -1), (1, 1), (-1, 1)]))
-    assert disc.geometry.bounds == (7, 3, 9, 5)
-    assert disc.radius == pytest.approx(math.sqrt(2))
+    assert (disc.geometry.bounds, disc.radius) == ((7, 3, 9, 5), pytest.approx(math.sqrt(2)))
     env.robot.set_state([6.5, 4, 0])
     env.refresh()
     assert env.robot.collision_obj == [disc]

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
 from irsim.diagnostics.errors import ScenarioError
-from irsim.env import Env
 from irsim.objects.lifecycle import renumber
+from tests.env.driving import Make, take_steps
 
 WORLD = """
 world: {width: 10, height: 10}
@@ -27,79 +26,68 @@ obstacle:
 """
 
 
+def disc(radius: float) -> dict[str, Any]:
+    return {"name": "circle", "radius": radius}
+
+
+def box(length: float, width: float) -> dict[str, Any]:
+    return {"name": "rectangle", "length": length, "width": width}
+
+
 @pytest.fixture
-def make(tmp_path: Any) -> Callable[..., Env]:
-    def build(text: str = WORLD, **options: Any) -> Env:
-        path = tmp_path / "world.yaml"
-        path.write_text(text)
-        return Env(path, headless=True, **{"seed": 5, "log_level": "ERROR", **options})
-
-    return build
+def env(make: Make) -> Any:
+    return make(WORLD)
 
 
-def test_a_made_object_is_not_in_the_world(make: Callable[..., Env]) -> None:
-    env = make()
-    made = env.create_obstacle(shape={"name": "circle", "radius": 0.3}, state=(4, 4, 0))
+def test_a_made_object_is_not_in_the_world(env: Any) -> None:
+    made = env.create_obstacle(shape=disc(0.3), state=(4, 4, 0))
     assert made not in env.objects
     assert (made.id, made.name, made.role, made.static) == (5, "obstacle_5", "obstacle", True)
-    assert made.goal is None
-    assert made.external_objects == env.objects
+    assert (made.goal, made.external_objects) == (None, env.objects)
     assert env.create_robot().state[:, 0].tolist() == [0, 0, 0]
     made.set_state(np.array([[4.5], [4.5], [0.0]]))
     env.add_object(made)
     assert env.objects[-1] is made
-    assert made.state[:, 0].tolist() == [4.5, 4.5, 0]
-    assert made.init_state[:, 0].tolist() == [4, 4, 0]
+    assert (made.state[:, 0].tolist(), made.init_state[:, 0].tolist()) == ([4.5, 4.5, 0], [4, 4, 0])
     assert made.external_objects == env.objects[:-1]
 
 
-def test_a_made_object_knows_what_it_would_touch(make: Callable[..., Env]) -> None:
-    env = make()
-    bar = env.create_obstacle(shape={"name": "rectangle", "length": 4, "width": 0.2}, state=[9, 9, 0])
-    disk = env.create_obstacle(shape={"name": "circle", "radius": 0.3}, state=[5, 5, 0])
-    env.add_objects([bar, disk])
-    made = env.create_obstacle(shape={"name": "rectangle", "length": 0.2, "width": 1}, state=[7.2, 9.3, 0])
-    assert made.possible_collision_objects == [bar]
-    made.set_state([5, 4.4, 0])
-    assert made.possible_collision_objects == [disk]
-    made.set_state([5, 3.5, 0])
-    assert made.possible_collision_objects == []
+@pytest.mark.parametrize(("state", "touched"), [([7.2, 9.3, 0], "bar"), ([5, 4.4, 0], "disk"), ([5, 3.5, 0], None)])
+def test_a_made_object_knows_what_it_would_touch(env: Any, state: list[float], touched: str | None) -> None:
+    env.add_object(env.create_obstacle(shape=box(4, 0.2), state=[9, 9, 0], name="bar"))
+    env.add_object(env.create_obstacle(shape=disc(0.3), state=[5, 5, 0], name="disk"))
+    made = env.create_obstacle(shape=box(0.2, 1), state=[0, 0, 0])
+    made.set_state(state)
+    assert [other.name for other in made.possible_collision_objects] == ([touched] if touched else [])
 
 
-def test_an_added_robot_drives_and_collides(make: Callable[..., Env]) -> None:
-    env = make()
-    robot = env.create_robot({"name": "diff"}, shape={"name": "circle", "radius": 0.2}, state=[5, 5, 0],
-                             goal=[9, 5, 0], behavior={"name": "dash"}, name="late")  # fmt: skip
-    wall = env.create_obstacle(shape={"name": "rectangle", "length": 0.2, "width": 2}, state=[7, 5, 0])
+def test_an_added_robot_drives_and_collides(env: Any) -> None:
+    keys = {"shape": disc(0.2), "state": [5, 5, 0], "goal": [9, 5, 0], "behavior": {"name": "dash"}, "name": "late"}
+    robot = env.create_robot({"name": "diff"}, **keys)
+    wall = env.create_obstacle(shape=box(0.2, 2), state=[7, 5, 0])
     env.step()
     env.add_objects([robot, wall])
     assert env.robot_list == [env.robot, robot]
-    for _ in range(40):
-        env.step()
-    assert robot.collision_obj == [wall]
-    assert robot.state[0, 0] == pytest.approx(6.8, abs=0.15)
+    take_steps(env, 40)
+    assert (robot.collision_obj, robot.state[0, 0]) == ([wall], pytest.approx(6.8, abs=0.15))
     assert ("late", wall.name) in [(e.object, e.partner) for e in env.events if e.kind == "collision"]
     assert env.done("any")
 
 
 @pytest.mark.parametrize("gone", [1, 3])
-def test_others_go_on_as_if_nothing_had_happened(make: Callable[..., Env], gone: int) -> None:
+def test_others_go_on_as_if_nothing_had_happened(make: Make, gone: int) -> None:
     text = WORLD.replace("height: 10", "height: 10, collision_mode: unobstructed")
     env, twin = make(text), make(text)
     for each in (env, twin):
-        for _ in range(5):
-            each.step()
+        take_steps(each, 5)
     env.delete_object(gone)
-    env.add_object(env.create_obstacle(state=[5, -5, 0], shape={"name": "circle", "radius": 0.1}))
+    env.add_object(env.create_obstacle(state=[5, -5, 0], shape=disc(0.1)))
     kept = [view.id for view in env.objects if view.id < 5]
     assert kept == [i for i in range(5) if i != gone]
     for _ in range(30):
         env.step()
         twin.step()
-        for number in kept:
-            mine, other = env.get_object_by_id(number), twin.get_object_by_id(number)
-            assert mine is not None
-            assert other is not None
+        for mine, other in [(env.get_object_by_id(i), twin.get_object_by_id(i)) for i in kept]:
             np.testing.assert_array_equal(mine.state, other.state)
             np.testing.assert_array_equal(mine.velocity, other.velocity)
             assert mine.goal is not None or other.goal is None
@@ -109,24 +97,19 @@ def test_others_go_on_as_if_nothing_had_happened(make: Callable[..., Env], gone:
     np.testing.assert_array_equal(env.robot.state, twin.robot.state)
 
 
-def test_sensors_and_contacts_follow_their_objects(make: Callable[..., Env]) -> None:
-    env = make()
-    near = env.create_obstacle(state=[2, 1, 0], shape={"name": "circle", "radius": 0.5}, name="near")
+def test_sensors_and_contacts_follow_their_objects(env: Any) -> None:
+    near = env.create_obstacle(state=[2, 1, 0], shape=disc(0.5), name="near")
     env.add_object(near)
-    assert near.id in env.robot.lidar.hits  # type: ignore[union-attr]
+    assert near.id in env.robot.lidar.hits
     env.delete_object(1)
-    assert near.id in env.robot.lidar.hits  # type: ignore[union-attr]
+    assert near.id in env.robot.lidar.hits
     env.delete_object("near")
-    assert near.id not in env.robot.lidar.hits  # type: ignore[union-attr]
-    assert set(env.robot.lidar.hits) <= {view.id for view in env.objects} | {-1}  # type: ignore[union-attr]
+    assert set(env.robot.lidar.hits) <= {0, 2, 3, 4, -1}
 
 
-def test_a_taken_out_object_stays_usable_and_comes_back(make: Callable[..., Env]) -> None:
-    env = make()
-    for _ in range(3):
-        env.step()
+def test_a_taken_out_object_stays_usable_and_comes_back(env: Any) -> None:
+    take_steps(env, 3)
     mover = env.get_object_by_id(3)
-    assert mover is not None
     state, goal = mover.state, mover.goal
     env.delete_object(3)
     env.step()
@@ -140,8 +123,7 @@ def test_a_taken_out_object_stays_usable_and_comes_back(make: Callable[..., Env]
     assert len(mover.trajectory) == 4
 
 
-def test_resets(make: Callable[..., Env]) -> None:
-    env = make()
+def test_resets(env: Any, make: Make) -> None:
     first = env.objects
     added = env.create_robot({"name": "omni"}, state=[5, 5, 0], goal=[6, 6, 0], behavior={"name": "dash"})
     env.add_object(added)
@@ -153,15 +135,13 @@ def test_resets(make: Callable[..., Env]) -> None:
     env.reset(random=True)
     assert env.objects == first
     assert env.create_obstacle().id == 5
-    twin = make()
+    twin = make(WORLD)
     twin.reset(random=True)
-    for mine, other in zip(env.objects, twin.objects, strict=True):
-        np.testing.assert_array_equal(mine.state, other.state)
-    assert added not in env.objects
-    added.set_state([1, 2, 3])
+    np.testing.assert_array_equal(env.simulation.pose, twin.simulation.pose)
+    added.set_state([1, 2, 3])  # still an object of its own
 
 
-def test_a_new_seed_draws_the_present_objects_anew(make: Callable[..., Env]) -> None:
+def test_a_new_seed_draws_the_present_objects_anew(make: Make) -> None:
     text = "world: {width: 20}\nobstacle: {number: 3, distribution: {name: random}, shape: {name: circle, radius: 0.2}}"
     env, twin = make(text), make(text, seed=11)
     added = env.create_obstacle(state=[30, 30, 0])
@@ -173,8 +153,7 @@ def test_a_new_seed_draws_the_present_objects_anew(make: Callable[..., Env]) -> 
     np.testing.assert_array_equal(env.objects[0].state, twin.objects[1].state)
 
 
-def test_names_are_unique_and_nothing_is_added_twice(make: Callable[..., Env]) -> None:
-    env = make()
+def test_names_are_unique_and_nothing_is_added_twice(env: Any, make: Make) -> None:
     with pytest.raises(ValueError, match="'robot_0' already exists"):
         env.add_object(env.create_obstacle(name="robot_0"))
     fresh = env.create_obstacle(state=[20, 20, 0])
@@ -185,14 +164,14 @@ def test_names_are_unique_and_nothing_is_added_twice(make: Callable[..., Env]) -
     with pytest.raises(TypeError):
         env.add_object("robot")  # type: ignore[arg-type]
     env.validate_unique_names()
-    other = make()
+    other = make(WORLD)
     env.delete_object("robot_0")
     with pytest.raises(ValueError, match="in a world already"):
         env.add_object(other.objects[0])
 
 
-def test_an_object_made_elsewhere_gets_an_id_of_its_own(make: Callable[..., Env]) -> None:
-    env, other = make(), make()
+def test_an_object_made_elsewhere_gets_an_id_of_its_own(make: Make) -> None:
+    env, other = make(WORLD), make(WORLD)
     one, two = env.create_obstacle(state=[5, 5, 0]), other.create_obstacle(state=[6, 6, 0])
     assert one.id == two.id
     env.add_object(one)
@@ -206,22 +185,16 @@ def test_an_object_made_elsewhere_gets_an_id_of_its_own(make: Callable[..., Env]
     assert env.get_object_by_name("b") is named
 
 
-def test_keys_that_cannot_be_used(make: Callable[..., Env], capsys: pytest.CaptureFixture[str]) -> None:
-    env = make(log_level="WARNING")
+def test_keys_that_cannot_be_used(make: Make, capsys: pytest.CaptureFixture[str]) -> None:
+    env = make(WORLD, log_level="WARNING")
     with pytest.raises(ScenarioError):
         env.create_robot({"name": "hovercraft"})
-    env.create_robot({"name": "diff"}, colour="red")
+    robot = env.create_robot({"name": "diff"}, goal=[[1, 1], [2, 2, 0]], colour="red")
     assert "colour" in capsys.readouterr().out
-
-
-def test_several_goals_are_a_way(make: Callable[..., Env]) -> None:
-    env = make()
-    robot = env.create_robot({"name": "diff"}, goal=[[1, 1], [2, 2, 0]])
     assert [goal.shape for goal in robot.goals] == [(2, 1), (3, 1)]
 
 
-def test_different_state_sizes(make: Callable[..., Env]) -> None:
-    env = make()
+def test_different_state_sizes(env: Any) -> None:
     env.step()
     shape = {"name": "rectangle", "length": 0.8, "width": 0.4, "wheelbase": 0.5}
     car = env.create_robot({"name": "acker"}, shape=shape, state=[5, 5, 0, 0.3], vel_max=[2, 1])
@@ -232,7 +205,7 @@ def test_different_state_sizes(make: Callable[..., Env]) -> None:
     assert [len(view.trajectory[0]) for view in (env.robot, car)] == [3, 4]
 
 
-def test_python_behaviors_follow_their_objects(make: Callable[..., Env]) -> None:
+def test_python_behaviors_follow_their_objects(make: Make) -> None:
     from irsim.lib import register_behavior
 
     seen = []
@@ -242,7 +215,7 @@ def test_python_behaviors_follow_their_objects(make: Callable[..., Env]) -> None
         seen.append((ego_object.name, len(external_objects)))
         return [0.5, 0.0]
 
-    env = make()
+    env = make(WORLD)
     drifter = env.create_robot({"name": "omni"}, behavior={"name": "drift-along"}, state=[5, 5, 0], name="drifter")
     env.add_object(drifter)
     env.delete_object(1)
@@ -254,116 +227,102 @@ def test_python_behaviors_follow_their_objects(make: Callable[..., Env]) -> None
     assert len(seen) == 1
 
 
-def test_a_group_keeps_its_behavior_when_its_first_member_goes(make: Callable[..., Env]) -> None:
-    text = """
+def test_a_group_keeps_its_behavior_when_its_first_member_goes(make: Make) -> None:
+    env = make("""
 world: {width: 20, height: 20}
 robot:
   - {number: 3, kinematics: {name: omni}, state: [[1, 1, 0], [1, 5, 0], [1, 9, 0]], goal: [[9, 1], [9, 5], [9, 9]],
      group_behavior: [{name: orca}, null, null], shape: {name: circle, radius: 0.2}}
-"""
-    env = make(text)
+""")
     env.delete_object(0)
     env.add_object(env.create_robot({"name": "omni"}, state=[5, 5, 0], goal=[1, 1, 0]))
-    for _ in range(5):
-        env.step()
-    moved = [view.state[0, 0] > 1 for view in env.objects]
-    assert moved == [True, True, True]
+    take_steps(env, 5)
+    assert [view.state[0, 0] > 1 for view in env.objects] == [True, True, True]
     assert env.objects[2].state[:, 0].tolist() == [5, 5, 0]
 
 
-def test_random_places_and_shapes(make: Callable[..., Env]) -> None:
-    text = """
+def test_random_places_and_shapes(make: Make) -> None:
+    env = make("""
 world: {width: 10, height: 10}
 robot: {kinematics: {name: diff}, state: [1, 1, 0], shape: {name: circle, radius: 0.2}}
 obstacle:
   - {number: 4, kinematics: {name: acker}, shape: {name: circle, radius: 0.3}, state: [5, 5, 0, 0.2]}
   - {shape: {name: polygon, vertices: [[0, 0], [1, 0], [0, 1]]}, state: [8, 8, 0]}
-"""
-    env = make(text)
+""")
     env.random_obstacle_position([0, 0, 0], [3, 3, 0], ids=[1, 2, 3], non_overlapping=True)
-    placed = [env.objects[i] for i in (1, 2, 3)]
+    everyone = env.objects
+    placed, polygon = everyone[1:4], everyone[5]
     assert all((view.state[:2] >= 0).all() and (view.state[:2] <= 3).all() for view in placed)
     assert all(view.state[3, 0] == 0.2 for view in placed)
-    everyone = env.objects
     assert not any(a.geometry.intersects(b.geometry) for a in placed for b in everyone if a is not b)
     assert everyone[4].state[:2, 0].tolist() == [5, 5]
     env.step()
     env.reset()
     assert all((view.state[:2] <= 3).all() for view in placed)
-    before = env.objects[5].original_vertices
+    before = polygon.original_vertices
     env.random_polygon_shape(center_range=[0, 0, 0, 0], avg_radius_range=[0.5, 0.6], num_vertices_range=[5, 6])
-    after = env.objects[5].original_vertices
-    assert before is not None
-    assert after is not None
+    after = polygon.original_vertices
     assert after.shape == (2, 5)
-    assert env.objects[5].radius < 1.3
-    env.reset()
-    np.testing.assert_array_equal(env.objects[5].original_vertices, after)
-    env.reset(random=True)
-    np.testing.assert_array_equal(env.objects[5].original_vertices, before)
+    assert polygon.radius < 1.3
+    for random, expected in ((False, after), (True, before)):
+        env.reset(random=random)
+        np.testing.assert_array_equal(polygon.original_vertices, expected)
 
 
-def test_reload(make: Callable[..., Env], tmp_path: Any) -> None:
-    env = make()
+def test_reload(env: Any, make: Make, tmp_path: Any) -> None:
     env.add_object(env.create_obstacle())
     env.step()
     env.reload()
     assert [view.id for view in env.objects] == [0, 1, 2, 3, 4]
     assert (env.time, env.status) == (0, "None")
-    twin = make()
+    twin = make(WORLD)
     env.step()
     twin.step()
     np.testing.assert_array_equal(env.robot.state, twin.robot.state)
     other = tmp_path / "other.yaml"
     other.write_text("world: {width: 3}\nrobot: [{kinematics: {name: omni}}]")
     env.reload(other)
-    assert len(env.objects) == 1
-    assert env.world_param.count == 0
-    assert env._world.width == 3
+    assert (len(env.objects), env.world_param.count, env._world.width) == (1, 0, 3)
     env.step([1, 0])
     assert env.time == 0.1
 
 
-def test_pictures_follow(make: Callable[..., Env], tmp_path: Any) -> None:
-    env = make()
-    env.headless = False
-    env.display = False
-    scene = env._env_plot.scene()
-    assert {mark.object for mark in scene.marks} == {0, 1, 2, 3, 4}
+def test_pictures_follow(make: Make, tmp_path: Any) -> None:
+    env = make(WORLD, headless=False, display=False)
+
+    def drawn() -> set[int]:
+        return {mark.object for mark in env._env_plot.scene().marks}
+
+    assert drawn() == {0, 1, 2, 3, 4}
     env.add_object(env.create_obstacle(state=[5, 5, 0]))
     env.delete_object(2)
-    assert {mark.object for mark in env._env_plot.scene().marks} == {0, 1, 3, 4, 5}
+    assert drawn() == {0, 1, 3, 4, 5}
     assert env.save_figure(tmp_path / "a.png") is not None
     env.reload()
-    assert {mark.object for mark in env._env_plot.scene().marks} == {0, 1, 2, 3, 4}
-    env.end(0)
+    assert drawn() == {0, 1, 2, 3, 4}
 
 
-def test_beside_a_map_and_walls(make: Callable[..., Env]) -> None:
-    text = """
+def test_beside_a_map_and_walls(make: Make) -> None:
+    env = make("""
 world:
   {width: 10, height: 10, boundary: walls, obstacle_map: {name: perlin, resolution: 0.5, complexity: 0.1, seed: 2}}
 robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [5, 5, 0]}
 obstacle: {shape: {name: circle, radius: 0.1}, state: [5, 6, 0]}
-"""
-    env = make(text)
-    walls = env.get_object_by_name("boundary")
-    assert walls is not None
-    pushed = env.create_robot({"name": "omni"}, shape={"name": "circle", "radius": 0.2}, state=[9.7, 5, 0])
+""")
+    walls, cells = env.get_object_by_name("boundary"), next(o for o in env.obstacle_list if o.shape == "map")
+    pushed = env.create_robot({"name": "omni"}, shape=disc(0.2), state=[9.7, 5, 0])
     env.delete_object(1)
     env.add_object(pushed)
     for _ in range(3):
         env.step([1, 0], action_id=pushed.id)
-    assert pushed.collision
-    assert walls in pushed.collision_obj or any(o.shape == "map" for o in pushed.collision_obj)
+    assert {walls, cells} & set(pushed.collision_obj)
     assert walls.check_collision(pushed) == (walls in pushed.collision_obj)
     before = [view.state.tolist() for view in env.obstacle_list]
     env.random_obstacle_position(non_overlapping=True)
     assert [view.state.tolist() for view in env.obstacle_list] == before
-    map_object = next(view for view in env.obstacle_list if view.shape == "map")
-    env.delete_object(map_object.id)
+    env.delete_object(cells.id)
     env.step()
-    assert map_object.id not in [view.id for view in env.objects]
-    env.add_object(map_object)
+    assert cells.id not in [view.id for view in env.objects]
+    env.add_object(cells)
     env.step()
     assert walls.possible_collision_objects is not None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,8 +10,8 @@ import pytest
 
 import irsim
 from irsim.diagnostics.errors import ScenarioError
+from tests.env.driving import Make
 
-Make = Callable[..., Any]
 SEEDS = range(25)
 
 CIRCLE = """

@@ -13,6 +13,7 @@ from irsim.components.behaviors.replay import Replay
 from tests.core.worlds import DRIVES, robot
 from tests.core.worlds import scene as core_scene
 from tests.effort import examples
+from tests.env.driving import take_steps
 
 TEXT = """
 world: {width: 10, height: 10, step_time: 0.1, time_limit: 8}
@@ -45,8 +46,7 @@ def scene(tmp_path):
 
 def test_start_goal_and_limits_follow_from_the_recording(scene) -> None:
     record = scene().obstacle_list[0].record
-    assert record.state == pytest.approx([5, 1, np.pi / 2])
-    assert record.goals == [[5, 9]]
+    assert (record.state, record.goals) == (pytest.approx([5, 1, np.pi / 2]), [[5, 9]])
     assert record.vel_max[0] >= 2.5
     assert record.vel_min[0] <= -2.5
     assert (record.appear_time, record.vanish_time) == (0.4, 4.0)
@@ -86,8 +86,7 @@ robot:
   - {name: robot, kinematics: {name: omni}, behavior: {name: replay, times: [0.2, 1], poses: [[1, 1, 0], [2, 1, 0]]}}
 """
     env = scene(text)
-    for _ in range(20):
-        env.step()
+    take_steps(env, 20)
     np.testing.assert_allclose(env.robot.state[:2, 0], [2, 1])
     assert env.robot.arrive
 

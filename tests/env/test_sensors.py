@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
@@ -12,11 +11,12 @@ import pytest
 import irsim
 from irsim.components.sensors._options import SensorOptions
 from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
+from irsim.objects.views import views
 from irsim.options.registry import SENSORS
 from irsim.options.units import Meters
 from irsim.simulation.fog import FogMap
-
-Make = Callable[..., Any]
+from irsim.world.sensors import SensorFactory
+from tests.env.driving import Make, take_steps
 
 SEVERAL = """
 robot:
@@ -42,13 +42,11 @@ def test_several_sensors_of_any_mix(make: Make) -> None:
     one, two, three = (s.get_scan() for s in robot.sensors)
     assert one["ranges"] == pytest.approx([3.5])
     assert (one["angle_min"], one["angle_max"], one["angle_increment"]) == (0, 0, 0)
-    assert two["ranges"][1] == pytest.approx(3.4)
-    assert two["radial_velocity"][1] == pytest.approx(0.4)
+    assert (two["ranges"][1], two["radial_velocity"][1]) == (pytest.approx(3.4), pytest.approx(0.4))
     assert "velocity" not in two
     assert three["velocity"][:, 2] == pytest.approx([0.4, 0.0])
     assert three["velocity"][:, 0] == pytest.approx([0.0, 0.0])
-    assert robot.sensors[1].offset.shape == (3, 1)
-    assert robot.sensors[1].get_offset() == [0.1, 0, 0]
+    assert (robot.sensors[1].offset.shape, robot.sensors[1].get_offset()) == ((3, 1), [0.1, 0, 0])
 
 
 def test_recorded_velocities_are_those_of_the_scan(make: Make) -> None:
@@ -59,7 +57,6 @@ def test_recorded_velocities_are_those_of_the_scan(make: Make) -> None:
     lidar.step()
     assert lidar.velocity[0, 2] == pytest.approx(-0.9)
     lidar.step(np.array([[3.0], [5.0], [0.0]]))
-    assert lidar.range_data[2] == pytest.approx(2.5)
     kept = lidar.get_scan()["ranges"]
     env.step()
     assert kept[2] == pytest.approx(2.5)
@@ -92,20 +89,19 @@ def odometer(parent: Any, options: Odometer, rng: np.random.Generator) -> float:
 
 def test_a_sensor_of_user_code(make: Make) -> None:
     SENSORS.register(Odometer)(odometer)
-    env = make(ODOMETER, seed=1)
+    env = make(ODOMETER)
     sensor = env.robot.sensors[1]
     assert (sensor.sensor_type, sensor.parent, sensor.obj_id) == ("odometer", env.robot, 0)
     assert env.robot.lidar is env.robot.sensors[0]
     assert abs(sensor.data) < 0.5  # measured at once
     first = sensor.data
-    for _ in range(10):
-        env.step()
+    take_steps(env, 10)
     assert sensor.data == pytest.approx(1.0, abs=0.5)
     assert sensor.data != 1.0
     env.reset()
     assert abs(sensor.data) < 0.5
     assert sensor.data != first  # another noise episode
-    again = make(ODOMETER, seed=1).robot.sensors[1]
+    again = make(ODOMETER).robot.sensors[1]
     assert again.data == first
     again.step()
     assert again.data == first  # the draws belong to the moment
@@ -114,36 +110,28 @@ def test_a_sensor_of_user_code(make: Make) -> None:
 def test_the_lidar_is_found_behind_other_sensors(make: Make) -> None:
     SENSORS.register(Odometer)(odometer)
     lidar, other = "{name: lidar2d, number: 3}", "{name: odometer, error: 0.1}"
-    robot = make(ODOMETER.replace(f"[{lidar}, {other}]", f"[{other}, {lidar}]"), seed=1).robot
+    robot = make(ODOMETER.replace(f"[{lidar}, {other}]", f"[{other}, {lidar}]")).robot
     assert robot.lidar is robot.sensors[1]
     assert len(robot.get_lidar_scan()["ranges"]) == 3
 
 
 def test_rollouts_and_batches_measure_alike(make: Make) -> None:
     SENSORS.register(Odometer)(odometer)
-    env = make(ODOMETER, seed=1)
-    alone = [env.objects[1].sensors[1].data]
-    for _ in range(3):
-        env.step()
-        alone.append(env.objects[1].sensors[1].data)
-    rolled = make(ODOMETER, seed=1)
+    env, rolled, advanced = make(ODOMETER), make(ODOMETER), make(ODOMETER)
+    take_steps(env, 3)
     rolled.rollout(3)
-    assert rolled.objects[1].sensors[1].data == alone[-1]
-    advanced = make(ODOMETER, seed=1)
     advanced.advance(3)
-    assert advanced.objects[1].sensors[1].data == alone[-1]
+    alone = env.objects[1].sensors[1].data
+    assert [other.objects[1].sensors[1].data for other in (rolled, advanced)] == [alone, alone]
     batch = irsim.batch(env.scenario, 3, seeds=[5, 1, 9], threads=2)
     batch.advance(3)
-    from irsim.objects.views import views
-
-    assert views(batch.simulation, 1)[1].sensors[1].data == alone[-1]
-    assert views(batch.simulation, 0)[1].sensors[1].data != alone[-1]
+    assert views(batch.simulation, 1)[1].sensors[1].data == alone
+    assert views(batch.simulation, 0)[1].sensors[1].data != alone
 
 
 def test_worlds_without_one_do_not_pay(make: Make) -> None:
-    env = make(SEVERAL)
-    assert env.simulation.measurements == []
-    assert not env.simulation.in_python
+    simulation = make(SEVERAL).simulation
+    assert (simulation.measurements, simulation.in_python) == ([], False)
 
 
 class Counter:
@@ -163,12 +151,11 @@ class Counter:
 
 def test_a_sensor_class_of_user_code(make: Make) -> None:
     SENSORS.register(Odometer)(Counter)
-    env = make(ODOMETER, seed=1)
+    env = make(ODOMETER)
     sensor = env.robot.sensors[1]
     assert (sensor.count, sensor.episodes) == (1, 1)
     env.step()
-    assert sensor.data["x"] == pytest.approx(2.1)
-    assert (sensor.count, sensor.instance.count) == (2, 2)
+    assert (sensor.data["x"], sensor.count, sensor.instance.count) == (pytest.approx(2.1), 2, 2)
     env.refresh()
     assert sensor.count == 3
     env.reset()
@@ -186,31 +173,27 @@ def test_plug_ins_are_found_by_entry_point(make: Make, monkeypatch: pytest.Monke
 
     monkeypatch.setattr(SENSORS, "_plugins", {"odometer": Entry()})
     assert "odometer" in SENSORS.installed()
-    assert make(ODOMETER, seed=1).robot.sensors[1].sensor_type == "odometer"
+    assert make(ODOMETER).robot.sensors[1].sensor_type == "odometer"
 
 
 def test_fields_of_view(make: Make) -> None:
-    env = make(
-        """
+    robot, other, wall, ball = make("""
 robot:
   - {kinematics: {name: diff}, shape: {name: circle}, state: [2, 5, 0], fov: 1.0, fov_radius: 4, fov_occlusion: true}
   - {kinematics: {name: diff}, shape: {name: circle}, state: [2, 8, 0]}
 obstacle:
   - {shape: {name: rectangle, length: 0.2, width: 3}, state: [4, 5, 0]}
   - {shape: {name: circle, radius: 0.3}, state: [5.4, 5, 0]}
-"""
-    )
-    robot, other, wall, ball = env.objects
+""").objects
     assert robot.get_fov_detected_objects() == [wall]
     robot.fov_occlusion = False
     assert robot.get_fov_detected_objects() == [wall, ball]
-    assert robot.fov_detect_object(ball) is True
-    assert robot.fov_detect_object(other) is False
+    assert (robot.fov_detect_object(ball), robot.fov_detect_object(other)) == (True, False)
     robot.set_state([2, 5, math.pi])
     assert robot.get_fov_detected_objects() == []
     robot.fov, robot.fov_radius = 2 * math.pi, 3.0
     assert robot.get_fov_detected_objects() == [other, wall]
-    assert other.get_fov_detected_objects() == []  # has no field of view
+    assert other.get_fov_detected_objects() == [], "it has no field of view"
 
 
 FOG = """
@@ -250,9 +233,7 @@ def test_a_fog_map_by_itself() -> None:
     fog.reveal_fov(np.array([[2.0], [1.0], [0.5]]), 1.5, 1.2)
     assert np.argwhere(fog.explored).tolist() == [[4, 2], [4, 3], [5, 2], [5, 3]]
     rgba = fog.to_rgba()
-    assert rgba.shape == (8, 6, 4)
-    assert rgba[0, 0].tolist() == [0.78, 0.78, 0.8, 1.0]
-    assert rgba[4, 2, 3] == 0.0
+    assert (rgba.shape, rgba[0, 0].tolist(), rgba[4, 2, 3]) == ((8, 6, 4), [0.78, 0.78, 0.8, 1.0], 0.0)
     assert fog.to_rgba((1, 0, 0), 0.5)[0, 0].tolist() == [1, 0, 0, 0.5]
     fog.reveal_fov([2, 1, 0], 7.0, 10)
     assert fog.explored_ratio == 1.0
@@ -267,13 +248,53 @@ def test_a_fog_map_by_itself() -> None:
 
 
 def test_sensors_by_themselves() -> None:
-    from irsim.world.sensors import SensorFactory
-
     lidar = SensorFactory().create_sensor(np.array([[1.0], [2.0], [0.5]]), 3, name="lidar2d", number=4)
     assert isinstance(lidar, Lidar2D)
-    assert lidar.obj_id == 3
-    assert lidar.lidar_origin[:, 0] == pytest.approx([1, 2, 0.5])
+    assert (lidar.obj_id, lidar.lidar_origin[:, 0]) == (3, pytest.approx([1, 2, 0.5]))
     assert lidar.get_scan()["ranges"].tolist() == [10.0] * 4
     assert isinstance(SensorFactory().create_sensor([0, 0, 0], 0, type="fmcw_lidar2d"), FMCWLidar2D)
     with pytest.raises(NotImplementedError, match="radar"):
         SensorFactory().create_sensor([0, 0, 0], 0, name="radar")
+
+
+# `endpoint`: n beams over a full turn as n directions
+DIRECTIONS = """
+world: {{width: 10, height: 10}}
+robot: {{kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.2}}, state: [5, 5, 0], goal: [9, 5],
+  behavior: {{name: dash}}, sensors: [{{name: {name}, number: {number}, angle_range: {span}{more}}}]}}
+obstacle: {{shape: {{name: circle, radius: 1}}, state: [2, 5, 0]}}
+"""
+
+
+def directions(number: int, span: float = 2 * math.pi, more: str = ", endpoint: false", name: str = "lidar2d") -> str:
+    return DIRECTIONS.format(name=name, number=number, span=span, more=more)
+
+
+@pytest.mark.parametrize("name", ["lidar2d", "fmcw_lidar2d"])
+def test_n_beams_are_n_directions(make: Make, name: str) -> None:
+    lidar = make(directions(720, name=name)).robot.lidar
+    angles = np.degrees(lidar.angle_list)
+    np.testing.assert_allclose(angles, np.linspace(-180, 180, 720, endpoint=False), atol=1e-9)
+    scan, half_a_degree = lidar.get_scan(), math.radians(0.5)
+    assert (lidar.angle_inc, scan["angle_increment"]) == pytest.approx((half_a_degree, half_a_degree))
+    assert scan["angle_max"] == pytest.approx(math.pi - half_a_degree)
+
+
+def test_the_last_beam_does_not_repeat_the_first(make: Make) -> None:
+    lidar, closed = (make(directions(4, more=more)).robot.lidar for more in (", endpoint: false", ""))
+    assert np.degrees(lidar.angle_list).tolist() == pytest.approx([-180, -90, 0, 90])
+    assert lidar.range_data.tolist() == pytest.approx([2, 10, 10, 10])
+    assert np.degrees(closed.angle_list).tolist() == pytest.approx([-180, -60, 60, 180])
+
+
+def test_the_key_may_be_written_at_run_time(make: Make) -> None:
+    lidar = make(directions(9, math.pi, more="")).robot.lidar
+    assert (lidar.endpoint, lidar.angle_max) == (True, pytest.approx(math.pi / 2))
+    lidar.endpoint = False
+    assert lidar.angle_max == pytest.approx(math.pi / 2 - math.pi / 9)
+
+
+@pytest.mark.parametrize(("more", "fixes"), [("", ["endpoint: false, for 720 directions"]), (", endpoint: false", [])])
+def test_the_checker_proposes_the_key(more: str, fixes: list[str]) -> None:
+    findings = irsim.validate(text=directions(720, 6.28318, more=more)).findings
+    assert [finding.fix for finding in findings if finding.code == "lidar-ends-meet"] == fixes

@@ -12,6 +12,7 @@ import pytest
 from matplotlib.backend_bases import KeyEvent
 
 import irsim
+from tests.env.driving import take_steps
 
 YAML = """\
 world: {{control_mode: {mode}, width: 10, height: 8}}
@@ -57,16 +58,14 @@ def test_held_keys_drive_the_robot(env: irsim.Env) -> None:
     press(env, "w")
     press(env, "a")
     env.step()
-    assert env.robot.velocity[:, 0].tolist() == [2.0, 0.5]
-    assert env.key_vel[:, 0].tolist() == [2.0, 0.5, 0.0]
+    assert (env.robot.velocity[:, 0].tolist(), env.key_vel[:, 0].tolist()) == ([2.0, 0.5], [2.0, 0.5, 0.0])
     release(env, "a")
     env.step()
     assert env.robot.velocity[:, 0].tolist() == [2.0, 0.0]
     press(env, "s")
     assert env.key_vel[0, 0] == 0.0  # both held
     release(env, "w")
-    assert env.key_vel[0, 0] == -2.0
-    assert env.status == "Running (keyboard)"
+    assert (env.key_vel[0, 0], env.status) == (-2.0, "Running (keyboard)")
 
 
 @pytest.mark.parametrize(
@@ -84,8 +83,7 @@ def test_the_turn_keys_suit_the_drive(tmp_path: Path, drive: str, expected: list
 
 def test_keys_win_over_actions_and_behaviors_of_their_robot_only(env: irsim.Env) -> None:
     env.step([[1.0, 0.0], [0.7, 0.0]])
-    assert env.robot.velocity[0, 0] == 0.0
-    assert env.robot_list[1].velocity[0, 0] == 0.7
+    assert (env.robot.velocity[0, 0], env.robot_list[1].velocity[0, 0]) == (0.0, 0.7)
 
 
 def test_choosing_another_robot(env: irsim.Env) -> None:
@@ -95,15 +93,14 @@ def test_choosing_another_robot(env: irsim.Env) -> None:
     assert env.key_id == 1
     assert env.robot_list[1].velocity[0, 0] == 1.0  # its limit
     press(env, "alt+7")
-    env.step()  # nobody to drive: no effect
+    env.step()  # there is no such robot: no effect
 
 
 def test_top_speeds(env: irsim.Env) -> None:
     for key in ("c", "Z", "shift+z"):
         press(env, key)
     assert env.keyboard is not None
-    assert env.keyboard.key_ang_max == pytest.approx(0.7)
-    assert env.keyboard.key_lv_max == pytest.approx(1.6)
+    assert (env.keyboard.key_ang_max, env.keyboard.key_lv_max) == (pytest.approx(0.7), pytest.approx(1.6))
     for _ in range(20):
         press(env, "Z")
     assert env.keyboard.key_lv_max == 0.0
@@ -130,10 +127,8 @@ def test_space_pauses_and_goes_on(env: irsim.Env) -> None:
 def test_f5_goes_step_by_step(env: irsim.Env) -> None:
     env.step()
     press(env, "f5")
-    for _ in range(3):
-        env.step()
-    assert env.time == 0.2
-    assert env.status == "Pause (Debugging)"
+    take_steps(env, 3)
+    assert (env.time, env.status) == (0.2, "Pause (Debugging)")
     press(env, " ")
     press(env, " ")
     env.step()
@@ -183,8 +178,7 @@ def test_two_environments_have_keys_of_their_own(tmp_path: Path) -> None:
 def test_headless_has_no_keyboard(tmp_path: Path) -> None:
     opened(tmp_path).end(ending_time=0)
     env = irsim.make(str(tmp_path / "keys.yaml"), headless=True, log_level="ERROR")
-    assert env.keyboard is None
-    assert env.mouse is None
+    assert (env.keyboard, env.mouse) == (None, None)
     assert np.array_equal(env.key_vel, np.zeros((3, 1)))
     env.step()
     env.render()
@@ -200,6 +194,5 @@ def test_without_pynput_the_figure_is_listened_to(tmp_path: Path, monkeypatch: p
     press(env, "w")
     env.step()
     assert env.keyboard is not None
-    assert env.keyboard.backend == "mpl"
-    assert env.robot.velocity[0, 0] == 1.0
+    assert (env.keyboard.backend, env.robot.velocity[0, 0]) == ("mpl", 1.0)
     env.end(ending_time=0)

@@ -40,8 +40,7 @@ def test_position_and_buttons(env: irsim.Env) -> None:
     assert env.mouse_right_pos == pytest.approx([7.0, 1.0], abs=0.02)
     send(env, "button_release_event", 2.0, 5.0, button=1)
     send(env, "button_release_event", 2.0, 5.0, button=3)
-    assert env.mouse_left_pos is None
-    assert env.mouse_right_pos is None
+    assert (env.mouse_left_pos, env.mouse_right_pos) == (None, None)
     send(env, "motion_notify_event", -9.0, 4.0)
     assert env.mouse_pos is None
 

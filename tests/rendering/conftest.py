@@ -11,6 +11,10 @@ import pytest
 
 import irsim
 
+Files = Callable[[], list[str]]
+Look = Callable[..., tuple[int, ...]]
+Picture = Callable[[Any], np.ndarray]
+
 
 @pytest.fixture
 def make(tmp_path: Path) -> Callable[..., Any]:
@@ -29,7 +33,7 @@ def make(tmp_path: Path) -> Callable[..., Any]:
 
 
 @pytest.fixture
-def color_at() -> Callable[..., tuple[int, ...]]:
+def color_at() -> Look:
     """``color_at(env, x, y)``: (r, g, b) of the picture at a point of the world [m]."""
 
     def look(env: Any, x: float, y: float) -> tuple[int, ...]:
@@ -41,7 +45,13 @@ def color_at() -> Callable[..., tuple[int, ...]]:
 
 
 @pytest.fixture
-def picture() -> Callable[[Any], np.ndarray]:
+def files(tmp_path: Path) -> Files:
+    """``files()``: all files below the folder of a test."""
+    return lambda: sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file())
+
+
+@pytest.fixture
+def picture() -> Picture:
     """``picture(env)``: (H, W, 3) the whole figure."""
     return whole_picture
 

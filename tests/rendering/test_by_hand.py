@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +10,8 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-import irsim
 from irsim.simulation.fog import FogMap
+from tests.env.driving import Make
 
 YAML = """
 world: {width: 10, height: 8, offset: [1, 2]}
@@ -32,12 +31,8 @@ obstacle:
 
 
 @pytest.fixture
-def env(tmp_path: Path) -> Iterator[Any]:
-    path = tmp_path / "hand.yaml"
-    path.write_text(YAML, encoding="utf-8")
-    made = irsim.make(str(path), display=False, log_level="ERROR")
-    yield made
-    made.end(0)
+def env(make: Make) -> Any:
+    return make(YAML)
 
 
 @pytest.fixture
@@ -75,14 +70,15 @@ def test_plot_draws_what_the_keys_show_and_clear_takes_it_out(env: Any, ax: Axes
 
 
 def test_a_body_is_drawn_where_it_is_or_where_one_says(env: Any, ax: Axes) -> None:
-    robot = env.robot
-    robot.plot_object(ax)
-    np.testing.assert_allclose(extent(robot.object_patch), [2.8, 3.8, 3.2, 4.2], atol=1e-3)
-    robot.plot_object(ax, state=[[5], [6], [0]], obj_color="r", obj_alpha=0.5)
-    np.testing.assert_allclose(extent(robot.object_patch), [4.8, 5.8, 5.2, 6.2], atol=1e-3)
+    robot, corners = env.robot, np.array([[0, 1, 1], [0, 0, 2]])
+    for keys, box in (
+        ({}, [2.8, 3.8, 3.2, 4.2]),
+        ({"vertices": corners}, [0, 0, 1, 2]),
+        ({"state": [[5], [6], [0]], "obj_color": "r", "obj_alpha": 0.5}, [4.8, 5.8, 5.2, 6.2]),
+    ):
+        robot.plot_object(ax, **keys)
+        np.testing.assert_allclose(extent(robot.object_patch), box, atol=1e-3)
     assert robot.object_patch.get_facecolor() == (1, 0, 0, 0.5)
-    robot.plot_object(ax, vertices=np.array([[0, 1, 1], [0, 0, 2]]))
-    np.testing.assert_allclose(extent(robot.object_patch), [0, 0, 1, 2])
 
 
 def test_goals_and_arrows_are_drawn_as_asked(env: Any, ax: Axes) -> None:
@@ -116,23 +112,15 @@ def test_what_is_not_there_is_not_drawn(env: Any, ax: Axes) -> None:
 def test_axes_are_those_of_the_environment_by_default(env: Any) -> None:
     env.robot.plot_object()
     assert env.robot.object_patch.axes is env._env_plot.ax
+    env.robot.plot_kwargs["obj_color"] = "r"
+    assert env.robot.plot_kwargs["obj_color"] == next(env._env_plot.scene().of(0, "body")).fill == "r"
 
 
-def test_headless_nothing_is_drawn(tmp_path: Path) -> None:
-    path = tmp_path / "hand.yaml"
-    path.write_text(YAML, encoding="utf-8")
-    env = irsim.make(str(path), headless=True, log_level="ERROR")
+def test_headless_nothing_is_drawn(make: Make) -> None:
+    env = make(YAML, headless=True)
     env.robot.plot()
     env.robot.plot_clear(all=True)
-    assert env.robot.ax is None
-    assert env.robot.object_patch is None
-    env.end(0)
-
-
-def test_plot_keys_can_be_set(env: Any) -> None:
-    env.robot.plot_kwargs["obj_color"] = "r"
-    assert env.robot.plot_kwargs["obj_color"] == "r"
-    assert next(env._env_plot.scene().of(0, "body")).fill == "r"
+    assert (env.robot.ax, env.robot.object_patch) == (None, None)
 
 
 # the picture
@@ -175,19 +163,14 @@ def test_maps_and_fog_of_scripts_are_drawn(env: Any) -> None:
     fog.reveal_fov([5, 5, 0], 7, 1.5)
     plot.draw_fog(fog)
     image, cover = plot.ax.images[before:]
-    assert image.get_extent() == [1, 11, 2, 10]
-    assert image.get_array().shape == (4, 5)
-    assert image.get_array()[2, 1] == 0
+    assert (image.get_extent(), image.get_array().shape, image.get_array()[2, 1]) == ([1, 11, 2, 10], (4, 5), 0)
     assert (cover.get_array()[..., 3] == 0).sum() == fog.explored.sum()
 
 
 def test_animations_are_saved_under_the_name_given(env: Any, tmp_path: Path) -> None:
-    env.path_param.ani_path = str(tmp_path)
     env._env_plot.add_frame()
-    env.step()
-    env._env_plot.add_frame()
-    assert env._env_plot.save_animate("mine") == tmp_path / "mine.gif"
-    assert (tmp_path / "mine.gif").stat().st_size > 0
+    assert env._env_plot.save_animate("mine") == tmp_path / "animation" / "mine.gif"
+    assert (tmp_path / "animation" / "mine.gif").stat().st_size > 0
 
 
 def test_objects_of_others_are_drawn_too(env: Any) -> None:
@@ -196,11 +179,8 @@ def test_objects_of_others_are_drawn_too(env: Any) -> None:
     assert loose.object_patch in env._env_plot.ax.get_children()
 
 
-def test_the_arrow_of_an_omni_drive_shows_its_control(tmp_path: Path, ax: Axes) -> None:
-    path = tmp_path / "omni.yaml"
-    path.write_text("robot: {kinematics: {name: omni}, state: [3, 3, 0], goal: [9, 9, 0]}", encoding="utf-8")
-    env = irsim.make(str(path), headless=True, log_level="ERROR")
-    env.robot.plot_arrow(ax, velocity=[[0], [1]], arrow_length=2.0, arrow_width=0.2)
-    low_x, low_y, high_x, high_y = extent(env.robot.arrow_patch)
+def test_the_arrow_of_an_omni_drive_shows_its_control(make: Make, ax: Axes) -> None:
+    robot = make("robot: {kinematics: {name: omni}, state: [3, 3, 0], goal: [9, 9, 0]}", headless=True).robot
+    robot.plot_arrow(ax, velocity=[[0], [1]], arrow_length=2.0, arrow_width=0.2)
+    low_x, low_y, high_x, high_y = extent(robot.arrow_patch)
     assert high_y - low_y > 5 * (high_x - low_x)
-    env.end(0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +10,8 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
-Look = Callable[..., tuple[int, ...]]
-Make = Callable[..., Any]
-Picture = Callable[[Any], np.ndarray]
+from tests.env.driving import Make, take_steps
+from tests.rendering.conftest import Look, Picture
 
 GREEN, BLACK, WHITE = (0, 158, 115), (0, 0, 0), (255, 255, 255)
 MAX_ROUNDING_LEVELS = 3
@@ -25,25 +23,24 @@ obstacle: {state: [5, 7, 0], shape: {name: rectangle, length: 3, width: 1}}
 """
 
 
-def test_things_are_drawn_where_they_are(make: Make, color_at: Look) -> None:
-    env = make(PLAIN)
-    assert color_at(env, 2, 3) == GREEN
-    assert color_at(env, 5, 7) == BLACK
-    assert color_at(env, 6.4, 7) == BLACK
+@pytest.fixture
+def env(make: Make) -> Any:
+    return make(PLAIN)
+
+
+def test_things_are_drawn_where_they_are(env: Any, color_at: Look) -> None:
+    assert (color_at(env, 2, 3), color_at(env, 5, 7), color_at(env, 6.4, 7)) == (GREEN, BLACK, BLACK)
     assert color_at(env, 5, 8) == WHITE
     faint = tuple(round((level + 255) / 2) for level in GREEN)
     assert color_at(env, 8, 3) == pytest.approx(faint, abs=1)
 
 
-def test_a_picture_shows_the_state_it_is_made_at(make: Make, color_at: Look) -> None:
-    env = make(PLAIN)
+def test_a_picture_shows_the_state_it_is_made_at(env: Any, color_at: Look) -> None:
     env.render()
-    for _ in range(30):
-        env.step()
+    take_steps(env, 30)
     x = float(env.robot.position[0, 0])
     assert x == pytest.approx(5.0)
-    assert color_at(env, x, 3) == GREEN
-    assert color_at(env, 2, 3) == WHITE
+    assert (color_at(env, x, 3), color_at(env, 2, 3)) == (GREEN, WHITE)
 
 
 def test_a_metre_is_as_long_up_as_across(make: Make, picture: Picture) -> None:
@@ -57,8 +54,7 @@ def test_a_metre_is_as_long_up_as_across(make: Make, picture: Picture) -> None:
     assert np.ptp(rows) > 80
 
 
-def test_nothing_is_drawn_before_someone_looks(make: Make) -> None:
-    env = make(PLAIN)
+def test_nothing_is_drawn_before_someone_looks(env: Any) -> None:
     for _ in range(3):
         env.step()
         env.render(show_trajectory=True)
@@ -75,45 +71,36 @@ def test_nothing_is_drawn_before_someone_looks(make: Make) -> None:
 def test_the_figure_has_the_size_asked_for(make: Make, plot: str, size: tuple[int, int]) -> None:
     env = make(f"world: {{plot: {{{plot}}}}}\n{PLAIN}")
     with Image.open(env.save_figure()) as image:
-        assert image.size == size
-        assert image.mode == "RGB"
+        assert (image.size, image.mode) == (size, "RGB")
 
 
 def test_tight_pictures_have_no_empty_rim(make: Make) -> None:
     env = make(f"world: {{width: 10, height: 3, plot: {{saved_figure: {{pad_inches: 0}}}}}}\n{PLAIN}")
     pixels = np.asarray(env._env_plot.frame())
-    drawn = (pixels < 250).any(axis=2)
+    ink = (pixels < 250).any(axis=2)
     assert pixels.shape[0] < 500
-    assert drawn[:4].any()
-    assert drawn[-4:].any()
-    assert drawn[:, :4].any()
-    assert drawn[:, -4:].any()
+    assert all(rim.any() for rim in (ink[:4], ink[-4:], ink[:, :4], ink[:, -4:]))
 
 
 def test_axes_and_title_can_be_left_out(make: Make, picture: Picture) -> None:
-    bare = make(f"world: {{plot: {{no_axis: true, show_title: false}}}}\n{PLAIN}")
-    colors = {tuple(c) for c in picture(bare)[:, :130].reshape(-1, 3)}
-    assert colors == {WHITE}
-    assert picture(bare)[:20].min() == 255
-    titled = make(f"world: {{plot: {{no_axis: true}}}}\n{PLAIN}")
-    assert picture(titled)[:40].min() < 100
+    bare = picture(make(f"world: {{plot: {{no_axis: true, show_title: false}}}}\n{PLAIN}"))
+    assert (bare[:, :130].min(), bare[:20].min()) == (255, 255)
+    titled = picture(make(f"world: {{plot: {{no_axis: true}}}}\n{PLAIN}"))
+    assert titled[:40].min() < 100
 
 
-def test_titles_are_time_and_status_or_what_the_user_says(make: Make) -> None:
-    env = make(PLAIN)
-    for _ in range(3):
-        env.step()
-    env._env_plot.frame()
-    assert env._env_plot.ax.get_title() == "Simulation Time: 0.30s, Status: Running"
+def test_titles_are_time_and_status_or_what_the_user_says(env: Any, make: Make) -> None:
+    def title(env: Any) -> str:
+        env._env_plot.frame()
+        return env._env_plot.ax.get_title()
+
+    take_steps(env, 3)
+    assert title(env) == "Simulation Time: 0.30s, Status: Running"
     env.set_title("Lap 3")
-    env._env_plot.frame()
-    assert env._env_plot.ax.get_title() == "Lap 3"
+    assert title(env) == "Lap 3"
     env.reset()
-    env._env_plot.frame()
-    assert env._env_plot.ax.get_title() == "Simulation Time: 0.00s, Status: Reset"
-    fixed = make(f"world: {{plot: {{title: Office}}}}\n{PLAIN}")
-    fixed._env_plot.frame()
-    assert fixed._env_plot.ax.get_title() == "Office"
+    assert title(env) == "Simulation Time: 0.00s, Status: Reset"
+    assert title(make(f"world: {{plot: {{title: Office}}}}\n{PLAIN}")) == "Office"
 
 
 def test_a_title_too_long_for_the_figure_is_written_smaller(make: Make) -> None:
@@ -135,15 +122,13 @@ def test_texts_of_users_are_text(make: Make, picture: Picture, text: str) -> Non
 
 
 def test_labels_at_the_edge_are_not_cut(make: Make) -> None:
-    env = make(
-        """
+    env = make("""
 obstacle:
   number: 4
   state: [[0.1, 0.1, 0], [9.9, 9.9, 0], [0.1, 9.9, 0], [9.9, 0.1, 0]]
   shape: {name: circle, radius: 0.3}
   plot: {show_text: true}
-"""
-    )
+""")
     for view in env.objects:
         view.set_text("a rather long name")
     plot = env._env_plot
@@ -173,21 +158,17 @@ def test_the_view_follows_an_object_from_the_first_frame(make: Make, picture: Pi
         assert tuple(shot[shot.shape[0] - 1 - int(row), int(column)]) == GREEN
         assert (column, row) == pytest.approx(((ax.bbox.x0 + ax.bbox.x1) / 2, (ax.bbox.y0 + ax.bbox.y1) / 2), abs=1)
         assert np.diff(ax.get_xlim()) == pytest.approx(10)
-        for _ in range(20):
-            env.step()
+        take_steps(env, 20)
 
 
 def test_the_view_keeps_to_a_point(make: Make) -> None:
-    env = make(f"world: {{plot: {{viewpoint: [1, 2]}}}}\n{PLAIN}")
-    env._env_plot.frame()
-    assert env._env_plot.ax.get_xlim() == (-4, 6)
-    assert env._env_plot.ax.get_ylim() == (-3, 7)
+    plot = make(f"world: {{plot: {{viewpoint: [1, 2]}}}}\n{PLAIN}")._env_plot
+    plot.frame()
+    assert (plot.ax.get_xlim(), plot.ax.get_ylim()) == ((-4, 6), (-3, 7))
 
 
-def test_trajectories_are_as_wide_as_said(make: Make, picture: Picture) -> None:
-    env = make(PLAIN)
-    for _ in range(40):
-        env.step()
+def test_trajectories_are_as_wide_as_said(env: Any, picture: Picture) -> None:
+    take_steps(env, 40)
     env.render(show_trajectory=True, traj_width=1.0, traj_alpha=1.0, traj_color="#123456", show_goal=False)
     shot = picture(env)
     ax = env._env_plot.ax
@@ -199,8 +180,7 @@ def test_trajectories_are_as_wide_as_said(make: Make, picture: Picture) -> None:
 
 
 def test_frames_equal_a_drawing_from_scratch(make: Make) -> None:
-    env = make(
-        """
+    env = make("""
 robot:
   - number: 3
     kinematics: {name: diff}
@@ -214,14 +194,12 @@ robot:
 obstacle:
   - {number: 5, distribution: {name: random}, shape: {name: circle, radius: 0.3}, plot: {obj_alpha: 0.5}}
   - {state: [0, 0, 0], shape: {name: linestring, vertices: [[1, 1], [3, 9], [6, 6]]}, plot: {obj_linestyle: "--"}}
-"""
-    )
+""")
     plot = env._env_plot
     for step in range(6):
         env.draw_points([[1, step]])
         env.render()
-        for _ in range(3):
-            env.step()
+        take_steps(env, 3)
         plot.frame()
         quick = np.asarray(plot.fig.canvas.buffer_rgba()).astype(int)
         FigureCanvasAgg.draw(plot.fig.canvas)
@@ -229,8 +207,7 @@ obstacle:
         assert np.abs(quick - slow).max() <= MAX_ROUNDING_LEVELS
 
 
-def test_drawings_of_scripts_stay_or_last_one_frame(make: Make, color_at: Look) -> None:
-    env = make(PLAIN)
+def test_drawings_of_scripts_stay_or_last_one_frame(env: Any, color_at: Look) -> None:
     env.draw_points(np.array([[1.0, 2.0], [1.0, 1.0]]), s=200, c="red")
     env.draw_box(np.array([[6, 8, 8, 6], [8, 8, 9, 9.0]]), color="-b")
     env.draw_trajectory([np.array([[1.0], [5.0]]), np.array([[3.0], [5.0]])], "r-", linewidth=6, show_direction=False)
@@ -241,14 +218,12 @@ def test_drawings_of_scripts_stay_or_last_one_frame(make: Make, color_at: Look) 
     assert (0, 0, 255) in [color_at(env, 7, 8 + d) for d in np.linspace(-0.05, 0.05, 11)]
     assert color_at(env, 4, 1) == (191, 0, 191)
     env.render()
-    assert color_at(env, 1, 1) == WHITE
-    assert color_at(env, 2, 5) == (255, 0, 0)
+    assert (color_at(env, 1, 1), color_at(env, 2, 5)) == (WHITE, (255, 0, 0))
     env.reset()
     assert color_at(env, 2, 5) == WHITE
 
 
-def test_what_scripts_put_on_the_axes_is_in_the_frame(make: Make, color_at: Look) -> None:
-    env = make(PLAIN)
+def test_what_scripts_put_on_the_axes_is_in_the_frame(env: Any, color_at: Look) -> None:
     env._env_plot.ax.plot([1, 9], [9, 9], color="#ff00ff", linewidth=8)
     assert color_at(env, 4, 9) == (255, 0, 255)
     env._env_plot.ax.set_xlim(0, 20)
@@ -275,8 +250,7 @@ def test_pictures_stand_for_bodies_and_turn_with_them(make: Make, color_at: Look
         "robot: {kinematics: {name: omni}, state: [5, 5, 1.5707963], shape: {name: rectangle, length: 4, width: 2},"
         " description: two.png}"
     )
-    assert color_at(env, 5, 6.5) == (0, 0, 255)
-    assert color_at(env, 5, 3.5) == (255, 0, 0)
+    assert (color_at(env, 5, 6.5), color_at(env, 5, 3.5)) == ((0, 0, 255), (255, 0, 0))
     assert color_at(env, 6.5, 5) == WHITE
 
 
@@ -288,37 +262,29 @@ def test_cars_have_a_bundled_picture(make: Make, picture: Picture) -> None:
     assert len(np.unique(picture(env).reshape(-1, 3), axis=0)) > 300
 
 
-def test_a_missing_picture_is_reported_and_the_shape_drawn(
-    make: Make, color_at: Look, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("file", "says"),
+    [("nosuch.png", "'nosuch.png' not found"), ("scenario.yaml", "'scenario.yaml' cannot be read as an image")],
+)
+def test_a_picture_that_cannot_be_read_is_reported_once_and_the_shape_drawn(
+    make: Make, color_at: Look, capsys: pytest.CaptureFixture[str], file: str, says: str
 ) -> None:
-    env = make(PLAIN.replace("name: anna", "description: nosuch.png"), log_level="WARNING")
-    assert color_at(env, 2, 3) == GREEN
-    assert color_at(env, 2, 3) == GREEN
-    assert capsys.readouterr().out.count("'nosuch.png' not found") == 1
-
-
-def test_a_file_that_is_no_picture_is_reported_and_the_shape_drawn(
-    make: Make, color_at: Look, capsys: pytest.CaptureFixture[str]
-) -> None:
-    env = make(PLAIN.replace("name: anna", "description: scenario.yaml"), log_level="WARNING")
-    assert color_at(env, 2, 3) == GREEN
-    assert "'scenario.yaml' cannot be read as an image" in capsys.readouterr().out
+    env = make(PLAIN.replace("name: anna", f"description: {file}"), log_level="WARNING")
+    assert [color_at(env, 2, 3) for _ in range(2)] == [GREEN, GREEN]
+    assert capsys.readouterr().out.count(says) == 1
 
 
 def test_layers_cover_each_other_in_order(make: Make, color_at: Look) -> None:
-    env = make(
-        """
+    env = make("""
 robot: {kinematics: {name: omni}, state: [5, 5, 0], shape: {name: circle, radius: 1}}
 obstacle: {state: [5, 5, 0], shape: {name: rectangle, length: 6, width: 1}, color: red, unobstructed: true}
-"""
-    )
+""")
     assert color_at(env, 5, 5) == GREEN
     env.render(mode="static", obj_zorder=7)
     assert color_at(env, 5, 5) == (255, 0, 0)
 
 
-def test_a_colour_that_is_none_says_so(make: Make) -> None:
-    env = make(PLAIN)
+def test_a_colour_that_is_none_says_so(env: Any) -> None:
     env.render(obj_color="greenish")
     with pytest.raises(ValueError, match="greenish"):
         env.save_figure()

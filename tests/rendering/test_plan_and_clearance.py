@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from shapely import Point, Polygon, union_all
 from shapely.affinity import rotate, translate
+from shapely.geometry.base import BaseGeometry
 
 from irsim.api import snapshot
 from irsim.api.overlays import footprint_of, requested_plans
 from irsim.bundled.templates import scenario_file
-from irsim.env import make
 from irsim.graphics.scene.scene import Line, Region, Scene
 from irsim.rendering import SceneBuilder
 from irsim.rendering.clearance_map import FreeSpace, draw_clearance
+from irsim.rendering.planned_paths import plan_paths
+from tests.env.driving import Make
 
 ROOM = """\
 world: {{width: 10, height: 6, boundary: walls}}
@@ -26,6 +28,7 @@ robot:
 obstacle:
   - {{state: [5, {middle}], shape: {{name: rectangle, length: 0.4, width: 4}}}}
 """
+EMPTY = "world: {width: 5, height: 5}\nrobot: [{state: [1, 1], goal: [4, 1]}]\n"
 
 
 def room(goal: str = "[9, 3]", behavior: str = "dash", middle: float = 2.0) -> str:
@@ -37,13 +40,9 @@ def plan(text: str) -> dict[str, object]:
     return path.model_dump()
 
 
-def scene_of(text: str, tmp_path: Path) -> Scene:
-    file = tmp_path / "room.yaml"
-    file.write_text(text, encoding="utf-8")
-    env = make(str(file), headless=True, log_level="ERROR")
+def scene_of(env: Any) -> Scene:
     scene = SceneBuilder(env.simulation).build()
     draw_clearance(scene, env.simulation)
-    env.end(ending_time=0.0)
     return scene
 
 
@@ -56,32 +55,31 @@ def test_shortest_way_of_who_does_not_plan() -> None:
 
 def test_own_plan_of_follow_is_the_one_that_it_drives() -> None:
     text = room(behavior="follow")
-    first = snapshot(text=text, overlays=["plan"], draw=False).plans[0]
-    later = snapshot(text=text, steps=1, overlays=["plan"], draw=False).plans[0]
-    assert first.own
+    first, later = (snapshot(text=text, steps=n, overlays=["plan"], draw=False).plans[0] for n in (0, 1))
     assert first == later
-    assert first.margin is not None
+    assert first.own
     assert first.margin > 0
 
 
-@pytest.mark.parametrize("behavior", ["dash", "follow"])
-def test_no_way(behavior: str) -> None:
-    text = room(behavior=behavior).replace("width: 4}", "width: 8}")
+@pytest.mark.parametrize(
+    ("text", "goal"),
+    [
+        (room(behavior="dash").replace("width: 4}", "width: 8}"), (9, 3)),
+        (room(behavior="follow").replace("width: 4}", "width: 8}"), (9, 3)),
+        (room("[5, 2]"), (5, 2)),
+        (room("[5.3, 2]"), (5.3, 2)),
+    ],
+    ids=["a wall, dash", "a wall, follow", "goal in a thing", "goal beside a thing"],
+)
+def test_a_goal_without_path_is_lost(text: str, goal: tuple[float, float]) -> None:
     path = plan(text)
-    assert path["lost"] == (9, 3)
-    assert path["length"] == 0
-
-
-@pytest.mark.parametrize("goal", ["[5, 2]", "[5.3, 2]"])
-def test_no_room_at_the_goal(goal: str) -> None:
-    assert plan(room(goal))["lost"] == tuple(float(value) for value in goal.strip("[]").split(","))
+    assert (path["lost"], path["length"]) == (goal, 0)
 
 
 def test_ways_end_at_the_goal() -> None:
     text = room("[9.07, 3.03]").replace("width: 10, height: 6", "width: 90, height: 90")
     start, goal, corner = (1, 3), (9.07, 3.03), (5, 4.3)
-    least = math.dist(start, corner) + math.dist(corner, goal)
-    assert plan(text)["length"] == pytest.approx(least, abs=0.5)
+    assert plan(text)["length"] == pytest.approx(math.dist(start, corner) + math.dist(corner, goal), abs=0.5)
 
 
 def test_several_goals() -> None:
@@ -90,7 +88,7 @@ def test_several_goals() -> None:
 
 
 def test_nothing_in_the_way() -> None:
-    path = plan("world: {width: 5, height: 5}\nrobot: [{state: [1, 1], goal: [4, 1]}]\n")
+    path = plan(EMPTY)
     assert (path["length"], path["margin"], path["lost"]) == (3, None, None)
 
 
@@ -98,50 +96,39 @@ def test_no_ways_unless_asked_for() -> None:
     assert snapshot(text=room(), draw=False).plans == []
 
 
-def test_distances_are_those_of_geometry(tmp_path: Path) -> None:
-    file = tmp_path / "room.yaml"
-    file.write_text(room(), encoding="utf-8")
-    env = make(str(file), headless=True, log_level="ERROR")
-    space = FreeSpace(env.simulation, 0, (0.0, 0.0, 10.0, 6.0), 0.3)
+@pytest.fixture
+def space(make: Make) -> FreeSpace:
+    return FreeSpace(make(room()).simulation, 0, (0.0, 0.0, 10.0, 6.0), 0.3)
+
+
+def test_distances_are_those_of_geometry(space: FreeSpace) -> None:
     points = np.array([[1.0, 3.0], [4.0, 2.0], [5.0, 5.0], [9.5, 3.0]])
     exact = [1.0, 0.8, 1.0, 0.5]
     assert space.distance_at(points) == pytest.approx(exact, abs=2 * space.half_diagonal)
     assert [space.exact_distance((float(x), float(y))) for x, y in points] == pytest.approx(exact, abs=1e-3)
-    env.end(ending_time=0.0)
 
 
-def test_a_way_over_cells_leads_from_start_to_goal(tmp_path: Path) -> None:
-    file = tmp_path / "room.yaml"
-    file.write_text(room(), encoding="utf-8")
-    env = make(str(file), headless=True, log_level="ERROR")
-    space = FreeSpace(env.simulation, 0, (0.0, 0.0, 10.0, 6.0), 0.3)
+def test_a_way_over_cells_leads_from_start_to_goal(space: FreeSpace) -> None:
     start, goal = np.array([1.01, 3.02]), np.array([9.03, 2.99])
     way = space.path(start, goal, 0.3, 0.1)
-    assert way is not None
-    assert way[0] == pytest.approx(start)
-    assert way[-1] == pytest.approx(goal)
+    assert (way[0], way[-1]) == (pytest.approx(start), pytest.approx(goal))
     assert space.distance_at(way).min() > 0.25
     by_the_wall = space.path(start, np.array([9.8, 3.0]), 0.3, 0.2)
-    assert by_the_wall is not None
     assert 9.5 < by_the_wall[-1, 0] < 9.75
     assert space.path(start, np.array([5.0, 2.0]), 0.3, 0.1) is None
-    env.end(ending_time=0.0)
 
 
-def test_shade_and_lines(tmp_path: Path) -> None:
-    scene = scene_of(room(), tmp_path)
+def test_shade_and_lines(make: Make) -> None:
+    scene = scene_of(make(room()))
     fields = [mark.geometry for mark in scene.marks if mark.part == "field"]
-    assert sum(isinstance(shape, Region) for shape in fields) >= 1
+    assert any(isinstance(shape, Region) for shape in fields)
     line = next(shape for shape in fields if isinstance(shape, Line))
     assert 0 < line.points[:, 0].min() < line.points[:, 0].max() < 10
-    texts = [label.text for label in scene.labels if label.part == "field"]
-    assert texts[0] == "0.3 m"
-    assert texts[1] == "0.5 m"
+    assert [label.text for label in scene.labels if label.part == "field"][:2] == ["0.3 m", "0.5 m"]
 
 
-def test_nothing_stands_nothing_is_drawn(tmp_path: Path) -> None:
-    scene = scene_of("world: {width: 5, height: 5}\nrobot: [{state: [1, 1], goal: [4, 1]}]\n", tmp_path)
-    assert not any(mark.part == "field" for mark in scene.marks)
+def test_nothing_stands_nothing_is_drawn(make: Make) -> None:
+    assert not any(mark.part == "field" for mark in scene_of(make(EMPTY)).marks)
 
 
 @pytest.mark.parametrize("template", ["maze", "perlin-forest", "car-park", "crowd", "mixed-fleet", "shape-gallery"])
@@ -164,69 +151,57 @@ obstacle:
 
 def test_the_margin_of_a_car_beside_a_wall_is_that_of_its_side() -> None:
     path = plan(LANE.format(north=5.2))
-    assert path["margin"] == pytest.approx(4.7 - 3 - 0.9, abs=1e-3)
-    assert path["nearest"] == "north"
+    assert (path["margin"], path["nearest"]) == (pytest.approx(4.7 - 3 - 0.9, abs=1e-3), "north")
 
 
 def test_the_margin_of_a_car_counts_its_bumper_at_the_goal() -> None:
     wall = "  - {name: end, state: [19.5, 3], shape: {name: rectangle, length: 1, width: 2}}\n"
     path = plan(LANE.format(north=5.9) + wall)
     front = (4.4 - 2.6) / 2 + 2.6  # from the rear axle, about which the car is placed
-    assert path["nearest"] == "end"
-    assert path["margin"] == pytest.approx(19 - 15 + 0.1 - front, abs=0.08)  # it stops within the goal_threshold
+    margin = 19 - 15 + 0.1 - front  # it stops within the goal_threshold
+    assert (path["margin"], path["nearest"]) == (pytest.approx(margin, abs=0.08), "end")
 
 
-def test_the_outline_of_a_car_is_drawn_where_it_has_the_least_margin(tmp_path: Path) -> None:
-    from irsim.rendering.planned_paths import plan_paths
-
-    file = tmp_path / "lane.yaml"
-    file.write_text(LANE.format(north=5.2), encoding="utf-8")
-    env = make(str(file), headless=True, log_level="ERROR")
-    (path,) = plan_paths(env.simulation)
+def test_the_outline_of_a_car_is_drawn_where_it_has_the_least_margin(make: Make) -> None:
+    (path,) = plan_paths(make(LANE.format(north=5.2)).simulation)
     body, enlarged = path.outlines
     assert np.ptp(body, axis=0) == pytest.approx([4.4, 1.8])
     assert enlarged[:, 1].max() == pytest.approx(4.7, abs=1e-3)  # it touches the wall
-    env.end(ending_time=0.0)
 
 
 def test_the_least_margin_counts_people_who_stand() -> None:
     ben = "  - {name: ben, state: [5, 5.4], shape: {name: circle, radius: 0.2}, tags: [pedestrian]}\n"
     text = room(middle=1.0).replace("state: [1, 3], goal: [9, 3]", "state: [1, 4.5], goal: [9, 4.5]") + ben
     path = plan(text)
-    assert path["margin"] == pytest.approx(0.9 - 0.3 - 0.2, abs=1e-3)
-    assert path["nearest"] == "ben"
+    assert (path["margin"], path["nearest"]) == (pytest.approx(0.9 - 0.3 - 0.2, abs=1e-3), "ben")
     assert path["tightest"] == pytest.approx((5, 4.5), abs=0.1)
 
 
-def test_the_room_of_a_car_is_that_of_its_footprint_along_its_path() -> None:
-    env = make(str(scenario_file("car-park")), headless=True, log_level="ERROR")
-    ways = requested_plans(env, ["plan"])
-    footprint = footprint_of(env, ways)
-    assert footprint is not None
+def test_the_room_of_a_car_is_that_of_its_footprint_along_its_path(make: Make) -> None:
+    env = make(scenario_file("car-park").read_text())
+    footprint = footprint_of(env, requested_plans(env, ["plan"]))
     shape, poses = footprint
-    shaded = {}
-    for name, given in (("disc", None), ("body", footprint)):
+
+    def shaded(given: Any) -> BaseGeometry:
         scene = SceneBuilder(env.simulation).build()
         draw_clearance(scene, env.simulation, path=given)
-        shaded[name] = union_all(
-            [Polygon(m.geometry.rings[0], m.geometry.rings[1:]) for m in scene.marks if isinstance(m.geometry, Region)
-             and m.part == "field"]
-        )  # fmt: skip
-        touching = [label.text for label in scene.labels if label.part == "field" and label.text == "touches"]
-        assert bool(touching) == (given is not None)
+        regions = [m.geometry for m in scene.marks if isinstance(m.geometry, Region) and m.part == "field"]
+        labels = [label.text for label in scene.labels if label.part == "field"]
+        assert ("touches" in labels) == (given is not None)
+        return union_all([Polygon(region.rings[0], region.rings[1:]) for region in regions])
+
+    disc, car = shaded(None), shaded(footprint)
     for point in ((13.5, 11.2), (8.0, 11.9), (17.0, 9.8), (13.0, 9.0)):
         nearest = poses[np.hypot(*(poses[:, :2] - point).T).argmin(), 2]
         body = translate(rotate(Polygon(shape.corners), nearest, (0, 0), use_radians=True), *point)
         hit = any(body.intersects(other.geometry) for other in env.obstacle_list)
-        assert shaded["body"].contains(Point(point)) == hit, point
-    assert shaded["body"].contains(Point(13.5, 11.2)), "the disc fits there and the car does not"
-    assert not shaded["disc"].contains(Point(13.5, 11.2))
+        assert car.contains(Point(point)) == hit, point
+    assert car.contains(Point(13.5, 11.2)), "the disc fits there and the car does not"
+    assert not disc.contains(Point(13.5, 11.2))
     on_the_way = poses[[0, len(poses) // 3, len(poses) // 2]]
-    assert not any(shaded["body"].contains(Point(x, y)) for x, y, _ in on_the_way)
-    env.end(ending_time=0.0)
+    assert not any(car.contains(Point(x, y)) for x, y, _ in on_the_way)
 
 
-def test_a_round_robot_needs_no_footprint() -> None:
-    env = make(str(scenario_file("maze")), headless=True, log_level="ERROR")
+def test_a_round_robot_needs_no_footprint(make: Make) -> None:
+    env = make(scenario_file("maze").read_text())
     assert footprint_of(env, requested_plans(env, ["plan"])) is None
-    env.end(ending_time=0.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
@@ -12,6 +11,8 @@ from matplotlib.colors import to_rgba
 from irsim.components.sensors._options import SensorOptions
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.options.registry import SENSORS
+from tests.env.driving import Make, take_steps
+from tests.rendering.conftest import Look
 
 WORLD = """
 world: {width: 10, height: 10%s}
@@ -26,8 +27,6 @@ obstacle:
   - {kinematics: {name: diff}, shape: {name: rectangle, length: 0.3, width: 1}, state: [6, 7.3, 0], velocity: [0, 0]}
 """
 
-Make = Callable[..., Any]
-
 
 def test_beams_have_the_colour_of_their_velocity(make: Make) -> None:
     env = make(WORLD % ("", ", velocity_color_max: 2.0"))
@@ -38,8 +37,7 @@ def test_beams_have_the_colour_of_their_velocity(make: Make) -> None:
     rest, away = np.array(to_rgba("#56B4E9")), np.array(to_rgba("#CC3311"))
     np.testing.assert_allclose(beams.colors[2], rest + 0.5 * (away - rest))  # recedes at 1 of 2 m/s
     np.testing.assert_allclose(beams.colors[0], to_rgba("lightgray", 0.03))
-    assert beams.widths.tolist() == [0.8, 0.8, 2.5, 0.8, 2.5]
-    assert beams.dots.points.shape == (2, 2)
+    assert (beams.widths.tolist(), beams.dots.points.shape) == ([0.8, 0.8, 2.5, 0.8, 2.5], (2, 2))
     assert beams.dots.points[0] == pytest.approx((5.85, 5.0))
     near = beams.colors[4]  # approached at 0.5 cos(0.7) m/s
     share = 0.5 * np.cos(0.7) / 2
@@ -58,20 +56,18 @@ def test_drawing_options_may_be_switched_off_and_changed(make: Make) -> None:
     assert builder.build().as_dict()["beams"][0]["dots"]["area"] == 9
 
 
-def test_marks_and_beams_are_seen(make: Make, color_at: Callable[..., tuple[int, ...]]) -> None:
+def test_marks_and_beams_are_seen(make: Make, color_at: Look) -> None:
     env = make(WORLD % ("", ", positive_velocity_color: [0, 0, 1], zero_velocity_color: [0, 0, 1]"))
-    assert color_at(env, 4.5, 5.0) == (0, 0, 255)
-    assert color_at(env, 5.83, 5.0) == (0, 0, 255)
+    assert (color_at(env, 4.5, 5.0), color_at(env, 5.83, 5.0)) == ((0, 0, 255), (0, 0, 255))
 
 
-def test_fog_covers_what_nobody_has_seen(make: Make, color_at: Callable[..., tuple[int, ...]]) -> None:
+def test_fog_covers_what_nobody_has_seen(make: Make, color_at: Look) -> None:
     env = make(WORLD % (", fog_map: true, fog_map_resolution: 0.5", ""))
     fog = (199, 199, 204)
     assert color_at(env, 9.0, 1.0) == fog
     assert color_at(env, 6.0, 7.2) == fog  # hides obstacles
     env.step()
-    assert color_at(env, 9.0, 1.0) == fog
-    assert color_at(env, 4.7, 5.3) == (255, 255, 255)
+    assert (color_at(env, 9.0, 1.0), color_at(env, 4.7, 5.3)) == (fog, (255, 255, 255))
     env.reset()
     assert color_at(env, 4.7, 5.3) == fog
     scene = SceneBuilder(env.simulation).build()
@@ -118,7 +114,7 @@ class DrawnFlag:
         self.line.remove()
 
 
-def test_a_sensor_of_user_code_draws_itself(make: Make, color_at: Callable[..., tuple[int, ...]]) -> None:
+def test_a_sensor_of_user_code_draws_itself(make: Make, color_at: Look) -> None:
     SENSORS.register(Flag)(DrawnFlag)
     env = make(
         "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [2, 5, 0], goal: [9, 5],"
@@ -126,10 +122,8 @@ def test_a_sensor_of_user_code_draws_itself(make: Make, color_at: Callable[..., 
     )
     magenta = (191, 0, 191)
     assert color_at(env, 2.5, 5.0) == magenta
-    for _ in range(20):
-        env.step()
-    assert color_at(env, 4.5, 5.0) == magenta
-    assert color_at(env, 2.5, 5.0) == (255, 255, 255)
+    take_steps(env, 20)
+    assert (color_at(env, 4.5, 5.0), color_at(env, 2.5, 5.0)) == (magenta, (255, 255, 255))
     env.reset()
     assert color_at(env, 2.5, 5.0) == magenta
     env.delete_object(0)

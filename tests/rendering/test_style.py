@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import pytest
 
 from irsim.graphics.scene.style import STYLE_KEYS, Palette
 from irsim.scenario.model.plot import ObjectPlot
+from tests.env.driving import Make, take_steps
+from tests.rendering.conftest import Picture
 
 EVERYTHING = """
 world: {plot: {figure_pixels: [400, 400], show_title: false, no_axis: true}}
@@ -98,13 +98,12 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Any:
     path = tmp_path_factory.mktemp("style") / "everything.yaml"
     path.write_text(EVERYTHING)
     env = irsim.make(str(path), display=False, log_level="ERROR", seed=1)
-    for _ in range(38):
-        env.step()
+    take_steps(env, 38)
     return env
 
 
 @pytest.mark.parametrize("key", sorted(OTHER_VALUES))
-def test_each_key_changes_the_picture(driven: Any, picture: Callable[[Any], np.ndarray], key: str) -> None:
+def test_each_key_changes_the_picture(driven: Any, picture: Picture, key: str) -> None:
     needed = NEEDS.get(key, {})
     driven._env_plot.update("all", **needed)
     before = picture(driven)
@@ -113,7 +112,7 @@ def test_each_key_changes_the_picture(driven: Any, picture: Callable[[Any], np.n
     assert (before != after).any(axis=2).sum() > 5
 
 
-def test_overrides_hold_for_one_frame(driven: Any, picture: Callable[[Any], np.ndarray]) -> None:
+def test_overrides_hold_for_one_frame(driven: Any, picture: Picture) -> None:
     driven.render()
     before = picture(driven)
     driven.render(obj_color="red", mode="all")
@@ -122,7 +121,7 @@ def test_overrides_hold_for_one_frame(driven: Any, picture: Callable[[Any], np.n
     assert (picture(driven) == before).all()
 
 
-def test_a_misspelt_option_is_reported_once(make: Callable[..., Any], capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_misspelt_option_is_reported_once(make: Make, capsys: pytest.CaptureFixture[str]) -> None:
     env = make(EVERYTHING, log_level="WARNING")
     capsys.readouterr()
     env.render(show_gaol=False)
@@ -132,6 +131,6 @@ def test_a_misspelt_option_is_reported_once(make: Callable[..., Any], capsys: py
     assert "did you mean 'show_goal'" in out
 
 
-def test_an_unknown_mode_is_refused(make: Callable[..., Any]) -> None:
+def test_an_unknown_mode_is_refused(make: Make) -> None:
     with pytest.raises(ValueError, match="dynamic, static, all"):
         make(EVERYTHING).render(mode="everything")

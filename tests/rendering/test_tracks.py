@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +9,8 @@ import numpy as np
 import pytest
 
 from irsim.graphics.figure import tracks
-
-Make = Callable[..., Any]
-Picture = Callable[[Any], np.ndarray]
+from tests.env.driving import Make, take_steps
+from tests.rendering.conftest import Picture
 
 MAX_LEVELS = 8
 """Levels (of 256) by which antialiased edges may differ."""
@@ -131,8 +129,7 @@ def test_vector_files_have_all_tracks(make: Make) -> None:
     sizes = []
     for steps in (2, 30):
         env = make(CROSSING % (*SHAPES[0], ""), f"steps{steps}")
-        for _ in range(steps):
-            env.step()
+        take_steps(env, steps)
         env.render()
         sizes.append(Path(env.save_figure("shot.svg")).stat().st_size)
     assert sizes[1] > 2 * sizes[0]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,9 +9,10 @@ import pytest
 
 from irsim.api.take_snapshot import snapshot
 from irsim.graphics.scene.bodies import bounds
-from irsim.graphics.scene.scene import Circle, Line, Region, Scene
+from irsim.graphics.scene.scene import Circle, Line, Region
 from irsim.graphics.scene.zones import draw_zones
 from irsim.scenario.read import read
+from tests.env.driving import Make
 
 WORLD = """\
 world:
@@ -61,32 +60,30 @@ def test_names_stay_at_the_part_that_the_picture_shows() -> None:
     assert name.anchor == (7.5, 3.0)
 
 
-@pytest.mark.parametrize("show", [True, False])
-def test_figures_show_them_if_asked(make: Callable[..., Any], show: bool) -> None:
-    env = make(WORLD.format(show=str(show).lower()))
+@pytest.mark.parametrize(("show", "names"), [("true", {"door", "kitchen", "dock", "clockwise"}), ("false", set())])
+def test_figures_show_them_if_asked(make: Make, show: str, names: set[str]) -> None:
+    env = make(WORLD.format(show=show))
     env.render()
-    scene: Scene = env._env_plot.scene()
-    assert {label.text for label in scene.labels if label.part == "zone"} == (
-        {"door", "kitchen", "dock", "clockwise"} if show else set()
-    )
-    again: Scene = env._env_plot.scene()
+    scene, again = env._env_plot.scene(), env._env_plot.scene()
+    assert {label.text for label in scene.labels if label.part == "zone"} == names
     marks = [[mark for mark in one.marks if mark.part == "zone"] for one in (scene, again)]
     assert all(a is b for a, b in zip(*marks, strict=True)), "the figure need not draw them again"
 
 
-def test_a_figure_in_three_dimensions_shows_them(make: Callable[..., Any]) -> None:
+def test_a_figure_in_three_dimensions_shows_them(make: Make) -> None:
     env = make(WORLD.format(show="true"), projection="3d")
     env.render()
     assert "kitchen" in {text.get_text() for text in env._env_plot.ax.texts}
 
 
-def test_snapshots_show_them_unless_other_overlays_are_asked_for(tmp_path: Path) -> None:
-    path = tmp_path / "zones.yaml"
-    path.write_text(WORLD.format(show="false"), encoding="utf-8")
-    plain = snapshot(path, size=300, overlays=["names"]).png
-    assert snapshot(path, size=300, overlays=["names", "zones"]).png != plain
-    bare = tmp_path / "bare.yaml"
-    bare.write_text(path.read_text(encoding="utf-8").partition("  zones:")[0] + "robot:" +
-                    path.read_text(encoding="utf-8").partition("robot:")[2], encoding="utf-8")  # fmt: skip
-    assert snapshot(bare, size=300, overlays=["names"]).png == plain
-    assert snapshot(bare, size=300).png != snapshot(path, size=300).png
+def test_snapshots_show_them_unless_other_overlays_are_asked_for() -> None:
+    text = WORLD.format(show="false")
+    before, _, after = text.partition("  zones:")
+    bare = before + "robot:" + after.partition("robot:")[2]
+
+    def png(text: str, overlays: list[str] | None = None) -> bytes:
+        return snapshot(text=text, size=300, overlays=overlays).png
+
+    plain = png(text, ["names"])
+    assert png(bare, ["names"]) == plain != png(text, ["names", "zones"])
+    assert png(bare) != png(text)
