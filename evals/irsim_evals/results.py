@@ -10,8 +10,7 @@ from typing import Any
 from pydantic import ConfigDict
 
 import irsim
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_ids, folder
+from irsim_evals.cases.store import Instance, case_ids, folder
 from irsim_evals.grader.outcome import Record, Verdict
 
 __all__ = ["Results", "Trial", "cases_hash", "read_results", "results_of", "trial_of", "write_results"]

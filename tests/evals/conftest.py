@@ -11,8 +11,8 @@ from typer.testing import CliRunner, Result
 
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import load_text
-from irsim_evals.cases.instance import Instance, instance_of
-from irsim_evals.cli.app import app
+from irsim_evals.cases.store import Instance, instance_of
+from irsim_evals.cli import app
 from irsim_evals.grader import programs
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.episode import Episode, run_episode

@@ -17,13 +17,11 @@ import pytest
 
 from irsim.lookup.full_text import bm25, words_of
 from irsim_evals.baselines.arms import BASELINES, answer
-from irsim_evals.baselines.reading.language import language_of, plain, quantities
-from irsim_evals.baselines.reading.request import request_of
+from irsim_evals.baselines.language import language_of, plain, quantities
+from irsim_evals.baselines.request import Task, request_of
 from irsim_evals.baselines.retrieval import best_template, slots
 from irsim_evals.baselines.rules import answer as by_rules
-from irsim_evals.baselines.task import Task
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_ids, case_of
+from irsim_evals.cases.store import Instance, case_ids, case_of
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade
 from irsim_evals.results import Trial, read_results, trial_of

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim_evals.cases.instance import substitute
-from irsim_evals.cases.store import case_ids, case_of, golds_of, raw_case
+from irsim_evals.cases.store import case_ids, case_of, golds_of, raw_case, substitute
 from irsim_evals.cli.cases import schema_text
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import grade

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.limited import grade_answer
 from irsim_evals.grader.outcome import Outcome, Verdict

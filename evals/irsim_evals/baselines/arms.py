@@ -7,8 +7,8 @@ from functools import partial
 from typing import Any
 
 from irsim_evals.baselines import repair, retrieval, rules
-from irsim_evals.baselines.task import Task, task_of
-from irsim_evals.cases.instance import Instance
+from irsim_evals.baselines.request import Task, task_of
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.limited import grade_all
 from irsim_evals.results import Trial, trial_of

@@ -11,10 +11,9 @@ import yaml
 
 from irsim.bundled.templates.fill import format_value, replace_values
 from irsim.diagnostics.diagnostic import Path
-from irsim_evals.baselines.building.bodies import lidar
-from irsim_evals.baselines.reading.language import plain, quantities
-from irsim_evals.baselines.reading.lexicon import BEHAVIORS, DRIVES, NOUNS, first, has
-from irsim_evals.baselines.reading.request import request_of
+from irsim_evals.baselines.language import BEHAVIORS, DRIVES, NOUNS, first, has, plain, quantities
+from irsim_evals.baselines.layouts import lidar
+from irsim_evals.baselines.request import request_of
 
 __all__ = ["Edited", "add", "edit", "entries", "is_correction", "is_unclear", "replace", "value_at"]
 

@@ -19,12 +19,10 @@ from irsim.bundled.templates.fill import parse_path
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.yaml.rewrite import rewrite
 from irsim_evals.baselines import rules
-from irsim_evals.baselines.building.scenario import describe
 from irsim_evals.baselines.edits import entries, value_at
-from irsim_evals.baselines.reading.language import plain
-from irsim_evals.baselines.reading.lexicon import has
-from irsim_evals.baselines.reading.request import Request, request_of
-from irsim_evals.baselines.task import Task
+from irsim_evals.baselines.language import has, plain
+from irsim_evals.baselines.request import Request, Task, request_of
+from irsim_evals.baselines.scenario import describe
 from irsim_evals.grader.artefact import Answer, scenarios_in
 
 if TYPE_CHECKING:

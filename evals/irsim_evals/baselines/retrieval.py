@@ -10,8 +10,8 @@ from collections import Counter
 
 from irsim.bundled.templates import Parameter, Template, TemplateError, fill, load_all
 from irsim.lookup.full_text import bm25, words_of
-from irsim_evals.baselines.reading.language import Kind, Quantity, plain, quantities
-from irsim_evals.baselines.task import Task
+from irsim_evals.baselines.language import Kind, Quantity, plain, quantities
+from irsim_evals.baselines.request import Task
 from irsim_evals.grader.artefact import Answer
 
 __all__ = ["answer", "best_template", "slots"]

@@ -10,11 +10,10 @@ import re
 
 import yaml
 
-from irsim_evals.baselines.building.scenario import build, describe
 from irsim_evals.baselines.edits import edit, is_correction, is_unclear
-from irsim_evals.baselines.reading.lexicon import NOT_FLAT, UNKNOWN_REFERENCE, has
-from irsim_evals.baselines.reading.request import Request, request_of
-from irsim_evals.baselines.task import Task
+from irsim_evals.baselines.language import NOT_FLAT, UNKNOWN_REFERENCE, has
+from irsim_evals.baselines.request import Request, Task, request_of
+from irsim_evals.baselines.scenario import build, describe
 from irsim_evals.grader.artefact import Answer, scenarios_in
 
 __all__ = ["answer", "dump", "objection"]

@@ -13,9 +13,8 @@ import typer
 from irsim.cli.output import console
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
-from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.model import schema_text
-from irsim_evals.cases.store import all_case_ids, case_ids, case_of, raw_case, write_given
+from irsim_evals.cases.store import Instance, all_case_ids, case_ids, case_of, raw_case, write_given
 from irsim_evals.grader.outcome import name_of
 
 __all__ = ["PROMPT_FILE", "cases", "chosen", "export", "schema", "write_case"]

@@ -13,8 +13,7 @@ from typing import Annotated, NamedTuple
 import typer
 
 from irsim.diagnostics.errors import ArgumentError
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import all_case_ids, case_of
+from irsim_evals.cases.store import Instance, all_case_ids, case_of
 from irsim_evals.cli.cases import PROMPT_FILE
 from irsim_evals.cli.verdicts import show_verdicts
 from irsim_evals.grader.artefact import ArtefactError, from_folder

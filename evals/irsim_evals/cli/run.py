@@ -14,8 +14,7 @@ from irsim.cli.output import console, progress
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.baselines.arms import BASELINES, run_baseline
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_of
+from irsim_evals.cases.store import Instance, case_of
 from irsim_evals.cli.cases import chosen
 from irsim_evals.harness.arms import MODEL_ARMS
 from irsim_evals.results import Trial, results_of, write_results

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.diagnostics.errors import IrsimError
-from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer, find_scenario, rivals, scenarios_in
 from irsim_evals.grader.episode import Episode, run_episode
 from irsim_evals.grader.material import Material, with_speeds

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import multiprocessing
 import os
+import pkgutil
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -20,8 +21,9 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
+import irsim.components
 from irsim.common.child import how_ended, limit
-from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import CALLS_FILE, Answer, ArtefactError, cost_of, from_folder
 from irsim_evals.grader.outcome import Verdict
 
@@ -194,14 +196,18 @@ def preload(*modules: str) -> None:
     _preloaded.extend(name for name in modules if name not in _preloaded)
 
 
-_preloaded = ["irsim_evals.grader.preload"]
+_preloaded = [
+    "matplotlib.colors", "shapely.affinity", "irsim.env", "irsim.validation.diff.compare", "irsim_evals.grader.grade",
+]  # fmt: skip
+"""Modules that gradings import."""
 
 
 def _context() -> Any:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(_preloaded)
+    components = pkgutil.walk_packages(irsim.components.__path__, "irsim.components.")
+    context.set_forkserver_preload([*_preloaded, *(module.name for module in components)])
     return context
 
 

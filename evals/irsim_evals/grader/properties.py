@@ -6,7 +6,9 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import AfterValidator
 
 from irsim.scenario.resolve.body_size import top_speed
 from irsim_evals.grader.body import Body
@@ -14,7 +16,7 @@ from irsim_evals.grader.hues import hue_of
 from irsim_evals.grader.matching import Kind
 from irsim_evals.grader.scene import Scene
 
-__all__ = ["PROPERTIES", "Property", "value_of", "yaml_path"]
+__all__ = ["PROPERTIES", "Property", "PropertyName", "value_of", "yaml_path"]
 
 
 @dataclass(frozen=True)
@@ -197,6 +199,16 @@ PROPERTIES: dict[str, Property] = {
     "group": Property("count", "group", lambda _, body: body.record.group),
 }
 """Name → property."""
+
+
+def _known(name: str) -> str:
+    if name not in PROPERTIES:
+        raise ValueError(f"no property is called {name!r}; there are {', '.join(PROPERTIES)}")
+    return name
+
+
+PropertyName = Annotated[str, AfterValidator(_known)]
+"""Name of a property that there is."""
 
 
 def value_of(scene: Scene, body: Body, name: str) -> Any:

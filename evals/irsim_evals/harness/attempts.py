@@ -11,7 +11,7 @@ from typing import Any
 from inspect_ai.model import ChatCompletionChoice, ChatMessageAssistant, ModelOutput, ModelUsage, get_model
 from inspect_ai.tool import ToolCall
 
-from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.outcome import Cost, Verdict
 from irsim_evals.harness.recording import Attempt, Call, Names, RecordingEnds, Turn, digest, scrubbed, task_hash

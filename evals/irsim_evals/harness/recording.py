@@ -20,8 +20,7 @@ from pydantic import ValidationError
 
 import irsim
 from irsim.diagnostics.errors import ArgumentError
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_of, given_pictures
+from irsim_evals.cases.store import Instance, case_of, given_pictures
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_answer

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from irsim.diagnostics.errors import ArgumentError, IrsimError
-from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.outcome import name_of
 from irsim_evals.harness.arms import MODEL_ARMS
 from irsim_evals.harness.prices import Price, set_price

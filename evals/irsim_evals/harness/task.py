@@ -22,8 +22,7 @@ from inspect_ai.scorer import Score, accuracy, scorer
 from inspect_ai.solver import solver
 from inspect_ai.tool import ToolDef, ToolError, mcp_connection, mcp_server_stdio, mcp_tools
 
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import given_pictures, write_given
+from irsim_evals.cases.store import Instance, given_pictures, write_given
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.grader.outcome import Verdict, name_of

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import yaml
 
-from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer
 from irsim_evals.proof import mutants_of_entries, mutants_of_values
 from irsim_evals.proof.operators import OPERATORS, Data, Mutant, plain

@@ -19,8 +19,7 @@ from irsim.diagnostics.errors import IrsimError
 from irsim.scenario.read import read
 from irsim.scenario.yaml.comments import places_of_comments
 from irsim.scenario.yaml.document import load_text
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_of, golds_of
+from irsim_evals.cases.store import Instance, case_of, golds_of
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.material import LIMITS, write_files
 from irsim_evals.grader.scene import Scene, open_scene

@@ -11,8 +11,7 @@ from typing import Any
 
 import pytest
 
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_of, golds_of
+from irsim_evals.cases.store import Instance, case_of, golds_of
 from irsim_evals.harness.run import run_arm
 from irsim_evals.results import Trial
 from tests.evals.conftest import made_up

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Instance
 from irsim_evals.harness.arms import MODEL_ARMS
 from tests.evals.harness.conftest import KEY, MODEL, run
 from tests.evals.harness.messages_api import MessagesApi, Reply, messages_api, results_in, turn_of

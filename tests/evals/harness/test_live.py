@@ -12,8 +12,7 @@ import anyio
 import pytest
 
 from irsim.diagnostics.errors import ArgumentError
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_of
+from irsim_evals.cases.store import Instance, case_of
 from irsim_evals.harness.run import RunError
 from tests.evals.harness.conftest import MODEL, Guard, run
 from tests.evals.harness.messages_api import Fault, MessagesApi, Reply, messages_api, turn_of

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AnswerPredicate", "EpisodePredicate", "Observation", "OfBodies", "Predicate", "ScenePredicate", "SeedsPredicate",
-    "judged", "register", "registered", "summary",
+    "judged", "middle", "register", "registered", "summary",
 ]  # fmt: skip
 
 _MAX_NAMED = 4
@@ -117,25 +117,36 @@ class AnswerPredicate(Predicate):
 
 def judged(
     expected: str,
+    seen: Sequence[tuple[Body, Any]],
     wrong: Sequence[tuple[Body, Any]],
-    right: str,
     key: str,
     *,
+    right: str = "",
     said: str = "",
     marks: Sequence[Mark] = (),
 ) -> Observation:
-    """The observation of bodies each of which must be as expected.
+    """The observation of bodies, of which there must be some, each of them as expected.
 
     Args:
         expected: The requirement, for people.
-        wrong: The bodies that are not, with what they are.
-        right: The observed value if no body is wrong.
+        seen: The bodies with what they are.
+        wrong: Those of them that are not as expected.
         key: Key of an entry that decides it.
+        right: The observed value if no body is wrong; default: what they are.
         said: Words before the observed value.
         marks: Places that wrong bodies are about.
     """
+    if not seen:
+        return Observation(False, expected, "no body")
     where = f"{wrong[0][0].entry}.{key}" if wrong else None
-    return Observation(not wrong, expected, said + (summary(wrong) if wrong else right), where, marks=list(marks))
+    observed = summary(wrong) if wrong else right or summary(seen)
+    return Observation(not wrong, expected, said + observed, where, marks=list(marks))
+
+
+def middle(bodies: Sequence[Body]) -> tuple[float, float]:
+    """Mean of the positions of some bodies."""
+    x, y = (sum(values) / len(bodies) for values in zip(*(body.position for body in bodies), strict=True))
+    return x, y
 
 
 _REGISTERED: dict[str, type[Predicate]] = {}

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from pydantic import field_validator, model_validator
-
 from irsim_evals.grader.hues import discernible
 from irsim_evals.grader.matching import Kind, Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, register, summary
-from irsim_evals.grader.properties import PROPERTIES, value_of, yaml_path
+from irsim_evals.grader.properties import PROPERTIES, PropertyName, value_of, yaml_path
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import Body
@@ -55,17 +53,10 @@ class Count(OfBodies, ScenePredicate):
 class Each(OfBodies, ScenePredicate):
     """Every body of a selection has some properties. An empty selection fails."""
 
-    has: dict[str, Match]
+    has: dict[PropertyName, Match]
     """Property → accepted values."""
     share: Quantity = 1.0
     """Share of the bodies that must have them."""
-
-    @model_validator(mode="after")
-    def _known(self) -> Each:
-        for name in self.has:
-            if name not in PROPERTIES:
-                raise ValueError(f"no property is called {name!r}; there are {', '.join(PROPERTIES)}")
-        return self
 
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Look at each of them."""
@@ -119,16 +110,8 @@ class Placed(OfBodies, ScenePredicate):
 
     stage = "relations"
 
-    rows: list[dict[str, Match]]
+    rows: list[dict[PropertyName, Match]]
     """For each row: property → accepted values."""
-
-    @field_validator("rows")
-    @classmethod
-    def _known(cls, rows: list[dict[str, Match]]) -> list[dict[str, Match]]:
-        for name in {name for row in rows for name in row}:
-            if name not in PROPERTIES:
-                raise ValueError(f"no property is called {name!r}; there are {', '.join(PROPERTIES)}")
-        return rows
 
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Find a body for each row."""

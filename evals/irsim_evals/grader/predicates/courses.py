@@ -38,12 +38,10 @@ class Visits(OfBodies, EpisodePredicate):
         expected = f"{self.of} visit {shown}" + (f", {self.laps} times" if self.laps > 1 else "")
         if self.stray is not None:
             expected += f", at most {show(self.stray)} m off the lines between them"
-        if not bodies or not self.places:
-            return Observation(False, expected, f"{self.of}: no body")
         problems = [(body, self._problem(episode.positions(body.index))) for body in bodies]
         wrong = [(body, text) for body, text in problems if text]
         marks = [Mark(points=[list(place)], text="visit") for place in self.places] if wrong else []
-        return judged(expected, wrong, "so it is", "waypoints", marks=marks)
+        return judged(expected, problems, wrong, "waypoints", right="so it is", marks=marks)
 
     def _problem(self, way: np.ndarray) -> str:
         """The problem of a path; empty if it is right."""
@@ -77,11 +75,10 @@ class Enters(OfBodies, EpisodePredicate):
         bodies = material.bodies(episode.scene, self.of)
         expected = f"{self.of} comes into " + ", ".join(show(list(region)) for region in self.regions)
         expected += "".join(f", never into {show(list(region))}" for region in self.avoids)
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body")
-        wrong = [(body, why) for body in bodies if (why := self._why_not(episode.positions(body.index)))]
+        problems = [(body, self._why_not(episode.positions(body.index))) for body in bodies]
+        wrong = [(body, why) for body, why in problems if why]
         marks = [Mark(points=episode.positions(body.index)[::20].tolist(), text=body.name) for body, _ in wrong]
-        return judged(expected, wrong, f"all {len(bodies)}", "goal", marks=marks)
+        return judged(expected, problems, wrong, "goal", right=f"all {len(bodies)}", marks=marks)
 
     def _why_not(self, way: np.ndarray) -> str:
         row = 0
@@ -129,8 +126,7 @@ class OneWay(OfBodies, EpisodePredicate):
         passed, against = [], []
         for body in bodies:
             way = episode.positions(body.index)
-            inside = (way[:, 0] >= x0) & (way[:, 0] <= x1) & (way[:, 1] >= y0) & (way[:, 1] <= y1)
-            far = (way @ unit)[inside]
+            far = (way @ unit)[_within(way, self.region)]
             if not far.size:
                 continue
             if float((np.maximum.accumulate(far) - far).max()) > self.back:

@@ -77,6 +77,12 @@ def free_parts(solid: Any, start: Point, end: Point, depth: float) -> list[tuple
     return free
 
 
+def _width(scene: Scene, at: Point, heading: float) -> float:
+    """Free width [m] across a direction at a place, as if it were far where one side has no wall."""
+    sides = [free_length(scene.solid, at, heading + turn, _FAR) for turn in (math.pi / 2, -math.pi / 2)]
+    return _FAR if max(sides) >= _FAR else sum(sides)
+
+
 @register("corridor")
 class Corridor(OfBodies, ScenePredicate):
     """Each body of a selection goes along a corridor: solid on both sides of the line from its start to its goal."""
@@ -108,7 +114,7 @@ class Corridor(OfBodies, ScenePredicate):
             heading = math.atan2(goal[1] - start[1], goal[0] - start[0]) if self.direction is None else self.direction
             for k in range(self.sections):
                 at = along(start, heading, way * k / max(1, self.sections - 1))
-                width = self._width(scene, at, heading)
+                width = _width(scene, at, heading)
                 if not matches(self.width, width, "length"):
                     seen = f"{show(width)} m" if width < _FAR else "no wall on one side"
                     marks = [Mark(points=[list(at)], text=seen)]
@@ -123,20 +129,16 @@ class Corridor(OfBodies, ScenePredicate):
                 return Observation(False, expected, f"{show(max(back, front))} m of it lie before or behind the way")
         return Observation(True, expected, f"{self.sections} sections")
 
-    def _width(self, scene: Scene, at: tuple[float, float], heading: float) -> float:
-        sides = [free_length(scene.solid, at, heading + turn, _FAR) for turn in (math.pi / 2, -math.pi / 2)]
-        return _FAR if max(sides) >= _FAR else sum(sides)
-
     def _reach(self, scene: Scene, start: tuple[float, float], heading: float) -> float:
         """How far the walls go on from a place [m]."""
         x0, y0, x1, y1 = scene.bounds
         most, done = math.hypot(x1 - x0, y1 - y0), 0.0
-        while done < most and matches(self.width, self._width(scene, along(start, heading, done), heading), "length"):
+        while done < most and matches(self.width, _width(scene, along(start, heading, done), heading), "length"):
             done += _LENGTH_STEP
         return max(0.0, done - _LENGTH_STEP)
 
 
-def _end(body: Body) -> tuple[float, float]:
+def _end(body: Body) -> Point:
     goal = body.goal or [0.0, 0.0]
     return goal[0], goal[1]
 
@@ -225,11 +227,10 @@ class Pocket(OfBodies, ScenePredicate):
         widths: list[float] = []
         depth = _BEFORE
         while depth < back:
-            at = along(start, heading, back - depth)
-            sides = [free_length(scene.solid, at, heading + turn, _FAR) for turn in (math.pi / 2, -math.pi / 2)]
-            if max(sides) >= _FAR or (widths and sum(sides) > 1.5 * widths[0]):
+            width = _width(scene, along(start, heading, back - depth), heading)
+            if width >= _FAR or (widths and width > 1.5 * widths[0]):
                 break
-            widths.append(sum(sides))
+            widths.append(width)
             depth += _DEPTH_STEP
         return widths, depth - _DEPTH_STEP / 2
 

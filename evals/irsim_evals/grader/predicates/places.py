@@ -12,7 +12,7 @@ from pydantic import model_validator
 from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, register, summary
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, middle, register, summary
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import Body
@@ -40,15 +40,14 @@ class Inside(OfBodies, ScenePredicate):
         bodies = material.bodies(scene, self.of)
         x0, y0, x1, y1 = self._box(scene)
         expected = f"{self.what} of {self.of} within x {show(x0)} to {show(x1)}, y {show(y0)} to {show(y1)}"
-        wrong = [
-            (body, point) for body in bodies for point in self._points(body) if not _holds((x0, y0, x1, y1), point)
-        ]
+        points = [(body, point) for body in bodies for point in self._points(body)]
+        wrong = [(body, point) for body, point in points if not _holds((x0, y0, x1, y1), point)]
         missing = [body for body in bodies if not self._points(body)]
-        if not bodies or missing:
-            return Observation(False, expected, f"{missing[0].name}: no goal" if missing else f"{self.of}: no body")
+        if missing:
+            return Observation(False, expected, f"{missing[0].name}: no goal")
         key = "goal" if self.what == "goal" else "state"
         marks = [Mark(points=[list(point)], text=body.name) for body, point in wrong]
-        return judged(expected, wrong, f"all {len(bodies)}", key, marks=marks)
+        return judged(expected, points, wrong, key, right=f"all {len(bodies)}", marks=marks)
 
     def _box(self, scene: Scene) -> tuple[float, float, float, float]:
         if self.region is not None:
@@ -98,12 +97,12 @@ class Near(OfBodies, ScenePredicate):
         others = [] if self.to is None else material.bodies(scene, self.to)
         target = self.to if self.place is None else show(list(self.place))
         expected = f"{self.what} of {self.of} to {target}: {self.distance.words()} m"
-        if not bodies or (self.place is None and not others):
+        if self.place is None and not others:
             return Observation(False, expected, "no body")
         distances = [(body, self._measure(body, others)) for body in bodies]
         wrong = [(body, value) for body, value in distances if not matches(self.distance, value, "length")]
         marks = [Mark(points=[list(body.position)], text=body.name) for body, _ in wrong]
-        return judged(expected, wrong, summary(distances), "goal" if self.what == "goal" else "state", marks=marks)
+        return judged(expected, distances, wrong, "goal" if self.what == "goal" else "state", marks=marks)
 
     def _measure(self, body: Body, others: list[Body]) -> float | None:
         if self.what == "goal":
@@ -189,7 +188,7 @@ class Beside(OfBodies, ScenePredicate):
             ahead, left = px * dx + py * dy, dx * py - dy * px
             distances.append((body, {"left": left, "right": -left, "ahead": ahead, "behind": -ahead}[self.side]))
         wrong = [(body, value) for body, value in distances if value < self.by - 1e-9 or value <= 0]
-        return judged(expected, wrong, summary(distances), "state" if self.what == "start" else "goal")
+        return judged(expected, distances, wrong, "state" if self.what == "start" else "goal")
 
 
 @register("on_circle")
@@ -220,7 +219,7 @@ class OnCircle(OfBodies, ScenePredicate):
         if len(bodies) < 2:
             return Observation(False, expected, f"{len(bodies)} bodies")
         places = [body.position for body in bodies]
-        cx, cy = self.center or (sum(x for x, _ in places) / len(places), sum(y for _, y in places) / len(places))
+        cx, cy = self.center or middle(bodies)
         wrong: list[str] = []
         marks: list[Mark] = []
         if self.center_near is not None and math.dist((cx, cy), self.center_near[:2]) > self.center_near[2]:
@@ -237,8 +236,7 @@ class OnCircle(OfBodies, ScenePredicate):
                     wrong.append(f"the goal of {body.name} is {show(goal)}, opposite is {show(list(there))}")
                     marks.append(Mark(points=[list(there)], text=f"opposite of {body.name}"))
             if self.facing is not None:
-                off = math.atan2(cy - place[1], cx - place[0]) - body.pose[2]
-                off = abs(wrap(off))
+                off = _apart(math.atan2(cy - place[1], cx - place[0]), body.pose[2])
                 if off > self.facing + 1e-9:
                     wrong.append(f"{body.name} looks {math.degrees(off):.0f}° past the middle")
         if self.even is not None:
@@ -283,10 +281,7 @@ class Facing(OfBodies, ScenePredicate):
             return _apart(_DIRECTIONS[self.toward] + (math.pi if self.away else 0.0), body.pose[2])
         elif isinstance(self.toward, str):
             others = [other for other in material.bodies(scene, self.toward) if other is not body]
-            places = [other.position for other in others]
-            target = (
-                (sum(x for x, _ in places) / len(places), sum(y for _, y in places) / len(places)) if places else None
-            )
+            target = middle(others) if others else None
         else:
             target = self.toward
         if target is None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from pydantic import field_validator
+from pydantic import AfterValidator
 
 from irsim.options.registry import BEHAVIORS, KINEMATICS
 from irsim_evals.grader.matching import UNITS, Match, Quantity, matches, quantity, show
@@ -43,6 +43,15 @@ _MAX_QUOTED = 120
 _STATED = re.compile(r"(?<![\w.,])(\d+(?:[.,]\d+)?)\s*(km/h|m/s|cm|mm|m|°|deg|rad)?(?![\w])")
 _AROUND = 100
 """Number of characters before and behind a about in which its value is looked for."""
+
+
+def _compiles(pattern: str) -> str:
+    re.compile(pattern)
+    return pattern
+
+
+Regex = Annotated[str, AfterValidator(_compiles)]
+"""A regular expression."""
 
 
 @dataclass(frozen=True)
@@ -132,23 +141,16 @@ def _measures(scene: Scene, what: str) -> list[float]:
 class Says(AnswerPredicate):
     """Words in the reply, as regular expressions that ignore case and line breaks."""
 
-    all_of: list[str] = []
+    all_of: list[Regex] = []
     """Each of these occurs."""
-    any_of: list[str] = []
+    any_of: list[Regex] = []
     """At least one of these occurs."""
-    none_of: list[str] = []
+    none_of: list[Regex] = []
     """None of these occurs."""
     about: str = ""
     """Its meaning in words, for the evidence."""
     turn: int | None = None
     """Number of the turn whose reply is meant, from 1 on; default: the last one."""
-
-    @field_validator("all_of", "any_of", "none_of")
-    @classmethod
-    def _compiles(cls, patterns: list[str]) -> list[str]:
-        for pattern in patterns:
-            re.compile(pattern)
-        return patterns
 
     def observe(self, material: Material) -> Observation:
         """Search the reply."""
@@ -200,16 +202,10 @@ class States(AnswerPredicate):
     """Name of the selection; its first body counts."""
     property: str
     """Name of the property."""
-    about: str
+    about: Regex
     """Regular expression for words near the value, ignoring case."""
     factors: list[Quantity] = [1.0]
     """The stated number may be the value times one of these: 2 allows a diameter for a radius."""
-
-    @field_validator("about")
-    @classmethod
-    def _compiles(cls, pattern: str) -> str:
-        re.compile(pattern)
-        return pattern
 
     def observe(self, material: Material) -> Observation:
         """Look for the number."""

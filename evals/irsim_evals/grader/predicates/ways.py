@@ -11,7 +11,7 @@ import shapely
 from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Match, Quantity, matches, show
 from irsim_evals.grader.outcome import Mark
-from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, register, summary
+from irsim_evals.grader.predicates._base import Observation, OfBodies, ScenePredicate, judged, middle, register
 
 if TYPE_CHECKING:
     from irsim_evals.grader.body import Body
@@ -32,7 +32,7 @@ class Ways(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Compare all pairs."""
-        bodies = [body for body in material.bodies(scene, self.of) if body.goal is not None]
+        bodies = _with_goals(self, material, scene)
         words = []
         if self.angle is not None:
             words.append(f"angle {self.angle.words()} rad")
@@ -48,8 +48,7 @@ class Ways(OfBodies, ScenePredicate):
             off = self.angle is not None and not matches(self.angle, angle, "angle")
             far = self.distance is not None and not matches(self.distance, distance, "length")
             if off or far:
-                marks = [Mark(points=[list(p) for p in _line(body).coords], text=body.name) for body in (a, b)]
-                return Observation(False, expected, seen, f"{b.entry}.goal", marks=marks)
+                return Observation(False, expected, seen, f"{b.entry}.goal", marks=[_mark(a), _mark(b)])
         return Observation(True, expected, seen)
 
 
@@ -58,8 +57,17 @@ def _direction(body: Body) -> float:
     return math.atan2(goal[1] - body.pose[1], goal[0] - body.pose[0])
 
 
+def _with_goals(predicate: OfBodies, material: Material, scene: Scene) -> list[Body]:
+    return [body for body in material.bodies(scene, predicate.of) if body.goal is not None]
+
+
 def _line(body: Body) -> shapely.LineString:
+    """The straight line from the start of a body to its last goal."""
     return shapely.LineString([body.pose[:2], (body.goal or [*body.pose])[:2]])
+
+
+def _mark(body: Body) -> Mark:
+    return Mark(points=[list(point) for point in _line(body).coords], text=body.name)
 
 
 @register("line_of_sight")
@@ -73,15 +81,12 @@ class LineOfSight(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Draw the lines."""
-        bodies = [body for body in material.bodies(scene, self.of) if body.goal is not None]
         expected = f"from each of {self.of} to its goal the view is {'clear' if self.clear else 'blocked'}"
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body with a goal")
-        lines = {body.name: shapely.LineString([body.pose[:2], (body.goal or [])[:2]]) for body in bodies}
-        clear = [(body, not shapely.intersects(scene.solid, lines[body.name])) for body in bodies]
+        clear = [
+            (body, not shapely.intersects(scene.solid, _line(body))) for body in _with_goals(self, material, scene)
+        ]
         wrong = [(body, value) for body, value in clear if value != self.clear]
-        marks = [Mark(points=[list(p) for p in lines[body.name].coords], text=body.name) for body, _ in wrong]
-        return judged(expected, wrong, summary(clear), "goal", said="clear for ", marks=marks)
+        return judged(expected, clear, wrong, "goal", said="clear for ", marks=[_mark(body) for body, _ in wrong])
 
 
 @register("line_passes")
@@ -97,18 +102,14 @@ class LinePasses(OfBodies, ScenePredicate):
 
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Measure."""
-        bodies = [body for body in material.bodies(scene, self.of) if body.goal is not None]
-        places = [other.position for other in material.bodies(scene, self.by)]
+        bodies, others = _with_goals(self, material, scene), material.bodies(scene, self.by)
         expected = f"the way of {self.of} passes the middle of {self.by} at {self.distance.words()} m"
-        if not bodies or not places:
-            return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.by}: {len(places)}")
-        middle = shapely.Point(sum(x for x, _ in places) / len(places), sum(y for _, y in places) / len(places))
-        distances = [
-            (body, float(shapely.LineString([body.pose[:2], (body.goal or [])[:2]]).distance(middle)))
-            for body in bodies
-        ]
+        if not bodies or not others:
+            return Observation(False, expected, f"{self.of}: {len(bodies)}, {self.by}: {len(others)}")
+        point = shapely.Point(middle(others))
+        distances = [(body, float(_line(body).distance(point))) for body in bodies]
         wrong = [(body, value) for body, value in distances if not matches(self.distance, value, "length")]
-        return judged(expected, wrong, summary(distances), "goal")
+        return judged(expected, distances, wrong, "goal")
 
 
 @register("reachable")
@@ -132,13 +133,11 @@ class Reachable(OfBodies, ScenePredicate):
         closed = "" if self.plug is None else f" with the gap at ({self.plug[0]:g}, {self.plug[1]:g}) closed"
         target = "its goal" if self.to is None else f"({self.to[0]:g}, {self.to[1]:g})"
         expected = f"each of {self.of} {'can' if self.possible else 'cannot'} get to {target}{closed}"
-        if not bodies:
-            return Observation(False, expected, f"{self.of}: no body with a goal")
         plugs = () if self.plug is None else (self.plug,)
         results = [(body, self._gets_there(scene, body, plugs)) for body in bodies]
         wrong = [(body, value) for body, value in results if value != self.possible]
         marks = [Mark(points=[list(place)], text=body.name) for body, _ in wrong for place in self._targets(body)]
-        return judged(expected, wrong, summary(results), "goal", said="a path for ", marks=marks)
+        return judged(expected, results, wrong, "goal", said="a path for ", marks=marks)
 
     def _gets_there(self, scene: Scene, body: Body, plugs: tuple[tuple[float, float, float], ...]) -> bool:
         radius = disc_radius(body, self.size)

@@ -14,7 +14,7 @@ from typing import Any
 import yaml
 
 import irsim
-from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Instance
 from irsim_evals.grader.artefact import Answer, find_scenario
 from irsim_evals.grader.matching import TOLERANCES, Match
 from irsim_evals.proof.oracle.shapes import Point, Thing, apart, blocked, gets_there, to_point

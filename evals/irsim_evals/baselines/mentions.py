@@ -6,8 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from irsim_evals.baselines.reading.language import NUMBER
-from irsim_evals.baselines.reading.lexicon import DIRECTIONS, DRIVES, NOUNS, first
+from irsim_evals.baselines.language import DIRECTIONS, DRIVES, NOUNS, NUMBER, first
 
 __all__ = ["Mention", "Place", "Role", "mentions_of", "owner", "places_of", "sentence_of"]
 
@@ -55,7 +54,7 @@ class Mention:
     """A noun of a request.
 
     Attributes:
-        kind: Key of :data:`.lexicon.NOUNS`.
+        kind: Key of :data:`.language.NOUNS`.
         start, end: Where the noun stands in the text.
         number: How many; None if the text does not say.
         definite: Whether it points back to something that was mentioned.

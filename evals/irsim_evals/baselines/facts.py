@@ -6,8 +6,8 @@ import itertools
 import math
 import re
 
-from irsim_evals.baselines.reading.language import Quantity, quantities
-from irsim_evals.baselines.reading.mentions import Mention, owner, sentence_of
+from irsim_evals.baselines.language import Quantity, quantities
+from irsim_evals.baselines.mentions import Mention, owner, sentence_of
 
 __all__ = ["add_facts"]
 

@@ -1,17 +1,29 @@
-"""A request: what its words say, put in order."""
+"""A request: the part of a case that a baseline sees, and what its words say, put in order."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from irsim_evals.baselines.reading.facts import add_facts
-from irsim_evals.baselines.reading.language import NUMBER, Language, language_of, plain
-from irsim_evals.baselines.reading.lexicon import BEHAVIORS, DRIVES, LAYOUTS, NO_BEHAVIOR, first, has
-from irsim_evals.baselines.reading.mentions import Mention, Place, mentions_of, places_of
+from irsim_evals.baselines.facts import add_facts
+from irsim_evals.baselines.language import (
+    BEHAVIORS,
+    DRIVES,
+    LAYOUTS,
+    NO_BEHAVIOR,
+    NUMBER,
+    Language,
+    first,
+    has,
+    language_of,
+    plain,
+)
+from irsim_evals.baselines.mentions import Mention, Place, mentions_of, places_of
+from irsim_evals.cases.store import Instance
 
-__all__ = ["Group", "Request", "request_of"]
+__all__ = ["Group", "Request", "Task", "request_of", "task_of"]
 
 _NO_REVERSE = (
     r"(?:not|no|never|cannot|can't|without) revers\w+|nicht rückwärts|sin marcha atrás"
@@ -33,6 +45,31 @@ _COLORS = (
     r"different colou?rs?|own colou?r|distinct colou?rs?|verschiedene\w* farbe\w*"
     r"|color(?:es)? distint\w*|不同颜色|不同的颜色"
 )
+
+
+@dataclass(frozen=True)
+class Task:
+    """A request.
+
+    Attributes:
+        prompt: The request to the agent.
+        turns: Messages of the user after each reply.
+        files: The files that the folder starts with: name → text.
+    """
+
+    prompt: str
+    turns: tuple[str, ...] = ()
+    files: Mapping[str, str] | None = None
+
+    @property
+    def requests(self) -> tuple[str, ...]:
+        """All that the user says, one text for each turn."""
+        return (self.prompt, *self.turns)
+
+
+def task_of(instance: Instance) -> Task:
+    """The part of an instance that an agent sees."""
+    return Task(instance.prompt, tuple(instance.case.turns), dict(instance.case.files))
 
 
 @dataclass

@@ -1,1 +1,0 @@
-"""From what a request asks for to a scenario."""
