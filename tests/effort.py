@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
 
-__all__ = ["examples", "some"]
+__all__ = ["examples", "for_all", "some"]
 
 THOROUGH = os.environ.get("IRSIM_TESTS") == "thorough"
 
@@ -16,6 +17,15 @@ THOROUGH = os.environ.get("IRSIM_TESTS") == "thorough"
 def examples(count: int) -> int:
     """What to give ``settings(max_examples=…)`` for a property that is to hold in this number of examples."""
     return count if THOROUGH else count // 4
+
+
+def for_all(tries: int, /, *drawn: Any, **named: Any) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """A property that is to hold in this number of examples, of which the quick tests try a quarter."""
+
+    def decorate(test: Callable[..., None]) -> Callable[..., None]:
+        return settings(max_examples=examples(tries))(given(*drawn, **named)(test))
+
+    return decorate
 
 
 def some(values: Iterable[Any], every: int = 4) -> list[Any]:

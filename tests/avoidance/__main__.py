@@ -15,7 +15,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from tests.avoidance.comparison import Pool, exact_losses, pools, unequal_spellings
+from tests.avoidance.comparison import Pool, exact_losses, pools
 from tests.avoidance.families import BEHAVIORS, PEER_BEHAVIORS, groups
 from tests.avoidance.results import FOLDER, Key, Outcomes, read, write
 
@@ -73,16 +73,8 @@ def report(ours: dict[Key, Outcomes], peer: dict[Key, Outcomes]) -> str:
     there = sum(len(theirs.letters) for theirs in peer.values())
     parts = [f"The reference of 2.12 has {there} of {wanted} starts; the tables compare starts that both have."]
     parts += [table(pools(ours, peer, name), head) for head, name in names]
-    alone = {key: mine for key, mine in ours.items() if key[0] not in PEER_BEHAVIORS}
-    parts.append("Ours only:\n\n" + _alone(alone))
     lost = exact_losses(ours, peer)
     parts.append(f"Exact starts that 2.12 solves and we do not ({len(lost)}):\n\n" + _list_losses(lost))
-    unequal = unequal_spellings(ours)
-    total, of = (sum(count[side] for count in unequal.values()) for side in (0, 1))
-    lines = [f"- {' '.join(name)}: {count} of {starts}" for name, (count, starts) in unequal.items() if count]
-    parts.append(
-        f"Starts that end otherwise than with the same wall as a polygon ({total} of {of}):\n\n" + "\n".join(lines)
-    )
     return "\n\n".join(parts)
 
 
@@ -94,15 +86,6 @@ def _list_losses(lost: list[tuple[Key, str]]) -> str:
             f"{' '.join(filter(None, key[4:]))} at {key[2]} s ({what})"
         )
     return "\n".join(f"- {' '.join(name)}: {', '.join(cases)}" for name, cases in lines.items())
-
-
-def _alone(ours: dict[Key, Outcomes]) -> str:
-    counted = pools(ours, ours, lambda key: (*key[:2], key[3]))
-    lines = ["| behavior | drive | family | starts | solved | contacts | between steps |", "|" + "---|" * 7]
-    for name, pool in counted.items():
-        cells = (*name, pool.starts, f"{100 * pool.ours / pool.starts:.1f} %", pool.contacts, pool.between)
-        lines.append("| " + " | ".join(map(str, cells)) + " |")
-    return "\n".join(lines)
 
 
 def main(arguments: list[str] | None = None) -> int:

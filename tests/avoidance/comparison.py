@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from tests.avoidance.families import CASES
 from tests.avoidance.results import Key, Outcomes
 
-__all__ = ["Pool", "exact_losses", "pools", "unequal_spellings"]
+__all__ = ["Pool", "exact_losses", "pools"]
 
 Z95 = 1.959964
 
@@ -86,27 +86,3 @@ def exact_losses(ours: dict[Key, Outcomes], peer: dict[Key, Outcomes]) -> list[t
         if key in peer and peer[key].success(0) and not mine.success(0) and key[3:5] not in drawn:
             lost.append((key, {"c": "contact", "t": "time out", "a": "contact within a step"}[mine.letters[0]]))
     return lost
-
-
-def unequal_spellings(ours: dict[Key, Outcomes]) -> dict[tuple[str, ...], tuple[int, int]]:
-    """How often the spelling of a wall matters: the outcome, contacts, or the time of an arrival or a contact differ.
-
-    Returns:
-        For each behavior, drive, family and spelling: starts that end otherwise, and starts compared.
-    """
-    counted: dict[tuple[str, ...], tuple[int, int]] = {}
-    for key, mine in ours.items():
-        first = ours.get((*key[:5], "polygon"))
-        if first is None or key[5] in ("", "polygon"):
-            continue
-        name = (key[0], key[1], key[3], key[5])
-        unequal, of = counted.get(name, (0, 0))
-        count = min(len(mine.letters), len(first.letters))
-        counted[name] = unequal + sum(_differ(mine, first, k) for k in range(count)), of + count
-    return counted
-
-
-def _differ(one: Outcomes, other: Outcomes, start: int) -> bool:
-    if one.letters[start] != other.letters[start] or one.between[start] != other.between[start]:
-        return True
-    return one.letters[start] != "t" and one.seconds[start] != other.seconds[start]

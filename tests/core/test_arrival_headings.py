@@ -9,6 +9,7 @@ import pytest
 
 import irsim
 from irsim.lookup import lookup
+from tests.core.worlds import assert_success
 
 BEHAVIORS = ("dash", "follow", "orca", "avocado", "footprint_orca", "rvo", "sfm")
 LIMITS = (
@@ -38,8 +39,7 @@ def in_all_directions(behavior: str, drive: str, more: str, count: int = 16) -> 
 def test_omni_angular_arrives_with_its_heading_from_all_directions(behavior: str, limits: str) -> None:
     text = in_all_directions(behavior, "omni_angular", limits)
     assert "heading-not-reached" not in [finding.code for finding in irsim.validate(text=text).findings]
-    result = irsim.run(text=text, seed=1)
-    assert result.outcome == "success", result.reason
+    assert_success(text, seed=1)
 
 
 @pytest.mark.parametrize("behavior", BEHAVIORS)
@@ -72,8 +72,7 @@ def test_the_field_file_of_a_diff_robot_with_a_heading() -> None:
         "robot: [{kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [2, 5, 0], goal: [6, 5, 1.57], "
         "arrive_mode: state, goal_threshold: 0.1, behavior: {name: dash}}]"
     )
-    result = irsim.run(text=text)
-    assert result.outcome == "success", result.reason
+    result = assert_success(text)
     x, y, heading = result.robots[0].pose
     assert math.hypot(x - 6, y - 5, heading - 1.57) < 0.1
 
@@ -86,8 +85,7 @@ def test_members_of_a_group_turn_at_their_goals_too(behavior: str) -> None:
         "state: [[2, 2, 0], [2, 6, 0], [2, 10, 0], [2, 14, 0]], "
         f"goal: [[9, 2, 1], [9, 6, -1], [9, 10, 3], [9, 14, -2]], group_behavior: {{name: {behavior}}}}}"
     )
-    result = irsim.run(text=text, seed=1)
-    assert result.outcome == "success", result.reason
+    assert_success(text, seed=1)
 
 
 CAR = (
@@ -118,8 +116,7 @@ def test_a_car_comes_in_with_the_heading_under_follow(
 @pytest.mark.parametrize("goal", ["[10, 10.6, 0]", "[10, 10, 3.14]", "[9, 10, 0]"])
 def test_a_car_parks_at_a_pose_beside_it(goal: str) -> None:
     text = CAR.format(state="[10, 10, 0]", goal=goal, back=-1, acce="[2, 2]", local="dash")
-    result = irsim.run(text=text, seed=1)
-    assert result.outcome == "success", result.reason
+    assert_success(text, seed=1)
 
 
 @pytest.mark.parametrize(("acce", "most"), [("[1, 1]", 30), ("[1, 0.5]", 75)])
@@ -130,8 +127,7 @@ def test_a_car_whose_wheels_turn_slowly_parks_in_reasonable_time(acce: str, most
         "acce: {}, state: [{}, 0], goal: [9, 8, 0.5], arrive_mode: state, behavior: {{name: follow}}}}\n"
     )
     for start in ("2, 2, 0", "2, 8, 1", "8, 3, 2"):
-        result = irsim.run(text=text.format(acce, start), seed=1)
-        assert result.outcome == "success", result.reason
+        result = assert_success(text.format(acce, start), seed=1)
         assert result.sim_time < most, start
 
 
@@ -157,8 +153,7 @@ def test_a_car_backs_into_a_bay() -> None:
         "state: [[9.4, 8.3, 0], [10.6, 8.3, 0]]}\n"
         "  - {shape: {name: rectangle, length: 1.4, width: 0.2}, state: [10, 7.3, 0]}\n"
     )
-    result = irsim.run(text=text, seed=1)
-    assert result.outcome == "success", result.reason
+    assert_success(text, seed=1)
 
 
 @pytest.mark.parametrize("behavior", ["dash", "orca", "rvo"])
@@ -195,23 +190,20 @@ def test_whoever_turns_at_its_goal_lets_others_pass() -> None:
         "  - {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, behavior: {name: orca}, "
         "state: [[2, 5.1, 0], [14, 4.9, 3.14]], goal: [[14, 5.1], [2, 4.9]]}"
     )
-    result = irsim.run(text=text, seed=1)
-    assert result.outcome == "success", result.reason
+    assert_success(text, seed=1)
 
 
 def test_headings_are_reached_at_each_waypoint() -> None:
     text = in_all_directions("orca", "omni_angular", "vel_max: [1, 1, 1]", 1)
     text = text.replace("goal: [25.0000, 20.0000, 1.5708]", "waypoints: [[24, 20, 1.57], [20, 24, -1.57], [20, 20, 3]]")
-    result = irsim.run(text=text, seed=1)
-    assert result.outcome == "success", result.reason
+    result = assert_success(text, seed=1)
     assert [event.kind for event in result.events] == ["waypoint", "waypoint", "arrival"]
 
 
 @pytest.mark.parametrize("behavior", BEHAVIORS)
 def test_without_a_heading_to_reach_nobody_turns_to_one(behavior: str) -> None:
     text = in_all_directions(behavior, "omni_angular", "vel_max: [1, 1, 1]", 1).replace(", arrive_mode: state", "")
-    result = irsim.run(text=text, seed=1)
-    assert result.outcome == "success"
+    result = assert_success(text, seed=1)
     assert result.robots[0].pose[2] == 0
 
 

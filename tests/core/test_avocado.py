@@ -15,33 +15,10 @@ from irsim.scenario.read import or_raise, read
 from irsim.simulation.simulation import Simulation
 from irsim.testing import scenario_with, simulate
 from irsim.testing.conformance import simulated_drives
-from tests.core.worlds import DRIVES, assert_identical, circle, everything, robot, scene
+from tests.core.worlds import DRIVES, circle, kernel, robot, scene
 
 NEUTRAL = "own_weight: 0, evidence_weight: 0, noise: 0"
 ALIKE = "neighborDist: 5, maxNeighbors: 10, timeHorizon: 2, timeHorizonObst: 3, safe_radius: 0.05"
-
-
-def options(**overrides: Any) -> core.AvocadoOptions:
-    default: dict[str, Any] = {
-        "neighborDist": 20.0,
-        "maxNeighbors": 15,
-        "timeHorizon": 2.5,
-        "timeHorizonObst": 2.5,
-        "safe_radius": 0.0,
-        "maxSpeed": None,
-        "approach_time": None,
-        "sidestep": 0.0,
-        "forgetting": 2.0,
-        "own_weight": 0.3,
-        "evidence_weight": 0.7,
-        "evidence_gain": 3.22,
-        "bias": 0.0,
-        "attention_time": 14.15,
-        "attention_step": 0.57,
-        "noise": 0.0,
-        "keep_gap": None,
-    }
-    return core.AvocadoOptions(**{**default, **overrides})
 
 
 def agent(pose: Any, goal: Any, **overrides: Any) -> core.ObjectSpec:
@@ -77,7 +54,7 @@ def decide_with(world: core.World, state: core.State, gap: float, velocity: tupl
 
 def test_opinion_of_one_that_never_reacts_has_a_closed_form() -> None:
     """With full attention and no weight of its own, an opinion falls geometrically to what the evidence says."""
-    behavior = options(own_weight=0.0, attention_step=1.0, attention_time=1e6)
+    behavior = kernel("avocado", own_weight=0.0, attention_step=1.0, attention_time=1e6)
     world, state = watching(behavior)
     no_reaction = math.tanh(0.7 * math.tanh(-3.22 / 2))
     first, attention = decide_with(world, state, 3.0, (-1.0, 0.0))
@@ -88,7 +65,7 @@ def test_opinion_of_one_that_never_reacts_has_a_closed_form() -> None:
 
 
 def test_attention_has_a_closed_form() -> None:
-    world, state = watching(options(attention_time=2.0, attention_step=0.3))
+    world, state = watching(kernel("avocado", attention_time=2.0, attention_step=0.3))
     time = (3.0 - 0.4) / 0.5  # to contact
     for n in range(1, 10):
         _, attention = decide_with(world, state, 3.0, (-0.5, 0.0))
@@ -99,15 +76,17 @@ def test_attention_has_a_closed_form() -> None:
 
 
 def test_overlapping_objects_get_full_attention() -> None:
-    world, state = watching(options(attention_step=1.0))
+    world, state = watching(kernel("avocado", attention_step=1.0))
     assert decide_with(world, state, 0.3, (0.0, 0.0))[1] == 1.0
 
 
 def test_opinions_follow_the_equations() -> None:
     """Random velocities of an object ahead, against the equations in plain Python."""
     a, c, d, kappa, gain, delta, b, tau, dt = 0.4, 0.9, 1.5, 3.0, 2.5, 0.4, -0.1, 2.0, 0.1
-    behavior = options(own_weight=a, evidence_weight=c, forgetting=d, attention_time=kappa, evidence_gain=gain,
-                       attention_step=delta, bias=b, timeHorizon=tau)  # fmt: skip
+    behavior = kernel(
+        "avocado", own_weight=a, evidence_weight=c, forgetting=d, attention_time=kappa, evidence_gain=gain,
+        attention_step=delta, bias=b, timeHorizon=tau,
+    )  # fmt: skip
     world, state = watching(behavior, dt=dt)
     rng = np.random.default_rng(5)
     opinion, attention, change, before = b / d, 0.0, np.zeros(2), np.zeros(2)
@@ -152,7 +131,7 @@ def test_opinions_settle_at_the_fixed_point(reaction: float, evidence: float) ->
     Its velocity goes to and fro by 2 s across the line of sight, and s is such a share of the way to the border of the
     velocity obstacle, whose legs are a half angle beside it.
     """
-    world, state = watching(options())
+    world, state = watching(kernel("avocado"))
     half = math.asin(0.4 / 2.0)
     s = reaction * math.tan(half) / (2 + reaction)
     for k in range(120):
@@ -231,40 +210,6 @@ robot:
     distribution: {name: circle, center: [4, 4], radius: 3}
     behavior: {name: avocado}
 """
-
-
-def crowd(seeds: list[int], threads: int = 1, steps: int = 150) -> Simulation:
-    simulation = Simulation(or_raise(read(CROWD, strict=True))[0], seeds, threads=threads)
-    core.advance(simulation.world, simulation.state, steps, threads=threads)
-    return simulation
-
-
-def test_worlds_of_a_batch_are_those_alone_on_any_number_of_threads() -> None:
-    alone = [crowd([seed]).pose for seed in range(6)]
-    for threads in (1, 3):
-        assert np.array_equal(crowd(list(range(6)), threads).pose, np.concatenate(alone))
-    assert not np.array_equal(alone[0], alone[1]), "the noise follows the seed"
-
-
-def test_reset_forgets_opinions() -> None:
-    simulation = crowd([4], steps=30)
-    assert any(simulation.state.opinions(row) for row in range(8))
-    first = simulation.pose.copy()
-    simulation.state.reseed(np.array([4], dtype=np.uint64), np.ones(1, dtype=np.uint8))
-    simulation.state.reset(np.ones(1, dtype=np.uint8), False)
-    assert not any(simulation.state.opinions(row) for row in range(8))
-    core.advance(simulation.world, simulation.state, 30)
-    assert np.array_equal(simulation.pose, first)
-
-
-def test_deciding_twice_in_a_step_changes_nothing() -> None:
-    simulation = crowd([4], steps=30)
-    core.decide(simulation.world, simulation.state)
-    once = everything(simulation.state), [simulation.state.opinions(row) for row in range(8)]
-    core.decide_row(simulation.world, simulation.state, 2)
-    core.decide(simulation.world, simulation.state)
-    assert_identical(everything(simulation.state), once[0])
-    assert [simulation.state.opinions(row) for row in range(8)] == once[1]
 
 
 def test_an_object_that_comes_or_goes_leaves_the_other_opinions(tmp_path: Path) -> None:

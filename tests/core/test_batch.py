@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,15 @@ import irsim._core as core
 from tests.core.test_reset import crowd
 from tests.core.worlds import (
     DRIVES,
+    PLAIN,
+    advanced,
     assert_identical,
     command,
     everything,
+    kernel,
     lidar,
     obstacle,
+    rectangle,
     robot,
     rows_of,
     scene,
@@ -52,6 +57,51 @@ def test_a_world_of_a_batch_is_that_world_alone(seeds, threads: int, steps: int,
         assert_identical(rows_of(batch, w, len(seeds)), everything(alone))
         assert state.events(w) == alone.events(0)
         assert state.collision_pairs(w).tolist() == alone.collision_pairs(0).tolist()
+
+
+def movers(name: str, seeds: Sequence[int]) -> tuple[core.World, core.State]:
+    """Objects of every drive that run a behavior among two things."""
+    rng = np.random.default_rng(5)
+    noise = {"noise": 1e-4} if name == "avocado" else {}
+    places, goals, headings = rng.uniform(0, 9, (50, 2)), rng.uniform(0, 9, (50, 2)), rng.uniform(-3, 3, 50)
+    objects = [
+        robot(drive=drive, behavior=kernel(name, **noise), grouped=name == "orca", pose=[*place, heading], goals=[goal])
+        for place, goal, heading, drive in zip(places, goals.tolist(), headings, 10 * [*DRIVES.values()], strict=True)
+    ]
+    things = [obstacle(parts=[rectangle(1.0, 2.0)], pose=[6.0, 6.0, 0.5]), obstacle(pose=[3.0, 6.0, 0.0])]
+    return scene(*objects, *things, seeds=seeds, mode=1)
+
+
+@pytest.mark.parametrize("name", PLAIN)
+def test_each_behavior_decides_in_a_batch_as_alone(name: str) -> None:
+    world, state = movers(name, (4, 5, 6))
+    core.advance(world, state, 20, threads=3)
+    for w, seed in enumerate((4, 5, 6)):
+        alone_world, alone = movers(name, [seed])
+        core.advance(alone_world, alone, 20)
+        assert_identical(rows_of(everything(state), w, 3), everything(alone))
+    assert np.array_equal(*np.split(state.pose, 3)[:2]) == (name not in ("avocado", "footprint_orca")), (
+        "draws follow the seed"
+    )
+
+
+@pytest.mark.parametrize("name", PLAIN)
+def test_deciding_again_and_a_reset_change_nothing(name: str) -> None:
+    world, state = movers(name, [4])
+    core.advance(world, state, 20)
+    first = state.pose.copy()
+    core.decide(world, state)
+    once = everything(state), [state.opinions(row) for row in range(50)]
+    core.decide_row(world, state, 2)
+    core.decide(world, state)
+    assert_identical(everything(state), once[0])
+    assert [state.opinions(row) for row in range(50)] == once[1]
+    assert any(once[1]) == (name == "avocado")
+    state.reseed(np.array([4], np.uint64), np.ones(1, np.uint8))
+    state.reset(np.ones(1, np.uint8), False)
+    assert not any(state.opinions(row) for row in range(50))
+    core.advance(world, state, 20)
+    np.testing.assert_array_equal(state.pose, first)
 
 
 @pytest.mark.parametrize("ranges", [False, True])
@@ -133,8 +183,7 @@ def test_every_drive_in_one_batch_on_threads() -> None:
     ]
     results = []
     for threads in (1, 2, 8):
-        world, state = scene(*objects, seeds=range(40))
-        core.advance(world, state, 50, threads=threads)
+        state = advanced(50, *objects, seeds=range(40), threads=threads)
         results.append(everything(state))
     assert_identical(results[0], results[1])
     assert_identical(results[0], results[2])

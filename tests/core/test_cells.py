@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
 import irsim._core as core
-from tests.core.test_intersects import ORIGIN, POSE, placed, shape
-from tests.core.worlds import circle, command, lidar, obstacle, polygon, random_placement, rectangle, robot, scene
-from tests.effort import examples
+from tests.core.test_shapes import ORIGIN, POSE, placed, shape
+from tests.core.worlds import apply, circle, lidar, obstacle, polygon, random_placement, rectangle, robot, scene
+from tests.effort import for_all
 
 CELLS = st.integers(1, 12)
 
@@ -40,8 +40,7 @@ def meets(grid: core.OccupancyGrid, parts, pose) -> bool:
     return touching
 
 
-@settings(max_examples=examples(200))
-@given(grid=grids(), body=st.lists(shape(), min_size=1, max_size=3), pose=POSE)
+@for_all(200, grid=grids(), body=st.lists(shape(), min_size=1, max_size=3), pose=POSE)
 def test_any_body_meets_the_cells_it_overlaps(grid, body, pose) -> None:
     cells = shapely.union_all(boxes(grid))
     gap = min((cells.distance(placed(g, pose)) - r for _, g, r in body), default=math.inf)
@@ -53,8 +52,7 @@ def test_any_body_meets_the_cells_it_overlaps(grid, body, pose) -> None:
     assert meets(grid, [p for p, *_ in body], pose) == expected
 
 
-@settings(max_examples=examples(200))
-@given(grid=grids(aligned=True), body=shape())
+@for_all(200, grid=grids(aligned=True), body=shape())
 def test_touching_counts(grid, body) -> None:
     part, geometry, radius = body
     gap = shapely.union_all(boxes(grid)).distance(geometry) - radius if grid.count else math.inf
@@ -91,8 +89,8 @@ def nearest_of(grid: core.OccupancyGrid, origin, direction, limit: float) -> flo
     return float(np.hypot(*(points - origin).T).min())
 
 
-@settings(max_examples=examples(300))
-@given(
+@for_all(
+    300,
     grid=grids(),
     x=st.floats(-8, 12),
     y=st.floats(-8, 12),
@@ -114,8 +112,7 @@ def test_beams_stop_at_the_outline(grid, x, y, angle) -> None:
     assert point.distance(corners) < 1e-7
 
 
-@settings(max_examples=examples(200))
-@given(grid=grids(aligned=True), line=CELLS, start=st.integers(-2, 13), heading=st.sampled_from(range(4)))
+@for_all(200, grid=grids(aligned=True), line=CELLS, start=st.integers(-2, 13), heading=st.sampled_from(range(4)))
 def test_beams_along_a_grid_line_meet_the_cells_on_both_sides(grid, line, start, heading) -> None:
     direction = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))[heading]
     i, j = (start + 0.25, min(line, grid.shape[1])) if heading < 2 else (min(line, grid.shape[0]), start + 0.25)
@@ -152,8 +149,7 @@ def test_from_inside_the_way_out_is_seen() -> None:
     assert grid.cast((math.nan, 0.5), (1.0, 0.0), 10.0) == math.inf
 
 
-@settings(max_examples=examples(100))
-@given(grid=grids())
+@for_all(100, grid=grids())
 def test_outline_is_the_boundary_of_the_union(grid) -> None:
     rings = grid.outline()
     area = shapely.union_all(boxes(grid)) if grid.count else shapely.Polygon()
@@ -168,8 +164,7 @@ def test_outline_is_the_boundary_of_the_union(grid) -> None:
         assert (np.abs(steps).min(axis=1) == 0).all()
 
 
-@settings(max_examples=examples(50))
-@given(grid=grids())
+@for_all(50, grid=grids())
 def test_clearance_counts_cells(grid) -> None:
     full = np.argwhere(grid.occupied)
     for i, j in np.ndindex(grid.shape):
@@ -186,9 +181,7 @@ def wall_map() -> core.GridCells:
 
 def test_a_robot_stops_at_a_wall_and_both_know() -> None:
     world, state = scene(robot(pose=[1.0, 1.0, 0.0], parts=[circle(0.3)]), obstacle(parts=[wall_map()]), step_time=0.1)
-    for _ in range(20):
-        command(state, [1.0, 0.0])
-        core.advance(world, state, 1)
+    apply(world, state, [1.0, 0.0], steps=20)
     assert state.pose[0, 0] == pytest.approx(1.7)
     assert state.collided.tolist() == [1, 1]
     [(kind, step, who, partner, x, y)] = state.events(0)
@@ -259,8 +252,6 @@ def test_a_room_collides_and_is_seen_from_inside() -> None:
     )
     assert state.collided.tolist() == [0, 0]
     assert state.ranges == pytest.approx([3 * math.sqrt(2)] * 4)
-    for _ in range(60):
-        command(state, [1.0, 0.0])
-        core.advance(world, state, 1)
+    apply(world, state, [1.0, 0.0], steps=60)
     assert state.pose[0, 0] == pytest.approx(7.8)
     assert state.collided.tolist() == [1, 1]

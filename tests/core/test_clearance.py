@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core.test_cells import boxes, grids
-from tests.core.test_intersects import ORIGIN, POSE, placed, shape
+from tests.core.test_shapes import ORIGIN, POSE, placed, shape
 from tests.core.worlds import circle, line, obstacle, polygon, rectangle, robot, scene
-from tests.effort import examples
+from tests.effort import for_all
 
 ROBOT, HUMAN, STATIC, IGNORED = range(4)
 
@@ -29,8 +29,7 @@ def between(a, pose_a, b, pose_b) -> float:
     return float(distance[0, 0, 0])
 
 
-@settings(max_examples=examples(100))
-@given(a=shape(), b=shape(), pose_a=POSE, pose_b=POSE)
+@for_all(100, a=shape(), b=shape(), pose_a=POSE, pose_b=POSE)
 def test_apart_as_far_as_shapely_says(a, b, pose_a, pose_b) -> None:
     gap = placed(a[1], pose_a).distance(placed(b[1], pose_b)) - a[2] - b[2]
     distance = between([a[0]], pose_a, [b[0]], pose_b)
@@ -41,8 +40,8 @@ def test_apart_as_far_as_shapely_says(a, b, pose_a, pose_b) -> None:
         assert distance <= 1e-9
 
 
-@settings(max_examples=examples(50))
-@given(
+@for_all(
+    50,
     a=st.lists(shape(), min_size=1, max_size=3),
     b=st.lists(shape(), min_size=1, max_size=3),
     way=st.sampled_from([6.0, 8.0, 11.0]),
@@ -55,8 +54,7 @@ def test_a_compound_is_as_near_as_its_nearest_part(a, b, way, turn) -> None:
     assert between([p for p, *_ in a], ORIGIN, [p for p, *_ in b], pose) == pytest.approx(gap, abs=1e-9)
 
 
-@settings(max_examples=examples(100))
-@given(grid=grids(), body=shape(), pose=POSE)
+@for_all(100, grid=grids(), body=shape(), pose=POSE)
 def test_as_far_from_a_map_as_from_its_nearest_cell(grid, body, pose) -> None:
     part, geometry, radius = body
     world, state = scene(robot(parts=[part]), obstacle(parts=[core.GridCells(grid=grid)]))
@@ -112,8 +110,7 @@ def naive(poses, radii, robots, kinds) -> tuple[np.ndarray, np.ndarray]:
     return distance, partner
 
 
-@settings(max_examples=examples(60))
-@given(seed=st.integers(0, 10_000), count=st.integers(1, 12))
+@for_all(60, seed=st.integers(0, 10_000), count=st.integers(1, 12))
 def test_the_nearest_of_each_kind(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)
     kinds = rng.integers(0, 4, count).astype(np.uint8)
@@ -153,8 +150,8 @@ def test_arguments_that_do_not_fit() -> None:
         core.clearances(world, state, 0, np.zeros((1, 2, 3)), [2], kinds)
 
 
-@settings(max_examples=examples(60))
-@given(
+@for_all(
+    60,
     bodies=st.lists(shape(), min_size=2, max_size=5),
     ways=st.lists(st.tuples(POSE, POSE), min_size=5, max_size=5),
     end=st.integers(1, 12),

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
-from tests.core.worlds import circle, command, line, obstacle, polygon, rectangle, robot, scene
-from tests.effort import examples
+from tests.core.worlds import apply, circle, command, line, obstacle, polygon, rectangle, robot, scene
+from tests.effort import for_all
 
 SHAPES = {
     "circle": circle(0.4),
@@ -32,8 +31,7 @@ def all_pairs(state: core.State, shapes: list[str]) -> list[tuple[int, int]]:
     ]
 
 
-@settings(max_examples=examples(40))
-@given(st.data())
+@for_all(40, st.data())
 def test_pairs_are_those_of_asking_about_every_pair(data: st.DataObject) -> None:
     count = data.draw(st.integers(0, 30))
     shapes = data.draw(st.lists(st.sampled_from(sorted(SHAPES)), min_size=count, max_size=count))
@@ -77,14 +75,16 @@ def overlapping(mode: int, **overrides) -> core.State:
     return state
 
 
-def test_an_initial_overlap_is_seen_at_once() -> None:
-    assert overlapping(0).collided.tolist() == [1, 1, 1, 0]
+def test_an_initial_overlap_is_seen_at_once_and_the_mode_decides_who_stops() -> None:
+    stopped = {mode: overlapping(mode).stopped.tolist() for mode in (0, 1, 2)}
+    assert overlapping(0).collided.tolist() == overlapping(0, unobstructed=True).collided.tolist() == [1, 1, 1, 0]
+    assert stopped == {0: [1, 1, 1, 0], 1: [0, 0, 0, 0], 2: [1, 1, 0, 0]}
 
 
-def test_modes_decide_who_stops() -> None:
-    assert overlapping(0).stopped.tolist() == [1, 1, 1, 0]
-    assert overlapping(1).stopped.tolist() == [0, 0, 0, 0]
-    assert overlapping(2).stopped.tolist() == [1, 1, 0, 0]
+def test_of_two_the_flag_of_the_other_counts() -> None:
+    _, state = scene(robot(), obstacle(unobstructed=True))
+    assert state.collided.tolist() == [0, 1]
+    assert state.collision_pairs(0).tolist() == [[0, 1]]
 
 
 def test_the_mode_can_change() -> None:
@@ -94,20 +94,10 @@ def test_the_mode_can_change() -> None:
     assert state.stopped.tolist() == [1, 1]
 
 
-def test_only_the_flag_of_the_other_counts() -> None:
-    state = overlapping(0, unobstructed=True)
-    assert state.collided.tolist() == [1, 1, 1, 0]
-    _, state = scene(robot(), obstacle(unobstructed=True))
-    assert state.collided.tolist() == [0, 1]
-    assert state.collision_pairs(0).tolist() == [[0, 1]]
-
-
 def test_events_tell_when_and_where_contact_begins() -> None:
     world, state = scene(robot(behavior=None), obstacle(pose=[1.05, 0, 0], parts=[rectangle(0.6, 2)]), mode=1)
     for speed in (1.0, -1.0, 1.0):
-        for _ in range(8):
-            command(state, [speed])
-            core.advance(world, state, 1)
+        apply(world, state, [speed], steps=8)
     events = state.events(0)
     assert [(kind, i, j) for kind, _, i, j, _, _ in events] == [("collision", 0, 1)] * 2
     assert [step for _, step, *_ in events] == [6, 22]  # 0.55 m away, 0.1 m per step; back and again
@@ -121,8 +111,7 @@ def test_contacts_of_unobstructed_objects() -> None:
     assert [(i, j) for _, _, i, j, _, _ in state.events(0)] == [(0, 2), (1, 2)]
 
 
-@settings(max_examples=examples(50))
-@given(st.data())
+@for_all(50, st.data())
 def test_the_contact_point_is_in_both(data: st.DataObject) -> None:
     a, b = (data.draw(st.sampled_from(sorted(SHAPES))) for _ in range(2))
     pose = data.draw(st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-3, 3)))

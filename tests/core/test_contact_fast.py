@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import irsim._core as core
-from tests.core.worlds import DRIVES, circle, command, line, obstacle, rectangle, robot, scene
+from tests.core.worlds import DRIVES, advanced, apply, circle, line, obstacle, rectangle, robot, scene
 
 CONTACT = 3
 WALL_X = 2.0
@@ -42,18 +42,12 @@ def told(state) -> list[str]:
     return [kind for kind, *_ in state.events(0) if kind != "collision"]
 
 
-def run(world, state, steps: int, *controls) -> None:
-    for _ in range(steps):
-        command(state, *controls)
-        core.advance(world, state, 1)
-
-
 @pytest.mark.parametrize("wall", WALLS)
 @pytest.mark.parametrize("dt", [0.1, 0.5, 1.0])
 @pytest.mark.parametrize("start", [0.0, 0.07, 0.16, 0.23])
 def test_no_robot_passes_a_wall(wall: str, dt: float, start: float) -> None:
     world, state = scene(fast_robot(3.0, pose=[start, 0.0, 0.0]), WALLS[wall], mode=CONTACT, step_time=dt)
-    run(world, state, round(3.0 / dt), [3.0])
+    apply(world, state, [3.0], steps=round(3.0 / dt))
     assert state.pose[0].tolist() == pytest.approx([WALL_X - 0.1, 0.0, 0.0], abs=2e-3)
     assert told(state) == []
 
@@ -66,7 +60,7 @@ def test_no_robot_pushes_a_small_body_through_a_wall(wall: str, size: float, spe
         small = pushed(pose=[start + 0.6, 0.0, 0.0], parts=[rectangle(size, size)])
         driver = fast_robot(speed, pose=[start, 0.0, 0.0])
         world, state = scene(driver, small, WALLS[wall], mode=CONTACT, step_time=dt)
-        run(world, state, round(2.5 / (speed * dt)) + 3, [speed])
+        apply(world, state, [speed], steps=round(2.5 / (speed * dt)) + 3)
         assert state.pose[1, 0] < WALL_X, start
         assert "passed_through" not in told(state), start
 
@@ -76,8 +70,7 @@ def test_a_body_that_is_shot_at_a_wall_stops_there(body: str) -> None:
     parts = [circle(0.01)] if body == "circle" else [rectangle(0.02, 0.02)]
     for wall in WALLS.values():
         small = pushed(pose=[0.33, 0.025, 0.0], parts=parts, friction=0.0, control=[40.0, 0.0, 0.0])
-        world, state = scene(small, wall, mode=CONTACT)
-        core.advance(world, state, 3)
+        state = advanced(3, small, wall, mode=CONTACT)
         assert state.pose[0, 0] == pytest.approx(WALL_X - 0.01, abs=2e-3)
         assert state.control[0, 0] == pytest.approx(0.0, abs=1e-6)
         assert told(state) == []
@@ -91,7 +84,7 @@ def test_a_spinning_bar_passes_no_pole(turn: float, pole: str) -> None:
     post = obstacle if pole == "fixed" else pushed
     bar = fast_robot(1.0, drive=DRIVES["omni_angular"], parts=[rectangle(2.0, 0.02)], control=[0.0, 0.0, 0.0])
     world, state = scene(bar, post(pose=place, parts=[circle(0.02)]), mode=CONTACT)
-    run(world, state, 1, [0.0, 0.0, turn / 0.1])
+    apply(world, state, [0.0, 0.0, turn / 0.1])
     x, y = state.pose[1, :2] - state.pose[0, :2]
     angle = state.pose[0, 2]
     left, along = -x * math.sin(angle) + y * math.cos(angle), x * math.cos(angle) + y * math.sin(angle)
@@ -107,7 +100,7 @@ def test_a_fast_robot_gives_a_row_of_boxes_its_speed(count: int) -> None:
         for k in range(count)
     ]
     world, state = scene(fast_robot(6.0, pose=[0.0, 0.0, 0.0]), *boxes, mode=CONTACT)
-    run(world, state, 2, [6.0])
+    apply(world, state, [6.0], steps=2)
     assert state.control[1 : count + 1, 0] == pytest.approx([6.0] * count, rel=0.02)
     gaps = np.diff(state.pose[: count + 1, 0]) - [0.15] + [0.0] + [0.05 * (k > 0) for k in range(count)]
     assert (gaps > -1e-3).all()
@@ -119,8 +112,7 @@ def test_an_overlap_parts_as_fast_while_something_else_is_fast() -> None:
     def velocities(shot: float) -> np.ndarray:
         pair = [pushed(pose=[x, 9.0, 0.0], parts=[circle(0.2)], friction=0.0) for x in (0.0, 0.3)]
         bullet = pushed(pose=[1.9, 0.0, 0.0], parts=[circle(0.01)], friction=0.0, control=[shot, 0.0, 0.0])
-        world, state = scene(*pair, bullet, WALLS["thin"], mode=CONTACT)
-        core.advance(world, state, 1)
+        state = advanced(1, *pair, bullet, WALLS["thin"], mode=CONTACT)
         return state.control[:2].copy()
 
     slow, fast = velocities(0.0), velocities(40.0)
@@ -138,7 +130,7 @@ def test_fast_steps_do_not_depend_on_the_order_of_objects() -> None:
         ]
         order = [0, 2, 1, 3] if turned else [0, 1, 2, 3]
         world, state = scene(*[objects[i] for i in order], mode=CONTACT)
-        run(world, state, 12, [3.0])
+        apply(world, state, [3.0], steps=12)
         return state.pose[order].copy()
 
     assert poses(True) == pytest.approx(poses(False), abs=1e-9)
@@ -151,7 +143,7 @@ def test_a_turn_within_a_step_leads_through_no_wall(turn: float) -> None:
     driver = fast_robot(30.0, pose=[WALL_X - 0.6, 0.0, 0.0], control=[10.0 * abs(turn), 10.0 * turn, 0.0])
     world, state = scene(driver, thick, mode=CONTACT)
     world.integration = 1
-    run(world, state, 1, [10.0 * abs(turn), 10.0 * turn])
+    apply(world, state, [10.0 * abs(turn), 10.0 * turn])
     assert told(state) == []
     assert [(c[0], c[1]) for c in state.contacts(0)] == [(0, 1)]
     assert state.pose[0, 0] <= WALL_X - 0.1 + 1e-3
@@ -164,7 +156,7 @@ def test_a_robot_that_slides_along_a_wall_stops_at_the_next_one() -> None:
     for angle in (0.2, 0.5, 1.0):
         driver = fast_robot(30.0, pose=[1.0, -0.1, angle], control=[30.0, 0.0, 0.0])
         world, state = scene(driver, first, second, mode=CONTACT)
-        run(world, state, 2, [30.0, 0.0])
+        apply(world, state, [30.0, 0.0], steps=2)
         assert state.pose[0, 0] <= WALL_X - 0.1 + 1e-3, angle
         assert state.pose[0, 1] <= -0.1 + 1e-3, angle
         assert told(state) == [], angle
@@ -208,7 +200,7 @@ def leave_a_room(kind: str, seed: int, steps: int = 5) -> list[tuple[int, int]]:
         controls = [
             [speed * draw.choice([1, 1, -1]), draw.uniform(-20, 20), draw.uniform(-20, 20)] for _ in range(robots)
         ]
-        run(world, state, 1, *controls)
+        apply(world, state, *controls)
         place = state.pose[: len(objects), :2]
         outside = np.flatnonzero(~((place > -1e-3) & (place < 3.001)).all(axis=1))
         if len(outside):

@@ -7,20 +7,13 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
 import irsim._core as core
-from tests.core.test_contact import CONTACT, DT, SLOP, body, contacts, drive, driver
-from tests.core.worlds import (
-    DRIVES,
-    circle,
-    obstacle,
-    polygon,
-    rectangle,
-    scene,
-)
-from tests.effort import examples
+from tests.core.test_contact import CONTACT, DT, SLOP, body, contacts, driver
+from tests.core.worlds import DRIVES, apply, circle, obstacle, polygon, rectangle, scene
+from tests.effort import for_all
 
 # what every contact obeys ---------------------------------------------------------------------------------------------
 ANGLE = st.floats(-math.pi, math.pi)
@@ -36,8 +29,7 @@ def unit(angle: float) -> np.ndarray:
     return np.array([math.cos(angle), math.sin(angle)])
 
 
-@settings(max_examples=examples(60))
-@given(st.lists(ANGLE, min_size=0, max_size=3), ANGLE, st.floats(0.2, 5.0))
+@for_all(60, st.lists(ANGLE, min_size=0, max_size=3), ANGLE, st.floats(0.2, 5.0))
 def test_a_body_gives_way_past_what_blocks_it_most(walls: list[float], push: float, mass: float) -> None:
     depth = 0.02
     pusher = body(parts=[circle(0.2)], pose=[*(-(0.4 - depth) * unit(push)), 0.0], friction=0.0)
@@ -55,8 +47,7 @@ def test_a_body_gives_way_past_what_blocks_it_most(walls: list[float], push: flo
     assert state.pose[1, :2] == pytest.approx(-(0.4 - depth + scale) * unit(push), abs=1e-9)
 
 
-@settings(max_examples=examples(60))
-@given(st.floats(-1.4, 1.4), st.floats(0.0, 1.5), st.floats(0.0, 1.5))
+@for_all(60, st.floats(-1.4, 1.4), st.floats(0.0, 1.5), st.floats(0.0, 1.5))
 def test_a_pressed_body_sticks_inside_the_friction_cone_and_slides_outside(
     angle: float, ground: float, wall: float
 ) -> None:
@@ -72,8 +63,7 @@ def test_a_pressed_body_sticks_inside_the_friction_cone_and_slides_outside(
     assert state.pose[0, :2].tolist() == pytest.approx([0.0, math.sin(angle) * scale if slides else 0.0], abs=1e-9)
 
 
-@settings(max_examples=examples(60))
-@given(st.integers(0, 10_000))
+@for_all(60, st.integers(0, 10_000))
 def test_contacts_conserve_momentum_and_angular_momentum(seed: int) -> None:
     rng = np.random.default_rng(seed)
     parts = [[circle(0.2)], [rectangle(0.5, 0.3)], [polygon((-0.2, -0.2), (0.3, -0.1), (0.0, 0.25))]]
@@ -110,13 +100,12 @@ def _centroid(state: core.State, row: int) -> np.ndarray:
     return state.pose[row, :2] + [c * x - s * y, s * x + c * y]
 
 
-@settings(max_examples=examples(20))
-@given(st.floats(0.5, 5.0), st.floats(0.1, 0.9), st.floats(0.2, 1.0), st.sampled_from(["diff", "omni"]))
+@for_all(20, st.floats(0.5, 5.0), st.floats(0.1, 0.9), st.floats(0.2, 1.0), st.sampled_from(["diff", "omni"]))
 def test_a_box_pushed_at_its_middle_stays_in_front(mass: float, friction: float, speed: float, name: str) -> None:
     box = body(parts=[rectangle(0.5, 0.5)], pose=[0.46, 0.0, 0], mass=mass, friction=friction)
     pusher = driver(parts=[rectangle(0.4, 0.4)], drive=DRIVES[name], mass=5.0, control=[speed, 0.0, 0.0])
     world, state = scene(pusher, box, mode=CONTACT)
-    drive(world, state, 60, [speed, 0.0])
+    apply(world, state, [speed, 0.0], steps=60)
     assert state.pose[1, 1:].tolist() == pytest.approx([0.0, 0.0], abs=1e-6)
     assert state.pose[1, 0] - state.pose[0, 0] == pytest.approx(0.45 + SLOP, abs=1e-6)
     assert state.pose[0, 0] == pytest.approx(60 * speed * DT, abs=1e-9)
@@ -176,8 +165,7 @@ def outline_of(state: core.State, row: int) -> shapely.Geometry:
     return shapely.Polygon(state.vertices(row, 0, True))
 
 
-@settings(max_examples=examples(25))
-@given(st.integers(0, 10_000), st.sampled_from(["diff", "omni", "omni_angular", "steer"]))
+@for_all(25, st.integers(0, 10_000), st.sampled_from(["diff", "omni", "omni_angular", "steer"]))
 def test_whatever_is_pushed_stays_apart_and_the_same_every_time(seed: int, name: str) -> None:
     rng = np.random.default_rng(seed)
     shapes = [circle(0.2), rectangle(0.4, 0.3), polygon((-0.2, -0.2), (0.25, -0.1), (0.0, 0.25))]
@@ -199,7 +187,7 @@ def test_whatever_is_pushed_stays_apart_and_the_same_every_time(seed: int, name:
 
     def run() -> core.State:
         world, state = scene(*objects, mode=CONTACT)
-        drive(world, state, 40, [0.8, 0.05, 0.02][: 3 if name == "omni_angular" else 2], [0.6, 0.0])
+        apply(world, state, [0.8, 0.05, 0.02][: 3 if name == "omni_angular" else 2], [0.6, 0.0], steps=40)
         return state
 
     state = run()

@@ -6,17 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core import oracle
-from tests.core.worlds import DRIVES, PI, circle, command, fmcw, lidar, obstacle, rectangle, robot, scene
-from tests.effort import examples
-
-
-def velocities(state: core.State) -> np.ndarray:
-    return state.velocities.copy()
+from tests.core.worlds import DRIVES, PI, advanced, apply, circle, fmcw, lidar, obstacle, rectangle, robot, scene
+from tests.effort import for_all
 
 
 def facing(own: list[float], other: list[float], heading: float, **options) -> core.State:
@@ -29,20 +24,21 @@ def facing(own: list[float], other: list[float], heading: float, **options) -> c
     return state
 
 
-def test_head_on_and_receding() -> None:
-    assert facing([0.5, 0], [0.8, 0], PI).velocities[0] == pytest.approx(-1.3)
-    assert facing([0.5, 0], [0.8, 0], 0.0).velocities[0] == pytest.approx(0.3)
-    assert facing([0.5, 0], [0.0, 0], 0.0).velocities[0] == pytest.approx(-0.5)
-
-
-def test_tangential_motion_is_not_seen() -> None:
-    assert facing([0, 0], [0.8, 0], PI / 2).velocities[0] == pytest.approx(0.0, abs=1e-15)
-    assert facing([0, 0.7], [0.0, 0], 0.0).velocities[0] == 0.0  # nor is the carrier's own turning
-
-
-def test_motion_compensation_leaves_the_carrier_out() -> None:
-    assert facing([0.5, 0], [0.8, 0], PI, motion_compensate=True).velocities[0] == pytest.approx(-0.8)
-    assert facing([0.5, 0], [0.0, 0], PI, motion_compensate=True).velocities[0] == 0.0
+@pytest.mark.parametrize(
+    ("own", "other", "heading", "compensate", "speed"),
+    [
+        ([0.5, 0], [0.8, 0], PI, False, -1.3),  # head on
+        ([0.5, 0], [0.8, 0], 0.0, False, 0.3),  # receding
+        ([0.5, 0], [0.0, 0], 0.0, False, -0.5),
+        ([0, 0], [0.8, 0], PI / 2, False, 0.0),  # across the beam
+        ([0, 0.7], [0.0, 0], 0.0, False, 0.0),  # nor is the carrier's own turning seen
+        ([0.5, 0], [0.8, 0], PI, True, -0.8),  # without the carrier
+        ([0.5, 0], [0.0, 0], PI, True, 0.0),
+    ],
+)
+def test_radial_velocities(own, other, heading: float, compensate: bool, speed: float) -> None:
+    state = facing(own, other, heading, motion_compensate=compensate)
+    assert state.velocities[0] == pytest.approx(speed, abs=1e-15)
 
 
 def test_outside_the_band_is_no_measurement() -> None:
@@ -79,8 +75,7 @@ def world_velocity(state: core.State, row: int, drive: str) -> np.ndarray:
     return control[0] * np.array([math.cos(theta), math.sin(theta)])
 
 
-@settings(max_examples=examples(60))
-@given(seed=st.integers(0, 10_000), compensate=st.booleans(), mounted=st.sampled_from([0.0, 0.7, -2.5]))
+@for_all(60, seed=st.integers(0, 10_000), compensate=st.booleans(), mounted=st.sampled_from([0.0, 0.7, -2.5]))
 def test_every_beam_reads_the_projected_velocity(seed: int, compensate: bool, mounted: float) -> None:
     rng = np.random.default_rng(seed)
     sensor = fmcw(37, offset=[0.1, -0.2, mounted], motion_compensate=compensate)
@@ -88,8 +83,7 @@ def test_every_beam_reads_the_projected_velocity(seed: int, compensate: bool, mo
     objects = moving_worlds(rng, [sensor, lidar(37, offset=[0.1, -0.2, mounted], has_velocity=True)], count)
     world, state = scene(*objects, mode=1)
     for _ in range(2):
-        command(state, [0.5, -0.4, 0], *(rng.uniform(-1, 1, 3) for _ in range(count)))
-        core.advance(world, state, 1)
+        apply(world, state, [0.5, -0.4, 0], *(rng.uniform(-1, 1, 3) for _ in range(count)))
         drives = ["diff", *(["diff", "omni", "omni_angular", "steer"][k % 4] for k in range(count))]
         each = np.array([world_velocity(state, row, drive) for row, drive in enumerate(drives)])
         hits, (radial, plain) = state.hits[:37], (state.velocities[:37], state.velocities[37:].reshape(2, 37))
@@ -113,9 +107,7 @@ def test_noise_has_its_streams() -> None:
         fmcw(n, angle_range=0.6, velocity_noise_std=0.3),
     ]
     world, state = scene(robot(control=[0.5, 0, 0], sensors=sensors), wall, seeds=[3], mode=1)
-    for _ in range(2):
-        command(state, [0.5, 0.1])
-        core.advance(world, state, 1)
+    apply(world, state, [0.5, 0.1], steps=2)
     draws = int(state.count[0]) * 3 * n + np.arange(3 * n)
     x, _, theta = state.pose[0]
     for index in (1, 2):
@@ -141,7 +133,7 @@ def test_noise_statistics() -> None:
     error = []
     for _ in range(5):
         core.advance(world, state, 1)
-        error.append([state.ranges - 3.5 / np.cos(state.beam_angles), velocities(state)])
+        error.append([state.ranges - 3.5 / np.cos(state.beam_angles), state.velocities.copy()])
     ranges, speed = np.array(error).transpose(1, 0, 2)
     for sample, std in ((ranges, 0.15), (speed, 0.4)):
         assert sample.mean() == pytest.approx(0.0, abs=4 * std / math.sqrt(sample.size))
@@ -155,8 +147,7 @@ def test_a_batch_is_its_worlds_alone() -> None:
         rng = np.random.default_rng(5)
         sensors = [fmcw(30, noise=True, velocity_noise_std=0.2), lidar(7, has_velocity=True)]
         objects = moving_worlds(rng, sensors, 6)
-        world, state = scene(*objects, seeds=seeds, mode=1)
-        core.advance(world, state, 5, threads=2)
+        state = advanced(5, *objects, seeds=seeds, mode=1, threads=2)
         return state
 
     together = worlds([4, 9, 4])

@@ -6,17 +6,16 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core import oracle
-from tests.core.worlds import DRIVES, PI, obstacle, robot, scene
-from tests.effort import examples
+from tests.core.worlds import DRIVES, PI, advanced, obstacle, robot, scene
+from tests.effort import for_all
 
 
-@settings(max_examples=examples(60))
-@given(
+@for_all(
+    60,
     pose=st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-PI, PI)),
     goal=st.one_of(
         st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
@@ -47,8 +46,7 @@ def test_an_object_that_leaves_its_goal_has_not_arrived() -> None:
 
 def test_waypoints_are_passed_in_order() -> None:
     goals = [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0, 0.5]]
-    world, state = scene(robot(drive=DRIVES["omni"], goals=goals))
-    core.advance(world, state, 100, until_done=True)
+    state = advanced(100, robot(drive=DRIVES["omni"], goals=goals), until_done=True)
     assert state.arrived[0] == 1
     assert state.goals(0) == [[0.0, 1.0, 0.5]]
     kinds = [(kind, x, y) for kind, _, _, _, x, y in state.events(0)]
@@ -65,8 +63,7 @@ def test_a_goal_of_two_numbers_has_no_heading() -> None:
 
 def test_loop_over_waypoints() -> None:
     goals = [[1.0, 0.0], [1.0, 1.0]]
-    world, state = scene(robot(drive=DRIVES["omni"], goals=goals, loop=True))
-    core.advance(world, state, 200)
+    state = advanced(200, robot(drive=DRIVES["omni"], goals=goals, loop=True))
     reached = [(round(x), round(y)) for kind, _, _, _, x, y in state.events(0)]
     assert reached[:6] == [(1, 0), (1, 1)] * 3
 
@@ -74,8 +71,7 @@ def test_loop_over_waypoints() -> None:
 @pytest.mark.parametrize("mode", [0, 1])
 def test_loop_over_one_goal_shuttles_between_goal_and_start(mode: int) -> None:
     goal = [2.0, 0.0, 0.0]
-    world, state = scene(robot(drive=DRIVES["omni"], goals=[goal], loop=True, arrive_mode=mode))
-    core.advance(world, state, 200)
+    state = advanced(200, robot(drive=DRIVES["omni"], goals=[goal], loop=True, arrive_mode=mode))
     reached = [round(x) for _, _, _, _, x, _ in state.events(0)]
     turns = [x for k, x in enumerate(reached) if k == 0 or x != reached[k - 1]]
     assert turns[:5] == [2, 0, 2, 0, 2]

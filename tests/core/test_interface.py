@@ -8,12 +8,25 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
-from tests.core.worlds import DRIVES, circle, command, everything, fmcw, lidar, line, obstacle, polygon, robot, scene
-from tests.effort import examples
+from tests.core.worlds import (
+    DRIVES,
+    advanced,
+    circle,
+    command,
+    decided,
+    everything,
+    fmcw,
+    lidar,
+    line,
+    obstacle,
+    polygon,
+    robot,
+    scene,
+)
+from tests.effort import for_all
 
 pytestmark = pytest.mark.every_python
 
@@ -91,12 +104,11 @@ def test_sizes_are_checked() -> None:
 
 
 def test_equal_behaviors_are_one_group_but_decide_for_themselves() -> None:
-    world, state = scene(
+    state = decided(
         robot(goals=[[5, 0]]),
         robot(pose=[0, 3, 0], goals=[[5, 3]], group=1),
         robot(pose=[0, 6, 0.3], goals=[[5, 6]], behavior=core.DashOptions(angle_tolerance=1.0)),
     )
-    core.decide(world, state)
     assert state.command[:, 0].tolist() == pytest.approx([1.0, 1.0, math.cos(0.3)])
     assert state.command[2, 1] == 0.0
 
@@ -115,8 +127,7 @@ PARTS = [
 ]
 
 
-@settings(max_examples=examples(60))
-@given(st.data())
+@for_all(60, st.data())
 def test_degenerate_input_does_not_crash_or_spread(data: st.DataObject) -> None:
     objects = [robot(pose=[50, 50, 0], goals=[[52, 50]])]
     for _ in range(data.draw(st.integers(1, 6))):
@@ -149,13 +160,13 @@ def test_degenerate_input_does_not_crash_or_spread(data: st.DataObject) -> None:
 
 
 def test_ordinary_worlds_stay_finite() -> None:
-    world, state = scene(
+    state = advanced(
+        300,
         *(robot(drive=d, pose=[k, 0, 0], goals=[[k, 0.0]], loop=True) for k, d in enumerate(DRIVES.values())),
         obstacle(pose=[0, 0, 0], parts=[polygon((0, 0))]),
         robot(pose=[2, 3, 0], parts=[circle(0.0)], sensors=[lidar(1), lidar(0), lidar(2, angle_range=0.0)]),
         mode=1,
     )
-    core.advance(world, state, 300)
     for name, values in everything(state).items():
         assert np.isfinite(values).all() or name == "goal", name
 

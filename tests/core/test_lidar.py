@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core import oracle
 from tests.core.worlds import PI, circle, lidar, line, obstacle, polygon, rectangle, robot, scene
-from tests.effort import examples
+from tests.effort import for_all
 
 SHAPES = [
     circle(0.5),
@@ -26,8 +26,7 @@ SHAPES = [
 ]
 
 
-@settings(max_examples=examples(150))
-@given(st.data())
+@for_all(150, st.data())
 def test_scans_are_those_of_every_beam_against_every_edge(data: st.DataObject) -> None:
     coarse = data.draw(st.booleans())  # poses on a grid: beams meet corners and run along edges
     rng = np.random.default_rng(data.draw(st.integers(0, 10_000)))
@@ -85,47 +84,39 @@ def test_the_first_beam_is_the_rightmost() -> None:
     assert state.hits.tolist() == [1, -1, -1]
 
 
-def test_from_inside_the_exit_is_hit() -> None:
-    for part, distance in ((circle(2.0), 2.0), (rectangle(6, 4), 3.0)):
-        assert look(obstacle(parts=[part])).ranges[0] == pytest.approx(distance, abs=1e-15)
+def thing(*parts: core.Part, x: float = 0.0, **options) -> core.ObjectSpec:
+    return obstacle(pose=[x, 0, 0], parts=list(parts), **options)
 
 
-def test_from_the_boundary_the_near_side_does_not_count() -> None:
-    assert look(obstacle(pose=[3, 0, 0], parts=[rectangle(6, 4)])).ranges[0] == 6.0
-    assert look(obstacle(pose=[2, 0, 0], parts=[circle(2.0)])).ranges[0] == 4.0
+WALL = thing(line((2, -1), (2, 1)))
+LOOKS = {
+    "nothing, not itself": ([], {}, 10.0, -1),
+    "the exit from inside a circle": ([thing(circle(2.0))], {}, 2.0, 1),
+    "the exit from inside a box": ([thing(rectangle(6, 4))], {}, 3.0, 1),
+    "from its boundary not the near side of a box": ([thing(rectangle(6, 4), x=3)], {}, 6.0, 1),
+    "from its boundary not the near side of a circle": ([thing(circle(2.0), x=2)], {}, 4.0, 1),
+    "the nearest end of an edge along the beam": ([thing(line((2, 0), (4, 0)))], {}, 2.0, 1),
+    "the end ahead of an edge on which it stands": ([thing(line((4, 0), (-2, 0)))], {}, 4.0, 1),
+    "what is at the limit": ([WALL], {"range_max": 2.0}, 2.0, 1),
+    "nothing beyond the limit": ([WALL], {"range_max": 1.9}, 1.9, -1),
+    "what is too near, at the lower limit": ([WALL], {"range_min": 3.0}, 3.0, 1),
+    "a robot": ([robot(pose=[2, 0, 0], parts=[circle(0.5)])], {}, 1.5, 1),
+    "nothing unobstructed": ([thing(circle(0.5), x=2, unobstructed=True)], {}, 10.0, -1),
+    "the first of equally near objects": ([thing(circle(), x=20), WALL, WALL], {}, 2.0, 2),
+}
 
 
-def test_a_beam_along_an_edge_meets_its_nearest_end() -> None:
-    assert look(obstacle(parts=[line((2, 0), (4, 0))])).ranges[0] == 2.0
-    assert look(obstacle(parts=[line((4, 0), (-2, 0))])).ranges[0] == 4.0
+@pytest.mark.parametrize("seen", LOOKS)
+def test_a_beam_ahead_hits(seen: str) -> None:
+    objects, options, distance, hit = LOOKS[seen]
+    state = look(*objects, **options)
+    assert (state.ranges[0], state.hits[0]) == (pytest.approx(distance, abs=1e-15), hit)
 
 
 def test_beams_do_not_slip_through_corners() -> None:
     ring = [(2 * math.cos(a), 2 * math.sin(a)) for a in np.linspace(0, 2 * PI, 361)[:-1]]
     state = look(obstacle(parts=[polygon(*ring)]), number=721)
     assert (state.hits == 1).all()
-
-
-def test_range_limits() -> None:
-    wall = obstacle(parts=[line((2, -1), (2, 1))])
-    assert look(wall, range_max=2.0).ranges[0] == 2.0
-    assert look(wall, range_max=2.0).hits[0] == 1  # at the limit is in reach
-    assert look(wall, range_max=1.9).hits[0] == -1
-    near = look(wall, range_min=3.0)
-    assert (near.ranges[0], near.hits[0]) == (3.0, 1)
-
-
-def test_what_is_seen() -> None:
-    ahead = {"pose": [2, 0, 0], "parts": [circle(0.5)]}
-    assert look(obstacle(**ahead)).hits[0] == 1
-    assert look(robot(**ahead)).hits[0] == 1
-    assert look(robot(**ahead, unobstructed=True)).hits[0] == -1
-    assert look().hits[0] == -1  # not itself
-
-
-def test_of_equally_near_objects_the_first_is_hit() -> None:
-    wall = {"parts": [line((2, -1), (2, 1))]}
-    assert look(obstacle(pose=[20, 0, 0]), obstacle(**wall), obstacle(**wall)).hits[0] == 2
 
 
 COMPOUNDS = [

@@ -6,22 +6,20 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core import oracle
-from tests.core.test_orca import options as orca
-from tests.core.test_rvo import rvo
-from tests.core.test_sfm import sfm
 from tests.core.test_shapes import random_polygon
 from tests.core.worlds import (
     DASH,
     DRIVES,
+    advanced,
+    apply,
     assert_identical,
     circle,
-    command,
     everything,
+    kernel,
     lidar,
     line,
     obstacle,
@@ -31,11 +29,11 @@ from tests.core.worlds import (
     rows_of,
     scene,
 )
-from tests.effort import examples
+from tests.effort import for_all
 
 SEEDS = st.integers(0, 2**64 - 1)
 SPEEDS = {"diff": [0], "omni": [0, 1], "omni_angular": [0, 1], "steer": [0], "angular": [0]}
-BEHAVIORS = {"dash": DASH, "orca": orca(), "rvo": rvo(), "sfm": sfm()}
+BEHAVIORS = {"dash": DASH, "orca": kernel("orca"), "rvo": kernel("rvo"), "sfm": kernel("sfm")}
 
 
 def spread(number: int, *, speeds=(0,), attempts: int = 1000, **given: float) -> core.Perturbation:
@@ -55,9 +53,13 @@ def test_draws_are_those_of_the_stream_of_perturbations() -> None:
         assert state.start_step[i] == math.ceil(u[1] * 2.0 / 0.1)
 
 
-@settings(max_examples=examples(60))
-@given(
-    seed=SEEDS, position=st.floats(0, 2), heading=st.floats(0, math.pi), speed=st.floats(0, 0.99), delay=st.floats(0, 9)
+@for_all(
+    60,
+    seed=SEEDS,
+    position=st.floats(0, 2),
+    heading=st.floats(0, math.pi),
+    speed=st.floats(0, 0.99),
+    delay=st.floats(0, 9),
 )
 def test_spreads_are_kept(seed: int, position: float, heading: float, speed: float, delay: float) -> None:
     poses = np.array([[3.0, 3.0, 3.0], [7.0, 7.0, -0.5]])
@@ -94,10 +96,10 @@ def crowd(given=(), seeds=(3,)) -> tuple[core.World, core.State]:
     noisy = core.DiffOptions(noise=True, alpha=[0.03, 0.0, 0.0, 0.03])
     place = random_placement(objects=[1], range_low=[2, 2, -3], range_high=[8, 8, 3], min_distance=0.0, attempts=1000)
     return scene(
-        robot(drive=noisy, behavior=orca(), goals=[[9, 9]], pose=[1, 1, 0], sensors=[lidar(8, noise=True)]),
-        robot(drive=noisy, behavior=orca(), sensors=[lidar(8, noise=True)]),
+        robot(drive=noisy, behavior=kernel("orca"), goals=[[9, 9]], pose=[1, 1, 0], sensors=[lidar(8, noise=True)]),
+        robot(drive=noisy, behavior=kernel("orca"), sensors=[lidar(8, noise=True)]),
         robot(behavior=DASH, wander=True, pose=[8, 1, 0]),
-        robot(behavior=rvo(), goals=[[1, 9]], pose=[9, 1, 2]),
+        robot(behavior=kernel("rvo"), goals=[[1, 9]], pose=[9, 1, 2]),
         obstacle(pose=[5, 5, 0.5], parts=[random_polygon()]),
         seeds=seeds,
         placements=[place],
@@ -134,8 +136,7 @@ def test_other_draws_stay_as_they_are() -> None:
     np.testing.assert_array_equal(lone.goal, late.goal)
 
 
-@settings(max_examples=examples(40))
-@given(seed=SEEDS)
+@for_all(40, seed=SEEDS)
 def test_nothing_overlaps_and_nothing_leaves_the_world(seed: int) -> None:
     parts = [[circle(0.3)], [rectangle(0.8, 0.4)], [rectangle(1.0, 0.2)], [circle(0.2)]]
     bodies = [robot(parts=parts[k % 4], pose=[0.6 + 0.95 * (k % 5), 0.6 + 0.95 * (k // 5), 0.0]) for k in range(20)]
@@ -227,8 +228,7 @@ def test_commands_do_not_move_what_waits() -> None:
     for step in range(int(state.start_step[0]) + 1):
         assert state.pose[0, 0] == 2
         assert state.pose[1, 0] == pytest.approx(2 + 0.1 * step)
-        command(state, [1.0, 0.0], [1.0, 0.0])
-        core.advance(world, state, 1)
+        apply(world, state, [1.0, 0.0], [1.0, 0.0])
     assert state.pose[0, 0] == pytest.approx(2.1)
 
 
@@ -251,8 +251,7 @@ def test_limits_of_speeds_change_and_those_of_turning_stay(drive: str) -> None:
     for control, limits in ((9.0, (1.0, 0.8, 0.9)), (-9.0, (-0.5, -0.6, -0.7))):
         world, state = scene(body, seeds=range(8), perturbations=given)
         assert len(set(state.pace.tolist())) == 8
-        command(state, *[[control] * 3] * 8)
-        core.advance(world, state, 1)
+        apply(world, state, *[[control] * 3] * 8)
         for row in range(8):
             expected = [v * (state.pace[row] if c in SPEEDS[drive] else 1.0) for c, v in enumerate(limits)]
             used = 2 if drive in ("diff", "omni", "steer") else 3
@@ -263,7 +262,13 @@ def test_limits_of_speeds_change_and_those_of_turning_stay(drive: str) -> None:
 
 @pytest.mark.parametrize(
     ("behavior", "speed"),
-    [(DASH, 2.0), (orca(), 2.0), (orca(maxSpeed=0.8), 0.8), (rvo(vxmax=0.8, vymax=0.8), 0.8), (sfm(vmax=0.8), 0.8)],
+    [
+        (DASH, 2.0),
+        (kernel("orca"), 2.0),
+        (kernel("orca", maxSpeed=0.8), 0.8),
+        (kernel("rvo", vxmax=0.8, vymax=0.8), 0.8),
+        (kernel("sfm", vmax=0.8), 0.8),
+    ],
 )
 def test_behaviors_keep_to_their_changed_speed(behavior: object, speed: float) -> None:
     """Also where an option of the behavior, not the limit of the object, decides how fast it is."""
@@ -272,15 +277,13 @@ def test_behaviors_keep_to_their_changed_speed(behavior: object, speed: float) -
         drive=drive, behavior=behavior, goals=[[500, 5]], pose=[1, 5, 0], vel_max=[2, 2, 0], vel_min=[-2, -2, 0]
     )
     given = [spread(0, speed=0.3, speeds=[0, 1])]
-    world, state = scene(body, seeds=range(6), perturbations=given, extent=(0, 0, 600, 10))
-    core.advance(world, state, 100)
+    state = advanced(100, body, seeds=range(6), perturbations=given, extent=(0, 0, 600, 10))
     np.testing.assert_allclose(state.twist[:, 0], speed * state.pace, atol=0.06 if speed < 2 else 1e-9)
     if speed == 0.8:
         assert np.corrcoef(state.twist[:, 0], state.pace)[0, 1] > 0.95
 
 
-@settings(max_examples=examples(20))
-@given(seeds=st.lists(SEEDS, min_size=2, max_size=5), threads=st.integers(1, 3))
+@for_all(20, seeds=st.lists(SEEDS, min_size=2, max_size=5), threads=st.integers(1, 3))
 def test_a_world_of_a_batch_is_that_world_alone(seeds, threads: int) -> None:
     given = [spread(i, position=0.3, heading=0.4, speed=0.2, delay=1.5) for i in (0, 2, 3, 4)]
     world, state = crowd(given, seeds)
@@ -321,9 +324,7 @@ def passing(speed: float, *, y: float = 5.0, **given: object) -> tuple[core.Worl
     options = {"pose": [1, y, 0], "goals": [[5, 5]], "behavior": None, "vel_max": [9, 9, 9], "history": True, **given}
     history = options.pop("history")
     world, state = scene(robot(**options), history=history)
-    for _ in range(30):
-        command(state, [speed, 0.0])
-        core.advance(world, state, 1)
+    apply(world, state, [speed, 0.0], steps=30)
     return world, state
 
 

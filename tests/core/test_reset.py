@@ -1,12 +1,14 @@
-"""Reset, reseed, scenes and noise episodes."""
+"""Reset, reseed, scenes and noise episodes; the record of a world; the streams of draws."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core.worlds import (
+    advanced,
     assert_identical,
     circle,
     everything,
@@ -17,6 +19,7 @@ from tests.core.worlds import (
     rows_of,
     scene,
 )
+from tests.effort import for_all
 
 ALL = np.ones(1, np.uint8)
 NOISY = core.DiffOptions(noise=True, alpha=[0.03, 0.01, 0.01, 0.03])
@@ -153,10 +156,9 @@ def test_events_and_history_start_over() -> None:
 
 
 def test_history_skips_steps_without_motion() -> None:
-    world, state = scene(
-        robot(goals=[[9, 0]], extra=[1.0, 2.0]), obstacle(pose=[1, 0, 0], parts=[circle(0.3)]), history=True
+    state = advanced(
+        20, robot(goals=[[9, 0]], extra=[1.0, 2.0]), obstacle(pose=[1, 0, 0], parts=[circle(0.3)]), history=True
     )
-    core.advance(world, state, 20)
     assert state.stopped[0] == 1
     track = state.trajectory(0)
     assert track.shape == (5, 5)
@@ -165,3 +167,100 @@ def test_history_skips_steps_without_motion() -> None:
     assert state.trajectory(1).shape == (0, 5)
     with pytest.raises(ValueError, match="history"):
         scene(robot())[1].trajectory(0)
+
+
+pytestmark = pytest.mark.every_python
+
+
+def test_a_log_holds_what_a_rollout_returns() -> None:
+    world, state = crowd([4])
+    movers = list(range(0, world.objects, 2))
+    log = core.Log(world, movers, 2, True)
+    log.attach(state)
+    start = state.pose.copy(), state.control.copy()
+    log.add(state)
+    trace = core.rollout(world, state, 30, returns=True)
+    assert (log.first, log.rows) == (0, 31)
+    np.testing.assert_array_equal(log.pose, np.concatenate([start[0][None], trace.pose])[:, movers])
+    control = np.concatenate([start[1][None], trace.control])[:, movers, :2]
+    np.testing.assert_array_equal(log.control, control.astype(np.float32))
+    for rows, values, whole in (
+        (log.goal_rows, log.goal, trace.goal),
+        (log.flag_rows, log.flags, trace.arrived + 2 * trace.collided + 4 * trace.stopped),
+        (log.scan_rows, log.ranges, trace.returns),
+    ):
+        held = np.repeat(values, np.diff([*rows, 31]), axis=0)
+        np.testing.assert_array_equal(held[1:], whole)
+    assert len(log.goal_rows) < 31
+
+
+def test_what_was_looked_at_stays_when_the_log_goes_on() -> None:
+    world, state = scene(robot(goals=[[9, 0]]))
+    log = core.Log(world, [0], 2, False)
+    log.attach(state)
+    core.advance(world, state, 3)
+    pose, goal = log.pose, log.goal
+    kept = pose.copy(), goal.copy()
+    core.advance(world, state, 50)
+    log.clear()
+    core.advance(world, state, 50)
+    np.testing.assert_array_equal(pose, kept[0])
+    np.testing.assert_array_equal(goal, kept[1])
+    assert (log.first, log.rows) == (54, 50)
+    assert log.goal_rows.tolist() == [0]
+
+
+def test_a_log_ends_when_it_is_detached() -> None:
+    world, state = scene(robot(goals=[[9, 0]]))
+    log = core.Log(world, [0], 2, True)
+    with pytest.raises(ValueError, match="not attached"):
+        log.add(state)
+    log.attach(state)
+    core.advance(world, state, 3)
+    log.detach(state)
+    core.advance(world, state, 3)
+    assert log.rows == 3
+    assert log.ranges.shape == (0, 0)
+
+
+def test_only_the_first_world_is_written_down() -> None:
+    world, state = crowd([4, 5, 6])
+    log = core.Log(world, [0], 2, False)
+    log.attach(state)
+    core.advance(world, state, 10, threads=3)
+    alone_world, alone = crowd([4])
+    trace = core.rollout(alone_world, alone, 10)
+    np.testing.assert_array_equal(log.pose[:, 0], trace.pose[:, 0])
+
+
+def test_logs_fit_their_world() -> None:
+    world, state = scene(robot())
+    other_world, _ = scene(robot(), robot(pose=[5, 5, 0]))
+    with pytest.raises(ValueError, match="another world"):
+        core.Log(other_world, [0, 1], 2, False).attach(state)
+    with pytest.raises(IndexError):
+        core.Log(world, [3], 2, False)
+    with pytest.raises(ValueError, match="three"):
+        core.Log(world, [0], 4, False)
+
+
+WORD = st.integers(0, 2**64 - 1)
+HALF = st.integers(0, 2**32 - 1)
+
+
+@for_all(50, seed=WORD, scene=HALF, noise=HALF, stream=WORD, number=WORD, draw=WORD)
+def test_blocks_are_those_of_numpy(seed: int, scene: int, noise: int, stream: int, number: int, draw: int) -> None:
+    counter = draw | number << 64 | stream << 128
+    before = (counter - 1) % 2**256  # NumPy counts before it draws
+    words = [(before >> 64 * k) & (2**64 - 1) for k in range(4)]
+    key = np.array([seed, scene << 32 | noise], dtype=np.uint64)
+    expected = np.random.Philox(counter=np.array(words, dtype=np.uint64), key=key).random_raw(4)
+    assert core.random_bits(seed, scene, noise, stream, number, draw) == tuple(int(w) for w in expected)
+
+
+def test_streams_have_names() -> None:
+    assert sorted(core.STREAMS.values()) == list(range(len(core.STREAMS)))
+    assert set(core.STREAMS) == {
+        "placement", "shape", "goal", "motion", "sensor", "behavior", "planner", "map", "user",
+        "perturbation", "policy", "task",
+    }  # fmt: skip

@@ -14,30 +14,15 @@ import irsim._core as core
 from tests.core import crowd_oracle as oracle
 from tests.core.crowds import Crowd
 from tests.core.oracle import rotation
-from tests.core.worlds import DRIVES, PI, circle, line, obstacle, rectangle, robot, scene
-from tests.effort import examples
+from tests.core.worlds import DRIVES, PI, advanced, circle, decided, kernel, line, obstacle, rectangle, robot, scene
+from tests.effort import for_all
 
-DEFAULTS: dict[str, Any] = {
-    "vxmax": 1.5,
-    "vymax": 1.5,
-    "acce": 1.0,
-    "factor": 1.0,
-    "mode": "rvo",
-    "neighbor_threshold": 3.0,
-    "sidestep": 0.0,
-    "turning": "fixed",
-    "keep_gap": False,
-}
 TURNING = {"tolerance": 0.1, "guarantee_time": 0.2, "max_rate": 1.5}
-
-
-def rvo(**overrides: Any) -> core.RvoOptions:
-    return core.RvoOptions(**{**DEFAULTS, **overrides})
 
 
 def agent(**overrides: Any) -> core.ObjectSpec:
     return robot(
-        **{"drive": DRIVES["omni"], "behavior": rvo(), "vel_max": [1.5] * 3, "vel_min": [-1.5] * 3, **overrides}
+        **{"drive": DRIVES["omni"], "behavior": kernel("rvo"), "vel_max": [1.5] * 3, "vel_min": [-1.5] * 3, **overrides}
     )
 
 
@@ -58,11 +43,11 @@ def expected(
 
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("mode", ["rvo", "hrvo", "vo"])
-@settings(max_examples=examples(8))
-@given(seed=st.integers(0, 2**32 - 1))
+@for_all(8, seed=st.integers(0, 2**32 - 1))
 def test_the_best_of_all_samples(drive: str, mode: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    options = rvo(
+    options = kernel(
+        "rvo",
         mode=mode,
         vxmax=rng.uniform(0.2, 0.8),
         vymax=rng.uniform(0.2, 0.8),
@@ -84,41 +69,42 @@ def test_the_best_of_all_samples(drive: str, mode: str, seed: int) -> None:
 
 
 def test_alone_one_takes_the_sample_nearest_to_the_desired_velocity() -> None:
-    world, state = scene(agent(goals=[[3.0, 4.0]]))
-    core.decide(world, state)
+    state = decided(agent(goals=[[3.0, 4.0]]))
     np.testing.assert_allclose(state.command[0, :2], [0.9, 0.95], atol=1e-9)  # of ..., 0.85, 0.9, 0.95
 
 
 @pytest.mark.parametrize("mode", ["rvo", "hrvo", "vo"])
 @pytest.mark.parametrize("drive", DRIVES)
 def test_a_head_on_pair_passes(drive: str, mode: str) -> None:
-    behavior = rvo(mode=mode, acce=0.5, neighbor_threshold=6.0)
+    behavior = kernel("rvo", mode=mode, acce=0.5, neighbor_threshold=6.0)
     limits = {"vel_max": [1.0, 1.0, 1.0], "vel_min": [-1.0] * 3, "behavior": behavior, "goal_threshold": 0.3}
-    world, state = scene(
+    state = advanced(
+        400,
         agent(drive=DRIVES[drive], pose=[0.0, 0.02, 0.0], goals=[[8.0, 0.0]], **limits),
         agent(drive=DRIVES[drive], pose=[8.0, 0.0, PI], goals=[[0.0, 0.0]], **limits),
+        until_done=True,
     )
-    core.advance(world, state, 400, until_done=True)
     assert not state.collided.any()
     assert state.arrived.all()
 
 
 def test_a_circle_in_the_way_is_gone_round() -> None:
-    world, state = scene(agent(goals=[[6.0, 0.0]]), obstacle(parts=[circle(0.5)], pose=[3.0, 0.1, 0.0]))
-    core.advance(world, state, 200, until_done=True)
+    state = advanced(
+        200, agent(goals=[[6.0, 0.0]]), obstacle(parts=[circle(0.5)], pose=[3.0, 0.1, 0.0]), until_done=True
+    )
     assert state.arrived[0]
     assert not state.collided.any()
 
 
 @pytest.mark.parametrize("drive", DRIVES)
 def test_a_wall_ahead_stops_if_there_is_no_way_past(drive: str) -> None:
-    world, state = scene(
+    state = advanced(
+        200,
         agent(drive=DRIVES[drive], goals=[[6.0, 0.0]]),
         obstacle(parts=[rectangle(0.2, 7.9)], pose=[3.0, 0.0, 0.0]),
         obstacle(parts=[line((-2.0, -4.0), (4.0, -4.0), (4.0, 4.0), (-2.0, 4.0), (-2.0, -4.0))]),
         mode=1,
     )
-    core.advance(world, state, 200)
     assert not state.collided[0]
     assert 1.0 < state.pose[0, 0] < 2.8
     assert abs(state.pose[0, 1]) < 3.8
@@ -127,11 +113,11 @@ def test_a_wall_ahead_stops_if_there_is_no_way_past(drive: str) -> None:
 @pytest.mark.parametrize("drive", DRIVES)
 def test_along_a_wall_one_drives_at_full_speed(drive: str) -> None:
     """As near as the padding allows: a wall blocks only velocities that lead into it."""
-    world, state = scene(
+    state = advanced(
+        40,
         agent(drive=DRIVES[drive], pose=[0.0, 0.0, 0.0], goals=[[8.0, 0.0]], control=[1.0, 0.0, 0.0]),
         obstacle(parts=[rectangle(12.0, 0.2)], pose=[3.0, 0.41, 0.0]),
     )
-    core.advance(world, state, 40)
     assert state.pose[0, 0] > 4.5
     assert not state.collided.any()
 
@@ -158,8 +144,7 @@ def test_goals_in_a_closed_room_of_rectangles_are_reached(drive: str, seed: int)
         )
         for start, goal in zip(starts, goals, strict=True)
     ]
-    world, state = scene(*movers, *room(6.0, 6.0))
-    core.advance(world, state, 600, until_done=True)
+    state = advanced(600, *movers, *room(6.0, 6.0), until_done=True)
     assert not state.collided[:4].any()
     assert state.arrived[:4].all()
 
@@ -189,47 +174,29 @@ def test_walls_are_never_run_into(drive: str, seed: int) -> None:
 
 
 def test_faster_than_the_limits_one_brakes_to_them() -> None:
-    world, state = scene(agent(control=[1.5, 0.0, 0.0], behavior=rvo(vxmax=0.4, acce=0.2), goals=[[9.0, 0.0]]))
-    core.decide(world, state)
+    state = decided(agent(control=[1.5, 0.0, 0.0], behavior=kernel("rvo", vxmax=0.4, acce=0.2), goals=[[9.0, 0.0]]))
     np.testing.assert_allclose(state.command[0, :2], [0.4, 0.0], atol=1e-9)
 
 
 def test_a_turner_without_anybody_around_turns_in_place() -> None:
-    behavior = rvo(acce=0.001)
-    world, state = scene(agent(drive=DRIVES["diff"], behavior=behavior, goals=[[-5.0, 0.1]]))
-    core.decide(world, state)
+    behavior = kernel("rvo", acce=0.001)
+    state = decided(agent(drive=DRIVES["diff"], behavior=behavior, goals=[[-5.0, 0.1]]))
     np.testing.assert_allclose(state.command[0], [0.0, 1.5, 0.0])
 
 
 @pytest.mark.parametrize("far", [2.0, 9.0])
 @pytest.mark.parametrize("thing", [line((0.0, -1.0), (0.0, 1.0)), rectangle(0.2, 2.0), circle(1.0)])
 def test_things_are_seen_within_the_threshold_however_they_are_written(thing: Any, far: float) -> None:
-    world, state = scene(agent(goals=[[20.0, 0.0]]), obstacle(parts=[thing], pose=[far, 0.1, 0.0]))
-    core.decide(world, state)
+    state = decided(agent(goals=[[20.0, 0.0]]), obstacle(parts=[thing], pose=[far, 0.1, 0.0]))
     assert (abs(state.command[0, :2] - [0.95, 0.0]).max() < 1e-9) == (far > 3.0)
 
 
 def test_shown_are_those_of_the_role_targeted() -> None:
     for roles, moves in ((0, False), (1, True), (2, False)):
-        world, state = scene(
+        state = decided(
             agent(goals=[[6.0, 0.0]], target_roles=roles), obstacle(parts=[circle(0.5)], pose=[1.5, 0.0, 0.0])
         )
-        core.decide(world, state)
         assert (abs(state.command[0, 1]) < 1e-9) == moves
-
-
-def test_a_batch_equals_its_worlds_one_by_one() -> None:
-    rng = np.random.default_rng(5)
-    movers = [
-        agent(pose=[*rng.uniform(0, 9, 2), rng.uniform(-3, 3)], drive=DRIVES["diff"], goals=[rng.uniform(0, 9, 2)])
-        for _ in range(50)
-    ]
-    world, state = scene(*movers, *room(9.0, 9.0), seeds=[1, 2, 3], mode=1)
-    core.advance(world, state, 20, threads=2)
-    alone_world, alone = scene(*movers, *room(9.0, 9.0), seeds=[2], mode=1)
-    core.advance(alone_world, alone, 20)
-    for k in range(3):
-        assert state.pose[54 * k : 54 * (k + 1)].tobytes() == alone.pose.tobytes()
 
 
 def test_shifting_the_world_shifts_the_motion() -> None:

@@ -7,47 +7,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core import crowd_oracle as oracle
 from tests.core.crowds import Crowd
-from tests.core.oracle import rotation
-from tests.core.worlds import DRIVES, circle, line, obstacle, rectangle, robot, scene
-from tests.effort import examples
-
-DEFAULTS: dict[str, Any] = {
-    "vmax": 1.5,
-    "neighbor_threshold": 10.0,
-    "relaxation_time": 0.5,
-    "force_factor_desired": 1.0,
-    "force_factor_social": 2.1,
-    "force_factor_obstacle": 10.0,
-    "sigma_obstacle": 0.8,
-    "lambda_importance": 2.0,
-    "gamma": 0.35,
-    "n_angular": 2.0,
-    "n_velocity": 3.0,
-    "safety_radius": 0.0,
-    "social_groups": None,
-    "force_factor_coherence": 2.0,
-    "force_factor_group_repulsion": 1.0,
-    "group_repulsion_threshold": None,
-    "sidestep": 0.0,
-    "keep_gap": False,
-    "force_factor_gaze": 3.0,
-    "gaze_vision_angle": 90.0,
-}
-
-
-def sfm(**overrides: Any) -> core.SfmOptions:
-    return core.SfmOptions(**{**DEFAULTS, **overrides})
+from tests.core.worlds import DRIVES, advanced, circle, decided, kernel, line, obstacle, rectangle, robot
+from tests.effort import for_all
 
 
 def walker(**overrides: Any) -> core.ObjectSpec:
     return robot(
-        **{"drive": DRIVES["omni"], "behavior": sfm(), "vel_max": [2.0] * 3, "vel_min": [-2.0] * 3, **overrides}
+        **{"drive": DRIVES["omni"], "behavior": kernel("sfm"), "vel_max": [2.0] * 3, "vel_min": [-2.0] * 3, **overrides}
     )
 
 
@@ -56,11 +27,11 @@ def turning(crowd: Crowd, i: int) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=examples(60))
-@given(seed=st.integers(0, 2**32 - 1))
+@for_all(60, seed=st.integers(0, 2**32 - 1))
 def test_each_object_alone(drive: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    options = sfm(
+    options = kernel(
+        "sfm",
         neighbor_threshold=rng.uniform(1, 8),
         lambda_importance=rng.uniform(0, 3),
         gamma=rng.uniform(0.1, 1),
@@ -78,13 +49,13 @@ def test_each_object_alone(drive: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=examples(60))
-@given(seed=st.integers(0, 2**32 - 1))
+@for_all(60, seed=st.integers(0, 2**32 - 1))
 def test_members_of_a_group(drive: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
     order = rng.permutation(5).tolist()
     groups = [order[: rng.integers(1, 4)], order[3:]]
-    options = sfm(
+    options = kernel(
+        "sfm",
         social_groups=groups,
         group_repulsion_threshold=None if rng.random() < 0.5 else rng.uniform(0, 3),
         gaze_vision_angle=rng.uniform(10, 180),
@@ -104,31 +75,29 @@ def test_members_of_a_group(drive: str, seed: int) -> None:
 
 
 def test_alone_one_is_only_pulled_to_the_goal() -> None:
-    world, state = scene(walker(goals=[[3.0, 4.0]], control=[0.2, 0.0, 0.0]))
-    core.decide(world, state)
+    state = decided(walker(goals=[[3.0, 4.0]], control=[0.2, 0.0, 0.0]))
     desired = 1.5 * np.array([0.6, 0.8])
     np.testing.assert_allclose(state.command[0, :2], [0.2, 0.0] + 0.1 * (desired - [0.2, 0.0]) / 0.5, atol=1e-12)
 
 
 def test_alone_without_a_goal_one_comes_to_rest() -> None:
-    world, state = scene(walker(control=[1.0, 0.0, 0.0]))
-    core.advance(world, state, 60)
+    state = advanced(60, walker(control=[1.0, 0.0, 0.0]))
     assert np.abs(state.control).max() < 1e-5
 
 
 def test_at_top_speed_the_pull_is_gone() -> None:
-    world, state = scene(walker(goals=[[9.0, 0.0]], control=[1.5, 0.0, 0.0]))
-    core.decide(world, state)
+    state = decided(walker(goals=[[9.0, 0.0]], control=[1.5, 0.0, 0.0]))
     np.testing.assert_allclose(state.command[0], [1.5, 0.0, 0.0], atol=1e-12)
 
 
 @pytest.mark.parametrize("drive", ["omni", "diff", "omni_angular"])
 def test_a_pair_that_is_nearly_head_on_passes(drive: str) -> None:
-    world, state = scene(
+    state = advanced(
+        300,
         walker(drive=DRIVES[drive], parts=[circle(0.15)], pose=[0.0, 0.05, 0.0], goals=[[8.0, 0.05]]),
         walker(drive=DRIVES[drive], parts=[circle(0.15)], pose=[8.0, -0.05, math.pi], goals=[[0.0, -0.05]]),
+        until_done=True,
     )
-    core.advance(world, state, 300, until_done=True)
     assert state.arrived.all()
     assert not state.collided.any()
 
@@ -137,8 +106,7 @@ def test_a_pair_that_is_nearly_head_on_passes(drive: str) -> None:
 def test_a_wall_before_the_goal_stops(wall: str) -> None:
     parts = {"line": line((3.0, -3.0), (3.0, 3.0)), "box": rectangle(1.0, 6.0)}[wall]
     pose = [0.0, 0.0, 0.0] if wall == "line" else [3.5, 0.0, 0.0]
-    world, state = scene(walker(goals=[[2.5, 0.0]]), obstacle(parts=[parts], pose=pose))
-    core.advance(world, state, 200)
+    state = advanced(200, walker(goals=[[2.5, 0.0]]), obstacle(parts=[parts], pose=pose))
     assert not state.collided.any()
     assert 1.0 < state.pose[0, 0] < 2.8
     assert abs(state.control[0]).max() < 1e-3
@@ -146,8 +114,7 @@ def test_a_wall_before_the_goal_stops(wall: str) -> None:
 
 def test_each_corner_of_an_outline_counts_once() -> None:
     corner = np.array([1.0, 1.0])
-    world, state = scene(walker(), obstacle(parts=[rectangle(2.0, 2.0)], pose=[2.0, 2.0, 0.0]))
-    core.decide(world, state)
+    state = decided(walker(), obstacle(parts=[rectangle(2.0, 2.0)], pose=[2.0, 2.0, 0.0]))
     distance = math.sqrt(2.0)
     force = -10.0 * math.exp(-(distance - 0.3) / 0.8) * corner / distance
     np.testing.assert_allclose(state.command[0, :2], 0.1 * force, atol=1e-12)
@@ -156,44 +123,5 @@ def test_each_corner_of_an_outline_counts_once() -> None:
 def test_what_is_unobstructed_pushes_only_if_it_is_a_line_or_a_circle() -> None:
     kinds = {"box": rectangle(1.0, 1.0), "circle": circle(0.5), "line": line((0.0, -1.0), (0.0, 1.0))}
     for name, part in kinds.items():
-        world, state = scene(walker(), obstacle(parts=[part], pose=[1.0, 0.3, 0.0], unobstructed=True))
-        core.decide(world, state)
+        state = decided(walker(), obstacle(parts=[part], pose=[1.0, 0.3, 0.0], unobstructed=True))
         assert bool(state.command[0].any()) == (name != "box")
-
-
-@settings(max_examples=examples(40))
-@given(seed=st.integers(0, 2**32 - 1), angle=st.floats(-3, 3), shift=st.tuples(st.floats(-9, 9), st.floats(-9, 9)))
-def test_turning_and_shifting_the_world_turns_and_shifts_the_motion(seed: int, angle: float, shift: tuple) -> None:
-    rng = np.random.default_rng(seed)
-    places, goals = rng.uniform(0, 6, (2, 6, 2))
-    headings = rng.uniform(-3, 3, 6)
-
-    def build(turn: float, move: np.ndarray) -> tuple[core.World, core.State]:
-        def placed(p: np.ndarray) -> list[float]:
-            return (rotation(turn) @ p + move).tolist()
-
-        people = [
-            walker(
-                drive=DRIVES["omni_angular"], pose=[*placed(places[k]), headings[k] + turn], goals=[placed(goals[k])]
-            )
-            for k in range(5)
-        ]
-        box = obstacle(parts=[rectangle(1.0, 0.5)], pose=[*placed(places[5]), headings[5] + turn])
-        return scene(*people, box, mode=1)
-
-    plain, turned = build(0.0, np.zeros(2)), build(angle, np.array(shift))
-    for world, state in (plain, turned):
-        core.advance(world, state, 5)
-    expected = plain[1].pose[:5, :2] @ rotation(angle).T + shift
-    np.testing.assert_allclose(turned[1].pose[:5, :2], expected, atol=1e-7)
-
-
-def test_a_batch_equals_its_worlds_one_by_one() -> None:
-    rng = np.random.default_rng(5)
-    people = [walker(pose=[*rng.uniform(0, 9, 2), 0.0], goals=[rng.uniform(0, 9, 2).tolist()]) for _ in range(40)]
-    world, state = scene(*people, seeds=[1, 2, 3], mode=1)
-    core.advance(world, state, 20, threads=2)
-    alone_world, alone = scene(*people, seeds=[2], mode=1)
-    core.advance(alone_world, alone, 20)
-    for k in range(3):
-        assert state.pose[40 * k : 40 * (k + 1)].tobytes() == alone.pose.tobytes()

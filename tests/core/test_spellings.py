@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 import shapely
 import yaml
-from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
 import irsim
 from irsim.env import Env
 from irsim.scenario.read import read
-from tests.effort import examples
+from tests.core.worlds import assert_success
+from tests.effort import for_all
 
 BEHAVIORS = ["rvo", "sfm", "orca", "avocado", "footprint_orca"]
 DRIVES = ["diff", "omni", "omni_angular", "acker"]
@@ -70,6 +70,14 @@ def scene(behavior: str, drive: str, shape: dict[str, Any], pose: list[float], s
     return {"world": {"width": 20, "height": 20, "time_limit": 90}, "robot": robot, "obstacle": obstacle}
 
 
+def with_map(data: dict[str, Any], picture: np.ndarray, folder: Path) -> dict[str, Any]:
+    """The scene with a picture of its walls in place of obstacles."""
+    Image.fromarray(picture).save(folder / "map.png")
+    mapped = {**data, "world": {**data["world"], "obstacle_map": str(folder / "map.png")}}
+    del mapped["obstacle"]
+    return mapped
+
+
 def trace(data: dict[str, Any], steps: int) -> np.ndarray:
     """(steps, 3) poses of the robot."""
     env = Env(read(data).scenario, headless=True, seed=0)
@@ -89,8 +97,7 @@ def assert_equal(data: list[dict[str, Any]], steps: int) -> None:
 
 @pytest.mark.parametrize("behavior", BEHAVIORS)
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=examples(8))
-@given(seed=st.integers(0, 2**32 - 1))
+@for_all(8, seed=st.integers(0, 2**32 - 1))
 def test_every_spelling_of_a_box_gives_the_same_motion(behavior: str, drive: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
     pose = [*rng.uniform([6, 9], [8, 11]).tolist(), float(rng.uniform(-math.pi, math.pi))]
@@ -100,8 +107,7 @@ def test_every_spelling_of_a_box_gives_the_same_motion(behavior: str, drive: str
 
 @pytest.mark.parametrize("behavior", BEHAVIORS)
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=examples(8))
-@given(seed=st.integers(0, 2**32 - 1))
+@for_all(8, seed=st.integers(0, 2**32 - 1))
 def test_every_spelling_of_a_convex_outline_gives_the_same_motion(behavior: str, drive: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
     hull: Any = shapely.MultiPoint(rng.uniform(-1.5, 1.5, (8, 2))).convex_hull
@@ -117,11 +123,8 @@ def test_every_spelling_of_a_convex_outline_gives_the_same_motion(behavior: str,
 def test_a_block_of_a_map_is_a_box(behavior: str, tmp_path: Path) -> None:
     picture = np.full((200, 200), 255, dtype=np.uint8)
     picture[86:106, 90:110] = 0  # 2 m at (10, 10.4); the first row is the top
-    Image.fromarray(picture).save(tmp_path / "block.png")
     boxed = scene(behavior, "diff", {"name": "rectangle", "length": 2, "width": 2}, [10, 10.4, 0])
-    mapped = {**boxed, "world": {**boxed["world"], "obstacle_map": str(tmp_path / "block.png")}}
-    del mapped["obstacle"]
-    assert_equal([boxed, mapped], 120)
+    assert_equal([boxed, with_map(boxed, picture, tmp_path)], 120)
 
 
 @pytest.mark.parametrize("local", ["dash", *BEHAVIORS])
@@ -129,25 +132,18 @@ def test_a_block_of_a_map_is_a_box(behavior: str, tmp_path: Path) -> None:
 def test_follow_goes_round_a_block_of_a_map_as_round_a_box(local: str, start: float, tmp_path: Path) -> None:
     picture = np.full((400, 400), 255, dtype=np.uint8)  # cells of 5 cm: not the planner's
     picture[172:206, 180:220] = 0  # 2 m by 1.7 m at (10, 10.55); the first row is the top
-    Image.fromarray(picture).save(tmp_path / "block.png")
     boxes = [scene("follow", "diff", shape, [10, 10.55, 0], start) for shape in spellings_of_a_box(2, 1.7)]
     for data in boxes:
         data["robot"]["behavior"]["local"] = local
-    mapped = {**boxes[0], "world": {**boxes[0]["world"], "obstacle_map": str(tmp_path / "block.png")}}
-    del mapped["obstacle"]
-    assert_equal([*boxes, mapped], 130)
+    assert_equal([*boxes, with_map(boxes[0], picture, tmp_path)], 130)
 
 
 def test_follow_finds_the_way_that_only_the_cells_of_a_map_show(tmp_path: Path) -> None:
     picture = np.full((600, 600), 255, dtype=np.uint8)  # cells of 3.3 cm
     picture[:, 300:330] = 0
     picture[300:313, 300:330] = 255  # a way of 43 cm through a wall of 1 m; the robot is 40 cm wide
-    Image.fromarray(picture).save(tmp_path / "slit.png")
     data = scene("follow", "omni", {"name": "circle", "radius": 1}, [0, 0, 0])
-    del data["obstacle"]
-    data["world"]["obstacle_map"] = str(tmp_path / "slit.png")
-    result = irsim.run(text=yaml.safe_dump(data), seed=0)
-    assert result.outcome == "success", result.reason
+    assert_success(yaml.safe_dump(with_map(data, picture, tmp_path)), seed=0)
 
 
 @pytest.mark.parametrize("behavior", BEHAVIORS)
@@ -171,10 +167,7 @@ def test_walls_on_decimal_places_give_the_same_motion_to_the_bit(
     picture = np.full((400, 400), 255, dtype=np.uint8)
     picture[400 - 190 : 400 - 182, 180:220] = 0
     picture[400 - 222 : 400 - 182, 180:188] = 0
-    Image.fromarray(picture).save(tmp_path / "ell.png")
-    mapped = {**scenes[0], "world": {**scenes[0]["world"], "obstacle_map": str(tmp_path / "ell.png")}}
-    del mapped["obstacle"]
-    first, *others = (trace(one, 200) for one in [*scenes, mapped])
+    first, *others = (trace(one, 200) for one in [*scenes, with_map(scenes[0], picture, tmp_path)])
     for k, other in enumerate(others, start=1):
         np.testing.assert_array_equal(other, first, err_msg=f"spelling {k}")
 
@@ -191,8 +184,7 @@ def test_walls_on_decimal_places_give_the_same_motion_to_the_bit(
 )
 def test_boxes_are_passed(behavior: str, drive: str, size: float, offset: float) -> None:
     for shape in spellings_of_a_box(size, size)[::3]:
-        result = irsim.run(text=yaml.safe_dump(scene(behavior, drive, shape, [10, 10 + offset, 0])), seed=0)
-        assert result.outcome == "success"
+        assert_success(yaml.safe_dump(scene(behavior, drive, shape, [10, 10 + offset, 0])), seed=0)
 
 
 @pytest.mark.parametrize("behavior", ["rvo", "orca", "avocado"])

@@ -16,7 +16,7 @@ from PIL import Image
 
 import irsim
 from irsim.common.event_kinds import BETWEEN_STEPS
-from tests.core.swept_oracle import SLACK, Body, clearance, verdict
+from tests.core.test_swept_oracle import SLACK, Body, clearance, verdict
 
 Floats = NDArray[np.float64]
 SIZE = 8.0
@@ -43,74 +43,50 @@ class Outline(NamedTuple):
         return float(np.hypot(*shapely.get_coordinates(self.core).T).max()) + self.radius
 
 
-class Episode(NamedTuple):
-    """A scene as YAML, and the outlines of its bodies by name."""
-
-    data: dict[str, Any]
-    bodies: dict[str, list[Outline]]
-
-
-def any_shape(rng: np.random.Generator) -> tuple[dict[str, Any], list[Outline]]:
-    """A shape as it is written, and its parts."""
+def any_shape(rng: np.random.Generator) -> dict[str, Any]:
     kind = str(rng.choice(["circle", "rectangle", "polygon", "compound"]))
     if kind == "circle":
-        radius = float(rng.uniform(0.03, 0.3))
-        return {"name": kind, "radius": radius}, [Outline(shapely.Point(0, 0), radius)]
+        return {"name": kind, "radius": float(rng.uniform(0.03, 0.3))}
     if kind == "rectangle":
         length, width = rng.uniform(0.05, 0.6, 2).tolist()
-        box = shapely.box(-length / 2, -width / 2, length / 2, width / 2)
-        return {"name": kind, "length": length, "width": width}, [Outline(box)]
+        return {"name": kind, "length": length, "width": width}
     if kind == "polygon":
         count = int(rng.integers(3, 7))
         angle = np.sort((np.arange(count) + rng.uniform(0.1, 0.9, count)) * 2 * np.pi / count)
-        corners = (rng.uniform(0.05, 0.3, count)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)).tolist()
-        return {"name": kind, "vertices": corners}, [Outline(shapely.Polygon(corners))]
-    at = float(rng.uniform(0.2, 0.4))
-    parts = [
-        {"name": "rectangle", "length": 0.6, "width": 0.1},
-        {"name": "rectangle", "length": 0.1, "width": 0.4, "pose": [at, 0, 0]},
-    ]
-    boxes = [shapely.box(-0.3, -0.05, 0.3, 0.05), shapely.box(at - 0.05, -0.2, at + 0.05, 0.2)]
-    return {"name": kind, "parts": parts}, [Outline(box) for box in boxes]
+        corners = rng.uniform(0.05, 0.3, count)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return {"name": kind, "vertices": corners.tolist()}
+    part = {"name": "rectangle", "length": 0.1, "width": 0.4, "pose": [float(rng.uniform(0.2, 0.4)), 0, 0]}
+    return {"name": kind, "parts": [{"name": "rectangle", "length": 0.6, "width": 0.1}, part]}
 
 
-def place(rng: np.random.Generator) -> list[float]:
-    return rng.uniform(1.0, SIZE - 1.0, 2).tolist()
+def pose(rng: np.random.Generator) -> list[float]:
+    return [*rng.uniform(1.0, SIZE - 1.0, 2).tolist(), float(rng.uniform(-3, 3))]
 
 
-def movers(rng: np.random.Generator) -> Iterator[tuple[dict[str, Any], list[Outline]]]:
+def movers(rng: np.random.Generator) -> Iterator[dict[str, Any]]:
     """Robots that drive straight to one random goal after the other, so fast that they jump."""
     for k in range(8):
-        shape, parts = any_shape(rng)
-        drive = ["diff", "omni", "omni_angular", "diff"][k % 4]
-        speed = float(rng.uniform(1.0, 4.0))
+        shape, drive, speed = any_shape(rng), ["diff", "omni", "omni_angular", "diff"][k % 4], float(rng.uniform(1, 4))
         limits = {"diff": [speed, 2.0], "omni": [speed, speed], "omni_angular": [speed, speed, 2.0]}[drive]
-        yield (
-            {
-                "name": f"mover_{k}", "kinematics": {"name": drive}, "shape": shape,
-                "behavior": {"name": "dash", "wander": True, "range_low": [-1, -1], "range_high": [SIZE + 1, SIZE + 1]},
-                "state": [*place(rng), float(rng.uniform(-3, 3))], "goal_threshold": 0.8,
-                "vel_max": limits, "vel_min": [-limit for limit in limits],
-            },
-            parts,
-        )  # fmt: skip
+        yield {
+            "name": f"mover_{k}", "kinematics": {"name": drive}, "shape": shape,
+            "behavior": {"name": "dash", "wander": True, "range_low": [-1, -1], "range_high": [SIZE + 1, SIZE + 1]},
+            "state": pose(rng), "goal_threshold": 0.8,
+            "vel_max": limits, "vel_min": [-limit for limit in limits],
+        }  # fmt: skip
 
 
-def walls(rng: np.random.Generator) -> Iterator[tuple[dict[str, Any], list[Outline]]]:
+def walls(rng: np.random.Generator) -> Iterator[dict[str, Any]]:
     """Lines, a room with an opening, and other bodies that stand."""
     room = [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6], [-0.6, -0.2]]
     thin = [[-0.5, 0.0], [0.5, 0.0], [0.6, 0.3]]
-    for k, points in enumerate((room, thin)):
-        shape = {"name": "linestring", "vertices": points}
-        state = [*place(rng), float(rng.uniform(-3, 3))]
-        yield {"name": f"wall_{k}", "shape": shape, "state": state}, [Outline(shapely.LineString(points))]
-    for k in range(2):
-        shape, parts = any_shape(rng)
-        yield {"name": f"thing_{k}", "shape": shape, "state": [*place(rng), float(rng.uniform(-3, 3))]}, parts
+    for k, points in enumerate((room, thin, None, None)):
+        shape = {"name": "linestring", "vertices": points} if points else any_shape(rng)
+        yield {"name": f"wall_{k}", "shape": shape, "state": pose(rng)}
 
 
-def cells_of_picture(rng: np.random.Generator, file: Path) -> list[Outline]:
-    """Draw some walls of single cells into a map, and give their boxes in the world frame."""
+def draw_map(rng: np.random.Generator, file: Path) -> None:
+    """Draw some walls of single cells."""
     count = round(SIZE / CELL)
     picture = np.full((count, count), 255, np.uint8)
     for _ in range(4):
@@ -120,14 +96,9 @@ def cells_of_picture(rng: np.random.Generator, file: Path) -> list[Outline]:
         else:
             picture[row - 9 : row + 10, column] = 0
     Image.fromarray(picture).save(file)
-    cells = []
-    for row, column in np.argwhere(picture == 0).tolist():
-        left, low = column * CELL, SIZE - (row + 1) * CELL
-        cells.append(Outline(shapely.box(left, low, left + CELL, low + CELL)))
-    return cells
 
 
-def episode(seed: int, folder: Path) -> Episode:
+def episode(seed: int, folder: Path) -> irsim.Env:
     """A random scene; every third has a map, every other one walls round the world."""
     rng = np.random.default_rng(seed)
     robots, things = list(movers(rng)), list(walls(rng))
@@ -136,17 +107,34 @@ def episode(seed: int, folder: Path) -> Episode:
         "integration": str(rng.choice(["euler", "exact"])),
         "collision_mode": str(rng.choice(["stop", "unobstructed"], p=[0.1, 0.9])),
     }  # fmt: skip
-    bodies = {item["name"]: parts for item, parts in (*robots, *things)}
     if seed % 3 == 0:
-        bodies["obstacle_12"] = cells_of_picture(rng, folder / f"{seed}.png")
+        draw_map(rng, folder / f"{seed}.png")
         world["obstacle_map"] = f"{seed}.png"
     if seed % 2 == 0:
         world["boundary"] = "walls"
-        edge = shapely.LinearRing([[0, 0], [SIZE, 0], [SIZE, SIZE], [0, SIZE]])
-        bodies["boundary"] = [Outline(shapely.LineString(edge.coords))]
-    data = {"world": world, "robot": [item for item, _ in robots], "obstacle": [item for item, _ in things]}
-    (folder / f"{seed}.yaml").write_text(yaml.safe_dump(data), encoding="utf-8")
-    return Episode(data, bodies)
+    file = folder / f"{seed}.yaml"
+    file.write_text(yaml.safe_dump({"world": world, "robot": robots, "obstacle": things}), encoding="utf-8")
+    return irsim.make(file, display=False, log_level="ERROR")
+
+
+def outlines(env: irsim.Env, row: int) -> list[Outline]:
+    """The parts of a body in its own frame, or in the world frame for the map and the walls round it."""
+    state, parts = env.simulation.state, []
+    for part, kind in enumerate(state.parts(row)):
+        corners = state.vertices(row, part, False)
+        if kind == "circle":
+            *center, radius = state.circle(row, part, False)
+            parts.append(Outline(shapely.Point(center), radius))
+        elif kind == "cells":
+            grid = state.cells(row)
+            assert grid is not None
+            low = np.argwhere(grid.occupied) * grid.cell + np.array(grid.origin)
+            parts += [Outline(shapely.box(*at, *(at + grid.cell))) for at in low]
+        elif kind == "polygon":
+            parts.append(Outline(shapely.Polygon(corners)))
+        else:
+            parts.append(Outline(shapely.LineString([*corners, *corners[: kind == "room"]])))
+    return parts
 
 
 def motions(before: Floats, after: Floats, exact: bool) -> Motion:
@@ -194,13 +182,12 @@ def expected(bodies: dict[str, list[Outline]], before: Floats, after: Floats, ex
 
 def compare(seed: int, folder: Path) -> tuple[int, int]:
     """Run an episode; the numbers of contacts between steps, and of steps of pairs that nearly touch."""
-    data, bodies = episode(seed, folder)
-    env = irsim.make(str(folder / f"{seed}.yaml"), display=False, log_level="ERROR")
-    exact = data["world"]["integration"] == "exact"
+    env = episode(seed, folder)
+    exact = env.scenario.world.integration == "exact"
+    bodies = {view.name: outlines(env, view.row) for view in env.objects}
 
     def poses() -> Floats:
-        known = {item.name: item.state[:3, 0] for item in env.objects}
-        return np.array([known.get(name, np.zeros(3)) for name in bodies])
+        return np.array([np.zeros(3) if view.name in FIXED else view.state[:3, 0] for view in env.objects])
 
     contacts = looked = told = 0
     try:
@@ -222,9 +209,9 @@ def compare(seed: int, folder: Path) -> tuple[int, int]:
 
 
 def test_some_episodes(tmp_path: Path) -> None:
-    counts = np.sum([compare(seed, tmp_path) for seed in (1, 4, 5, 102)], axis=0)  # 102: through a wall of a map
-    assert counts[0] > 20
-    assert counts[1] > 500
+    counts = np.sum([compare(seed, tmp_path) for seed in (5, 102)], axis=0)  # 102: through a wall of a map
+    assert counts[0] > 10
+    assert counts[1] > 250
 
 
 @pytest.mark.rotates(4)

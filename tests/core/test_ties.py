@@ -16,6 +16,7 @@ import irsim
 from irsim.api import read_scenario
 from irsim.compat.changed_scenes import CHANGED_SCENES
 from tests.core.test_sidestep import LOCALS, RING
+from tests.core.worlds import assert_success, collisions
 
 LAWS = ("rvo", "sfm", "orca", "avocado, noise: 0")
 DRIVES = ("diff", "omni")
@@ -73,8 +74,7 @@ def head_on(law: str, drive: str, degrees: float, key: str = "behavior") -> str:
 @pytest.mark.parametrize("drive", [*DRIVES, "omni_angular"])
 @pytest.mark.parametrize("law", LAWS)
 def test_two_that_meet_head_on_pass(law: str, drive: str, degrees: float) -> None:
-    result = irsim.run(text=head_on(law, drive, degrees), seed=0)
-    assert result.outcome == "success", result.reason
+    result = assert_success(head_on(law, drive, degrees), seed=0)
     assert max(robot.time_to_goal or math.inf for robot in result.robots) < 14
 
 
@@ -139,8 +139,7 @@ def circle(law: str, drive: str, count: int) -> str:
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("law", OLD)
 def test_a_circle_swaps(law: str, drive: str, count: int) -> None:
-    result = irsim.run(text=circle(law, drive, count), seed=0)
-    assert result.outcome == "success", result.reason
+    assert_success(circle(law, drive, count), seed=0)
 
 
 @pytest.mark.slow
@@ -171,7 +170,7 @@ robot:
 def test_a_looped_swap_goes_on_for_a_minute_without_a_contact(count: int, radius: float) -> None:
     text = LOOP.format(count=count, radius=radius, size=2 * radius + 2, middle=radius + 1)
     result = irsim.run(text=text, seed=0)
-    assert not [event for event in result.events if event.kind == "collision"]
+    assert collisions(result) == []
 
 
 ORDERS = {

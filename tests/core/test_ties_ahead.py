@@ -12,6 +12,7 @@ import yaml
 import irsim
 from irsim.api import read_scenario
 from tests.core.test_ties import motion
+from tests.core.worlds import assert_success
 
 LAWS = ("orca", "avocado", "avocado, noise: 0")
 TOP = {"diff": [1.2, 2], "omni": [1.2, 1.2], "omni_angular": [1.2, 1.2, 2], "acker": [1.2, 0.7]}
@@ -79,8 +80,7 @@ STANDING = {
 @pytest.mark.parametrize("law", LAWS)
 def test_one_that_stands_exactly_ahead_is_passed(law: str, drive: str, who: str) -> None:
     other = STANDING[who] | {"state": [10, 10, 0]}
-    result = irsim.run(text=scene([robot(law, drive, 0)], [other]), seed=0)
-    assert result.outcome == "success", result.reason
+    result = assert_success(scene([robot(law, drive, 0)], [other]), seed=0)
     assert result.sim_time < 15
 
 

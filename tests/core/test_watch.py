@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
-from tests.core.worlds import DRIVES, circle, line, obstacle, polygon, rectangle, robot, scene
-from tests.effort import examples
+from tests.core.worlds import DRIVES, advanced, circle, line, obstacle, polygon, rectangle, robot, scene
+from tests.effort import for_all
 
 STEP = 0.1
 Event = tuple[str, int, int, int, float, float]
@@ -91,8 +90,7 @@ PLACES = st.lists(st.tuples(st.floats(3, 7), st.floats(3, 7), st.floats(-3, 3)),
 
 @pytest.mark.parametrize("body", OUTLINES)
 @pytest.mark.parametrize("region", REGIONS)
-@settings(max_examples=examples(40))
-@given(places=PLACES)
+@for_all(40, places=PLACES)
 def test_visits_are_those_of_shapely(body: str, region: str, places: list[tuple[float, float, float]]) -> None:
     parts, outline = OUTLINES[body]
     zone, area = REGIONS[region]
@@ -138,8 +136,7 @@ def test_a_crossing_has_the_place_where_the_path_meets_the_line() -> None:
     assert event[4:] == (5.0, 5.0)
 
 
-@settings(max_examples=examples(200))
-@given(places=st.lists(st.tuples(st.floats(4, 6), st.floats(3, 7)), min_size=2, max_size=30))
+@for_all(200, places=st.lists(st.tuples(st.floats(4, 6), st.floats(3, 7)), min_size=2, max_size=30))
 def test_crossings_of_an_endless_line_alternate_and_say_on_which_side_one_is(places: list[tuple[float, float]]) -> None:
     events = drive(places, zones=[line((5, -1e4), (5, 1e4))])
     names = [kind for kind, *_ in events]
@@ -169,8 +166,8 @@ def test_a_target_is_seen_from_the_step_on_at_which_it_is_in_view() -> None:
     ]
 
 
-@settings(max_examples=examples(60))
-@given(
+@for_all(
+    60,
     poses=st.lists(
         st.lists(st.tuples(st.floats(0, 8), st.floats(0, 8), st.floats(-3, 3)), min_size=4, max_size=4),
         min_size=2,
@@ -217,8 +214,7 @@ def test_a_reset_begins_again() -> None:
 
 
 def test_worlds_without_zones_and_views_have_no_such_events() -> None:
-    world, state = scene(robot(pose=[0, 0, 0], goals=[[3.0, 0.0]]))
-    core.advance(world, state, 50)
+    state = advanced(50, robot(pose=[0, 0, 0], goals=[[3.0, 0.0]]))
     assert [kind for kind, *_ in state.events(0)] == ["arrival"]
 
 
@@ -233,8 +229,7 @@ def test_what_does_not_exist_is_refused() -> None:
 POINT = st.tuples(st.floats(0, 8), st.floats(0, 8))
 
 
-@settings(max_examples=examples(100))
-@given(starts=st.lists(POINT, min_size=1, max_size=9), ends=st.lists(POINT, min_size=9, max_size=9))
+@for_all(100, starts=st.lists(POINT, min_size=1, max_size=9), ends=st.lists(POINT, min_size=9, max_size=9))
 def test_free_lines_are_those_of_shapely(starts: list[tuple[float, float]], ends: list[tuple[float, float]]) -> None:
     things = [
         obstacle(pose=[4, 4, 0.5], parts=[rectangle(3, 0.3)]),

@@ -8,7 +8,10 @@ from typing import Any
 
 import numpy as np
 
+import irsim
 import irsim._core as core
+from irsim.options.registry import BEHAVIORS
+from irsim.results.run import RunResult
 
 PI = math.pi
 DRIVES: dict[str, Any] = {
@@ -21,6 +24,23 @@ DRIVES: dict[str, Any] = {
     "angular": core.AckerOptions(noise=False, alpha=[0.03, 0.0, 0.0, 0.03], mode="angular", wheelbase=1.2, psi_max=0.9),
 }
 DASH = core.DashOptions(angle_tolerance=0.1)
+PLAIN: dict[str, dict[str, Any]] = {
+    "orca": {"neighborDist": 10.0, "timeHorizon": 5.0, "timeHorizonObst": 5.0, "safe_radius": 0.05, "sidestep": 0.0},
+    "avocado": {"neighborDist": 20.0, "safe_radius": 0.0, "sidestep": 0.0, "noise": 0.0},
+    "rvo": {"sidestep": 0.0, "turning": "fixed", "keep_gap": False},
+    "sfm": {"sidestep": 0.0, "keep_gap": False},
+    "footprint_orca": {},
+}
+"""Options of tests where they are not the defaults: without noise, and ties stay ties."""
+
+
+def kernel(name: str, **overrides: Any) -> Any:
+    """The options of the core for a behavior."""
+    feature = BEHAVIORS.get(name)
+    assert feature is not None
+    assert feature.kernel is not None
+    defaults = {field: getattr(feature.options(), field) for field in feature.kernel.fields}
+    return feature.kernel(**defaults | PLAIN[name] | overrides)
 
 
 def circle(radius: float = 0.2, center: Sequence[float] = (0.0, 0.0)) -> core.Circle:
@@ -40,36 +60,23 @@ def line(*vertices: Sequence[float]) -> core.Linestring:
     return core.Linestring(vertices=vertices)
 
 
+SCAN: dict[str, Any] = {
+    "range_min": 0.0,
+    "range_max": 10.0,
+    "angle_range": 2 * PI,
+    "endpoint": True,
+    "noise": False,
+    "std": 0.2,
+    "offset": [0.0, 0.0, 0.0],
+}
+
+
 def lidar(number: int = 60, **overrides: Any) -> core.Lidar2dOptions:
-    options: dict[str, Any] = {
-        "range_min": 0.0,
-        "range_max": 10.0,
-        "angle_range": 2 * PI,
-        "number": number,
-        "endpoint": True,
-        "noise": False,
-        "std": 0.2,
-        "angle_std": 0.02,
-        "offset": [0.0, 0.0, 0.0],
-        "has_velocity": False,
-    }
-    return core.Lidar2dOptions(**{**options, **overrides})
+    return core.Lidar2dOptions(**{**SCAN, "number": number, "angle_std": 0.02, "has_velocity": False, **overrides})
 
 
 def fmcw(number: int = 60, **overrides: Any) -> core.FmcwLidar2dOptions:
-    options: dict[str, Any] = {
-        "range_min": 0.0,
-        "range_max": 10.0,
-        "angle_range": 2 * PI,
-        "number": number,
-        "endpoint": True,
-        "noise": False,
-        "std": 0.2,
-        "angle_std": 0.0,
-        "offset": [0.0, 0.0, 0.0],
-        "motion_compensate": False,
-        "velocity_noise_std": 0.0,
-    }
+    options = {**SCAN, "number": number, "angle_std": 0.0, "motion_compensate": False, "velocity_noise_std": 0.0}
     return core.FmcwLidar2dOptions(**{**options, **overrides})
 
 
@@ -164,24 +171,36 @@ def command(state: core.State, *controls: Sequence[float]) -> None:
         state.given[row] = 1
 
 
+def apply(
+    world: core.World, state: core.State, *controls: Sequence[float] | np.ndarray, steps: int = 1, threads: int = 1
+) -> None:
+    """Advance by some steps, in each of which the first rows get these controls."""
+    for _ in range(steps):
+        command(state, *controls)
+        core.advance(world, state, 1, threads=threads)
+
+
+def decided(*objects: core.ObjectSpec, **options: Any) -> core.State:
+    """The state of a scene in which all objects have decided once."""
+    world, state = scene(*objects, **options)
+    core.decide(world, state)
+    return state
+
+
+def advanced(
+    steps: int, *objects: core.ObjectSpec, until_done: bool = False, threads: int = 1, **options: Any
+) -> core.State:
+    """The state of a scene after some steps."""
+    world, state = scene(*objects, **options)
+    core.advance(world, state, steps, until_done=until_done, threads=threads)
+    return state
+
+
 def everything(state: core.State) -> dict[str, np.ndarray]:
     """Copies of all arrays of a state."""
-    moving = (
-        "pose",
-        "extra",
-        "control",
-        "twist",
-        "command",
-        "given",
-        "arrived",
-        "collided",
-        "stopped",
-        "between_steps",
-        "radius",
-        "goal",
-    )
-    sensing = ("ranges", "hits", "velocities", "explored")
-    return {name: getattr(state, name).copy() for name in (*moving, *sensing, "count", "scene", "noise", "seed")}
+    moving = "pose extra control twist command given arrived collided stopped between_steps radius goal"
+    others = "ranges hits velocities explored count scene noise seed"
+    return {name: getattr(state, name).copy() for name in f"{moving} {others}".split()}
 
 
 def rows_of(values: dict[str, np.ndarray], world: int, worlds: int) -> dict[str, np.ndarray]:
@@ -192,3 +211,16 @@ def rows_of(values: dict[str, np.ndarray], world: int, worlds: int) -> dict[str,
 def assert_identical(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> None:
     for name in a:
         assert a[name].tobytes() == b[name].tobytes(), name
+
+
+def collisions(result: RunResult) -> list[Any]:
+    """The events of a run that are collisions."""
+    return [event for event in result.events if event.kind == "collision"]
+
+
+def assert_success(text: str, **options: Any) -> RunResult:
+    """Run a scenario in which all robots are to arrive without a collision."""
+    result = irsim.run(text=text, **options)
+    assert result.outcome == "success", result.reason
+    assert collisions(result) == []
+    return result

@@ -17,7 +17,7 @@ from irsim.metrics import robot_metrics
 from irsim.metrics.social import group_gaps, obstacle_force, social_forces
 from irsim.simulation.events import Event
 from tests.core import crowd_oracle
-from tests.metrics.test_robot_metrics import scenario, straight, trace
+from tests.metrics.test_robot_metrics import assert_metrics, measured, scenario, straight, trace
 
 HUMAN = "  - {kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [5, 5], behavior: {name: dash}}\n"
 PAIR = f"obstacle:\n{HUMAN}{HUMAN.replace('[5, 5]', '[5, 9]')}"
@@ -73,10 +73,9 @@ def test_the_space_of_a_group() -> None:
     robot = straight(50)  # x = 1 + 0.1 t, radius 0.2: in the space of (5, 5) and (6, 5) from 4.35 on
     people = np.stack([resting((x, 5), 50) for x in (5, 6, 9)], axis=1)
     poses = np.concatenate([robot[:, None], people], axis=1)
-    metrics = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
+    metrics = measured(resolved, poses, [[9, 5]])[0]
     inside = np.count_nonzero(robot[:, 0] >= 5 - 0.65)
-    assert metrics["group_space_intrusion_ratio"] == pytest.approx(inside / 51)
-    assert metrics["group_collision_rate"] == 1
+    assert_metrics(metrics, group_space_intrusion_ratio=inside / 51, group_collision_rate=1)
     alone = scenario(([1, 5], [9, 5]), rest=groups("[]"))
     assert math.isnan(robot_metrics(trace(alone, poses, [[9, 5]]), alone, [])[0]["group_space_intrusion_ratio"])
 
@@ -113,25 +112,22 @@ def test_social_forces_are_those_of_the_model() -> None:
 def test_social_work_of_two_who_stand() -> None:
     resolved = scenario(([1, 5], [9, 5]), rest=PAIR)
     poses = np.stack([resting((5, 7), 20), resting((5, 5), 20), resting((5, 9), 20)], axis=1)
-    metrics = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
+    metrics = measured(resolved, poses, [[9, 5]])[0]
     each = 2.1 * math.exp(-2 / 0.35)  # standing: the interaction is the unit vector to the other
     assert metrics["social_force_robot"] == pytest.approx(0.0, abs=1e-12)  # from both sides
-    assert metrics["social_force_agents"] == pytest.approx(2 * each * 2.0)
-    assert metrics["social_work"] == pytest.approx(2 * each * 2.0)
-    assert metrics["pedestrian_velocity_avg"] == 0.0
+    assert_metrics(metrics, social_force_agents=2 * each * 2.0, social_work=2 * each * 2.0, pedestrian_velocity_avg=0.0)
 
 
 def test_forces_of_obstacles_are_those_of_the_model() -> None:
     wall = "  - {shape: {name: rectangle, length: 40, width: 1}, state: [10, 4, 0]}\n"
     resolved = scenario(([1, 5.3], [9, 5.3]), rest=f"obstacle:\n{wall}{HUMAN}")
     poses = np.stack([straight(20) + np.array([0, 0.3]), resting((10, 4), 20), resting((5, 6.3), 20)], axis=1)
-    metrics = robot_metrics(trace(resolved, poses, [[9, 5.3]]), resolved, [])[0]
+    metrics = measured(resolved, poses, [[9, 5.3]])[0]
     model = SocialForceModelBatch(
         [[1, 5.3, 0, 0, 0.2, 0, 0, 0], [5, 6.3, 0, 0, 0.3, 0, 0, 0]], line_obs_list=[[-10, 4.5, 30, 4.5]]
     )
     robot, human = 10.0 * np.linalg.norm(model.obstacle_force(), axis=1) * 2.0
-    assert metrics["obstacle_force_robot"] == pytest.approx(robot)
-    assert metrics["obstacle_force_agents"] == pytest.approx(human)
+    assert_metrics(metrics, obstacle_force_robot=robot, obstacle_force_agents=human)
 
 
 def test_forces_of_obstacles_end_and_are_unknown_where_there_are_none() -> None:
@@ -140,7 +136,7 @@ def test_forces_of_obstacles_end_and_are_unknown_where_there_are_none() -> None:
     )
     resolved = scenario(([1, 5], [9, 5]), rest=PAIR)
     poses = np.stack([straight(20), resting((5, 5), 20), resting((5, 9), 20)], axis=1)
-    metrics = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
+    metrics = measured(resolved, poses, [[9, 5]])[0]
     assert math.isnan(metrics["obstacle_force_robot"])
     assert math.isnan(metrics["obstacle_force_agents"])
 
@@ -148,7 +144,7 @@ def test_forces_of_obstacles_end_and_are_unknown_where_there_are_none() -> None:
 def test_speed_of_the_people() -> None:
     resolved = scenario(([1, 5], [9, 5]), rest=PAIR)
     poses = np.stack([straight(10), straight(10, 0.5) + np.array([0, 3]), resting((5, 9), 10)], axis=1)
-    metrics = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
+    metrics = measured(resolved, poses, [[9, 5]])[0]
     assert metrics["pedestrian_velocity_avg"] == pytest.approx(0.25)
 
 
@@ -159,11 +155,9 @@ def test_effort_clearance_and_leaving_the_world() -> None:
     control = made.control.copy()
     control[1:, 0, 0] = 0.5  # vel_max [1, 0]: the second can't move
     metrics = robot_metrics(dataclasses.replace(made, control=control), resolved, [])[0]
-    assert metrics["control_effort"] == pytest.approx(0.25 * 2.0)
-    assert metrics["min_clearance"] == pytest.approx(2 - 0.2 - 0.5)
-    assert metrics["left_world"] == 0
+    assert_metrics(metrics, control_effort=0.25 * 2.0, min_clearance=2 - 0.2 - 0.5, left_world=0)
     out = np.stack([straight(20) - np.array([1.5, 0]), resting((3, 7), 20)], axis=1)
-    assert robot_metrics(trace(resolved, out, [[5, 5]]), resolved, [])[0]["left_world"] == 1
+    assert measured(resolved, out, [[5, 5]])[0]["left_world"] == 1
 
 
 CROSSING = """

@@ -16,6 +16,7 @@ from irsim.metrics.watching import goal_visible_ratio
 from irsim.scenario.open import read_scenario
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import past_goals, past_poses, record
+from tests.metrics.test_robot_metrics import assert_metrics
 
 KEYS = ("time_in_zone", "zone_crossings", "seen_ratio", "goal_visible_ratio")
 # 0.25 m per step of 0.25 s: no rounding errors. It arrives in step 29, at x = 8.25, when the goal is nearer than 0.3 m.
@@ -57,8 +58,7 @@ def test_zones() -> None:
     assert metrics.zones["late"] == {"time_in_zone": 0.75, "zone_crossings": 1}  # until it arrives, three steps later
     assert metrics.zones["wide"] == {"time_in_zone": 2.25, "zone_crossings": 1}
     # box and wide overlap: from step 7 to step 18, when it leaves x = 5.25, and then late
-    assert rover["time_in_zone"] == 11 * 0.25 + 0.75
-    assert rover["zone_crossings"] == 3 + 1 - 1
+    assert_metrics(rover, time_in_zone=11 * 0.25 + 0.75, zone_crossings=3 + 1 - 1)
 
 
 def test_a_start_in_a_region_counts_as_time_and_not_as_an_entry() -> None:

@@ -12,6 +12,8 @@ import irsim
 from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 from irsim.navigation.map import EnvGridMap, Map, coarsen
 
+pytestmark = pytest.mark.one_python
+
 SCENE = """
 world: {width: 10, height: 10, offset: [-2, 0], obstacle_map: {name: perlin, resolution: 0.1, fill: 0.12, seed: 3}}
 robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [-1, 1, 0], goal: [7, 9]}

@@ -12,12 +12,7 @@ import pytest
 
 import irsim
 from irsim.diagnostics.errors import BehaviorError, ScenarioError
-from irsim.lib import (
-    register_behavior,
-    register_behavior_class,
-    register_group_behavior,
-    register_group_behavior_class,
-)
+from irsim.lib import register_behavior, register_behavior_class, register_group_behavior, register_group_behavior_class
 from irsim.lib.behavior import behavior_registry
 
 Make = Callable[..., irsim.Env]
@@ -191,6 +186,19 @@ def test_an_unknown_group_behavior_leaves_members_to_their_own(make: Make, capsy
     assert capsys.readouterr().out.count("nobody_knows") == 1
     with pytest.raises(ScenarioError, match="nobody_knows"):
         make(two(behavior="{name: dash}", group="{name: nobody_knows}"), strict=True)
+
+
+def test_a_function_without_keyword_catch_all_gets_the_keys_of_the_file_and_no_more(make: Make) -> None:
+    def cruise(ego_object: Any, external_objects: list[Any], name: str, speed: float, target_roles: str) -> Any:
+        assert name == "cruise"
+        assert [other.name for other in external_objects] == ["obstacle_2"]
+        return np.array([[speed], [0.1]])
+
+    register_behavior("diff", "cruise")(cruise)
+    others = "obstacle: {shape: {name: circle, radius: 0.2}, state: [5, 8, 0]}"
+    env = make(two(behavior="{name: cruise, speed: 0.4, target_roles: obstacle}") + others)
+    env.step()
+    assert env.robot.state.ravel().tolist() == pytest.approx([1.04, 1.0, 0.01])
 
 
 def test_everybody_sees_the_same_snapshot(make: Make) -> None:

@@ -28,12 +28,6 @@ READERS: dict[str, Callable[[Any], Any]] = {
 }
 
 
-def _page_runs(env: Any) -> Any:
-    grid = page_grid(describe_scene(env.simulation))
-    assert grid is not None
-    return grid["runs"]
-
-
 def _padded(runs: Any) -> list[int]:
     """Lengths of runs of free and occupied cells by turns, of nine runs."""
     return [*map(int, runs), *[0] * 9][:9]

@@ -21,8 +21,7 @@ VERSION = "2.12.0"
 def main(names: list[str]) -> int:
     """Write FAMILY.npz for each family."""
     sys.path.insert(0, str(HERE))
-    from decide import decide
-    from scenes import FAMILIES, deciders, scene
+    from scenes import FAMILIES, decide, deciders, scene
 
     import irsim
 

@@ -9,8 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from random import Random
+from types import ModuleType
 from typing import Any
+
+import numpy as np
+import yaml
+
+DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # of libyaml, where there is one
 
 FAMILIES = {"rvo": 700, "sfm": 600, "sfm-group": 150}
 """Scenes per family. In a scene of a group every member's decision counts, else only the first robot's."""
@@ -167,3 +174,17 @@ def deciders(family: str, document: dict[str, Any]) -> list[int]:
     if family != "sfm-group":
         return [0]
     return [i for i, robot in enumerate(document["robot"]) if "group_behavior" in robot]
+
+
+def decide(irsim: ModuleType, document: dict[str, Any], ids: list[int], folder: Path) -> np.ndarray:
+    """(K, 3) commands that objects execute in the first step of a scene with whichever `irsim` is installed."""
+    path = folder / "scene.yaml"
+    path.write_text(yaml.dump(document, Dumper=DUMPER), encoding="utf-8")
+    env = irsim.make(str(path), headless=True, log_level="ERROR", seed=0)
+    env.step()
+    out = np.zeros((len(ids), 3))
+    for k, i in enumerate(ids):
+        velocity = np.asarray(env.robot_list[i].velocity, dtype=float).ravel()
+        out[k, : velocity.size] = velocity
+    env.end()
+    return out

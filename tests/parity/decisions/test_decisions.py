@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import irsim
-from tests.parity.decisions.decide import decide
-from tests.parity.decisions.scenes import FAMILIES, deciders, scene
+from tests.parity.decisions.scenes import FAMILIES, decide, deciders, scene
 
 HERE = Path(__file__).resolve().parent
 TOLERANCE = 1e-6
