@@ -70,18 +70,51 @@ def server_for(workspace: Path, limits: ServerLimits) -> IrsimServer:
     return build_server(workspace, limits)
 
 
+class Caller(Client):
+    """A client that calls tools with their arguments by name and takes apart what they answer."""
+
+    async def call(self, tool: str, **arguments: Any) -> CallToolResult:
+        return await self.call_tool(tool, arguments)
+
+    async def text(self, tool: str, **arguments: Any) -> str:
+        return text_of(await self.call_tool(tool, arguments))
+
+    async def error(self, tool: str, **arguments: Any) -> str:
+        return error_of(await self.call_tool(tool, arguments))
+
+    async def data(self, tool: str, **arguments: Any) -> dict[str, Any]:
+        return data_of(await self.call_tool(tool, arguments))
+
+    async def image(self, tool: str, **arguments: Any) -> ImageContent:
+        return image_of(await self.call_tool(tool, arguments))
+
+
 @asynccontextmanager
-async def connected(workspace: Path, era: str = ERAS[0], **limits: Any) -> AsyncIterator[Client]:
+async def connected(workspace: Path, era: str = ERAS[0], **limits: Any) -> AsyncIterator[Caller]:
     """A client of a server in this process."""
     server = server_for(workspace, ServerLimits(**limits))
-    async with Client(server, mode=era, raise_exceptions=True) as client:
+    async with Caller(server, mode=era, raise_exceptions=True) as client:
         yield client
 
 
-async def call(workspace: Path, tool: str, arguments: dict[str, Any] | None = None, **limits: Any) -> CallToolResult:
-    """The result of one call, to a server in this process."""
-    async with connected(workspace, **limits) as client:
-        return await client.call_tool(tool, arguments)
+@pytest.fixture
+def era() -> str:
+    return ERAS[0]
+
+
+@pytest.fixture
+async def client(request: pytest.FixtureRequest, era: str) -> AsyncIterator[Caller]:
+    """A client of a server in this process, in ``workspace`` if the test has one, else in ``empty``."""
+    folder = request.getfixturevalue("workspace" if "workspace" in request.fixturenames else "empty")
+    async with connected(folder, era) as client:
+        yield client
+
+
+@pytest.fixture
+async def writer(workspace: Path, era: str) -> AsyncIterator[Caller]:
+    """A client of a server in this process that may write."""
+    async with Caller(build_server(workspace, writing=True), mode=era, raise_exceptions=True) as client:
+        yield client
 
 
 def as_process(workspace: Path) -> StdioServerParameters:

@@ -14,7 +14,7 @@ import pytest
 
 from irsim_mcp import worker
 from irsim_mcp.limits import ServerLimits
-from tests.mcp.conftest import ROOM, call, connected, data_of, error_of, text_of
+from tests.mcp.conftest import ROOM, Caller, connected, data_of, error_of, text_of
 
 pytestmark = [
     pytest.mark.one_python,
@@ -77,7 +77,7 @@ FILES = {
 
 
 @pytest.fixture(scope="module")
-def trap(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A workspace with links that lead out, beside a file that must not be read."""
     workspace = tmp_path_factory.mktemp("outside") / "workspace"
     workspace.mkdir()
@@ -107,95 +107,91 @@ def at_once() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-async def test_scenarios(trap: Path, name: str) -> None:
+async def test_scenarios(client: Caller, workspace: Path, name: str) -> None:
     scenario, code = SCENARIOS[name]
-    async with connected(trap) as client:
-        with at_once():
-            result = await client.call_tool("validate_scenario", {"scenario_yaml": scenario})
+    with at_once():
+        result = await client.call("validate_scenario", scenario_yaml=scenario)
     data = data_of(result)
     assert data["valid"] is False
     assert code in [issue["code"] for issue in data["issues"]]
     assert code in text_of(result)
-    assert not (trap / "pwned").exists()
+    assert not (workspace / "pwned").exists()
 
 
 @pytest.mark.parametrize("name", ["python object", "merge bomb", "a million robots", "map behind a link"])
 @pytest.mark.parametrize("tool", ["run_episode", "render_snapshot"])
-async def test_scenarios_that_are_not_validated_first(trap: Path, tool: str, name: str) -> None:
+async def test_scenarios_that_are_not_validated_first(client: Caller, workspace: Path, tool: str, name: str) -> None:
     scenario, code = SCENARIOS[name]
-    async with connected(trap) as client:
-        with at_once():
-            result = await client.call_tool(tool, {"scenario_yaml": scenario})
+    with at_once():
+        result = await client.call(tool, scenario_yaml=scenario)
     told = error_of(result) if tool == "run_episode" else text_of(result)
     assert told.startswith("invalid-scenario: " if tool == "run_episode" else "invalid: ")
     assert code in told
     assert len(result.content) == 1
-    assert not (trap / "pwned").exists()
+    assert not (workspace / "pwned").exists()
 
 
 @pytest.mark.parametrize("name", FILES)
-async def test_paths(trap: Path, name: str) -> None:
-    async with connected(trap) as client:
-        with at_once():
-            told = error_of(await client.call_tool("run_episode", {"scenario_path": FILES[name]}))
+async def test_paths(client: Caller, workspace: Path, name: str) -> None:
+    with at_once():
+        told = await client.error("run_episode", scenario_path=FILES[name])
     assert told.startswith("path-outside-workspace: ")
-    assert str(trap) in told
+    assert str(workspace) in told
     assert "(scenario_path). Fix: " in told
 
 
-async def test_an_absolute_path_into_the_workspace_is_told_its_name(trap: Path) -> None:
-    told = error_of(await call(trap, "run_episode", {"scenario_path": str(trap / "room.yaml")}))
+async def test_an_absolute_path_into_the_workspace_is_told_its_name(client: Caller, workspace: Path) -> None:
+    told = await client.error("run_episode", scenario_path=str(workspace / "room.yaml"))
     assert told.endswith("Fix: scenario_path='room.yaml'.")
 
 
-async def test_links_inside_are_fine(trap: Path) -> None:
-    (trap / "alias.yaml").symlink_to(trap / "room.yaml")
-    async with connected(trap) as client:
-        assert data_of(await client.call_tool("validate_scenario", {"scenario_path": "alias.yaml"}))["valid"]
+async def test_links_inside_are_fine(client: Caller, workspace: Path) -> None:
+    (workspace / "alias.yaml").symlink_to(workspace / "room.yaml")
+    assert (await client.data("validate_scenario", scenario_path="alias.yaml"))["valid"]
 
 
-async def test_scenarios_in_files_have_the_same_limits(trap: Path) -> None:
-    (trap / "big.yaml").write_text("#" * (ServerLimits().yaml_bytes + 1), encoding="utf-8")
-    (trap / "inner").mkdir()
-    (trap / "inner" / "map.yaml").write_text("world: {obstacle_map: ../../secret.png}\n", encoding="utf-8")
-    async with connected(trap) as client:
-        for name, code in (("big.yaml", "file-too-large"), ("inner/map.yaml", "path-outside-workspace")):
-            with at_once():
-                data = data_of(await client.call_tool("validate_scenario", {"scenario_path": name}))
-            assert code in [issue["code"] for issue in data["issues"]]
+async def test_scenarios_in_files_have_the_same_limits(client: Caller, workspace: Path) -> None:
+    (workspace / "big.yaml").write_text("#" * (ServerLimits().yaml_bytes + 1), encoding="utf-8")
+    (workspace / "inner").mkdir()
+    (workspace / "inner" / "map.yaml").write_text("world: {obstacle_map: ../../secret.png}\n", encoding="utf-8")
+    for name, code in (("big.yaml", "file-too-large"), ("inner/map.yaml", "path-outside-workspace")):
+        with at_once():
+            data = await client.data("validate_scenario", scenario_path=name)
+        assert code in [issue["code"] for issue in data["issues"]]
 
 
 async def test_checking_that_takes_too_long_is_stopped(empty: Path) -> None:
     star = ", ".join(f"[{(i * 7919) % 1000}, {(i * 104_729) % 1000}]" for i in range(9000))
     scenario = f"obstacle:\n  - shape: {{name: polygon, vertices: [{star}]}}\n"
-    told = error_of(await call(empty, "validate_scenario", {"scenario_yaml": scenario}, check_seconds=1))
+    async with connected(empty, check_seconds=1) as client:
+        told = await client.error("validate_scenario", scenario_yaml=scenario)
     assert told.startswith("out-of-time: 1 s of computing time were used up")
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("ordinary_processes")
-async def test_the_environment_of_the_server_is_not_passed_on(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_environment_of_the_server_is_not_passed_on(
+    client: Caller, workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (workspace / "evil").mkdir()
     (workspace / "evil" / "numpy.py").write_text("raise SystemExit(3)\n", encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(workspace / "evil"))
     monkeypatch.setenv("PYTHONSTARTUP", "/nowhere")
     monkeypatch.setenv("MPLBACKEND", "nonsense")
-    async with connected(workspace) as client:
-        assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]
-        result = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "size_px": 200})
+    assert (await client.data("validate_scenario", scenario_yaml=ROOM))["valid"]
+    result = await client.call("render_snapshot", scenario_yaml=ROOM, size_px=200)
     assert not result.is_error
 
 
-async def test_files_outside_are_not_even_named(trap: Path) -> None:
-    told = error_of(await call(trap, "run_episode", {"scenario_path": "secret.yml"}))
+async def test_files_outside_are_not_even_named(client: Caller, workspace: Path) -> None:
+    told = await client.error("run_episode", scenario_path="secret.yml")
     assert "secret.yaml" not in told
 
 
 @pytest.mark.usefixtures("ordinary_processes")
-async def test_a_server_installed_for_one_user_only_works(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_server_installed_for_one_user_only_works(client: Caller, monkeypatch: pytest.MonkeyPatch) -> None:
     """Isolated mode leaves out the user's own packages, so their folder is added by name."""
     folder = Path(worker.__file__).parents[1]
     monkeypatch.setattr(worker, "_user_site", lambda: str(folder))
     assert "addsitedir" in worker._command()[-1]
-    async with connected(empty) as client:
-        assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]
+    assert (await client.data("validate_scenario", scenario_yaml=ROOM))["valid"]

@@ -11,7 +11,7 @@ import pytest
 import irsim
 from irsim.lookup.topics import lookup
 from irsim_mcp.services import RecentTexts
-from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, call, connected, data_of, error_of, text_of
+from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, Caller, data_of, error_of, text_of
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
@@ -36,12 +36,9 @@ MANY = {
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_same_as_in_python(client: Caller, workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (workspace / "random.yaml").write_text(RANDOM)
-    async with connected(workspace, era) as client:
-        result = await client.call_tool(
-            "benchmark", {"scenarios": ["random.yaml", ROOM], "policies": ["dash", "rvo"], "seeds": 4}
-        )
+    result = await client.call("benchmark", scenarios=["random.yaml", ROOM], policies=["dash", "rvo"], seeds=4)
     data = data_of(result)
     assert (data["status"], data["done"], data["total"]) == ("finished", 10, 10)
     monkeypatch.chdir(workspace)
@@ -65,13 +62,11 @@ async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pyt
     assert (workspace / ".irsim" / ".gitignore").read_text() == "*\n"
 
 
-async def test_other_seeds_and_the_episodes_that_failed(workspace: Path) -> None:
+async def test_other_seeds_and_the_episodes_that_failed(client: Caller, workspace: Path) -> None:
     long = "{name: dash, wander: false, loop: false}"
     arguments = {"scenarios": [RANDOM], "behaviors": ["dash", long], "seeds": 6, "first_seed": 1000}
-    async with connected(workspace) as client:
-        result = await client.call_tool("benchmark", arguments)
-        job = {"job_id": data_of(result)["job_id"], "detailed": True}
-        more = data_of(await client.call_tool("get_job", job))["rows"][0]
+    result = await client.call_tool("benchmark", arguments)
+    more = (await client.data("get_job", job_id=data_of(result)["job_id"], detailed=True))["rows"][0]
     data = data_of(result)
     assert " of 6" in more["failed"]
     assert {"path_length", "spl", "min_clearance"} <= set(more)
@@ -94,20 +89,18 @@ async def test_other_seeds_and_the_episodes_that_failed(workspace: Path) -> None
     assert f"seed={bad[0]} policy='dash' (collision)" in data["next"]
 
 
-async def test_the_largest_seeds_can_be_run_again(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        asked = {"scenarios": [RANDOM], "seeds": 2, "first_seed": 2**53 - 2}
-        job = data_of(await client.call_tool("benchmark", asked))["job_id"]
-        table = data_of(await client.call_tool("inspect_run", {"run_id": job}))
-        assert sorted(row[2] for row in table["rows"]) == [2**53 - 2, 2**53 - 1]
-        for row in table["rows"]:
-            again = data_of(await client.call_tool("run_episode", {"scenario_yaml": RANDOM, "seed": row[2]}))
-            assert (again["outcome"], again["steps"]) == (row[3], row[5])
+async def test_the_largest_seeds_can_be_run_again(client: Caller, workspace: Path) -> None:
+    job = (await client.data("benchmark", scenarios=[RANDOM], seeds=2, first_seed=2**53 - 2))["job_id"]
+    table = await client.data("inspect_run", run_id=job)
+    assert sorted(row[2] for row in table["rows"]) == [2**53 - 2, 2**53 - 1]
+    for row in table["rows"]:
+        again = await client.data("run_episode", scenario_yaml=RANDOM, seed=row[2])
+        assert (again["outcome"], again["steps"]) == (row[3], row[5])
 
 
-async def test_means_of_fewer_episodes_say_so_and_the_period_is_told(workspace: Path) -> None:
+async def test_means_of_fewer_episodes_say_so_and_the_period_is_told(client: Caller, workspace: Path) -> None:
     arguments = {"scenarios": [RANDOM], "behaviors": ["dash", "rvo"], "seeds": 10}
-    result = await call(workspace, "benchmark", arguments)
+    result = await client.call_tool("benchmark", arguments)
     data, told = data_of(result), text_of(result)
     kept = json.loads((workspace / data["artifact"]).read_text())["rows"]
     assert kept[0]["metrics"]["time_to_goal"]["n"] < 10
@@ -120,56 +113,54 @@ async def test_means_of_fewer_episodes_say_so_and_the_period_is_told(workspace: 
     assert "20 episodes, step_time 0.1 s; success" in told
 
 
-async def test_times_beside_failures_are_those_of_robots_that_arrived(workspace: Path) -> None:
+async def test_times_beside_failures_are_those_of_robots_that_arrived(client: Caller, workspace: Path) -> None:
     two = ROOM + "  - {name: still, kinematics: {name: diff}, state: [6, 5, 0], goal: [7, 5, 0]}\n"
-    async with connected(workspace) as client:
-        told = text_of(await client.call_tool("benchmark", {"scenarios": [two], "seeds": 1}))
-        whole = text_of(await client.call_tool("benchmark", {"scenarios": [ROOM], "seeds": 1}))
+    told = await client.text("benchmark", scenarios=[two], seeds=1)
+    whole = await client.text("benchmark", scenarios=[ROOM], seeds=1)
     assert "success 0; " in told
     assert "; time_to_goal of robots that arrived 3" in told
     assert "; time_to_goal 3" in whole
     assert "the mean of the robots that arrived" in lookup("time_to_goal").text
 
 
-async def test_what_is_not_random_has_no_interval(workspace: Path) -> None:
-    data = data_of(await call(workspace, "benchmark", {"scenarios": [ROOM]}))
+async def test_what_is_not_random_has_no_interval(client: Caller, workspace: Path) -> None:
+    data = await client.data("benchmark", scenarios=[ROOM])
     assert [len(data["rows"][0][key]) for key in ("success", "collision", "timeout")] == [1, 1, 1]
 
 
-async def test_limits(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        for arguments, product in (
-            ({"scenarios": [ROOM], "seeds": 101}, "1 scenarios x 1 policies x 101 seeds = 101 episodes"),
-            ({"scenarios": [ROOM] * 21, "seeds": 1}, "21 scenarios x 1 policies x 1 seeds = 21 episodes"),
+async def test_limits(client: Caller, workspace: Path) -> None:
+    for arguments, product in (
+        ({"scenarios": [ROOM], "seeds": 101}, "1 scenarios x 1 policies x 101 seeds = 101 episodes"),
+        ({"scenarios": [ROOM] * 21, "seeds": 1}, "21 scenarios x 1 policies x 1 seeds = 21 episodes"),
+        (
+            {"scenarios": [ROOM], "behaviors": list("abcdefghi")},
+            "1 scenarios x 9 policies x 10 seeds = 90 episodes",
+        ),
+        ({"scenarios": [ROOM] * 20, "behaviors": list("abc"), "seeds": 100}, "= 6,000 episodes"),
+    ):
+        told = await client.error("benchmark", **arguments)
+        assert told.startswith("over-limit: ")
+        assert product in told
+    for arguments, start in (
+        ({"scenarios": []}, "bad-argument: there must be at least one scenario"),
+        ({"scenarios": [ROOM], "seeds": 0}, "bad-argument: seeds must be at least 1, got 0"),
+        (
+            {"scenarios": [ROOM], "first_seed": 2**53 - 9},
             (
-                {"scenarios": [ROOM], "behaviors": list("abcdefghi")},
-                "1 scenarios x 9 policies x 10 seeds = 90 episodes",
+                f"bad-argument: the seeds {2**53 - 9} to {2**53} exceed {2**53 - 1}, the largest that "
+                f"run_episode takes (first_seed). Fix: give at most {2**53 - 10}."
             ),
-            ({"scenarios": [ROOM] * 20, "behaviors": list("abc"), "seeds": 100}, "= 6,000 episodes"),
-        ):
-            told = error_of(await client.call_tool("benchmark", arguments))
-            assert told.startswith("over-limit: ")
-            assert product in told
-        for arguments, start in (
-            ({"scenarios": []}, "bad-argument: there must be at least one scenario"),
-            ({"scenarios": [ROOM], "seeds": 0}, "bad-argument: seeds must be at least 1, got 0"),
-            (
-                {"scenarios": [ROOM], "first_seed": 2**53 - 9},
-                (
-                    f"bad-argument: the seeds {2**53 - 9} to {2**53} exceed {2**53 - 1}, the largest that "
-                    f"run_episode takes (first_seed). Fix: give at most {2**53 - 10}."
-                ),
-            ),
-            ({"scenarios": [ROOM, ROOM]}, "bad-argument: the scenario 'text-"),
-            ({"scenarios": ["../x.yaml"]}, "path-outside-workspace"),
-            ({"scenarios": ["none.yaml"]}, "file-not-found"),
-            ({"scenarios": ["#\n" * 200_000]}, "file-too-large"),
-            ({"scenarios": [ROOM], "behaviors": ["rov"]}, "unknown-policy: there is no policy"),
-            ({"scenarios": [ROOM.replace("goal", "gaol")]}, "invalid-scenario: 1 error: (text) robot[0].gaol"),
-            ({"scenarios": [ROOM], "wait_s": 51}, "bad-argument: 51 is not accepted"),
-            ({"scenarios": [ROOM], "seed": 3}, "unknown-argument: there is no argument 'seed'"),
-        ):
-            assert error_of(await client.call_tool("benchmark", arguments)).startswith(start)
+        ),
+        ({"scenarios": [ROOM, ROOM]}, "bad-argument: the scenario 'text-"),
+        ({"scenarios": ["../x.yaml"]}, "path-outside-workspace"),
+        ({"scenarios": ["none.yaml"]}, "file-not-found"),
+        ({"scenarios": ["#\n" * 200_000]}, "file-too-large"),
+        ({"scenarios": [ROOM], "behaviors": ["rov"]}, "unknown-policy: there is no policy"),
+        ({"scenarios": [ROOM.replace("goal", "gaol")]}, "invalid-scenario: 1 error: (text) robot[0].gaol"),
+        ({"scenarios": [ROOM], "wait_s": 51}, "bad-argument: 51 is not accepted"),
+        ({"scenarios": [ROOM], "seed": 3}, "unknown-argument: there is no argument 'seed'"),
+    ):
+        assert (await client.error("benchmark", **arguments)).startswith(start)
 
 
 @pytest.mark.parametrize(
@@ -186,41 +177,37 @@ async def test_limits(workspace: Path) -> None:
     ],
 )
 async def test_a_wrong_behavior_is_told_by_its_argument_and_leaves_nothing(
-    workspace: Path, behavior: str, told: str
+    client: Caller, workspace: Path, behavior: str, told: str
 ) -> None:
     (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
-    async with connected(workspace) as client:
-        one = await client.call_tool("run_episode", {"scenario_path": "room.yaml", "behavior": behavior})
-        many = await client.call_tool("benchmark", {"scenarios": ["room.yaml"], "behaviors": ["dash", behavior]})
+    one = await client.call("run_episode", scenario_path="room.yaml", behavior=behavior)
+    many = await client.call("benchmark", scenarios=["room.yaml"], behaviors=["dash", behavior])
     code = "unknown-policy" if behavior == "orcaa" else "bad-argument"
     assert error_of(one).startswith(f"{code}: " + told.format("(policy)"))
     assert error_of(many).startswith(f"{code}: " + told.format("(policies[1])"))
     assert list((workspace / ".irsim" / "jobs").iterdir()) == []
 
 
-async def test_with_another_behavior_a_wrong_scenario_is_still_told_by_line(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        wrong = {"scenario_yaml": ROOM.replace("goal:", "gaol:"), "behavior": "orca"}
-        told = error_of(await client.call_tool("run_episode", wrong))
-        assert "robot[0].gaol line 7 unknown-key" in told
-        error_of(await client.call_tool("benchmark", {"scenarios": [wrong["scenario_yaml"]], "behaviors": ["orca"]}))
+async def test_with_another_behavior_a_wrong_scenario_is_still_told_by_line(client: Caller, workspace: Path) -> None:
+    wrong = {"scenario_yaml": ROOM.replace("goal:", "gaol:"), "behavior": "orca"}
+    told = await client.error("run_episode", **wrong)
+    assert "robot[0].gaol line 7 unknown-key" in told
+    await client.error("benchmark", scenarios=[wrong["scenario_yaml"]], behaviors=["orca"])
     assert list((workspace / ".irsim" / "jobs").iterdir()) == []
 
 
-async def test_episodes_are_read_by_inspect_run(workspace: Path) -> None:
+async def test_episodes_are_read_by_inspect_run(client: Caller, workspace: Path) -> None:
     (workspace / "random.yaml").write_text(RANDOM, encoding="utf-8")
     long = "{name: orca, timeHorizon: 5, loop: false}"
     arguments = {"scenarios": [CRASH, "random.yaml", ROOM], "behaviors": ["dash", long], "seeds": 4, "max_steps": 90}
-    async with connected(workspace) as client:
-        result = await client.call_tool("benchmark", arguments)
-        job = data_of(result)["job_id"]
-        assert f"Episodes: inspect_run run_id={job}" in text_of(result)
-        first = await client.call_tool("inspect_run", {"run_id": job, "limit": 5})
-        pages, cursor = [data_of(first)], data_of(first)["next_cursor"]
-        while cursor is not None:
-            more = {"run_id": job, "limit": 5, "cursor": cursor}
-            pages.append(data_of(await client.call_tool("inspect_run", more)))
-            cursor = pages[-1]["next_cursor"]
+    result = await client.call_tool("benchmark", arguments)
+    job = data_of(result)["job_id"]
+    assert f"Episodes: inspect_run run_id={job}" in text_of(result)
+    first = await client.call("inspect_run", run_id=job, limit=5)
+    pages, cursor = [data_of(first)], data_of(first)["next_cursor"]
+    while cursor is not None:
+        pages.append(await client.data("inspect_run", run_id=job, limit=5, cursor=cursor))
+        cursor = pages[-1]["next_cursor"]
     kept = json.loads((workspace / data_of(result)["artifact"]).read_text())["episodes"]
     rows = [dict(zip(page["columns"], row, strict=True)) for page in pages for row in page["rows"]]
     assert len(rows) == pages[0]["total"] == len(kept) == 12
@@ -243,27 +230,26 @@ async def test_episodes_are_read_by_inspect_run(workspace: Path) -> None:
     assert "scenario_path='random.yaml'" in pages[-2]["next"] + pages[-1]["next"]
 
 
-async def test_what_inspect_run_cannot_tell_of_a_benchmark(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        job = data_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))["job_id"]
-        for asked, told in (
-            ({"view": "closest"}, "(view). Fix: leave it out"),
-            ({"robot": "rover"}, "(robot). Fix: leave it out"),
-            ({"from_step": 3}, "(from_step). Fix: leave it out"),
-            ({"cursor": "1"}, "'1' is not a valid cursor (cursor)"),
-        ):
-            assert told in error_of(await client.call_tool("inspect_run", {"run_id": job, **asked}))
-        begun = data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 4, "wait_s": 0}))["job_id"]
-        told = error_of(await client.call_tool("inspect_run", {"run_id": begun}))
-        assert f"{begun} is running, 0 of 4 episodes are done (run_id). Fix: get_job waits for it." in told
-        await client.call_tool("get_job", {"job_id": begun, "cancel": True})
-        told = error_of(await client.call_tool("inspect_run", {"run_id": begun}))
-        assert "is cancelled" in told
-        assert told.endswith("Fix: call benchmark again.")
+async def test_what_inspect_run_cannot_tell_of_a_benchmark(client: Caller, workspace: Path) -> None:
+    job = (await client.data("benchmark", scenarios=[ROOM]))["job_id"]
+    for asked, told in (
+        ({"view": "closest"}, "(view). Fix: leave it out"),
+        ({"robot": "rover"}, "(robot). Fix: leave it out"),
+        ({"from_step": 3}, "(from_step). Fix: leave it out"),
+        ({"cursor": "1"}, "'1' is not a valid cursor (cursor)"),
+    ):
+        assert told in await client.error("inspect_run", run_id=job, **asked)
+    begun = (await client.data("benchmark", scenarios=[LONG], seeds=4, wait_s=0))["job_id"]
+    told = await client.error("inspect_run", run_id=begun)
+    assert f"{begun} is running, 0 of 4 episodes are done (run_id). Fix: get_job waits for it." in told
+    await client.call("get_job", job_id=begun, cancel=True)
+    told = await client.error("inspect_run", run_id=begun)
+    assert "is cancelled" in told
+    assert told.endswith("Fix: call benchmark again.")
 
 
-async def test_a_note_tells_what_deciding_costs(workspace: Path) -> None:
-    result = await call(workspace, "benchmark", {"scenarios": [ROOM], "policies": ["orca", "random"], "seeds": 2})
+async def test_a_note_tells_what_deciding_costs(client: Caller, workspace: Path) -> None:
+    result = await client.call("benchmark", scenarios=[ROOM], policies=["orca", "random"], seeds=2)
     [note] = [
         note
         for note in data_of(result)["notes"]

@@ -12,12 +12,12 @@ from typing import Any
 
 import anyio
 import pytest
-from mcp import Client
 from mcp.types import CallToolResult, TextContent
 
 from irsim_mcp.call_log import CallLog
-from tests.mcp.conftest import ROOM, as_process, image_of, text_of
+from tests.mcp.conftest import ROOM, Caller, as_process, image_of, text_of
 from tests.mcp.test_lifetime import HANDSHAKE
+from tests.warm import warm
 
 pytestmark = pytest.mark.one_python
 
@@ -34,20 +34,20 @@ def logged(path: Path) -> list[dict[str, Any]]:
     return [json.loads(line) for line in text.split("\n")[:-1]]
 
 
-def client_of(workspace: Path, log: Path) -> Client:
+def client_of(workspace: Path, log: Path) -> Caller:
     started = as_process(workspace)
-    return Client(started.model_copy(update={"args": [*started.args, "--log-calls", str(log)]}))
+    return Caller(started.model_copy(update={"args": [*started.args, "--log-calls", str(log)]}))
 
 
 @pytest.mark.anyio
 async def test_each_call_is_a_line_with_its_cost(workspace: Path, tmp_path: Path) -> None:
     log = tmp_path / "calls.jsonl"
     async with client_of(workspace, log) as client:
-        good = await client.call_tool("validate_scenario", {"scenario_yaml": ROOM})
+        good = await client.call("validate_scenario", scenario_yaml=ROOM)
         assert len(logged(log)) == 1  # it is there as soon as the answer is
-        bad = await client.call_tool("validate_scenario", {"scenario": "é\u2028\n"})
-        unknown = await client.call_tool("validate", {})
-        drawn = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "size_px": 300})
+        bad = await client.call("validate_scenario", scenario="é\u2028\n")
+        unknown = await client.call("validate")
+        drawn = await client.call("render_snapshot", scenario_yaml=ROOM, size_px=300)
     lines = logged(log)
     assert [list(line) for line in lines] == [KEYS] * 4
     assert [line["call"] for line in lines] == [1, 2, 3, 4]
@@ -70,12 +70,12 @@ async def test_each_call_is_a_line_with_its_cost(workspace: Path, tmp_path: Path
 @pytest.mark.anyio
 async def test_calls_at_the_same_time_do_not_mix(workspace: Path, tmp_path: Path) -> None:
     log = tmp_path / "calls.jsonl"
-    topics = [f"no-such-topic-{number}" for number in range(30)]
+    topics = [f"no-such-topic-{number}" for number in range(8)]
     async with client_of(workspace, log) as client, anyio.create_task_group() as group:
         for topic in topics:
             group.start_soon(client.call_tool, "lookup", {"topic": topic})
     lines = logged(log)
-    assert sorted(line["call"] for line in lines) == list(range(1, 31))
+    assert sorted(line["call"] for line in lines) == list(range(1, 9))
     assert sorted(line["arguments"]["topic"] for line in lines) == sorted(topics)
 
 
@@ -93,7 +93,7 @@ def test_a_killed_server_has_lost_nothing_and_the_next_one_goes_on(workspace: Pa
         messages = [
             {"id": 1, "method": "initialize", "params": HANDSHAKE},
             {"method": "notifications/initialized"},
-            {"id": 2, "method": "tools/call", "params": {"name": "lookup", "arguments": {"topic": "dash"}}},
+            {"id": 2, "method": "tools/call", "params": {"name": "lookup", "arguments": {"topik": "dash"}}},  # refused
         ]
         process.stdin.write("".join(json.dumps({"jsonrpc": "2.0", **message}) + "\n" for message in messages))
         process.stdin.flush()
@@ -114,7 +114,7 @@ def test_a_file_that_cannot_be_written_is_refused_at_the_start(workspace: Path, 
     (tmp_path / "folder").mkdir()
     os.mkfifo(tmp_path / "pipe")
     with (tmp_path / "out").open("w+") as out:  # /dev/stdout is then an ordinary file, but not one to write to
-        command = [sys.executable, "-m", "irsim_mcp", "--workspace", str(workspace), "--log-calls", where]
+        command = warm([sys.executable, "-m", "irsim_mcp", "--workspace", str(workspace), "--log-calls", where])
         done = subprocess.run(
             command, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.PIPE, text=True, check=False
         )

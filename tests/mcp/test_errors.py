@@ -11,7 +11,7 @@ from mcp import MCPError
 
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim_mcp.answers import failure
-from tests.mcp.conftest import ERAS, ROOM, call, connected, error_of, text_of
+from tests.mcp.conftest import ERAS, ROOM, Caller, error_of
 
 pytestmark = pytest.mark.anyio
 
@@ -20,7 +20,7 @@ NO_CODES = {"irsim-mcp"}
 
 
 @pytest.fixture(scope="module")
-def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A workspace with a scenario and a folder."""
     workspace = tmp_path_factory.mktemp("furnished")
     (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
@@ -120,10 +120,9 @@ def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ],
 )
 async def test_one_line_with_a_fix(
-    furnished: Path, era: str, tool: str, arguments: dict[str, object], error: str
+    client: Caller, workspace: Path, tool: str, arguments: dict[str, object], error: str
 ) -> None:
-    async with connected(furnished, era) as client:
-        told = error_of(await client.call_tool(tool, arguments))
+    told = await client.error(tool, **arguments)
     assert error in told
     code = told.partition(":")[0]
     assert code in CODES or code in TOOL_CODES
@@ -131,19 +130,18 @@ async def test_one_line_with_a_fix(
 
 
 @pytest.mark.parametrize(("tool", "step"), [("run_episode", None), ("render_snapshot", 5)])
-async def test_an_invalid_scenario_names_its_first_problems(empty: Path, tool: str, step: int | None) -> None:
+async def test_an_invalid_scenario_names_its_first_problems(client: Caller, tool: str, step: int | None) -> None:
     wrong = ROOM.replace("dash", "dahs").replace("world: {", "world: {foo: 1, ").replace("goal:", "gaol:")
-    told = error_of(await call(empty, tool, {"scenario_yaml": wrong} | ({"step": step} if step else {})))
+    told = await client.error(tool, **({"scenario_yaml": wrong} | ({"step": step} if step else {})))
     assert told.startswith("invalid-scenario: 3 errors: world.foo line 1 unknown-key: ")
     assert "robot[0].behavior.name line 8 unknown-behavior" in told
     assert told.endswith("Fix: validate_scenario lists every problem with its fix.")
 
 
-async def test_a_scenario_may_be_written_as_json(empty: Path) -> None:
-    async with connected(empty) as client:
-        good = await client.call_tool("validate_scenario", {"scenario_yaml": '{"world": {"width": 10, "height": 6}}'})
-        lists = await client.call_tool("validate_scenario", {"scenario_yaml": "[1, 2]"})
-        packed = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "overlays": '["names"]'})
+async def test_a_scenario_may_be_written_as_json(client: Caller) -> None:
+    good = await client.call("validate_scenario", scenario_yaml='{"world": {"width": 10, "height": 6}}')
+    lists = await client.call("validate_scenario", scenario_yaml="[1, 2]")
+    packed = await client.call("render_snapshot", scenario_yaml=ROOM, overlays='["names"]')
     assert good.structured_content is not None
     assert good.structured_content["valid"]
     assert lists.structured_content is not None
@@ -151,9 +149,9 @@ async def test_a_scenario_may_be_written_as_json(empty: Path) -> None:
     assert not packed.is_error
 
 
-async def test_no_room_for_random_objects(empty: Path) -> None:
+async def test_no_room_for_random_objects(client: Caller) -> None:
     crowd = ROOM + "  - {number: 45, kinematics: {name: diff}, distribution: {name: random}, shape: {name: circle}}\n"
-    told = error_of(await call(empty, "run_episode", {"scenario_yaml": crowd, "seed": 1}))
+    told = await client.error("run_episode", scenario_yaml=crowd, seed=1)
     assert told.startswith("placement-crowded: no room for ")
     assert "with seed 1" in told
     assert "Fix: lower `number`" in told
@@ -175,9 +173,11 @@ def test_every_code_that_is_told_anywhere_is_in_the_list() -> None:
     given: dict[str, dict[str, str]] = {}  # by the name of what is called
     root = Path(__file__).resolve().parents[2]
     for path in (*(root / "irsim").rglob("*.py"), *(root / "mcp_server").rglob("*.py")):
-        name_of_file = path.relative_to(root)
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            place = f"{name_of_file}:{getattr(node, 'lineno', 0)}"
+        source = path.read_text(encoding="utf-8")
+        if not re.search("[\"'][a-z]+(-[a-z0-9]+)+(: |[\"'])", source):
+            continue
+        for node in ast.walk(ast.parse(source)):
+            place = f"{path.relative_to(root)}:{getattr(node, 'lineno', 0)}"
             text = text_in(node)
             if text is not None and (match := re.match(r"([a-z]+(?:-[a-z0-9]+)+): \S", text)):
                 told[match[1]] = place
@@ -202,25 +202,22 @@ def text_in(node: ast.AST) -> str | None:
     return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
 
 
-async def test_other_refusals_have_a_code_too(empty: Path) -> None:
-    async with connected(empty) as client:
-        fix = "Fix: the prompts are design_scen"
-        with pytest.raises(MCPError, match=rf"^unknown-prompt: there is no prompt 'nope'\. {fix}"):
-            await client.get_prompt("nope")
-        told = await client.call_tool("lookup", {"topic": "unknown-prompt"})
-    assert text_of(told).startswith("unknown-prompt: unknown prompt")
+async def test_other_refusals_have_a_code_too(client: Caller) -> None:
+    fix = "Fix: the prompts are design_scen"
+    with pytest.raises(MCPError, match=rf"^unknown-prompt: there is no prompt 'nope'\. {fix}"):
+        await client.get_prompt("nope")
+    assert (await client.text("lookup", topic="unknown-prompt")).startswith("unknown-prompt: unknown prompt")
 
 
-async def test_what_was_let_go_can_be_made_again(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        for name, argument, code in (("inspect_run", "run_id", "run"), ("get_job", "job_id", "job")):
-            told = error_of(await client.call_tool(name, {argument: "room-123456"}))
-            assert told.startswith(
-                f"unknown-{code}: there is no {code} 'room-123456' ({argument}). Fix: there are no {code}s here"
-            )
-            assert "are deleted" in told
-            assert "24 h" in told
-            assert "the same" in told
+async def test_what_was_let_go_can_be_made_again(client: Caller, workspace: Path) -> None:
+    for name, argument, code in (("inspect_run", "run_id", "run"), ("get_job", "job_id", "job")):
+        told = error_of(await client.call_tool(name, {argument: "room-123456"}))
+        assert told.startswith(
+            f"unknown-{code}: there is no {code} 'room-123456' ({argument}). Fix: there are no {code}s here"
+        )
+        assert "are deleted" in told
+        assert "24 h" in told
+        assert "the same" in told
 
 
 def test_a_fault_of_ours_points_at_no_argument() -> None:

@@ -13,12 +13,11 @@ from pathlib import Path
 import anyio
 import httpx2
 import pytest
-from mcp import Client
 from mcp.client.streamable_http import streamable_http_client
 
 from irsim_mcp.http import Address, HttpRefused, address, application, token_from
 from irsim_mcp.server import build_server
-from tests.mcp.conftest import ERAS, LONG, ROOM, data_of
+from tests.mcp.conftest import ERAS, LONG, ROOM, Caller
 from tests.mcp.test_lifetime import children_of, linux, wait_until_gone
 from tests.warm import warm_mcp
 
@@ -63,8 +62,8 @@ def local(empty: Path) -> Iterator[str]:
 @pytest.mark.anyio
 @pytest.mark.parametrize("era", ERAS)
 async def test_the_same_server_answers(local: str, era: str) -> None:
-    async with Client(local, mode=era) as client:
-        data = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))
+    async with Caller(local, mode=era) as client:
+        data = await client.data("validate_scenario", scenario_yaml=ROOM)
         assert data["valid"]
         assert len((await client.list_prompts()).prompts) == 3
         assert len((await client.list_tools()).tools) == 7
@@ -117,7 +116,7 @@ async def test_a_token_is_asked_for(empty: Path, tmp_path: Path) -> None:
             assert httpx2.post(url, json=DISCOVER, headers={**HEADERS, "Authorization": sent}).status_code == 200
         async with (
             httpx2.AsyncClient(headers={"Authorization": f"Bearer {TOKEN}"}) as http,
-            Client(streamable_http_client(url, http_client=http)) as client,
+            Caller(streamable_http_client(url, http_client=http)) as client,
         ):
             assert len((await client.list_tools()).tools) == 7
 
@@ -222,8 +221,8 @@ async def test_it_ends_soon_with_a_run_under_way_and_leaves_nobody(workspace: Pa
 
             async def run() -> None:
                 with suppress(Exception):
-                    async with Client(url) as client:
-                        await client.call_tool("run_episode", {"scenario_yaml": LONG})
+                    async with Caller(url) as client:
+                        await client.call("run_episode", scenario_yaml=LONG)
 
             group.start_soon(run)
             workers: list[int] = []

@@ -15,64 +15,60 @@ import pytest
 from mcp import Client
 
 import irsim
-from tests.mcp.conftest import CRASH, LONG, ROOM, as_process, call, connected, data_of, error_of, text_of
+from tests.mcp.conftest import CRASH, LONG, ROOM, Caller, as_process, connected, data_of, text_of
 from tests.mcp.test_benchmark import MANY, RANDOM
 from tests.warm import SERVERS
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
 
-async def test_what_takes_longer_goes_on_as_a_job(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        begun = data_of(await client.call_tool("benchmark", {"scenarios": [RANDOM], "seeds": 60, "wait_s": 0}))
-        assert begun["status"] == "running"
-        assert begun["next"] == f"get_job job_id={begun['job_id']}"
-        ended = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"], "wait_s": 50}))
-        assert (ended["status"], ended["done"]) == ("finished", 60)
-        again = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"]}))
-        assert again == ended
+async def test_what_takes_longer_goes_on_as_a_job(client: Caller, workspace: Path) -> None:
+    begun = await client.data("benchmark", scenarios=[RANDOM], seeds=60, wait_s=0)
+    assert begun["status"] == "running"
+    assert begun["next"] == f"get_job job_id={begun['job_id']}"
+    ended = await client.data("get_job", job_id=begun["job_id"], wait_s=50)
+    assert (ended["status"], ended["done"]) == ("finished", 60)
+    again = await client.data("get_job", job_id=begun["job_id"])
+    assert again == ended
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("ordinary_processes")
-async def test_a_job_that_is_cancelled_leaves_no_process(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        begun = data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 4, "wait_s": 2}))
-        assert begun["status"] == "running"
-        assert descendants(os.getpid())
-        ended = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"], "cancel": True}))
-        assert ended["status"] == "cancelled"
-        assert "call benchmark again" in ended["next"]
-        await gone(os.getpid())
+async def test_a_job_that_is_cancelled_leaves_no_process(client: Caller, workspace: Path) -> None:
+    begun = await client.data("benchmark", scenarios=[LONG], seeds=4, wait_s=2)
+    assert begun["status"] == "running"
+    assert descendants(os.getpid())
+    ended = await client.data("get_job", job_id=begun["job_id"], cancel=True)
+    assert ended["status"] == "cancelled"
+    assert "call benchmark again" in ended["next"]
+    await gone(os.getpid())
 
 
-async def test_a_job_that_is_cancelled_keeps_the_episodes_that_were_done(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        asked = {"scenarios": [ROOM, LONG], "behaviors": ["as-written", "dash"], "seeds": 2, "wait_s": 0}
-        job = data_of(await client.call_tool("benchmark", asked))["job_id"]
-        with anyio.fail_after(30):
-            while not kept_of(workspace, job):
-                await anyio.sleep(0.1)
-        result = await client.call_tool("get_job", {"job_id": job, "cancel": True})
-        ended = data_of(result)
-        assert ended["status"] == "cancelled"
-        assert 0 < ended["done"] < ended["total"] == 6
-        assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
-        assert ended["rows"][0]["success"][0] == 1
-        assert f"the {ended['done']} completed episodes; call benchmark again for all" in ended["next"]
-        assert text_of(result).startswith(f"cancelled: {ended['done']} episodes, ")
-        table = data_of(await client.call_tool("inspect_run", {"run_id": job}))
-        assert (table["status"], table["total"]) == ("cancelled", ended["done"])
-        assert (workspace / ended["artifact"]).is_file()
+async def test_a_job_that_is_cancelled_keeps_the_episodes_that_were_done(client: Caller, workspace: Path) -> None:
+    asked = {"scenarios": [ROOM, LONG], "behaviors": ["as-written", "dash"], "seeds": 2}
+    job = (await client.data("benchmark", **asked, wait_s=0))["job_id"]
+    with anyio.fail_after(30):
+        while not kept_of(workspace, job):
+            await anyio.sleep(0.1)
+    result = await client.call("get_job", job_id=job, cancel=True)
+    ended = data_of(result)
+    assert ended["status"] == "cancelled"
+    assert 0 < ended["done"] < ended["total"] == 6
+    assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
+    assert ended["rows"][0]["success"][0] == 1
+    assert f"the {ended['done']} completed episodes; call benchmark again for all" in ended["next"]
+    assert text_of(result).startswith(f"cancelled: {ended['done']} episodes, ")
+    table = await client.data("inspect_run", run_id=job)
+    assert (table["status"], table["total"]) == ("cancelled", ended["done"])
+    assert (workspace / ended["artifact"]).is_file()
 
 
-async def test_cancelling_throws_no_episode_away(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        job = data_of(await client.call_tool("benchmark", MANY))["job_id"]
-        told = [await done_of(client, job, 30)]
-        ended = data_of(await client.call_tool("get_job", {"job_id": job, "cancel": True}))
-        told.append(ended["done"])
-        told.append(await done_of(client, job))
+async def test_cancelling_throws_no_episode_away(client: Caller, workspace: Path) -> None:
+    job = (await client.data("benchmark", **MANY))["job_id"]
+    told = [await done_of(client, job, 30)]
+    ended = await client.data("get_job", job_id=job, cancel=True)
+    told.append(ended["done"])
+    told.append(await done_of(client, job))
     assert ended["status"] == "cancelled"
     assert told == sorted(told)
     assert told[1] == told[2]
@@ -84,28 +80,24 @@ async def test_cancelling_throws_no_episode_away(workspace: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 @pytest.mark.usefixtures("ordinary_processes")
-async def test_a_job_whose_process_is_killed_keeps_every_episode_and_says_so(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        job = data_of(await client.call_tool("benchmark", MANY))["job_id"]
-        told = await done_of(client, job, 30)
-        for pid in descendants(os.getpid()):
-            os.kill(pid, signal.SIGKILL)
-        ended = data_of(await client.call_tool("get_job", {"job_id": job}))
-        assert ended["status"] == "interrupted"
-        assert told <= ended["done"] < 1800
-        assert ended["next"].startswith(
-            "the process that did the work ended without a result. This is the result of the "
-        )
-        table = data_of(await client.call_tool("inspect_run", {"run_id": job, "limit": 5}))
-        assert table["total"] == ended["done"]
-        await gone(os.getpid())
+async def test_a_job_whose_process_is_killed_keeps_every_episode_and_says_so(client: Caller, workspace: Path) -> None:
+    job = (await client.data("benchmark", **MANY))["job_id"]
+    told = await done_of(client, job, 30)
+    for pid in descendants(os.getpid()):
+        os.kill(pid, signal.SIGKILL)
+    ended = await client.data("get_job", job_id=job)
+    assert ended["status"] == "interrupted"
+    assert told <= ended["done"] < 1800
+    assert ended["next"].startswith("the process that did the work ended without a result. This is the result of the ")
+    table = await client.data("inspect_run", run_id=job, limit=5)
+    assert table["total"] == ended["done"]
+    await gone(os.getpid())
 
 
 async def test_a_job_that_fails_half_way_says_why_and_keeps_the_episodes_before(workspace: Path) -> None:
     larger = RANDOM.replace("number: 3", "number: 6")
     async with connected(workspace, work=200) as client:
-        asked = {"scenarios": [RANDOM, larger], "seeds": 4, "max_steps": 60}
-        ended = data_of(await client.call_tool("benchmark", asked))
+        ended = await client.data("benchmark", scenarios=[RANDOM, larger], seeds=4, max_steps=60)
     assert ended["status"] == "interrupted"
     assert ended["done"] == ended["rows"][0]["episodes"] == 4
     assert ended["next"].startswith("60 steps are too many: at most 200 steps x objects are run at once")
@@ -124,35 +116,30 @@ async def test_a_job_whose_time_is_over_keeps_the_episodes_that_were_done(worksp
         assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
 
 
-async def test_two_jobs_at_a_time(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        jobs = [
-            data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 2, "wait_s": 0}))["job_id"]
-            for _ in range(2)
-        ]
-        told = error_of(await client.call_tool("benchmark", {"scenarios": [LONG], "wait_s": 0}))
-        assert told.startswith("busy: 2 jobs are running")
-        assert all(job in told for job in jobs)
-        for job in jobs:
-            await client.call_tool("get_job", {"job_id": job, "cancel": True})
-        begun = data_of(await client.call_tool("benchmark", {"scenarios": [ROOM], "wait_s": 50}))
-        assert begun["status"] == "finished"
+async def test_two_jobs_at_a_time(client: Caller, workspace: Path) -> None:
+    jobs = [(await client.data("benchmark", scenarios=[LONG], seeds=2, wait_s=0))["job_id"] for _ in range(2)]
+    told = await client.error("benchmark", scenarios=[LONG], wait_s=0)
+    assert told.startswith("busy: 2 jobs are running")
+    assert all(job in told for job in jobs)
+    for job in jobs:
+        await client.call("get_job", job_id=job, cancel=True)
+    begun = await client.data("benchmark", scenarios=[ROOM], wait_s=50)
+    assert begun["status"] == "finished"
 
 
-async def test_jobs_that_are_not_there(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        assert error_of(await client.call_tool("get_job", {"job_id": "benchmark-123456"})).startswith("unknown-job")
-        done = data_of(await client.call_tool("benchmark", {"scenarios": [CRASH]}))
-        told = error_of(await client.call_tool("get_job", {"job_id": "../../etc"}))
-        assert f"recent ones are {done['job_id']}" in told
+async def test_jobs_that_are_not_there(client: Caller, workspace: Path) -> None:
+    assert (await client.error("get_job", job_id="benchmark-123456")).startswith("unknown-job")
+    done = await client.data("benchmark", scenarios=[CRASH])
+    told = await client.error("get_job", job_id="../../etc")
+    assert f"recent ones are {done['job_id']}" in told
 
 
 @pytest.mark.parametrize("link", [".irsim", ".irsim/jobs"])
-async def test_links_are_not_followed(workspace: Path, tmp_path: Path, link: str) -> None:
+async def test_links_are_not_followed(client: Caller, workspace: Path, tmp_path: Path, link: str) -> None:
     (tmp_path / "elsewhere").mkdir()
     (workspace / link).parent.mkdir(exist_ok=True)
     (workspace / link).symlink_to(tmp_path / "elsewhere")
-    told = error_of(await call(workspace, "benchmark", {"scenarios": [ROOM]}))
+    told = await client.error("benchmark", scenarios=[ROOM])
     assert told.startswith("path-outside-workspace")
     assert not list((tmp_path / "elsewhere").iterdir())
 
@@ -213,8 +200,8 @@ async def test_a_server_that_ends_leaves_no_process_and_all_that_was_done(
         server.stdout.close()
         if not server.stdin.closed:
             server.stdin.close()
-    async with Client(as_process(workspace)) as client:
-        ended = data_of(await client.call_tool("get_job", {"job_id": job}))
+    async with Caller(as_process(workspace)) as client:
+        ended = await client.data("get_job", job_id=job)
     assert ended["status"] == "interrupted"
     assert (world == "short") == (told > 0)
     assert told <= ended["done"] < ended["total"]
@@ -230,7 +217,7 @@ async def done_of(client: Client, job: str, least: int = 0) -> int:
     """Episodes that a job has done, as the server says it, once there are some."""
     with anyio.fail_after(30):
         while True:
-            done = int(data_of(await client.call_tool("get_job", {"job_id": job, "wait_s": 0}))["done"])
+            done = int((await client.data("get_job", job_id=job, wait_s=0))["done"])
             if done >= least:
                 return done
             await anyio.sleep(0.05)

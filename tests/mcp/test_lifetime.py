@@ -15,9 +15,8 @@ from typing import Any
 
 import anyio
 import pytest
-from mcp import Client
 
-from tests.mcp.conftest import ERAS, LONG, ROOM, as_process, connected, data_of, error_of
+from tests.mcp.conftest import ERAS, LONG, ROOM, Caller, as_process, connected, error_of
 from tests.warm import SERVERS
 
 HANDSHAKE = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "0"}}
@@ -134,7 +133,7 @@ async def test_cancelling_a_call_ends_its_worker(workspace: Path, era: str) -> N
     async def on_progress(done: float, total: float | None, message: str | None) -> None:
         started.set()
 
-    async with Client(as_process(workspace), mode=era) as client:
+    async with Caller(as_process(workspace), mode=era) as client:
         server = children_of(os.getpid())
         async with anyio.create_task_group() as tasks:
             arguments = {"scenario_yaml": LONG}
@@ -151,26 +150,23 @@ async def test_cancelling_a_call_ends_its_worker(workspace: Path, era: str) -> N
         while any(map(runs, workers)) and time.monotonic() < end:
             await anyio.sleep(0.02)
         assert not any(map(runs, workers))
-        assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]
+        assert (await client.data("validate_scenario", scenario_yaml=ROOM))["valid"]
 
 
 @pytest.mark.slow
 @linux
 @pytest.mark.anyio
-async def test_of_a_run_whose_worker_is_killed_the_beginning_can_be_read(workspace: Path) -> None:
+async def test_of_a_run_whose_worker_is_killed_the_beginning_can_be_read(client: Caller, workspace: Path) -> None:
     async def on_progress(done: float, total: float | None, message: str | None) -> None:
         if list(workspace.rglob("trace*")):  # some of it is written down
             for pid in children_of(os.getpid()):
                 os.kill(pid, signal.SIGKILL)
 
-    async with connected(workspace) as client:
-        told = error_of(await client.call_tool("run_episode", {"scenario_yaml": LONG}, progress_callback=on_progress))
-        match = re.search(r"inspect_run run_id=(\S+) shows the steps until then", told)
-        assert match is not None, told
-        assert re.match(
-            r"worker-failed: the process that did the work ended with code -9 after \d+ of [0-9,]+ steps", told
-        )
-        table = data_of(await client.call_tool("inspect_run", {"run_id": match[1], "limit": 1}))
+    told = error_of(await client.call_tool("run_episode", {"scenario_yaml": LONG}, progress_callback=on_progress))
+    match = re.search(r"inspect_run run_id=(\S+) shows the steps until then", told)
+    assert match is not None, told
+    assert re.match(r"worker-failed: the process that did the work ended with code -9 after \d+ of [0-9,]+ steps", told)
+    table = await client.data("inspect_run", run_id=match[1], limit=1)
     assert "interrupted" in json.dumps(table)
 
 
@@ -180,14 +176,14 @@ async def test_more_calls_than_workers_are_told_to_come_back(empty: Path) -> Non
         async with anyio.create_task_group() as tasks:
 
             async def occupy() -> None:
-                await client.call_tool("run_episode", {"scenario_yaml": LONG})
+                await client.call("run_episode", scenario_yaml=LONG)
 
             tasks.start_soon(occupy)
             await anyio.sleep(0.3)
-            told = error_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))
+            told = await client.error("validate_scenario", scenario_yaml=ROOM)
             tasks.cancel_scope.cancel()
         assert told.startswith("busy: 1 calls are being processed")
-        assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]
+        assert (await client.data("validate_scenario", scenario_yaml=ROOM))["valid"]
 
 
 @pytest.mark.anyio
@@ -199,7 +195,7 @@ async def test_calls_at_the_same_time_do_not_mix(empty: Path) -> None:
 
         async def call(goal: int) -> None:
             scenario = ROOM.replace("goal: [4, 3, 0]", f"goal: [{goal}, 3, 0]").replace("rover", f"rover_{goal}")
-            results[goal] = data_of(await client.call_tool("run_episode", {"scenario_yaml": scenario, "seed": goal}))
+            results[goal] = await client.data("run_episode", scenario_yaml=scenario, seed=goal)
 
         for goal in goals:
             tasks.start_soon(call, goal)

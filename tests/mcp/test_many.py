@@ -11,7 +11,7 @@ import pytest
 from mcp import Client
 
 from irsim.runs import list_runs
-from tests.mcp.conftest import ROOM, as_process, data_of, error_of, text_of
+from tests.mcp.conftest import ROOM, Caller, as_process, data_of, text_of
 from tests.mcp.test_http import served
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
@@ -54,7 +54,7 @@ async def talk(client: Client, who: int, calls: int, runs: list[str]) -> None:
         else:
             arguments = {"scenarios": [mine], "seeds": 2, "wait_s": 50}
             assert data_of(await patiently(client, "benchmark", arguments))["status"] == "finished"
-    assert error_of(await client.call_tool("inspect_run", {"run_id": "no-000000"})).startswith("unknown-run")
+    assert (await client.error("inspect_run", run_id="no-000000")).startswith("unknown-run")
 
 
 async def servers(workspace: Path, count: int, calls: int, url: str | None = None) -> None:
@@ -62,7 +62,7 @@ async def servers(workspace: Path, count: int, calls: int, url: str | None = Non
     runs: list[str] = []
 
     async def serve(who: int) -> None:
-        async with Client(url or as_process(workspace)) as client:
+        async with Caller(url or as_process(workspace)) as client:
             await talk(client, who, calls, runs)
 
     async with anyio.create_task_group() as tasks:

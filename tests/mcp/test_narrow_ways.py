@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
-from tests.mcp.conftest import call, text_of
+from tests.mcp.conftest import Caller
 
 pytestmark = pytest.mark.anyio
 
@@ -39,10 +38,11 @@ obstacle:
 """
 
 
-async def looked(empty: Path, text: str, **more: object) -> dict[str, str]:
+async def looked(client: Caller, text: str, **more: object) -> dict[str, str]:
     """The line of the picture, the finding about a path, and the row of the table about passages."""
-    given = {"scenario_yaml": text, "overlays": ["plan"], "return_image": False, **more}
-    lines = text_of(await call(empty, "render_snapshot", given)).splitlines()
+    lines = (
+        await client.text("render_snapshot", scenario_yaml=text, overlays=["plan"], return_image=False, **more)
+    ).splitlines()
     kinds = {"finding": r"1\. .*(narrow-passage|goal-unreachable)", "table": "Narrowest passage"}
     first_lines = {kind: line for kind, start in kinds.items() for line in lines if re.match(start, line)}
     return {"first": lines[0], **first_lines}
@@ -52,8 +52,8 @@ def places(line: str) -> set[str]:
     return set(re.findall(r"\(-?\d+\.\d\d, -?\d+\.\d\d\)", line))
 
 
-async def test_hint_table_and_first_line_name_the_same_gaps(empty: Path) -> None:
-    told = await looked(empty, PERLIN)
+async def test_hint_table_and_first_line_name_the_same_gaps(client: Caller) -> None:
+    told = await looked(client, PERLIN)
     gaps = places(told["table"])
     assert "0.6 m at (" in told["table"]
     assert "leads through 2 gaps of 0.6 m at (" in told["finding"]
@@ -64,9 +64,9 @@ async def test_hint_table_and_first_line_name_the_same_gaps(empty: Path) -> None
     assert gap in gaps
 
 
-async def test_a_map_drawn_by_its_seed_has_another_goal_as_fix(empty: Path) -> None:
-    narrow = (await looked(empty, PERLIN))["finding"].partition(" Fix: ")[2]
-    closed = (await looked(empty, PERLIN.replace("[19.5, 18.7]", "[23, 23]")))["finding"].partition(" Fix: ")[2]
+async def test_a_map_drawn_by_its_seed_has_another_goal_as_fix(client: Caller) -> None:
+    narrow = (await looked(client, PERLIN))["finding"].partition(" Fix: ")[2]
+    closed = (await looked(client, PERLIN.replace("[19.5, 18.7]", "[23, 23]")))["finding"].partition(" Fix: ")[2]
     assert narrow.startswith("another goal: (")
     assert closed.startswith("another goal: it can get to (")
     for fix in (narrow, closed):
@@ -74,13 +74,13 @@ async def test_a_map_drawn_by_its_seed_has_another_goal_as_fix(empty: Path) -> N
         assert "another 'seed'" in fix
     for fix in (narrow, closed):
         (place,) = re.findall(r"\((\d+\.\d\d, \d+\.\d\d)\)", fix)
-        told = await looked(empty, PERLIN.replace("19.5, 18.7", place))
+        told = await looked(client, PERLIN.replace("19.5, 18.7", place))
         assert "goal-unreachable" not in told.get("finding", "")
         assert fix is closed or "finding" not in told
 
 
-async def test_plans_are_those_that_follow_drives_to_every_goal(empty: Path) -> None:
-    first = (await looked(empty, CORNER))["first"]
+async def test_plans_are_those_that_follow_drives_to_every_goal(client: Caller) -> None:
+    first = (await looked(client, CORNER))["first"]
     own, other = re.findall(r"(?:its own plan|a path) for '\w+': [^;]*", first)
     margin = float(re.findall(r"least margin ([\d.]+) m to 'box'", own)[0])
     assert margin > 0.05
@@ -90,8 +90,8 @@ async def test_plans_are_those_that_follow_drives_to_every_goal(empty: Path) -> 
     assert "(a shortest path, which touches corners or nearly so)" in other
 
 
-async def test_a_robot_that_comes_later_has_no_plan_before(empty: Path) -> None:
+async def test_a_robot_that_comes_later_has_no_plan_before(client: Caller) -> None:
     late = CORNER.replace("behavior: {name: orca}", "appear_time: 0.5, behavior: {name: follow}")
-    told = [(await looked(empty, late, step=step))["first"] for step in (0, 2, 10)]
+    told = [(await looked(client, late, step=step))["first"] for step in (0, 2, 10)]
     assert ["its own plan for 'dasher'" in line for line in told] == [False, False, True]
     assert all("its own plan for 'rover'" in line for line in told)

@@ -8,7 +8,7 @@ import pytest
 
 from irsim.policies.networks import save_network
 from irsim.policies.registry import POLICIES
-from tests.mcp.conftest import ROOM, connected, data_of, error_of
+from tests.mcp.conftest import ROOM, Caller
 from tests.policies.networks.examples import go_to_goal
 
 pytestmark = pytest.mark.anyio
@@ -16,21 +16,16 @@ pytestmark = pytest.mark.anyio
 SCENE = ROOM.replace("omni", "diff")
 
 
-async def test_a_network_of_the_workspace_is_compared_and_run(empty: Path) -> None:
+async def test_a_network_of_the_workspace_is_compared_and_run(client: Caller, empty: Path) -> None:
     save_network(empty / "net.npz", go_to_goal())
     (empty / "scene.yaml").write_text(
         "world: {time_limit: 20}\n"
         "robot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 3], behavior: {name: dash}}\n"
     )
-    async with connected(empty) as client:
-        table = data_of(
-            await client.call_tool(
-                "benchmark", {"scenarios": ["scene.yaml"], "policies": ["dash", "net.npz", "random"], "seeds": 2}
-            )
-        )
-        one = data_of(await client.call_tool("run_episode", {"scenario_path": "scene.yaml", "policy": "net.npz"}))
-        last = {"run_id": one["run_id"], "step": -1, "return_image": False}
-        picture = await client.call_tool("render_snapshot", last)
+    table = await client.data("benchmark", scenarios=["scene.yaml"], policies=["dash", "net.npz", "random"], seeds=2)
+    one = await client.data("run_episode", scenario_path="scene.yaml", policy="net.npz")
+    last = {"run_id": one["run_id"], "step": -1, "return_image": False}
+    picture = await client.call_tool("render_snapshot", last)
     shares = {row["behavior"]: row["success"][0] for row in table["rows"]}
     assert shares == {"dash": 1.0, "net.npz": 1.0, "random": 0.0}
     assert (one["outcome"], one["behavior"]) == ("success", "net.npz")
@@ -38,7 +33,9 @@ async def test_a_network_of_the_workspace_is_compared_and_run(empty: Path) -> No
     assert not picture.is_error
 
 
-async def test_files_outside_and_plug_ins_are_refused(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_files_outside_and_plug_ins_are_refused(
+    client: Caller, empty: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     save_network(empty.parent / "outside.npz", go_to_goal())
     (empty / "link.npz").symlink_to(empty.parent / "outside.npz")
     (empty / "bad.npz").write_bytes(b"PK\x03\x04 nothing")
@@ -51,16 +48,15 @@ async def test_files_outside_and_plug_ins_are_refused(empty: Path, monkeypatch: 
         "plugged": "unknown-policy",
         "bad.npz": "policy-file",
     }
-    async with connected(empty) as client:
-        for policy, code in expected.items():
-            for name, arguments in (
-                ("run_episode", {"scenario_yaml": SCENE, "policy": policy}),
-                ("benchmark", {"scenarios": [SCENE], "policies": [policy], "seeds": 1}),
-            ):
-                assert error_of(await client.call_tool(name, arguments)).split(":")[0] == code, policy
+    for policy, code in expected.items():
+        for name, arguments in (
+            ("run_episode", {"scenario_yaml": SCENE, "policy": policy}),
+            ("benchmark", {"scenarios": [SCENE], "policies": [policy], "seeds": 1}),
+        ):
+            assert (await client.error(name, **arguments)).split(":")[0] == code, policy
 
 
-async def test_two_names_of_one_argument_are_not_mixed(empty: Path) -> None:
-    async with connected(empty) as client:
-        both = {"scenario_yaml": ROOM, "policy": "dash", "behavior": "dash"}
-        assert error_of(await client.call_tool("run_episode", both)).startswith("bad-argument: policy and behavior are")
+async def test_two_names_of_one_argument_are_not_mixed(client: Caller) -> None:
+    assert (await client.error("run_episode", scenario_yaml=ROOM, policy="dash", behavior="dash")).startswith(
+        "bad-argument: policy and behavior are"
+    )

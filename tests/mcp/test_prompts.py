@@ -11,7 +11,7 @@ from mcp.types import PromptReference, ResourceTemplateReference, TextContent
 
 from irsim.options.registry import KINEMATICS
 from irsim_mcp.prompts import drives, template_names
-from tests.mcp.conftest import CRASH, ERAS, ROOM, connected, data_of
+from tests.mcp.conftest import CRASH, ERAS, ROOM, Caller
 
 pytestmark = pytest.mark.anyio
 
@@ -36,29 +36,27 @@ async def completed(
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_list(empty: Path, era: str) -> None:
-    async with connected(empty, era) as client:
-        prompts = (await client.list_prompts()).prompts
+async def test_list(client: Caller) -> None:
+    prompts = (await client.list_prompts()).prompts
     assert {p.name: {a.name: a.required for a in p.arguments or ()} for p in prompts} == ARGUMENTS
     assert all(p.title and p.description and all(a.description for a in p.arguments or ()) for p in prompts)
 
 
-async def test_every_prompt_names_tools_that_there_are(workspace: Path) -> None:
+async def test_every_prompt_names_tools_that_there_are(client: Caller, workspace: Path) -> None:
     (workspace / "crash.yaml").write_text(CRASH, encoding="utf-8")
-    async with connected(workspace) as client:
-        run_id = data_of(await client.call_tool("run_episode", {"scenario_yaml": CRASH}))["run_id"]
-        job = data_of(await client.call_tool("benchmark", {"scenarios": [CRASH], "seeds": 1}))["job_id"]
-        tools = {tool.name for tool in (await client.list_tools()).tools}
-        views = {"collisions", "closest"}
-        texts = [
-            await filled(client, "design_scenario", {"goal": 'ten robots\nthat "swap" places'}),
-            await filled(client, "debug_run", {"run_id": run_id}),
-            await filled(client, "debug_run", {"run_id": "last"}),
-            await filled(client, "debug_run", {"run_id": job}),
-            await filled(client, "compare_policies", {"scenario": "crash.yaml"}),
-            await filled(client, "compare_policies", {"scenario": "crossing"}),
-        ]
-        assert data_of(await client.call_tool("inspect_run", {"run_id": run_id, "view": "closest"}))
+    run_id = (await client.data("run_episode", scenario_yaml=CRASH))["run_id"]
+    job = (await client.data("benchmark", scenarios=[CRASH], seeds=1))["job_id"]
+    tools = {tool.name for tool in (await client.list_tools()).tools}
+    views = {"collisions", "closest"}
+    texts = [
+        await filled(client, "design_scenario", {"goal": 'ten robots\nthat "swap" places'}),
+        await filled(client, "debug_run", {"run_id": run_id}),
+        await filled(client, "debug_run", {"run_id": "last"}),
+        await filled(client, "debug_run", {"run_id": job}),
+        await filled(client, "compare_policies", {"scenario": "crash.yaml"}),
+        await filled(client, "compare_policies", {"scenario": "crossing"}),
+    ]
+    assert await client.data("inspect_run", run_id=run_id, view="closest")
     assert "\"ten robots that 'swap' places\"" in texts[0]
     assert f"get_job with job_id={job} until it has ended, then inspect_run with run_id={job}" in texts[3]
     assert "the template crossing" in texts[5]
@@ -84,11 +82,10 @@ async def test_every_prompt_names_tools_that_there_are(workspace: Path) -> None:
     ],
 )
 async def test_what_does_not_fit_is_told(
-    workspace: Path, era: str, name: str, arguments: dict[str, str], said: str
+    client: Caller, workspace: Path, name: str, arguments: dict[str, str], said: str
 ) -> None:
-    async with connected(workspace, era) as client:
-        with pytest.raises(MCPError) as caught:
-            await client.get_prompt(name, arguments)
+    with pytest.raises(MCPError) as caught:
+        await client.get_prompt(name, arguments)
     assert caught.value.error.code == -32602
     assert said in caught.value.error.message
 
@@ -98,58 +95,54 @@ def test_drives_are_those_registered() -> None:
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_completions(workspace: Path, era: str) -> None:
+async def test_completions(client: Caller, workspace: Path) -> None:
     for name in ("crossing-mine.yaml", "room.yaml", "evil\x1b[2J.yaml"):
         (workspace / name).write_text(ROOM, encoding="utf-8")
     (workspace / "link.yaml").symlink_to("/etc/passwd")
     design, debug, compare = (PromptReference(name=name) for name in ARGUMENTS)
-    async with connected(workspace, era) as client:
-        assert await completed(client, debug, "run_id", "") == []
-        run_id = data_of(await client.call_tool("run_episode", {"scenario_path": "room.yaml"}))["run_id"]
-        templates = {t.name: t.uri_template for t in (await client.list_resource_templates()).resource_templates}
-        run, docs = (ResourceTemplateReference(uri=templates[name]) for name in ("run", "docs"))
-        assert await completed(client, design, "kinematics", "o") == ["omni", "omni_angular"]
-        assert await completed(client, design, "difficulty", "") == ["easy", "medium", "hard"]
-        assert await completed(client, debug, "run_id", "room") == [run_id]
-        crossings = await completed(client, compare, "scenario", "cross")
-        assert crossings == ["crossing-mine.yaml", *(name for name in template_names() if name.startswith("cross"))]
-        everything = await completed(client, compare, "scenario", "")
-        assert "room.yaml" in everything
-        assert not {"link.yaml", "evil\x1b[2J.yaml"} & set(everything)
-        assert await completed(client, run, "run_id", "") == [run_id]
-        assert await completed(client, run, "artifact", "trace") == ["trace.json", "trace.csv"]
-        assert await completed(client, docs, "topic", "sens") == ["sensors"]
-        schema = ResourceTemplateReference(uri="irsim://schema/{section}")
-        assert await completed(client, schema, "section", "s") == ["scenario", "sensor", "shape"]
-        for ref, name in ((design, "goal"), (design, "nonsense"), (PromptReference(name="nothing"), "x")):
-            assert await completed(client, ref, name, "") == []
+    assert await completed(client, debug, "run_id", "") == []
+    run_id = (await client.data("run_episode", scenario_path="room.yaml"))["run_id"]
+    templates = {t.name: t.uri_template for t in (await client.list_resource_templates()).resource_templates}
+    run, docs = (ResourceTemplateReference(uri=templates[name]) for name in ("run", "docs"))
+    assert await completed(client, design, "kinematics", "o") == ["omni", "omni_angular"]
+    assert await completed(client, design, "difficulty", "") == ["easy", "medium", "hard"]
+    assert await completed(client, debug, "run_id", "room") == [run_id]
+    crossings = await completed(client, compare, "scenario", "cross")
+    assert crossings == ["crossing-mine.yaml", *(name for name in template_names() if name.startswith("cross"))]
+    everything = await completed(client, compare, "scenario", "")
+    assert "room.yaml" in everything
+    assert not {"link.yaml", "evil\x1b[2J.yaml"} & set(everything)
+    assert await completed(client, run, "run_id", "") == [run_id]
+    assert await completed(client, run, "artifact", "trace") == ["trace.json", "trace.csv"]
+    assert await completed(client, docs, "topic", "sens") == ["sensors"]
+    schema = ResourceTemplateReference(uri="irsim://schema/{section}")
+    assert await completed(client, schema, "section", "s") == ["scenario", "sensor", "shape"]
+    for ref, name in ((design, "goal"), (design, "nonsense"), (PromptReference(name="nothing"), "x")):
+        assert await completed(client, ref, name, "") == []
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_pages(empty: Path, era: str) -> None:
+async def test_pages(client: Caller) -> None:
     async def read(uri: str) -> str:
         (content,) = (await client.read_resource(uri)).contents
         return str(content.text)  # type: ignore[union-attr]
 
-    async with connected(empty, era) as client:
-        listed = {str(item.uri) for item in (await client.list_resources()).resources}
-        assert {"irsim://docs/readme", "irsim://docs/behaviors", "irsim://docs/diagnostics"} <= listed
-        whole = await read("irsim://docs/behaviors")
-        assert whole.startswith("# ")
-        parts = [
-            await read(f"irsim://docs/behaviors?offset={start}&limit=1000") for start in range(0, len(whole), 1000)
-        ]
-        assert "".join(parts) == whole
-        assert await read(f"irsim://docs/behaviors?offset={len(whole) + 5}") == ""
-        for uri, said in (
-            ("irsim://docs/behaviour", "Did you mean behaviors?"),
-            ("irsim://docs/..", "Unknown|no page|not"),
-            ("irsim://docs/%2e%2e%2fsecret", "Unknown|no page|not"),
-            ("irsim://docs/readme?offset=-1", "offset must be at least 0"),
-        ):
-            with pytest.raises(MCPError) as caught:
-                await client.read_resource(uri)
-            assert re.search(said, caught.value.error.message)
+    listed = {str(item.uri) for item in (await client.list_resources()).resources}
+    assert {"irsim://docs/readme", "irsim://docs/behaviors", "irsim://docs/diagnostics"} <= listed
+    whole = await read("irsim://docs/behaviors")
+    assert whole.startswith("# ")
+    parts = [await read(f"irsim://docs/behaviors?offset={start}&limit=1000") for start in range(0, len(whole), 1000)]
+    assert "".join(parts) == whole
+    assert await read(f"irsim://docs/behaviors?offset={len(whole) + 5}") == ""
+    for uri, said in (
+        ("irsim://docs/behaviour", "Did you mean behaviors?"),
+        ("irsim://docs/..", "Unknown|no page|not"),
+        ("irsim://docs/%2e%2e%2fsecret", "Unknown|no page|not"),
+        ("irsim://docs/readme?offset=-1", "offset must be at least 0"),
+    ):
+        with pytest.raises(MCPError) as caught:
+            await client.read_resource(uri)
+        assert re.search(said, caught.value.error.message)
 
 
 async def test_pages_are_cut_at_a_megabyte(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from tests.mcp.conftest import CRASH, ROOM, call, connected, data_of, error_of, image_of, text_of
+from tests.mcp.conftest import CRASH, ROOM, Caller, data_of, error_of, image_of, text_of
 
 pytestmark = pytest.mark.anyio
 
 
-async def test_line_and_picture(workspace: Path) -> None:
-    result = await call(workspace, "render_snapshot", {"scenario_yaml": CRASH, "seed": 1, "size_px": 300})
+async def test_line_and_picture(client: Caller, workspace: Path) -> None:
+    result = await client.call("render_snapshot", scenario_yaml=CRASH, seed=1, size_px=300)
     text = text_of(result)
     line = text.splitlines()[0]
     assert "t=0 s (step 0, nothing is random); world x 0..8 m, y 0..6 m" in line
@@ -38,79 +38,74 @@ async def test_line_and_picture(workspace: Path) -> None:
     assert list(workspace.iterdir()) == []
 
 
-async def test_later_moments_and_no_picture(empty: Path) -> None:
-    async with connected(empty) as client:
-        for step, said in ((10, "(step 10,"), (-1, "'rover' arrived")):
-            arguments = {"scenario_yaml": ROOM, "step": step, "return_image": False}
-            result = await client.call_tool("render_snapshot", arguments)
-            assert said in text_of(result)
-            assert len(result.content) == 1
+async def test_later_moments_and_no_picture(client: Caller) -> None:
+    for step, said in ((10, "(step 10,"), (-1, "'rover' arrived")):
+        arguments = {"scenario_yaml": ROOM, "step": step, "return_image": False}
+        result = await client.call_tool("render_snapshot", arguments)
+        assert said in text_of(result)
+        assert len(result.content) == 1
 
 
-async def test_overlays(empty: Path) -> None:
-    async with connected(empty) as client:
-        pictures = [
-            image_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "overlays": overlays})).data
-            for overlays in ([], ["names", "goals"])
-        ]
-        bad = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "overlays": ["grid"]})
+async def test_overlays(client: Caller) -> None:
+    pictures = [
+        (await client.image("render_snapshot", scenario_yaml=ROOM, overlays=overlays)).data
+        for overlays in ([], ["names", "goals"])
+    ]
+    bad = await client.call("render_snapshot", scenario_yaml=ROOM, overlays=["grid"])
     assert pictures[0] != pictures[1]
     assert "names, goals, paths, sensors" in error_of(bad)
 
 
-async def test_region(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        whole, part = [
-            image_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, **keys})).data
-            for keys in ({}, {"region": [0, 0, 2, 2]})
-        ]
-        run = data_of(await client.call_tool("run_episode", {"scenario_yaml": ROOM}))["run_id"]
-        bad = [
-            error_of(await client.call_tool("render_snapshot", {**scene, "region": [5, 5, 1, 1]}))
-            for scene in ({"scenario_yaml": ROOM}, {"run_id": run}, {"run_id": run, "strip": 3, "step": -1})
-        ]
+async def test_region(client: Caller, workspace: Path) -> None:
+    whole, part = [
+        (await client.image("render_snapshot", scenario_yaml=ROOM, **keys)).data
+        for keys in ({}, {"region": [0, 0, 2, 2]})
+    ]
+    run = (await client.data("run_episode", scenario_yaml=ROOM))["run_id"]
+    bad = [
+        await client.error("render_snapshot", **scene, region=[5, 5, 1, 1])
+        for scene in ({"scenario_yaml": ROOM}, {"run_id": run}, {"run_id": run, "strip": 3, "step": -1})
+    ]
     assert whole != part
     for told in bad:
         assert told.startswith("bad-argument: region 5, 5, 1, 1 is not valid (region). Fix: give x_min, y_min, x_max, ")
 
 
-async def test_plans_in_words(empty: Path) -> None:
-    async with connected(empty) as client:
-        given = {"scenario_yaml": ROOM, "overlays": ["plan", "clearance"], "size_px": 300}
-        result = await client.call_tool("render_snapshot", given)
-        refused = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "strip": 13})
+async def test_plans_in_words(client: Caller) -> None:
+    given = {"scenario_yaml": ROOM, "overlays": ["plan", "clearance"], "size_px": 300}
+    result = await client.call_tool("render_snapshot", given)
+    refused = await client.call("render_snapshot", scenario_yaml=ROOM, strip=13)
     assert "a path for 'rover': " in text_of(result)
     assert "(strip)" in error_of(refused)
     assert "2 to 12" in error_of(refused)
 
 
-async def test_settings_of_the_workspace_have_no_effect(workspace: Path) -> None:
+async def test_settings_of_the_workspace_have_no_effect(client: Caller, workspace: Path) -> None:
     """A matplotlibrc could switch on LaTeX, which runs programs."""
     (workspace / "matplotlibrc").write_text("text.usetex: True\naxes.facecolor: 123456\n", encoding="utf-8")
     (workspace / "numpy.py").write_text("raise SystemExit('imported from the workspace')\n", encoding="utf-8")
     (workspace / "sitecustomize.py").write_text("raise SystemExit('imported from the workspace')\n", encoding="utf-8")
-    result = await call(workspace, "render_snapshot", {"scenario_yaml": ROOM, "size_px": 200})
+    result = await client.call("render_snapshot", scenario_yaml=ROOM, size_px=200)
     with Image.open(io.BytesIO(base64.b64decode(image_of(result).data))) as image:
         assert (0x12, 0x34, 0x56) not in {color for _, color in image.convert("RGB").getcolors(10_000) or []}
 
 
-async def test_pictures_of_the_workspace_are_found(workspace: Path) -> None:
+async def test_pictures_of_the_workspace_are_found(client: Caller, workspace: Path) -> None:
     (workspace / "maps").mkdir()
     Image.new("RGB", (40, 40), (250, 10, 200)).save(workspace / "maps" / "body.png")
     (workspace / "maps" / "a.yaml").write_text(ROOM + "    description: body.png\n", encoding="utf-8")
-    async with connected(workspace) as client:
-        by_scenario = await client.call_tool("render_snapshot", {"scenario_path": "maps/a.yaml", "size_px": 400})
-        text = ROOM + "    description: maps/body.png\n"
-        by_workspace = await client.call_tool("render_snapshot", {"scenario_yaml": text, "size_px": 400})
+    by_scenario = await client.call("render_snapshot", scenario_path="maps/a.yaml", size_px=400)
+    text = ROOM + "    description: maps/body.png\n"
+    by_workspace = await client.call("render_snapshot", scenario_yaml=text, size_px=400)
     for result in (by_scenario, by_workspace):
         with Image.open(io.BytesIO(base64.b64decode(image_of(result).data))) as image:
             colors = {color for _, color in image.convert("RGB").getcolors(100_000) or []}
         assert any(abs(r - 250) + abs(g - 10) + abs(b - 200) < 12 for r, g, b in colors)
 
 
-async def test_an_invalid_scenario_gives_all_its_errors_and_no_picture(empty: Path) -> None:
+async def test_an_invalid_scenario_gives_all_its_errors_and_no_picture(client: Caller) -> None:
     wrong = ROOM.replace("goal:", "gaol:").replace("diff", "dif")
-    result = await call(empty, "render_snapshot", {"scenario_yaml": wrong})
+    result = await client.call("render_snapshot", scenario_yaml=wrong)
     assert len(result.content) == 1
     assert "1." in text_of(result)
     assert "2." in text_of(result)
@@ -129,30 +124,30 @@ robot:
 """
 
 
-async def test_ranges_over_seeds_and_seeds_without_room_are_named(empty: Path) -> None:
-    text = text_of(await call(empty, "render_snapshot", {"scenario_yaml": RANDOM, "seed": 1}))
+async def test_ranges_over_seeds_and_seeds_without_room_are_named(client: Caller) -> None:
+    text = await client.text("render_snapshot", scenario_yaml=RANDOM, seed=1)
     assert "Objects with seed 1 (random: placement)" in text
     assert "- 5 x diff, circle r 0.3, dash" in text
     assert text.count("'robot_4' (r4) at") == 1
     assert "over 20 seeds starts x 1." in text
 
 
-async def test_every_look_takes_the_first_seed_with_room_and_a_strip_of_a_run_that_of_the_run(workspace: Path) -> None:
-    async with connected(workspace) as client:
+async def test_every_look_takes_the_first_seed_with_room_and_a_strip_of_a_run_that_of_the_run(
+    client: Caller, workspace: Path
+) -> None:
+    async def seed_of(**arguments: object) -> str:
+        looked = await client.text("render_snapshot", return_image=False, **arguments)
+        return looked.partition("seed ")[2].partition(")")[0]
 
-        async def seed_of(**arguments: object) -> str:
-            looked = text_of(await client.call_tool("render_snapshot", {"return_image": False, **arguments}))
-            return looked.partition("seed ")[2].partition(")")[0]
-
-        shown = {
-            await seed_of(scenario_yaml=RANDOM, **arguments)
-            for arguments in ({}, {"strip": 3}, {"step": 4}, {"step": -1}, {"step": 4, "strip": 2})
-        }
-        assert len(shown) == 1
-        assert int(shown.pop()) < 20
-        ran = data_of(await client.call_tool("run_episode", {"scenario_yaml": RANDOM, "max_steps": 20}))
-        assert f"render_snapshot run_id={ran['run_id']} strip=6" in ran["next"]
-        assert await seed_of(run_id=ran["run_id"], strip=6) == str(ran["seed"])
+    shown = {
+        await seed_of(scenario_yaml=RANDOM, **arguments)
+        for arguments in ({}, {"strip": 3}, {"step": 4}, {"step": -1}, {"step": 4, "strip": 2})
+    }
+    assert len(shown) == 1
+    assert int(shown.pop()) < 20
+    ran = await client.data("run_episode", scenario_yaml=RANDOM, max_steps=20)
+    assert f"render_snapshot run_id={ran['run_id']} strip=6" in ran["next"]
+    assert await seed_of(run_id=ran["run_id"], strip=6) == str(ran["seed"])
 
 
 FLEET = """\
@@ -166,15 +161,11 @@ obstacle: {shape: {name: rectangle, length: 0.2, width: 7}, state: [6, 6]}
 """
 
 
-async def test_robots_have_one_name_in_all_answers(workspace: Path) -> None:
-    async with connected(workspace) as client:
-        arguments = {"overlays": ["names", "plan"], "return_image": False}
-        looked = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": FLEET, **arguments}))
-        ran = await client.call_tool("run_episode", {"scenario_yaml": FLEET})
-        later = {"run_id": data_of(ran)["run_id"], "step": 5, "return_image": False}
-        seen = text_of(await client.call_tool("render_snapshot", later))
-        near = {"run_id": data_of(ran)["run_id"], "view": "closest"}
-        listed = text_of(await client.call_tool("inspect_run", near))
+async def test_robots_have_one_name_in_all_answers(client: Caller, workspace: Path) -> None:
+    looked = await client.text("render_snapshot", scenario_yaml=FLEET, overlays=["names", "plan"], return_image=False)
+    ran = await client.call("run_episode", scenario_yaml=FLEET)
+    seen = await client.text("render_snapshot", run_id=data_of(ran)["run_id"], step=5, return_image=False)
+    listed = await client.text("inspect_run", run_id=data_of(ran)["run_id"], view="closest")
     for name, label in (("robot_0", " (r0)"), ("robot_1", " (r1)"), ("blue car", "")):
         assert f"'{name}'{label} at (" in looked
         assert f"path for '{name}'" in looked
@@ -185,28 +176,25 @@ async def test_robots_have_one_name_in_all_answers(workspace: Path) -> None:
     assert "Lidar of 'robot_0': " in looked
 
 
-async def test_a_later_step_is_only_drawn(empty: Path) -> None:
-    text = text_of(await call(empty, "render_snapshot", {"scenario_yaml": ROOM, "step": 5}))
+async def test_a_later_step_is_only_drawn(client: Caller) -> None:
+    text = await client.text("render_snapshot", scenario_yaml=ROOM, step=5)
     assert "\n" not in text
     assert "at (" in text
 
 
-async def test_a_step_beyond_the_end_and_a_moved_view_are_said(empty: Path) -> None:
+async def test_a_step_beyond_the_end_and_a_moved_view_are_said(client: Caller) -> None:
     moved = ROOM.replace("world: {", "world: {plot: {viewpoint: [1, 1]}, ")
     assert moved != ROOM
-    text = text_of(await call(empty, "render_snapshot", {"scenario_yaml": moved, "step": 900}))
+    text = await client.text("render_snapshot", scenario_yaml=moved, step=900)
     assert "beyond the end of the episode, which is step" in text
     assert "as plot.viewpoint centres the view" in text
 
 
-async def test_the_share_seen_says_of_what(empty: Path) -> None:
+async def test_the_share_seen_says_of_what(client: Caller) -> None:
     fog = ROOM.replace("height: 6}", "height: 6, fog_map: true}") + "    sensors: [{name: lidar2d, range_max: 2}]\n"
-    async with connected(empty) as client:
-        told = [
-            text_of(await client.call_tool("render_snapshot", {"scenario_yaml": fog, "step": step})) for step in (0, 5)
-        ]
-        ran = text_of(await client.call_tool("run_episode", {"scenario_yaml": fog}))
-        clear = text_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM}))
+    told = [await client.text("render_snapshot", scenario_yaml=fog, step=step) for step in (0, 5)]
+    ran = await client.text("run_episode", scenario_yaml=fog)
+    clear = await client.text("render_snapshot", scenario_yaml=ROOM)
     assert "; fog: 0 % of the area of the world seen, the rest is grey" in told[0]
     assert re.search(r"; fog: [1-9]\d* % of the area of the world seen", told[1])
     assert re.search(r"explored [1-9]\d* % of the area of the world, insides of obstacles included", ran)

@@ -12,19 +12,18 @@ from mcp.server.apps import APP_MIME_TYPE, EXTENSION_ID
 from irsim.runs import open_run
 from irsim.runs.replay.page import page
 from irsim_mcp.resources import PAGE
-from tests.mcp.conftest import CRASH, ERAS, connected, data_of
+from tests.mcp.conftest import CRASH, ERAS, Caller
 from tests.runs.replay.reading import unpacked
 
 pytestmark = pytest.mark.anyio
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_run_episode_points_at_the_page(empty: Path, era: str) -> None:
-    async with connected(empty, era) as client:
-        tools = (await client.list_tools()).tools
-        listed = (await client.list_resources()).resources
-        (content,) = (await client.read_resource(PAGE)).contents
-        extensions = client.server_capabilities.extensions if client.server_capabilities else None
+async def test_run_episode_points_at_the_page(client: Caller, era: str) -> None:
+    tools = (await client.list_tools()).tools
+    listed = (await client.list_resources()).resources
+    (content,) = (await client.read_resource(PAGE)).contents
+    extensions = client.server_capabilities.extensions if client.server_capabilities else None
     pages = {tool.name: tool.meta for tool in tools if tool.meta}
     assert pages == {"run_episode": {"ui": {"resourceUri": PAGE}}}
     assert [str(item.uri) for item in listed if item.mime_type == APP_MIME_TYPE] == [PAGE]
@@ -36,12 +35,10 @@ async def test_run_episode_points_at_the_page(empty: Path, era: str) -> None:
         assert EXTENSION_ID in (extensions or {})
 
 
-async def test_the_page_can_read_a_run(workspace: Path) -> None:
+async def test_the_page_can_read_a_run(client: Caller, workspace: Path) -> None:
     (workspace / "matplotlibrc").write_text("lines.linewidth: nonsense\n")
-    async with connected(workspace) as client:
-        result = await client.call_tool("run_episode", {"scenario_yaml": CRASH, "seed": 3})
-        run_id = data_of(result)["run_id"]
-        (content,) = (await client.read_resource(f"irsim://runs/{run_id}/replay.json?offset=0")).contents
+    run_id = (await client.data("run_episode", scenario_yaml=CRASH, seed=3))["run_id"]
+    (content,) = (await client.read_resource(f"irsim://runs/{run_id}/replay.json?offset=0")).contents
     part = json.loads(content.text)
     assert len(part["data"]) == part["total"]
     head, columns = unpacked(base64.b64decode(part["data"]))

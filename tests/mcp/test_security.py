@@ -15,12 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mcp import Client
 
 from irsim_mcp import job, worker
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.server import build_server
-from tests.mcp.conftest import ROOM, call, connected, data_of, error_of, text_of
+from tests.mcp.conftest import ROOM, Caller, data_of
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
 TESTS = Path(__file__).resolve().parents[1]
@@ -133,7 +132,7 @@ def test_every_rule_has_tests(rule: str) -> None:
 
 
 @QUIET
-async def test_every_argument_that_is_a_path_is_confined(workspace: Path) -> None:
+async def test_every_argument_that_is_a_path_is_confined(writer: Caller, workspace: Path) -> None:
     (workspace.parent / "secret.yaml").write_text(ROOM, encoding="utf-8")
     calls: dict[str, dict[str, Any]] = {
         "validate_scenario": {"scenario_path": "../secret.yaml"},
@@ -145,30 +144,27 @@ async def test_every_argument_that_is_a_path_is_confined(workspace: Path) -> Non
         "export_run": {"run_id": "../../secret", "to": "csv"},
         "get_job": {"job_id": "../../secret"},
     }
-    async with Client(build_server(workspace, writing=True), raise_exceptions=True) as client:
-        names = {tool.name for tool in (await client.list_tools()).tools}
-        assert names == {*calls, "lookup"}
-        for name, arguments in calls.items():
-            told = error_of(await client.call_tool(name, arguments))
-            assert told.split(":")[0] in ("path-outside-workspace", "unknown-run", "unknown-job")
+    names = {tool.name for tool in (await writer.list_tools()).tools}
+    assert names == {*calls, "lookup"}
+    for name, arguments in calls.items():
+        told = await writer.error(name, **arguments)
+        assert told.split(":")[0] in ("path-outside-workspace", "unknown-run", "unknown-job")
 
 
 @QUIET
-async def test_capital_letters_open_no_other_way(workspace: Path) -> None:
+async def test_capital_letters_open_no_other_way(client: Caller, workspace: Path) -> None:
     """A refused path is refused in any spelling, wherever the file system tells them apart or not."""
-    async with connected(workspace) as client:
-        for path in ("CON.yaml", "Nul", "c:\\x.yaml", "\\\\HOST\\share\\x.yaml", "A/../../x.yaml", "lpt1.YAML"):
-            told = error_of(await client.call_tool("run_episode", {"scenario_path": path}))
-            assert told.startswith("path-outside-workspace")
+    for path in ("CON.yaml", "Nul", "c:\\x.yaml", "\\\\HOST\\share\\x.yaml", "A/../../x.yaml", "lpt1.YAML"):
+        told = await client.error("run_episode", scenario_path=path)
+        assert told.startswith("path-outside-workspace")
 
 
 @QUIET
-async def test_tools_write_nothing_but_records(workspace: Path) -> None:
+async def test_tools_write_nothing_but_records(client: Caller, workspace: Path) -> None:
     (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
     beside = sorted(workspace.parent.iterdir())
-    async with connected(workspace) as client:
-        for name in ("validate_scenario", "render_snapshot", "run_episode"):
-            assert not (await client.call_tool(name, {"scenario_path": "room.yaml"})).is_error
+    for name in ("validate_scenario", "render_snapshot", "run_episode"):
+        assert not (await client.call(name, scenario_path="room.yaml")).is_error
     assert sorted(path.name for path in workspace.iterdir()) == [".irsim", "room.yaml"]
     assert (workspace / ".irsim" / ".gitignore").read_text(encoding="utf-8") == "*\n"
     assert (workspace / "room.yaml").read_text(encoding="utf-8") == ROOM
@@ -185,8 +181,8 @@ async def test_tools_write_nothing_but_records(workspace: Path) -> None:
         ("robot: [{kinematics: {name: diff}, state: [1, -.inf, 0]}]\n", "infinite-number"),
     ],
 )
-async def test_odd_values_are_refused(empty: Path, text: str, code: str) -> None:
-    data = data_of(await call(empty, "validate_scenario", {"scenario_yaml": text}))
+async def test_odd_values_are_refused(client: Caller, text: str, code: str) -> None:
+    data = await client.data("validate_scenario", scenario_yaml=text)
     assert not data["valid"]
     assert code in [issue["code"] for issue in data["issues"]]
 
@@ -201,30 +197,24 @@ async def test_odd_values_are_refused(empty: Path, text: str, code: str) -> None
         ("robot: [{name: 12:30:45, kinematics: {name: diff}}]\n", "yaml-sexagesimal"),
     ],
 )
-async def test_surprises_of_yaml_are_told(empty: Path, text: str, code: str) -> None:
-    async with connected(empty) as client:
-        arguments = {"scenario_yaml": text, "response_format": "detailed"}
-        data = data_of(await client.call_tool("validate_scenario", arguments))
+async def test_surprises_of_yaml_are_told(client: Caller, text: str, code: str) -> None:
+    data = await client.data("validate_scenario", scenario_yaml=text, response_format="detailed")
     assert code in [issue["code"] for issue in data["issues"]]
 
 
 @QUIET
-async def test_behaviors_beside_a_scenario_are_not_imported(workspace: Path) -> None:
+async def test_behaviors_beside_a_scenario_are_not_imported(client: Caller, workspace: Path) -> None:
     (workspace / "evil.py").write_text("open('pwned', 'w')\nraise SystemExit\n", encoding="utf-8")
     (workspace / "room.yaml").write_text(ROOM.replace("dash", "evil"), encoding="utf-8")
-    async with connected(workspace) as client:
-        assert "unknown-behavior" in text_of(
-            await client.call_tool("validate_scenario", {"scenario_path": "room.yaml"})
-        )
-        assert "unknown-behavior" in error_of(await client.call_tool("run_episode", {"scenario_path": "room.yaml"}))
-        arguments = {"scenario_yaml": ROOM, "behavior": "evil"}
-        assert error_of(await client.call_tool("run_episode", arguments))
+    assert "unknown-behavior" in await client.text("validate_scenario", scenario_path="room.yaml")
+    assert "unknown-behavior" in await client.error("run_episode", scenario_path="room.yaml")
+    assert await client.error("run_episode", scenario_yaml=ROOM, behavior="evil")
     assert not (workspace / "pwned").exists()
 
 
 @QUIET
 async def test_no_tool_takes_code(empty: Path) -> None:
-    async with Client(build_server(empty, writing=True)) as client:
+    async with Caller(build_server(empty, writing=True)) as client:
         for tool in (await client.list_tools()).tools:
             arguments = set(tool.input_schema["properties"])
             assert not arguments & {"code", "script", "command", "module", "imports", "url", "python", "expression"}
@@ -284,27 +274,26 @@ def test_limits_are_those_documented() -> None:
 
 @QUIET
 @pytest.mark.parametrize("size", [0, -1, 199, 1025, 10**9])
-async def test_pictures_have_a_size(empty: Path, size: int) -> None:
-    told = error_of(await call(empty, "render_snapshot", {"scenario_yaml": ROOM, "size_px": size}))
+async def test_pictures_have_a_size(client: Caller, size: int) -> None:
+    told = await client.error("render_snapshot", scenario_yaml=ROOM, size_px=size)
     assert told.startswith("bad-argument: ")
     assert "200 to 1024" in told
 
 
 @QUIET
-async def test_names_come_out_harmless_everywhere(workspace: Path) -> None:
+async def test_names_come_out_harmless_everywhere(client: Caller, workspace: Path) -> None:
     escaped = NASTY.encode("unicode_escape").decode()
     yaml = ROOM.replace("rover", f'"{escaped}"')
-    async with connected(workspace) as client:
-        answers = [await client.call_tool("validate_scenario", {"scenario_yaml": yaml, "response_format": "detailed"})]
-        answers.append(await client.call_tool("render_snapshot", {"scenario_yaml": yaml, "size_px": 200}))
-        run = await client.call_tool("run_episode", {"scenario_yaml": yaml, "response_format": "detailed"})
-        answers.append(run)
-        if not run.is_error:
-            run_id = data_of(run)["run_id"]
-            answers.append(await client.call_tool("inspect_run", {"run_id": run_id}))
-        for name in ("lookup", "run_episode", "inspect_run", "get_job"):
-            argument = {"lookup": "topic", "run_episode": "scenario_path", "inspect_run": "run_id", "get_job": "job_id"}
-            answers.append(await client.call_tool(name, {argument[name]: NASTY[:90]}))
+    answers = [await client.call("validate_scenario", scenario_yaml=yaml, response_format="detailed")]
+    answers.append(await client.call("render_snapshot", scenario_yaml=yaml, size_px=200))
+    run = await client.call("run_episode", scenario_yaml=yaml, response_format="detailed")
+    answers.append(run)
+    if not run.is_error:
+        run_id = data_of(run)["run_id"]
+        answers.append(await client.call("inspect_run", run_id=run_id))
+    for name in ("lookup", "run_episode", "inspect_run", "get_job"):
+        argument = {"lookup": "topic", "run_episode": "scenario_path", "inspect_run": "run_id", "get_job": "job_id"}
+        answers.append(await client.call_tool(name, {argument[name]: NASTY[:90]}))
     for answer in answers:
         said = answer.model_dump_json()
         assert "\\u001b" not in said

@@ -16,7 +16,7 @@ from pydantic import BaseModel, ConfigDict
 
 from irsim.common.data_files import skills_directory
 from irsim_mcp.skills import Skills, _description, skill_files
-from tests.mcp.conftest import connected
+from tests.mcp.conftest import Caller, connected
 
 pytestmark = pytest.mark.anyio
 
@@ -33,31 +33,28 @@ async def asked(client: Any, method: str, **params: Any) -> dict[str, Any]:
     return dict(answer.model_dump())
 
 
-async def test_list_names_every_file_with_its_digest(empty: Path) -> None:
-    async with connected(empty) as client:
-        answer = await asked(client, "skills/list")
-        assert answer["cacheScope"] == "public"
-        assert answer["ttlMs"] > 0
-        assert [entry["uri"] for entry in answer["skills"]] == [f"skill://{f.name}/SKILL.md" for f in FOLDERS]
-        for folder, entry in zip(FOLDERS, answer["skills"], strict=True):
-            head = (folder / "SKILL.md").read_text(encoding="utf-8").split("---\n")[1]
-            assert entry["frontmatter"] == yaml.safe_load(head)
-            assert {item["uri"].removeprefix(f"skill://{folder.name}/") for item in entry["resources"]} == {
-                path.relative_to(folder).as_posix()
-                for path in folder.rglob("*")
-                if path.is_file() and "__pycache__" not in path.parts
-            }
-            assert (await asked(client, "skills/get", uri=entry["uri"]))["skill"] == entry
-            for item in entry["resources"]:
-                (content,) = (await client.read_resource(item["uri"])).contents
-                data = (
-                    content.text.encode()
-                    if isinstance(content, TextResourceContents)
-                    else base64.b64decode(content.blob)
-                )
-                assert len(data) == item["size"]
-                assert item["digest"] == f"sha256:{hashlib.sha256(data).hexdigest()}"
-                assert isinstance(content, BlobResourceContents) == item["uri"].endswith((".png", ".jpg"))
+async def test_list_names_every_file_with_its_digest(client: Caller) -> None:
+    answer = await asked(client, "skills/list")
+    assert answer["cacheScope"] == "public"
+    assert answer["ttlMs"] > 0
+    assert [entry["uri"] for entry in answer["skills"]] == [f"skill://{f.name}/SKILL.md" for f in FOLDERS]
+    for folder, entry in zip(FOLDERS, answer["skills"], strict=True):
+        head = (folder / "SKILL.md").read_text(encoding="utf-8").split("---\n")[1]
+        assert entry["frontmatter"] == yaml.safe_load(head)
+        assert {item["uri"].removeprefix(f"skill://{folder.name}/") for item in entry["resources"]} == {
+            path.relative_to(folder).as_posix()
+            for path in folder.rglob("*")
+            if path.is_file() and "__pycache__" not in path.parts
+        }
+        assert (await asked(client, "skills/get", uri=entry["uri"]))["skill"] == entry
+        for item in entry["resources"]:
+            (content,) = (await client.read_resource(item["uri"])).contents
+            data = (
+                content.text.encode() if isinstance(content, TextResourceContents) else base64.b64decode(content.blob)
+            )
+            assert len(data) == item["size"]
+            assert item["digest"] == f"sha256:{hashlib.sha256(data).hexdigest()}"
+            assert isinstance(content, BlobResourceContents) == item["uri"].endswith((".png", ".jpg"))
 
 
 async def test_resources_tell_what_skills_are_for(empty: Path) -> None:
@@ -70,15 +67,14 @@ async def test_resources_tell_what_skills_are_for(empty: Path) -> None:
         assert resource.mime_type == "text/markdown"
 
 
-async def test_others_are_unknown(empty: Path) -> None:
-    async with connected(empty) as client:
-        for uri in ("skill://nothing/SKILL.md", f"skill://{FOLDERS[0].name}", "file:///etc/passwd"):
-            with pytest.raises(MCPError) as caught:
-                await asked(client, "skills/get", uri=uri)
-            assert caught.value.error.code == -32602
-        for uri in (f"skill://{FOLDERS[0].name}/../../pyproject.toml", f"skill://{FOLDERS[0].name}/nothing.md"):
-            with pytest.raises(MCPError):
-                await client.read_resource(uri)
+async def test_others_are_unknown(client: Caller) -> None:
+    for uri in ("skill://nothing/SKILL.md", f"skill://{FOLDERS[0].name}", "file:///etc/passwd"):
+        with pytest.raises(MCPError) as caught:
+            await asked(client, "skills/get", uri=uri)
+        assert caught.value.error.code == -32602
+    for uri in (f"skill://{FOLDERS[0].name}/../../pyproject.toml", f"skill://{FOLDERS[0].name}/nothing.md"):
+        with pytest.raises(MCPError):
+            await client.read_resource(uri)
 
 
 @pytest.mark.parametrize(

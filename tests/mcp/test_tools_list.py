@@ -8,7 +8,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from tests.mcp.conftest import ERAS, connected
+from tests.mcp.conftest import ERAS, Caller
 from tests.mcp.golden.write import FILE, listed
 
 pytestmark = pytest.mark.anyio
@@ -18,9 +18,8 @@ MOST_BYTES = 14_000
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_golden(empty: Path, era: str) -> None:
-    async with connected(empty, era) as client:
-        tools = listed((await client.list_tools()).tools)
+async def test_golden(client: Caller) -> None:
+    tools = listed((await client.list_tools()).tools)
     golden = json.loads(FILE.read_text(encoding="utf-8"))
     assert tools == golden, "python tests/mcp/golden/write.py writes the golden file again"
     assert [list(tool["inputSchema"]["properties"]) for tool in tools] == [
@@ -58,17 +57,15 @@ def test_data_tools_have_output_schemas_and_the_others_none() -> None:
         jsonschema.Draft202012Validator.check_schema(schema)
 
 
-async def test_instructions_tell_the_order_and_the_workspace(empty: Path) -> None:
-    async with connected(empty) as client:
-        told = client.instructions
+async def test_instructions_tell_the_order_and_the_workspace(client: Caller, empty: Path) -> None:
+    told = client.instructions
     assert told is not None
     assert str(empty) in told
     assert [told.index(name) for name in NAMES] == sorted(told.index(name) for name in NAMES)
 
 
-async def test_the_server_says_who_it_is_in_few_words(empty: Path) -> None:
-    async with connected(empty) as client:
-        info = client.server_info
+async def test_the_server_says_who_it_is_in_few_words(client: Caller) -> None:
+    info = client.server_info
     assert info is not None
     assert info.name == "irsim"
     assert info.version

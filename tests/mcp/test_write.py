@@ -5,17 +5,13 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
 from pathlib import Path
 
 import anyio
 import pytest
-from mcp import Client
 
 from irsim_mcp import writing
-from irsim_mcp.server import build_server
-from tests.mcp.conftest import ERAS, ROOM, connected, data_of, error_of, text_of
+from tests.mcp.conftest import ERAS, ROOM, Caller, data_of, text_of
 from tests.mcp.golden.write import listed
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
@@ -56,12 +52,6 @@ PATHS = {
 }
 
 
-@asynccontextmanager
-async def writer(workspace: Path, era: str = ERAS[0]) -> AsyncIterator[Client]:
-    async with Client(build_server(workspace, writing=True), mode=era, raise_exceptions=True) as client:
-        yield client
-
-
 def tree(folder: Path) -> dict[str, str]:
     """Everything below a folder."""
     return {
@@ -72,42 +62,37 @@ def tree(folder: Path) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_it_is_there_only_on_demand(empty: Path, era: str) -> None:
-    async with connected(empty, era) as client:
-        assert "write_scenario" not in [tool.name for tool in (await client.list_tools()).tools]
-        assert "save YAML that must be kept yourself" in (client.instructions or "")
-    async with writer(empty, era) as client:
-        tools = {tool["name"]: tool for tool in listed((await client.list_tools()).tools)}
-        assert "write_scenario saves" in (client.instructions or "")
-    tool = tools["write_scenario"]
-    assert tool["annotations"] == {
-        "readOnlyHint": False,
-        "destructiveHint": True,
-        "idempotentHint": True,
-        "openWorldHint": False,
-    }
-    assert tool["inputSchema"]["required"] == ["path", "yaml"]
-    assert tool["inputSchema"]["additionalProperties"] is False
-    assert len(json.dumps(tool, separators=(",", ":"))) <= MOST_BYTES
+async def test_tools_that_write_are_there_only_on_demand(client: Caller, writer: Caller) -> None:
+    without, tools = [
+        {tool["name"]: tool for tool in listed((await one.list_tools()).tools)} for one in (client, writer)
+    ]
+    assert tools.keys() - without == {"write_scenario", "export_run"}
+    assert "save YAML that must be kept yourself" in (client.instructions or "")
+    assert "write_scenario saves" in (writer.instructions or "")
+    for name in ("write_scenario", "export_run"):
+        assert len(json.dumps(tools[name], separators=(",", ":"))) <= MOST_BYTES
+        assert "Next: " in tools[name]["description"]
+    hints = {"readOnlyHint": False, "destructiveHint": True, "idempotentHint": True, "openWorldHint": False}
+    assert tools["write_scenario"]["annotations"] == hints
+    taken = tools["write_scenario"]["inputSchema"]
+    assert (taken["required"], taken["additionalProperties"]) == (["path", "yaml"], False)
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_writing(workspace: Path, era: str) -> None:
-    async with writer(workspace, era) as client:
-        result = await client.call_tool("write_scenario", {"path": "rooms/new/a.yaml", "yaml": ROOM})
-        data = data_of(result)
-        assert (data["path"], data["bytes"], data["replaced"]) == ("rooms/new/a.yaml", len(ROOM), False)
-        assert data["summary"] in text_of(result)
-        assert data["next"] in text_of(result)
-        assert "1 robot, no obstacles" in data["summary"]
-        assert data_of(await client.call_tool("validate_scenario", {"scenario_path": "rooms/new/a.yaml"}))["valid"]
-        other = ROOM.replace("rover", "größer")
-        told = error_of(await client.call_tool("write_scenario", {"path": "rooms/new/a.yaml", "yaml": other}))
-        assert told.startswith("file-exists: 'rooms/new/a.yaml' exists already (path). Fix: overwrite=true")
-        assert tree(workspace) == {"rooms": "-", "rooms/new": "-", "rooms/new/a.yaml": ROOM}
-        over = {"path": "rooms/new/a.yaml", "yaml": other, "overwrite": True}
-        assert data_of(await client.call_tool("write_scenario", over))["replaced"]
-        assert tree(workspace)["rooms/new/a.yaml"] == other
+async def test_writing(writer: Caller, workspace: Path) -> None:
+    result = await writer.call("write_scenario", path="rooms/new/a.yaml", yaml=ROOM)
+    data = data_of(result)
+    assert (data["path"], data["bytes"], data["replaced"]) == ("rooms/new/a.yaml", len(ROOM), False)
+    assert data["summary"] in text_of(result)
+    assert data["next"] in text_of(result)
+    assert "1 robot, no obstacles" in data["summary"]
+    assert (await writer.data("validate_scenario", scenario_path="rooms/new/a.yaml"))["valid"]
+    other = ROOM.replace("rover", "größer")
+    told = await writer.error("write_scenario", path="rooms/new/a.yaml", yaml=other)
+    assert told.startswith("file-exists: 'rooms/new/a.yaml' exists already (path). Fix: overwrite=true")
+    assert tree(workspace) == {"rooms": "-", "rooms/new": "-", "rooms/new/a.yaml": ROOM}
+    assert (await writer.data("write_scenario", path="rooms/new/a.yaml", yaml=other, overwrite=True))["replaced"]
+    assert tree(workspace)["rooms/new/a.yaml"] == other
 
 
 @pytest.mark.parametrize(
@@ -122,32 +107,28 @@ async def test_writing(workspace: Path, era: str) -> None:
         ("#" * 300_000, "file-too-large"),
     ],
 )
-async def test_what_is_not_valid_is_not_written(workspace: Path, yaml: str, said: str) -> None:
+async def test_what_is_not_valid_is_not_written(writer: Caller, workspace: Path, yaml: str, said: str) -> None:
     (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
-    async with writer(workspace) as client:
-        arguments = {"path": "room.yaml", "yaml": yaml, "overwrite": True}
-        told = error_of(await client.call_tool("write_scenario", arguments))
+    told = await writer.error("write_scenario", path="room.yaml", yaml=yaml, overwrite=True)
     assert said in told
     assert tree(workspace) == {"room.yaml": ROOM}
 
 
-async def test_files_it_names_are_looked_for_beside_it(workspace: Path) -> None:
+async def test_files_it_names_are_looked_for_beside_it(writer: Caller, workspace: Path) -> None:
     (workspace / "rooms").mkdir()
     (workspace / "rooms" / "map.png").write_bytes(
         Path(__file__).parents[2].joinpath("skills/irsim-scenario/examples/cafe/snapshot.png").read_bytes()
     )
     yaml = ROOM.replace("world: {", "world: {obstacle_map: map.png, ")
-    async with writer(workspace) as client:
-        told = error_of(await client.call_tool("write_scenario", {"path": "other/a.yaml", "yaml": yaml}))
-        assert "map" in told
-        assert not (workspace / "other").exists()
-        ok = await client.call_tool("write_scenario", {"path": "rooms/a.yaml", "yaml": yaml})
-        assert data_of(ok)["path"] == "rooms/a.yaml"
+    told = await writer.error("write_scenario", path="other/a.yaml", yaml=yaml)
+    assert "map" in told
+    assert not (workspace / "other").exists()
+    assert (await writer.data("write_scenario", path="rooms/a.yaml", yaml=yaml))["path"] == "rooms/a.yaml"
 
 
 @POSIX
 @pytest.mark.parametrize("name", PATHS)
-async def test_paths(workspace: Path, name: str) -> None:
+async def test_paths(writer: Caller, workspace: Path, name: str) -> None:
     outside = workspace.parent / "outside"
     outside.mkdir()
     (outside / "secret.yaml").write_text("secret", encoding="utf-8")
@@ -161,8 +142,7 @@ async def test_paths(workspace: Path, name: str) -> None:
     os.mkfifo(workspace / "pipe.yaml")
     before = tree(workspace), tree(outside)
     path, code = PATHS[name]
-    async with writer(workspace) as client:
-        told = error_of(await client.call_tool("write_scenario", {"path": path, "yaml": ROOM, "overwrite": True}))
+    told = await writer.error("write_scenario", path=path, yaml=ROOM, overwrite=True)
     assert told.startswith(f"{code}: ")
     assert (tree(workspace), tree(outside)) == before
 
@@ -211,10 +191,9 @@ async def test_of_many_at_once_one_wins_and_the_file_is_whole(workspace: Path) -
 
 @POSIX
 @pytest.mark.skipif(hasattr(os, "geteuid") and os.geteuid() == 0, reason="root may write everywhere")
-async def test_folders_that_may_not_be_written(workspace: Path) -> None:
+async def test_folders_that_may_not_be_written(writer: Caller, workspace: Path) -> None:
     workspace.chmod(0o500)
-    async with writer(workspace) as client:
-        told = error_of(await client.call_tool("write_scenario", {"path": "a.yaml", "yaml": ROOM}))
+    told = await writer.error("write_scenario", path="a.yaml", yaml=ROOM)
     workspace.chmod(0o700)
     assert told.startswith("file-access: ")
 
