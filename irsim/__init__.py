@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from irsim.common.conflict import refuse_conflicts
-from irsim.common.lazy import lazy_names
-from irsim.common.public_names import PUBLIC_HOMES
+from irsim.common.installed import refuse_conflicts
+from irsim.common.lazy import PUBLIC_HOMES, lazy_names
 from irsim.compat.finder import install
 
 refuse_conflicts()
@@ -73,7 +72,7 @@ _get, _list = lazy_names(__name__, PUBLIC_HOMES, _PACKAGES)
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        from irsim.common.version import version
+        from irsim.common.installed import version
 
         return version()
     return _get(name)

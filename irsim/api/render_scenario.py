@@ -14,9 +14,11 @@ from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
 from irsim.episodes.opening import (
     findings_under_policy,
+    region_options,
+    reproduce_command,
+    seed_to_repeat,
     unopened_findings,
 )
-from irsim.episodes.reproduce import region_options, reproduce_command, seed_to_repeat
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.runs.recorder import Recorder

@@ -11,8 +11,16 @@ from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan
 from irsim.api.read_input import read_scenario
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
-from irsim.episodes.opening import MAX_TRIES, first_with_room, unopened_findings
-from irsim.episodes.reproduce import overlay_options, region_options, reproduce_command, seed_to_repeat, strip_options
+from irsim.episodes.opening import (
+    MAX_TRIES,
+    first_with_room,
+    overlay_options,
+    region_options,
+    reproduce_command,
+    seed_to_repeat,
+    strip_options,
+    unopened_findings,
+)
 from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.findings import Finding
 from irsim.results.picture import MovingPose, RobotPose, SnapshotResult

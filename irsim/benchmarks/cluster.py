@@ -22,8 +22,8 @@ from irsim.benchmarks.episode import Job, Task, policy_of, run_task, scenario_of
 from irsim.benchmarks.pool import MAX_DEATHS, cores, dead_workers
 from irsim.benchmarks.ray_connection import ClusterError, connected
 from irsim.benchmarks.together import run_together
+from irsim.common.installed import version
 from irsim.common.text import clean
-from irsim.common.version import version
 from irsim.policies.catalog import file_of, files_beside, with_file
 from irsim.scenario.behavior_override import check_behavior_name
 
@@ -245,7 +245,7 @@ def _remote_function() -> Callable[..., Mapping[str, Any]]:
 
         try:
             from irsim.benchmarks.cluster import check_jobs, run_chunk
-            from irsim.common.version import version
+            from irsim.common.installed import version
         except ImportError as error:
             return {"missing": str(error), "node": platform.node()}
         if version() != expected:

@@ -32,7 +32,7 @@ from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from, seeds_text
 from irsim.benchmarks.timing import time_behavior, timing_report
 from irsim.common.arguments import as_given, check_whole_number
-from irsim.common.version import version
+from irsim.common.installed import version
 from irsim.diagnostics.errors import InputError, OverLimitError
 from irsim.episodes.episode import Progress
 from irsim.episodes.opening import findings_under_policy, unopened_findings

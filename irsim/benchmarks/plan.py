@@ -14,7 +14,7 @@ from irsim.benchmarks.episode import Until
 from irsim.benchmarks.policies import files_of, open_planned
 from irsim.benchmarks.seeds import seeds_from
 from irsim.benchmarks.suite import Protocol, Suite
-from irsim.common.version import version as this_version
+from irsim.common.installed import version as this_version
 from irsim.policies.policy import Policy
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.open import import_modules, source_of

@@ -20,7 +20,7 @@ from irsim.benchmarks.log import in_order
 from irsim.benchmarks.plan import Plan, map_hashes
 from irsim.benchmarks.timing import was_timed
 from irsim.common.files import TEMPORARY, write_atomically
-from irsim.common.version import version
+from irsim.common.installed import version
 from irsim.episodes.episode import Progress
 from irsim.results.benchmark import BenchmarkResult, SuiteResult, SuiteScenarioFacts
 from irsim.runs.files import RunError

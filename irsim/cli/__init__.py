@@ -10,7 +10,7 @@ __all__ = ["main"]
 
 def main() -> None:
     """Run the command line and exit: 0 finished, 1 could not finish, 2 invalid input, 130 interrupted."""
-    from irsim.common.conflict import ConflictError, refuse_conflicts
+    from irsim.common.installed import ConflictError, refuse_conflicts
 
     try:
         refuse_conflicts()  # irsim/__init__.py calls it too, but an installed ir-sim may have replaced that file

@@ -98,7 +98,7 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from irsim.common.version import version
+        from irsim.common.installed import version
 
         typer.echo(f"irsim {version()}")
         raise typer.Exit

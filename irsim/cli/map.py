@@ -22,7 +22,7 @@ from irsim.diagnostics.errors import InputError
 
 if TYPE_CHECKING:
     from irsim.bridges.maps.ros_server import MapFiles
-    from irsim.results.map_import import MapImportResult
+    from irsim.results.records import MapImportResult
 
 __all__ = ["import_", "map_app"]
 

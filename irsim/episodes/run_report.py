@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from irsim.common.installed import version
 from irsim.common.text import clean
-from irsim.common.version import version
 from irsim.diagnostics.errors import CodedError
 from irsim.episodes.explanation import reason_message, summary_message
 from irsim.episodes.facts import EpisodeFacts, first_collision
 from irsim.episodes.incidents import MAX_LISTED_EXITS, find_exits
 from irsim.episodes.obstructions import find_obstruction
+from irsim.episodes.opening import reproduce_command, seed_to_repeat
 from irsim.episodes.progress import find_circling, has_one_end, no_progress_since, stalled_step
-from irsim.episodes.reproduce import reproduce_command, seed_to_repeat
 from irsim.episodes.scene_summary import called
 from irsim.episodes.watching import goal_visibility, watched_metrics, zone_results
 from irsim.navigation.clearances import Approach, least

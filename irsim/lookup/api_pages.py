@@ -13,7 +13,7 @@ from pydantic import BaseModel
 
 from irsim.common import data_files as resources
 from irsim.common.field_docs import field_docs
-from irsim.common.public_names import PUBLIC_HOMES
+from irsim.common.lazy import PUBLIC_HOMES
 from irsim.lookup.answer import plain_table
 from irsim.lookup.pages import components
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS

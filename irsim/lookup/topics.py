@@ -25,8 +25,15 @@ from irsim.lookup.index import (
     template_answer,
     templates_answer,
 )
-from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_topic
-from irsim.lookup.policies import convert_answer, policies_answer, policy_answer
+from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_topic, task_answer
+from irsim.lookup.policies import (
+    convert_answer,
+    policies_answer,
+    policy_answer,
+    suite_answer,
+    suite_key_answer,
+    suites_answer,
+)
 from irsim.lookup.schema_walk import (
     COLOR,
     Node,
@@ -40,9 +47,7 @@ from irsim.lookup.schema_walk import (
 )
 from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
 from irsim.lookup.small_examples import BETTER, example_of, small_example
-from irsim.lookup.suites import suite_answer, suite_key_answer, suites_answer
 from irsim.lookup.synonyms import named
-from irsim.lookup.tasks import task_answer
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.common.installed import version
 from irsim.common.outline import BodyPart, Cells, Polygon, outline
-from irsim.common.version import version
 from irsim.components.maps._site import OCCUPIED
 from irsim.objects.views import views
 from irsim.options.colors import rgb

@@ -17,8 +17,19 @@ from irsim.results.run import RunTable
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.runs.resimulation import scenario_of
-from irsim.runs.tables import Cell, Field, Question, Table, chosen_objects, paged, rounded
-from irsim.runs.watching import sight_empty_message, sight_view, zone_view, zones_empty_message
+from irsim.runs.tables import (
+    Cell,
+    Field,
+    Question,
+    Table,
+    chosen_objects,
+    paged,
+    rounded,
+    sight_empty_message,
+    sight_view,
+    zone_view,
+    zones_empty_message,
+)
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import BETWEEN_STEPS
 from irsim.simulation.trace import Trace

@@ -22,8 +22,19 @@ from irsim.common.files import Buffer
 from irsim.runs.chunks import PieceWriter, pack_chunk
 from irsim.runs.files import Claim, RunError, claim, create_file, replace_file
 from irsim.runs.plain_scenario import plain_scenario
-from irsim.runs.pruning import prune, remove, tidy
-from irsim.runs.store import FILES, META, RESULT, SCENARIO_FILE, make_run_folder, mark_used, omission_notes, runs_path
+from irsim.runs.store import (
+    FILES,
+    META,
+    RESULT,
+    SCENARIO_FILE,
+    make_run_folder,
+    mark_used,
+    omission_notes,
+    prune,
+    remove,
+    runs_path,
+    tidy,
+)
 from irsim.simulation.events import Event, read_events
 from irsim.simulation.trace import sensors
 
@@ -60,7 +71,7 @@ class Recorder:
         scenario: Scenario file as the user named it, None for a text.
         options: Other options of the run, as JSON types.
         folder: A new or empty folder for the run, which is never deleted and has every step and scan; by default a
-            folder in ``.irsim/runs`` of the current directory, which :mod:`irsim.runs.pruning` deletes later, and
+            folder in ``.irsim/runs`` of the current directory, which :mod:`irsim.runs.store` deletes later, and
             which leaves out what is too large.
 
     Attributes:
@@ -357,7 +368,7 @@ def _text_of(simulation: Simulation) -> str:
 
 
 def _versions() -> dict[str, str]:
-    from irsim.common.version import version
+    from irsim.common.installed import version
 
     return {
         "irsim": version(),

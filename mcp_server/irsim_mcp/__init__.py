@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 try:
-    from irsim.common.conflict import refuse_conflicts
+    from irsim.common.installed import refuse_conflicts
 except ModuleNotFoundError as error:
     raise ImportError(
         "the package 'irsim' that Python finds here is not the one of 'irsim-mcp'; PyPI's 'ir-sim' provides another of "

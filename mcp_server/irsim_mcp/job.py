@@ -199,7 +199,7 @@ def _export(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.bridges.export.episode import CHOICES
     from irsim.bridges.export.export import export_run
     from irsim.bridges.export.registry import find_format
-    from irsim_mcp.writing import set_aside
+    from irsim_mcp.sandbox import set_aside
 
     arguments = job["arguments"]
     run_id, objects, form = arguments["run_id"], arguments["objects"], find_format(arguments["to"], None)

@@ -22,14 +22,16 @@ import anyio
 from irsim.common.child import Child
 from irsim.common.text import clean
 from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, replace_file
-from irsim.runs.pruning import DAY, prune, remove
 from irsim.runs.store import (
+    DAY,
     LOCK,
     META,
     RESULT,
     make_run_folder,
     mark_cancelled,
+    prune,
     recent_ids,
+    remove,
     run_folders,
     runs_folder,
     status_of,

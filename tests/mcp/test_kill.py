@@ -15,8 +15,7 @@ import pytest
 
 import irsim
 from irsim.runs import list_runs, open_run
-from irsim.runs.pruning import prune
-from irsim.runs.store import runs_folder
+from irsim.runs.store import prune, runs_folder
 from tests.mcp.conftest import ROOM
 from tests.mcp.test_lifetime import HANDSHAKE, Wire, children_of, wait_until_gone
 

@@ -43,7 +43,8 @@ async def test_a_suite_runs_files_of_the_workspace(client: Caller, workspace: Pa
     arguments = {"scenarios": ["random_polygons_v1/robots-5/yield"], "policies": ["orca", "goal.npz"], "seeds": 2}
     data = await client.data("benchmark", **arguments)
     assert [row["episodes"] for row in data["rows"]] == [2, 2]
-    assert "workspace" in await client.text("benchmark", **arguments, policies=["/etc/net.npz"])
+    outside = arguments | {"policies": ["/etc/net.npz"]}
+    assert "workspace" in await client.text("benchmark", **outside)
 
 
 async def test_a_suite_runs_other_seeds(client: Caller, workspace: Path) -> None:
@@ -91,6 +92,6 @@ async def test_a_stopped_suite_is_named_like_a_finished_one(client: Caller, work
 async def test_what_does_not_fit_a_suite_is_refused(
     client: Caller, workspace: Path, changes: dict[str, object], problem: str
 ) -> None:
-    error = await client.error("benchmark", scenarios=["random_polygons_v1"], seeds=2, **changes)
-    assert problem in error
+    asked = {"scenarios": ["random_polygons_v1"], "seeds": 2, **changes}
+    assert problem in await client.error("benchmark", **asked)
     assert "robots-5/" in await client.error("run_episode", scenario_path="random_polygons_v1/robots-5")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim.common.conflict import find_conflicts
+from irsim.common.installed import find_conflicts
 
 SERVER = Path(__file__).resolve().parents[2] / "mcp_server"
 

@@ -20,8 +20,7 @@ import pytest
 import irsim
 from irsim.runs import RunError, list_runs, open_run
 from irsim.runs.files import claim, replace_file
-from irsim.runs.pruning import prune, tidy
-from irsim.runs.store import META, find_run, make_run_folder, mark_cancelled, runs_folder, status_of
+from irsim.runs.store import META, find_run, make_run_folder, mark_cancelled, prune, runs_folder, status_of, tidy
 
 pytestmark = pytest.mark.one_python
 

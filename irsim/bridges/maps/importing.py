@@ -20,7 +20,7 @@ from irsim.common.files import TargetError, check_suffix
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import ArgumentError
-from irsim.results.map_import import MapImportResult, MapLevel, MapTrip
+from irsim.results.records import MapImportResult, MapLevel, MapTrip
 from irsim.scenario.file_kind import explained
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.yaml.document import Document

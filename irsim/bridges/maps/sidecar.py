@@ -23,7 +23,7 @@ import numpy as np
 from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import FRAMES, axes_of, inverse, pose_matrix, rotation_of
 from irsim.common.arrays import Floats
-from irsim.common.version import version
+from irsim.common.installed import version
 
 __all__ = ["FORMAT", "VERSION", "MapSidecar", "read_sidecar", "scene_transform", "sidecar_path"]
 

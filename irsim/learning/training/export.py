@@ -10,7 +10,7 @@ from typing import Any
 
 from irsim.common.extras import require
 from irsim.common.files import check_suffix, replace_bytes, write_atomically
-from irsim.common.version import version
+from irsim.common.installed import version
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning.draws import observed_names
 from irsim.learning.tasks.files import open_task

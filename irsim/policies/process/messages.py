@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
+from irsim.common.installed import version
 from irsim.common.text import clean
-from irsim.common.version import version
 from irsim.options.registry import KINEMATICS
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Episode, Needs

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from irsim.common.text import clean
 from irsim.objects.describe import describe_scene
 from irsim.runs.reading import Run
-from irsim.runs.replay.columns import Columns, changes, folded, quantised
-from irsim.runs.replay.drawing import page_grid, page_objects, page_zones
+from irsim.runs.replay.drawing import Columns, changes, folded, page_grid, page_objects, page_zones, quantised
 from irsim.runs.resimulation import initial_scene
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import BETWEEN_STEPS, Event
@@ -64,7 +63,7 @@ class Packed:
     """A run as the page reads it.
 
     Attributes:
-        data: The compressed block, in the format of :class:`irsim.runs.replay.columns.Columns`.
+        data: The compressed block, in the format of :class:`irsim.runs.replay.drawing.Columns`.
         head: Its head, as plain data.
     """
 

@@ -15,7 +15,6 @@ from irsim.common.text import clean
 from irsim.results.benchmark import CROWDED, seeds_of
 from irsim.runs.store import RESULT
 from irsim_mcp.answers import failure
-from irsim_mcp.episodes import call_to_repeat, policy_names
 from irsim_mcp.jobs import PARTIAL
 from irsim_mcp.limits import (
     MAX_BEHAVIORS,
@@ -27,7 +26,7 @@ from irsim_mcp.limits import (
     MAX_WAIT_SECONDS,
 )
 from irsim_mcp.services import RecentTexts, Services, line_of
-from irsim_mcp.suites import suite_of
+from irsim_mcp.suites import call_to_repeat, policy_names, suite_of
 from irsim_mcp.tool import StrictTool, reporter, strict
 
 __all__ = ["PLACE", "Benchmark", "answer", "tool"]

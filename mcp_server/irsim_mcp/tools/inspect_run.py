@@ -11,8 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
 from irsim.common.text import clean
 from irsim_mcp.answers import failure
-from irsim_mcp.episodes import check_finished, episodes_table
 from irsim_mcp.services import RunId, Services
+from irsim_mcp.suites import check_finished, episodes_table
 from irsim_mcp.tool import StrictTool, strict
 
 __all__ = ["PLACE", "Table", "tool"]

@@ -9,9 +9,9 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean
+from irsim_mcp.sandbox import write_file
 from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, strict
-from irsim_mcp.writing import write_file
 
 __all__ = ["PLACE", "WRITES", "Written", "tool"]
 

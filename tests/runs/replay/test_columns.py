@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from irsim.runs.replay.columns import Columns, changes, quantised
+from irsim.runs.replay.drawing import Columns, changes, quantised
 from tests.runs.replay.reading import unpacked
 
 NUMBERS = st.integers(-(2**31), 2**31 - 1)

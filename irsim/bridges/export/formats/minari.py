@@ -32,8 +32,8 @@ from numpy.typing import NDArray
 from irsim.bridges.export.episode import Actor, Block, Episode
 from irsim.bridges.export.registry import Format
 from irsim.common.angles import wrap
+from irsim.common.installed import version
 from irsim.common.text import clean
-from irsim.common.version import version
 from irsim.runs.files import RunError
 
 __all__ = ["ARRIVAL_REWARD", "COLLISION_REWARD", "FORMAT"]

@@ -25,7 +25,7 @@ from irsim.bridges.export.registry import Format
 from irsim.bridges.recorded import recorded_scene
 from irsim.bridges.solids import box_of
 from irsim.common.arrays import Floats
-from irsim.common.version import version
+from irsim.common.installed import version
 from irsim.options.base import Options
 from irsim.options.units import Degrees, Meters
 from irsim.runs.files import RunError

@@ -23,7 +23,7 @@ import numpy as np
 from irsim.bridges.export.columns import Cells, Column, Ranges, Words, columns_of, table_parts
 from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
-from irsim.common.version import version
+from irsim.common.installed import version
 
 __all__ = ["FORMAT"]
 

@@ -1,4 +1,4 @@
-"""Refuses to run beside PyPI's ``ir-sim``, which cannot be in one environment with this package.
+"""What is installed: the version of this package, and PyPI's ``ir-sim``, which cannot be in one environment with it.
 
 Both distributions provide the import package ``irsim``: pip lets them overwrite each other's files without a warning.
 """
@@ -8,8 +8,9 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable
+from functools import cache
 
-__all__ = ["ConflictError", "find_conflicts", "refuse_conflicts"]
+__all__ = ["ConflictError", "find_conflicts", "refuse_conflicts", "version"]
 
 _SCRIPTS = ("irsim", "irsim-mcp")
 
@@ -63,3 +64,11 @@ def refuse_conflicts() -> None:
 def _is_upstream(name: str) -> bool:
     """Whether ``….dist-info`` or ``….egg-info`` belongs to a distribution called ``ir-sim``."""
     return name[:6] in ("ir_sim", "ir-sim", "ir.sim") and name[6:7] in ("-", ".")
+
+
+@cache
+def version() -> str:
+    """The version as the package's metadata have it, such as ``0.1.0``."""
+    from importlib.metadata import version as version_of
+
+    return version_of("irsim-mcp")
