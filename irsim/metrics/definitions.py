@@ -9,7 +9,9 @@ tables, ``irsim describe KEY`` and the MCP tools need no change.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 __all__ = ["EPISODE_METRICS", "METRICS", "Metric"]
@@ -38,140 +40,121 @@ class Metric:
     better: Literal["more", "less"] | None = None
 
 
+def _metrics(canonical: bool) -> tuple[Callable[..., Metric], ...]:
+    """Makers of metrics of which less, more, or either is better."""
+    return tuple(partial(Metric, canonical=canonical, better=better) for better in ("less", "more", None))
+
+
 def _canonical() -> tuple[Metric, ...]:
+    less, more, either = _metrics(canonical=True)
     return (
-        Metric("success", "0/1", "arrived before the horizon, no collision before", "all", better="more"),
-        Metric("goal_reached", "0/1", "arrived before the horizon, collisions or not", "all", better="more"),
-        Metric("collision_count", "count", "contacts that began before it arrived", better="less"),
-        Metric("collision_steps", "count", "steps in contact before it arrived", better="less"),
-        Metric("wall_collisions", "count", "of the contacts, those with static objects and maps", better="less"),
-        Metric("agent_collisions", "count", "of the contacts, those with other robots", better="less"),
-        Metric("human_collisions", "count", "of the contacts, those with humans", better="less"),
-        Metric("timeout", "0/1", "neither arrived nor stopped by a collision at the horizon", "max", better="less"),
-        Metric(
-            "failure_to_progress",
-            "count",
-            "5 s windows in which the path to the goal became < 0.1 m shorter",
-            better="less",
-        ),
-        Metric("stalled_time", "s", "slower than 0.05 m/s and 0.05 rad/s, not arrived", better="less"),
-        Metric(
+        more("success", "0/1", "arrived before the horizon, no collision before", "all"),
+        more("goal_reached", "0/1", "arrived before the horizon, collisions or not", "all"),
+        less("collision_count", "count", "contacts that began before it arrived"),
+        less("collision_steps", "count", "steps in contact before it arrived"),
+        less("wall_collisions", "count", "of the contacts, those with static objects and maps"),
+        less("agent_collisions", "count", "of the contacts, those with other robots"),
+        less("human_collisions", "count", "of the contacts, those with humans"),
+        less("timeout", "0/1", "neither arrived nor stopped by a collision at the horizon", "max"),
+        less("failure_to_progress", "count", "5 s windows in which the path to the goal became < 0.1 m shorter"),
+        less("stalled_time", "s", "slower than 0.05 m/s and 0.05 rad/s, not arrived"),
+        less(
             "time_to_goal",
             "s",
             "time of first arrival; of an episode the mean of the robots that arrived, also if others did not",
-            better="less",
         ),
-        Metric(
-            "path_length",
-            "m",
-            "distance travelled until it arrived (in the result of one run: to its end)",
-            better="less",
-        ),
-        Metric("spl", "0-1", "success x L*/max(path, L*), L* the shortest path round static objects", better="more"),
-        Metric("velocity_min", "m/s", "lowest speed until it arrived", "min"),
-        Metric("velocity_avg", "m/s", "distance travelled / time until it arrived", better="more"),
-        Metric("velocity_max", "m/s", "highest speed until it arrived", "max"),
-        Metric("acceleration_min", "m/s^2", "smallest magnitude of the acceleration vector", "min"),
-        Metric("acceleration_avg", "m/s^2", "mean magnitude of the acceleration vector", better="less"),
-        Metric("acceleration_max", "m/s^2", "largest magnitude of the acceleration vector", "max", better="less"),
-        Metric("jerk_min", "m/s^3", "smallest magnitude of the jerk vector", "min"),
-        Metric("jerk_avg", "m/s^3", "mean magnitude of the jerk vector", better="less"),
-        Metric("jerk_max", "m/s^3", "largest magnitude of the jerk vector", "max", better="less"),
-        Metric(
-            "clearing_distance_min",
-            "m",
-            "smallest distance to static objects, surface to surface",
-            "min",
-            better="more",
-        ),
-        Metric("clearing_distance_avg", "m", "mean distance to the nearest static object", better="more"),
-        Metric("space_compliance", "0-1", "share of time with every human at 0.5 m or more", better="more"),
-        Metric("personal_space_intrusion_ratio", "0-1", "share of time with a human closer than 0.5 m", better="less"),
-        Metric("distance_to_human_min", "m", "smallest distance to a human, surface to surface", "min", better="more"),
-        Metric("time_to_collision_min", "s", "shortest time to contact with a human at constant velocities", "min"),
+        less("path_length", "m", "distance travelled until it arrived (in the result of one run: to its end)"),
+        more("spl", "0-1", "success x L*/max(path, L*), L* the shortest path round static objects"),
+        either("velocity_min", "m/s", "lowest speed until it arrived", "min"),
+        more("velocity_avg", "m/s", "distance travelled / time until it arrived"),
+        either("velocity_max", "m/s", "highest speed until it arrived", "max"),
+        either("acceleration_min", "m/s^2", "smallest magnitude of the acceleration vector", "min"),
+        less("acceleration_avg", "m/s^2", "mean magnitude of the acceleration vector"),
+        less("acceleration_max", "m/s^2", "largest magnitude of the acceleration vector", "max"),
+        either("jerk_min", "m/s^3", "smallest magnitude of the jerk vector", "min"),
+        less("jerk_avg", "m/s^3", "mean magnitude of the jerk vector"),
+        less("jerk_max", "m/s^3", "largest magnitude of the jerk vector", "max"),
+        more("clearing_distance_min", "m", "smallest distance to static objects, surface to surface", "min"),
+        more("clearing_distance_avg", "m", "mean distance to the nearest static object"),
+        more("space_compliance", "0-1", "share of time with every human at 0.5 m or more"),
+        less("personal_space_intrusion_ratio", "0-1", "share of time with a human closer than 0.5 m"),
+        more("distance_to_human_min", "m", "smallest distance to a human, surface to surface", "min"),
+        either("time_to_collision_min", "s", "shortest time to contact with a human at constant velocities", "min"),
     )
 
 
 def _extras() -> tuple[Metric, ...]:
-    def extra(
-        key: str, unit: str, text: str, robots: Combined = "mean", better: Literal["more", "less"] | None = None
-    ) -> Metric:
-        return Metric(key, unit, text, robots, False, better)
-
+    less, more, either = _metrics(canonical=False)
     return (
-        extra("proxemics_intimate_ratio", "0-1", "share of time with the nearest human closer than 0.45 m"),
-        extra("proxemics_personal_ratio", "0-1", "share of time with the nearest human at 0.45 to 1.2 m"),
-        extra("proxemics_social_ratio", "0-1", "share of time with the nearest human at 1.2 to 3.6 m"),
-        extra("proxemics_public_ratio", "0-1", "share of time with the nearest human at 3.6 m or more"),
-        extra("distance_to_human_avg", "m", "mean distance to the nearest human"),
-        extra("min_distance_to_goal", "m", "smallest distance to the present goal, straight", "min", "less"),
-        extra("final_distance_to_goal", "m", "last distance to the present goal, straight", better="less"),
-        extra(
+        either("proxemics_intimate_ratio", "0-1", "share of time with the nearest human closer than 0.45 m"),
+        either("proxemics_personal_ratio", "0-1", "share of time with the nearest human at 0.45 to 1.2 m"),
+        either("proxemics_social_ratio", "0-1", "share of time with the nearest human at 1.2 to 3.6 m"),
+        either("proxemics_public_ratio", "0-1", "share of time with the nearest human at 3.6 m or more"),
+        either("distance_to_human_avg", "m", "mean distance to the nearest human"),
+        less("min_distance_to_goal", "m", "smallest distance to the present goal, straight", "min"),
+        less("final_distance_to_goal", "m", "last distance to the present goal, straight"),
+        less(
             "cumulative_heading_change",
             "rad",
             "sum of absolute heading changes; of the direction of motion for omni, omni_angular",
-            better="less",
         ),
-        extra(
+        less(
             "path_irregularity",
             "rad",
             "cumulative_heading_change, minus the shortest path's (with the first turn, if it must turn to move)",
-            better="less",
         ),
-        extra("path_efficiency", "ratio", "path length / L*; 1 is best", better="less"),
-        extra("curvature", "1/m", "mean Menger curvature of points at least 0.05 m apart", better="less"),
-        extra("roughness", "1/m", "mean absolute change of that curvature", better="less"),
-        extra("angle_over_length", "rad/m", "cumulative_heading_change / path length", better="less"),
-        extra("motion_energy", "m^2/s", "sum of squared speed times dt, unit mass", better="less"),
-        extra("stl", "0-1", "success x T*/max(T, T*), T* = L* / its top speed, forward or sideways", better="more"),
-        extra("barn_score", "0-0.5", "success x T*/clip(T, 2T*, 8T*), T* = L*/2", better="more"),
-        extra("discomfort_ratio", "0-1", "share of time with 0 < distance to a human < 0.2 m", better="less"),
-        extra("discomfort_min_dist", "m", "mean of such distances"),
-        extra(
+        less("path_efficiency", "ratio", "path length / L*; 1 is best"),
+        less("curvature", "1/m", "mean Menger curvature of points at least 0.05 m apart"),
+        less("roughness", "1/m", "mean absolute change of that curvature"),
+        less("angle_over_length", "rad/m", "cumulative_heading_change / path length"),
+        less("motion_energy", "m^2/s", "sum of squared speed times dt, unit mass"),
+        more("stl", "0-1", "success x T*/max(T, T*), T* = L* / its top speed, forward or sideways"),
+        more("barn_score", "0-0.5", "success x T*/clip(T, 2T*, 8T*), T* = L*/2"),
+        less("discomfort_ratio", "0-1", "share of time with 0 < distance to a human < 0.2 m"),
+        either("discomfort_min_dist", "m", "mean of such distances"),
+        more(
             "crowdnav_reward",
             "-",
             "1 on arrival, -0.25 on collision, (d - 0.2 m) x 0.5 x dt per step with a human at 0 < d < 0.2 m, each x "
             "0.9^(t x top speed)",
-            better="more",
         ),
-        extra("near_misses", "count", "times a human came within 0.2 m and went without contact", better="less"),
-        extra("freezing_count", "count", "stalls of 2 s or more, not arrived", better="less"),
-        extra("freezing_time", "s", "time in such stalls", better="less"),
-        extra("min_clearance", "m", "smallest distance to anything that can be hit, surface to surface", "min", "more"),
-        extra(
+        less("near_misses", "count", "times a human came within 0.2 m and went without contact"),
+        less("freezing_count", "count", "stalls of 2 s or more, not arrived"),
+        less("freezing_time", "s", "time in such stalls"),
+        more("min_clearance", "m", "smallest distance to anything that can be hit, surface to surface", "min"),
+        less(
             "contacts_between_steps",
             "count",
             "contacts that began and ended within one step, before it arrived; collisions only with world.contacts: "
             "swept",
-            better="less",
         ),
-        extra(
+        either(
             "human_collisions_by_robot", "count", "of those with humans, where it went faster to the contact, or both"
         ),
-        extra("human_collisions_by_human", "count", "of those with humans, where the human did, or both"),
-        extra("group_space_intrusion_ratio", "0-1", "share of time in the space of a social group", better="less"),
-        extra("group_collision_rate", "0/1", "entered the space of a social group", "max", "less"),
-        extra("social_force_robot", "m/s", "norm of the social force of humans on it, summed times dt", better="less"),
-        extra("social_force_agents", "m/s", "norms of its social forces on humans, summed times dt", better="less"),
-        extra("social_work", "m/s", "both of these together", better="less"),
-        extra("obstacle_force_robot", "m/s", "push of the nearest static object on it, summed times dt", better="less"),
-        extra("obstacle_force_agents", "m/s", "pushes of the nearest static objects on humans, summed times dt"),
-        extra("pedestrian_velocity_avg", "m/s", "mean speed of the humans until it arrived"),
-        extra("control_effort", "s", "squared controls, each over its limit, summed times dt", better="less"),
-        extra("time_in_zone", "s", "its footprint overlapped a region of world.zones"),
-        extra(
+        either("human_collisions_by_human", "count", "of those with humans, where the human did, or both"),
+        less("group_space_intrusion_ratio", "0-1", "share of time in the space of a social group"),
+        less("group_collision_rate", "0/1", "entered the space of a social group", "max"),
+        less("social_force_robot", "m/s", "norm of the social force of humans on it, summed times dt"),
+        less("social_force_agents", "m/s", "norms of its social forces on humans, summed times dt"),
+        less("social_work", "m/s", "both of these together"),
+        less("obstacle_force_robot", "m/s", "push of the nearest static object on it, summed times dt"),
+        either("obstacle_force_agents", "m/s", "pushes of the nearest static objects on humans, summed times dt"),
+        either("pedestrian_velocity_avg", "m/s", "mean speed of the humans until it arrived"),
+        less("control_effort", "s", "squared controls, each over its limit, summed times dt"),
+        either("time_in_zone", "s", "its footprint overlapped a region of world.zones"),
+        either(
             "zone_crossings",
             "count",
             "entries into regions of world.zones, plus crossings of its lines: +1 from left to right, -1 from right to "
             "left",
         ),
-        extra(
+        either(
             "seen_ratio",
             "0-1",
             "share of time in the field of view (fov, with fov_occlusion) of at least one other object",
         ),
-        extra("goal_visible_ratio", "0-1", "share of time with a straight line to its goal free of static objects"),
-        extra("left_world", "0/1", "its position was outside the world", "max", "less"),
+        either("goal_visible_ratio", "0-1", "share of time with a straight line to its goal free of static objects"),
+        less("left_world", "0/1", "its position was outside the world", "max"),
     )
 
 

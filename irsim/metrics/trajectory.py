@@ -11,11 +11,18 @@ from numpy.typing import NDArray
 
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
+from irsim.navigation.clearances import Clearance, static_distance
+from irsim.simulation.events import (
+    BETWEEN_STEPS,
+    Event,
+    first_events,
+    is_between_steps_of,
+    is_collision_of,
+    partner_of,
+)
 from irsim.simulation.roles import HUMAN, kinds_of, social_groups
 
 if TYPE_CHECKING:
-    from irsim.navigation.clearances import Clearance
-    from irsim.simulation.events import Event
     from irsim.simulation.simulation import Simulation
     from irsim.simulation.trace import Trace
 
@@ -150,9 +157,6 @@ def tracks(
         radii: (N,) bounding radii of all objects [m].
         top_speeds: Top speeds of the robots [m/s].
     """
-    from irsim.navigation.clearances import static_distance
-    from irsim.simulation.events import BETWEEN_STEPS, first_events, is_between_steps_of, is_collision_of, partner_of
-
     scenario = simulation.scenario
     records = scenario.objects
     kinds, groups = kinds_of(records), social_groups(records)

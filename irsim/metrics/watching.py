@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.simulation.build import is_watching
 from irsim.simulation.events import SIGHTS
 from irsim.simulation.roles import STATIC, kinds_of
-from irsim.simulation.watching import is_watching
 
 if TYPE_CHECKING:
     from irsim.scenario.model.zones import Zone

@@ -10,7 +10,7 @@ import numpy as np
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, outline, points_of
 from irsim.objects.base import SimObject, column
-from irsim.objects.neighbors import centres
+from irsim.objects.surroundings import centres
 
 __all__ = ["Body"]
 

@@ -15,7 +15,6 @@ from irsim.components.kinematics._handler import handler_class
 from irsim.options.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.resolve.kernels import Kernels, kernels_of, parts_of, placement_kernel
 from irsim.simulation.fog import build_fog
-from irsim.simulation.watching import build_targets, build_views, build_zones
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario, Variation
@@ -26,6 +25,7 @@ __all__ = [
     "build_world",
     "compound_body",
     "group_behaviors",
+    "is_watching",
     "padded",
     "speed_controls",
     "static_shapes_are_random",
@@ -225,9 +225,9 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
             for index, record in enumerate(scenario.objects)
             if record.spreads is not None
         ],
-        zones=build_zones(scenario),
-        views=build_views(scenario),
-        targets=build_targets(scenario),
+        zones=_zones(scenario),
+        views=_views(scenario),
+        targets=_targets(scenario),
     )
     world.after_arrival = AFTER_ARRIVAL[scenario.world.after_arrival]
     world.contacts = CONTACTS[scenario.world.contacts]
@@ -257,6 +257,45 @@ def _let_vary(world: core.World, variation: Variation, row: dict[int, int], spee
         ]
         levels.append(core.Level(variations=drawn, first_variant=level.first_variant, variants=level.variants))
     world.set_levels(levels, speeds)
+
+
+def _zones(scenario: ResolvedScenario) -> list[core.Part]:
+    """Build the zones of a scenario: a line is a linestring, an area a circle or a polygon."""
+    parts: list[core.Part] = []
+    for zone in scenario.world.zones:
+        if zone.circle is not None:
+            parts.append(core.Circle(radius=zone.circle.radius, center=zone.circle.center))
+        elif zone.is_line:
+            parts.append(core.Linestring(vertices=zone.points))
+        else:
+            parts.append(core.Polygon(vertices=zone.points))
+    return parts
+
+
+def is_watching(record: ObjectRecord) -> bool:
+    """Whether an object has a watched field of view: one that the scenario gives, not just the one of a lidar."""
+    return record.watches and record.fov is not None and record.fov_radius is not None
+
+
+def _views(scenario: ResolvedScenario) -> list[core.View]:
+    """Build the fields of view that are watched."""
+    return [
+        core.View(object=index, angle=record.fov, reach=record.fov_radius, occlusion=record.fov_occlusion)
+        for index, record in enumerate(scenario.objects)
+        if is_watching(record) and record.fov is not None and record.fov_radius is not None
+    ]
+
+
+def _targets(scenario: ResolvedScenario) -> list[int]:
+    """Indices of the objects that count as seen: movable ones, robots, and obstacles with tags.
+
+    Plain static obstacles, maps and walls do not count: a turning robot would see and lose them all the time.
+    """
+    return [
+        index
+        for index, record in enumerate(scenario.objects)
+        if not record.static or record.role == "robot" or record.tags
+    ]
 
 
 def static_shapes_are_random(scenario: ResolvedScenario) -> bool:

@@ -16,9 +16,9 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+from irsim.simulation.build import is_watching
 from irsim.simulation.fog import fog_resolution
 from irsim.simulation.simulation import Simulation
-from irsim.simulation.watching import is_watching
 
 __all__ = ["UNIT", "step_work"]
 

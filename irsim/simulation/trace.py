@@ -166,15 +166,7 @@ def next_rows(simulation: Simulation, steps: int, *, until_done: bool = True, sc
     begin = int(simulation.count[0])
     if not simulation.in_python:
         kept = core.rollout(simulation.world, simulation.state, steps, until_done=until_done, returns=scans)
-        rows: list[NDArray[Any]] = [
-            kept.pose,
-            kept.control,
-            kept.goal,
-            kept.arrived,
-            kept.collided,
-            kept.stopped,
-            kept.returns,
-        ]
+        rows = (kept.pose, kept.control, kept.goal, kept.arrived, kept.collided, kept.stopped, kept.returns)
         return _trace(simulation, begin + 1, rows, len(kept.pose), scans)
     taken: list[list[NDArray[Any]]] = []
     for _ in range(steps):

@@ -268,7 +268,7 @@ def test_what_is_drawn_of_an_object_may_be_written(make: Make) -> None:
 
 
 def test_colours_and_widths_of_an_fmcw_lidar(make: Make) -> None:
-    from irsim.objects.sensors.lidar_drawing import draw_scan
+    from irsim.objects.sensors.drawing import draw_scan
 
     env = make(TEXT)
     lidar = env.robot_list[1].lidar

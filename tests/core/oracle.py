@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import shapely
 
 import irsim._core as core
 
@@ -180,3 +181,17 @@ def assert_scan(
             grazed = any(math.isclose(seen, distance, rel_tol=1e-12) for distance in own)
             right = grazed or runs_along(state, hit, origin, beam, seen)
         assert right, (i, seen, hit, answers)
+
+
+def shape_of(state: core.State, row: int) -> shapely.Geometry:
+    """The union of the parts of an object where it stands; circles have 1000 corners."""
+    parts: list[shapely.Geometry] = []
+    for part, kind in enumerate(state.parts(row)):
+        if kind == "circle":
+            x, y, radius = state.circle(row, part, True)
+            parts.append(shapely.Point(x, y).buffer(radius, quad_segs=250))
+        elif kind == "polygon":
+            parts.append(shapely.Polygon(state.vertices(row, part, True)))
+        else:
+            parts.append(shapely.LineString(state.vertices(row, part, True)))
+    return shapely.union_all(parts)

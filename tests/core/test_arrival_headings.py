@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import pytest
 
@@ -34,6 +33,13 @@ def in_all_directions(behavior: str, drive: str, more: str, count: int = 16) -> 
     return "\n".join(lines)
 
 
+def assert_arrive_and_stay(env: irsim.Env, steps: int) -> None:
+    env.rollout(steps, until_done=True)
+    assert all(robot.arrive for robot in env.robot_list), [robot.state[:, 0] for robot in env.robot_list]
+    env.rollout(100, until_done=False)
+    assert all(robot.arrive for robot in env.robot_list)
+
+
 @pytest.mark.parametrize("behavior", BEHAVIORS)
 @pytest.mark.parametrize("limits", LIMITS)
 def test_omni_angular_arrives_with_its_heading_from_all_directions(behavior: str, limits: str) -> None:
@@ -51,19 +57,12 @@ def test_omni_angular_arrives_with_its_heading_from_all_directions(behavior: str
         "vel_max: [1, 0.8], vel_min: [0, -0.8], acce: [0.8, 2], goal_threshold: 0.2",
     ],
 )
-def test_diff_turns_on_the_spot_at_its_goal_and_stays_there(tmp_path: Path, behavior: str, limits: str) -> None:
+def test_diff_turns_on_the_spot_at_its_goal_and_stays_there(make, behavior: str, limits: str) -> None:
     text = in_all_directions(behavior, "diff", limits, 8)
     assert "heading-not-reached" not in [finding.code for finding in irsim.validate(text=text).findings]
-    path = tmp_path / "scenario.yaml"
-    path.write_text(text, encoding="utf-8")
-    env = irsim.make(path, seed=1, headless=True, log_level="ERROR")
-    env.rollout(500, until_done=True)
-    assert all(robot.arrive for robot in env.robot_list), [robot.state[:, 0] for robot in env.robot_list]
-    env.rollout(100, until_done=False)
-    for robot in env.robot_list:
-        assert robot.arrive
-        assert abs(robot.velocity).max() < 1e-9
-    env.end()
+    env = make(text)
+    assert_arrive_and_stay(env, 500)
+    assert max(abs(robot.velocity).max() for robot in env.robot_list) < 1e-9
 
 
 def test_the_field_file_of_a_diff_robot_with_a_heading() -> None:
@@ -98,19 +97,10 @@ CAR = (
 
 @pytest.mark.parametrize("heading", [0, 1.57, 3.14, -1.57, 0.7])
 @pytest.mark.parametrize(("back", "acce", "local"), [(-1, "[2, 2]", "dash"), (0, "[.inf, .inf]", "orca")])
-def test_a_car_comes_in_with_the_heading_under_follow(
-    tmp_path: Path, heading: float, back: float, acce: str, local: str
-) -> None:
+def test_a_car_comes_in_with_the_heading_under_follow(make, heading: float, back: float, acce: str, local: str) -> None:
     text = CAR.format(state="[4, 10, 0]", goal=f"[12, 11, {heading}]", back=back, acce=acce, local=local)
     assert "heading-not-reached" not in [finding.code for finding in irsim.validate(text=text).findings]
-    path = tmp_path / "scenario.yaml"
-    path.write_text(text, encoding="utf-8")
-    env = irsim.make(path, seed=1, headless=True, log_level="ERROR")
-    env.rollout(900, until_done=True)
-    assert env.robot.arrive, env.robot.state[:, 0]
-    env.rollout(100, until_done=False)
-    assert env.robot.arrive, "it stays"
-    env.end()
+    assert_arrive_and_stay(make(text), 900)
 
 
 @pytest.mark.parametrize("goal", ["[10, 10.6, 0]", "[10, 10, 3.14]", "[9, 10, 0]"])

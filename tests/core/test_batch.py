@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,14 +16,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
-from tests.core.test_reset import crowd
+from tests.core.test_reset import NOISY, crowd
+from tests.core.test_shapes import random_polygon
 from tests.core.worlds import (
     DRIVES,
     PLAIN,
-    advanced,
     assert_identical,
     command,
     everything,
+    fmcw,
     kernel,
     lidar,
     obstacle,
@@ -34,29 +37,6 @@ from tests.core.worlds import (
 pytestmark = pytest.mark.every_python
 
 WORLD_SIZED = ("count", "scene", "noise", "seed")
-
-
-@settings(max_examples=15)
-@given(
-    seeds=st.lists(st.integers(0, 2**64 - 1), min_size=1, max_size=7),
-    threads=st.integers(1, 5),
-    steps=st.integers(0, 30),
-    until_done=st.booleans(),
-)
-def test_a_world_of_a_batch_is_that_world_alone(seeds, threads: int, steps: int, until_done: bool) -> None:
-    world, state = crowd(seeds)
-    core.advance(world, state, steps, threads=threads, until_done=until_done)
-    state.reset(np.arange(len(seeds)).astype(np.uint8) % 2, True)
-    core.advance(world, state, steps, threads=threads, until_done=until_done)
-    batch = everything(state)
-    for w, seed in enumerate(seeds):
-        world, alone = crowd([seed])
-        core.advance(world, alone, steps, until_done=until_done)
-        alone.reset(np.array([w % 2], np.uint8), True)
-        core.advance(world, alone, steps, until_done=until_done)
-        assert_identical(rows_of(batch, w, len(seeds)), everything(alone))
-        assert state.events(w) == alone.events(0)
-        assert state.collision_pairs(w).tolist() == alone.collision_pairs(0).tolist()
 
 
 def movers(name: str, seeds: Sequence[int]) -> tuple[core.World, core.State]:
@@ -72,17 +52,74 @@ def movers(name: str, seeds: Sequence[int]) -> tuple[core.World, core.State]:
     return scene(*objects, *things, seeds=seeds, mode=1)
 
 
-@pytest.mark.parametrize("name", PLAIN)
-def test_each_behavior_decides_in_a_batch_as_alone(name: str) -> None:
-    world, state = movers(name, (4, 5, 6))
-    core.advance(world, state, 20, threads=3)
-    for w, seed in enumerate((4, 5, 6)):
-        alone_world, alone = movers(name, [seed])
-        core.advance(alone_world, alone, 20)
-        assert_identical(rows_of(everything(state), w, 3), everything(alone))
-    assert np.array_equal(*np.split(state.pose, 3)[:2]) == (name not in ("avocado", "footprint_orca")), (
-        "draws follow the seed"
-    )
+def pushed(seeds: Sequence[int]) -> tuple[core.World, core.State]:
+    """A robot that pushes bodies whose shapes are drawn."""
+    part = random_polygon(center_range=[0] * 4, avg_radius_range=[0.2, 0.4], spikeyness_range=[0, 0.5])
+    bodies = [obstacle(static=False, mass=1.0, parts=[part], pose=[0.7 * k, 0.2 * k, k]) for k in range(1, 5)]
+    return scene(robot(drive=NOISY, mass=5.0, friction=1.0, goals=[[9, 1]]), *bodies, seeds=seeds, mode=3)
+
+
+def fast(seeds: Sequence[int]) -> tuple[core.World, core.State]:
+    """Robots that drive arcs so fast that they would pass through a wall within a step."""
+    top = {"drive": NOISY, "vel_max": [20.0] * 3, "vel_min": [-20.0] * 3, "loop": True}
+    robots = [robot(**top, pose=[0, 2 * k, 0.3 * k], goals=[[9 + k, 8 - 2 * k]]) for k in range(4)]
+    world, state = scene(*robots, obstacle(pose=[5, 5, 0], parts=[rectangle(0.02, 8.0)]), seeds=seeds)
+    world.contacts = world.integration = 1
+    return world, state
+
+
+def scanning(seeds: Sequence[int]) -> tuple[core.World, core.State]:
+    """Robots of every drive that measure ranges and velocities with noise."""
+    sensors = [fmcw(30, noise=True, velocity_noise_std=0.2), lidar(7, has_velocity=True)]
+    drives = enumerate(DRIVES.values())
+    robots = [robot(drive=d, pose=[k, 0, 0], goals=[[k, 5]], loop=True, sensors=sensors) for k, d in drives]
+    return scene(*robots, seeds=seeds)
+
+
+SPREADS = {"speeds": [0], "attempts": 1000, "position": 0.3, "heading": 0.4, "speed": 0.2, "delay": 1.5}
+SCENES: dict[str, Callable[[Sequence[int]], tuple[core.World, core.State]]] = {
+    **{name: partial(movers, name) for name in PLAIN},
+    "perturbed": partial(crowd, perturbations=[core.Perturbation(object=k, **SPREADS) for k in (1, 2, 3)]),
+    "pushed": pushed,
+    "fast": fast,
+    "scanning": scanning,
+}
+
+
+def assert_alike(build: Any, seeds: Sequence[int], threads: int, steps: int, until_done: bool = False) -> core.State:
+    """Worlds of a batch are those worlds alone, also after some of them have begun the next scene."""
+    world, state = build(seeds)
+    core.advance(world, state, steps, threads=threads, until_done=until_done)
+    state.reset(np.arange(len(seeds)).astype(np.uint8) % 2, True)
+    core.advance(world, state, steps, threads=threads, until_done=until_done)
+    batch = everything(state)
+    for w, seed in enumerate(seeds):
+        world, alone = build([seed])
+        core.advance(world, alone, steps, until_done=until_done)
+        alone.reset(np.array([w % 2], np.uint8), True)
+        core.advance(world, alone, steps, until_done=until_done)
+        assert_identical(rows_of(batch, w, len(seeds)), everything(alone))
+        assert state.events(w) == alone.events(0)
+        assert state.collision_pairs(w).tolist() == alone.collision_pairs(0).tolist()
+    return state
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_world_of_a_batch_is_that_world_alone(name: str) -> None:
+    state = assert_alike(SCENES[name], (4, 5, 6), threads=3, steps=20)
+    first, _, third = np.split(everything(state)["ranges" if name == "scanning" else "pose"], 3)
+    assert np.array_equal(first, third) == (name in ("orca", "rvo", "sfm")), "draws follow the seed"
+
+
+@settings(max_examples=15)
+@given(
+    seeds=st.lists(st.integers(0, 2**64 - 1), min_size=1, max_size=7),
+    threads=st.integers(1, 5),
+    steps=st.integers(0, 30),
+    until_done=st.booleans(),
+)
+def test_worlds_with_all_that_draws_are_alike(seeds, threads: int, steps: int, until_done: bool) -> None:
+    assert_alike(crowd, seeds, threads, steps, until_done)
 
 
 @pytest.mark.parametrize("name", PLAIN)
@@ -174,19 +211,6 @@ def test_external_motion() -> None:
     assert state.pose[0].tolist() == [3, 0, 0]
     assert state.control[0, 0] == 0.5
     assert state.trajectory(0)[:, 0].tolist() == [3.0]
-
-
-def test_every_drive_in_one_batch_on_threads() -> None:
-    objects = [
-        robot(drive=d, pose=[k, 0, 0], goals=[[k, 5]], loop=True, sensors=[lidar(9)])
-        for k, d in enumerate(DRIVES.values())
-    ]
-    results = []
-    for threads in (1, 2, 8):
-        state = advanced(50, *objects, seeds=range(40), threads=threads)
-        results.append(everything(state))
-    assert_identical(results[0], results[1])
-    assert_identical(results[0], results[2])
 
 
 FORKED = """

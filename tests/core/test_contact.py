@@ -8,20 +8,7 @@ import numpy as np
 import pytest
 
 import irsim._core as core
-from tests.core.worlds import (
-    DRIVES,
-    advanced,
-    apply,
-    circle,
-    command,
-    everything,
-    line,
-    obstacle,
-    rectangle,
-    robot,
-    rows_of,
-    scene,
-)
+from tests.core.worlds import DRIVES, advanced, apply, circle, line, obstacle, rectangle, robot, scene
 
 CONTACT = 3
 G = 9.81
@@ -214,24 +201,3 @@ def test_contacts_are_recorded_and_timed() -> None:
     state.reset(np.ones(1, np.uint8), False)
     assert contacts(state) == []
     assert state.contact_time.tolist() == [0, 0]
-
-
-def test_a_batch_equals_single_worlds() -> None:
-    parts = [core.RandomPolygon(
-        center_range=[0, 0, 0, 0], avg_radius_range=[0.2, 0.4], irregularity_range=[0, 1], spikeyness_range=[0, 0.5],
-        num_vertices_range=[4, 8], closed=True,
-    )]  # fmt: skip
-    objects = [driver(pose=[0, 0, 0]), *[body(parts=parts, pose=[0.7 * k, 0.2 * k, k]) for k in range(1, 5)]]
-    seeds = [3, 5, 8]
-    world, state = scene(*objects, seeds=seeds, mode=CONTACT)
-    for _ in range(30):
-        command(state, *[[1.0, 0.1]] * state.pose.shape[0])
-        state.given[:] = np.tile([1, 0, 0, 0, 0], 3)
-        core.advance(world, state, 1, threads=2)
-    together = everything(state)
-    for k, seed in enumerate(seeds):
-        alone_world, alone = scene(*objects, seeds=[seed], mode=CONTACT)
-        apply(alone_world, alone, [1.0, 0.1], steps=30)
-        for name, values in rows_of(together, k, 3).items():
-            if name not in ("seed", "command"):
-                assert np.array_equal(values, everything(alone)[name], equal_nan=values.dtype.kind == "f"), name

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import assume
 from hypothesis import strategies as st
 
 import irsim._core as core
+from tests.core import oracle
 from tests.core.test_contact import CONTACT, DT, SLOP, body, contacts, driver
 from tests.core.worlds import DRIVES, apply, circle, obstacle, polygon, rectangle, scene
 from tests.effort import for_all
@@ -77,7 +77,7 @@ def test_contacts_conserve_momentum_and_angular_momentum(seed: int) -> None:
         for k in range(2)
     ]
     world, state = scene(*bodies, mode=CONTACT)
-    assume(outline_of(state, 0).intersection(outline_of(state, 1)).area > 0)  # apart in 4 of the 10,001 draws
+    assume(oracle.shape_of(state, 0).intersection(oracle.shape_of(state, 1)).area > 0)  # apart in 4 of the 10,001 draws
     centres = np.array([_centroid(state, row) for row in range(2)])
     core.contact_step(world, state, 0, [(0, 1)], 1, SLOP, DT)
     ((_, _, nx, ny, depth, *_),) = contacts(state)
@@ -157,12 +157,6 @@ def test_mass_properties_are_exact() -> None:
 
 
 # anything ------------------------------------------------------------------------------------------------------------
-def outline_of(state: core.State, row: int) -> shapely.Geometry:
-    kinds = state.parts(row)
-    if kinds == ["circle"]:
-        x, y, radius = state.circle(row, 0, True)
-        return shapely.Point(x, y).buffer(radius, quad_segs=64)
-    return shapely.Polygon(state.vertices(row, 0, True))
 
 
 @for_all(25, st.integers(0, 10_000), st.sampled_from(["diff", "omni", "omni_angular", "steer"]))
@@ -192,7 +186,7 @@ def test_whatever_is_pushed_stays_apart_and_the_same_every_time(seed: int, name:
 
     state = run()
     assert np.isfinite(state.pose).all()
-    placed = [outline_of(state, row) for row in range(len(objects))]
+    placed = [oracle.shape_of(state, row) for row in range(len(objects))]
     for i, one in enumerate(placed[: -len(walls)]):
         for other in [*placed[:i], *placed[-len(walls) :]]:
             assert not one.buffer(-1e-3).intersects(other), (i, seed)

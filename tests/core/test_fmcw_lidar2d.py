@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core import oracle
-from tests.core.worlds import DRIVES, PI, advanced, apply, circle, fmcw, lidar, obstacle, rectangle, robot, scene
+from tests.core.worlds import DRIVES, PI, apply, circle, fmcw, lidar, obstacle, rectangle, robot, scene
 from tests.effort import for_all
 
 
@@ -140,22 +140,6 @@ def test_noise_statistics() -> None:
         assert sample.std() == pytest.approx(std, rel=0.03)
         assert abs(np.corrcoef(sample[0], sample[1])[0, 1]) < 0.06
     assert abs(np.corrcoef(ranges.ravel(), speed.ravel())[0, 1]) < 0.03
-
-
-def test_a_batch_is_its_worlds_alone() -> None:
-    def worlds(seeds: list[int]) -> core.State:
-        rng = np.random.default_rng(5)
-        sensors = [fmcw(30, noise=True, velocity_noise_std=0.2), lidar(7, has_velocity=True)]
-        objects = moving_worlds(rng, sensors, 6)
-        state = advanced(5, *objects, seeds=seeds, mode=1, threads=2)
-        return state
-
-    together = worlds([4, 9, 4])
-    for k, seed in enumerate([4, 9, 4]):
-        alone = worlds([seed])
-        for name in ("ranges", "velocities", "hits", "valid"):
-            whole = getattr(together, name).reshape(3, -1)[k]
-            assert whole.tobytes() == getattr(alone, name).tobytes(), name
 
 
 def test_a_scan_from_elsewhere() -> None:

@@ -272,17 +272,3 @@ def test_noise_bends_the_arc() -> None:
     assert abs(speed - 0.8) > 1e-6
     assert abs(u[2] - 0.6) > 1e-6
     same_pose(state.pose[0], stepped("diff", np.zeros(3), 0.0, np.array([speed, u[2], 0.0]), 0.1), 1e-14)
-
-
-def test_worlds_of_a_batch_move_as_alone() -> None:
-    specs = [robot(drive=DRIVES[drive], pose=[3 * k, 0, 0.4 * k], extra=[0.3]) for k, drive in enumerate(DRIVES)]
-    controls = [[0.9, 0.2 * (k + 1), -0.3] for k in range(len(DRIVES))]
-    alone, one = exact_world(*specs, step_time=0.3)
-    many, three = exact_world(*specs, step_time=0.3, seeds=(0, 1, 2))
-    for _ in range(5):
-        command(one, *controls)
-        command(three, *controls, *controls, *controls)
-        core.advance(alone, one, 1)
-        core.advance(many, three, 1, threads=2)
-    for copy in range(3):
-        np.testing.assert_array_equal(three.pose[copy * len(DRIVES) : (copy + 1) * len(DRIVES)], one.pose)

@@ -26,7 +26,6 @@ from tests.core.worlds import (
     random_placement,
     rectangle,
     robot,
-    rows_of,
     scene,
 )
 from tests.effort import for_all
@@ -281,23 +280,6 @@ def test_behaviors_keep_to_their_changed_speed(behavior: object, speed: float) -
     np.testing.assert_allclose(state.twist[:, 0], speed * state.pace, atol=0.06 if speed < 2 else 1e-9)
     if speed == 0.8:
         assert np.corrcoef(state.twist[:, 0], state.pace)[0, 1] > 0.95
-
-
-@for_all(20, seeds=st.lists(SEEDS, min_size=2, max_size=5), threads=st.integers(1, 3))
-def test_a_world_of_a_batch_is_that_world_alone(seeds, threads: int) -> None:
-    given = [spread(i, position=0.3, heading=0.4, speed=0.2, delay=1.5) for i in (0, 2, 3, 4)]
-    world, state = crowd(given, seeds)
-    core.advance(world, state, 40, threads=threads)
-    state.reset(np.arange(len(seeds)).astype(np.uint8) % 2, True)
-    core.advance(world, state, 10, threads=threads)
-    batch = everything(state)
-    for w, seed in enumerate(seeds):
-        world, alone = crowd(given, [seed])
-        core.advance(world, alone, 40)
-        alone.reset(np.array([w % 2], np.uint8), True)
-        core.advance(world, alone, 10)
-        assert_identical(rows_of(batch, w, len(seeds)), everything(alone))
-        assert state.events(w) == alone.events(0)
 
 
 def test_a_reset_repeats_the_scene_and_the_next_scene_is_another() -> None:

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 import irsim
 import irsim._core as core
-from irsim.api import read_scenario
-from tests.core.worlds import DRIVES, PI, advanced, circle, robot, scene
+from tests.core.worlds import DRIVES, PI, advanced, assert_success, circle, robot, scene
 from tests.effort import for_all
 
 STEP = 0.1  # of the scenes of tests.core.worlds [s]
@@ -167,13 +166,8 @@ robot:
 SQUARE = "[[2, 2], [8, 2], [8, 8], [2, 8], [2, 2]]"
 
 
-def make(text: str) -> irsim.Env:
-    scenario, _ = read_scenario(text=text, strict=True)
-    return irsim.Env(scenario, headless=True, log_level="ERROR", seed=1)
-
-
 @pytest.mark.parametrize("drive", ["omni", "omni_angular"])
-def test_in_contact_mode_a_recorded_obstacle_is_where_it_was_recorded(drive: str) -> None:
+def test_in_contact_mode_a_recorded_obstacle_is_where_it_was_recorded(make, drive: str) -> None:
     env = make(CROWD.format(mode="contact", drive=drive, y=5.0))
     walker, box = env.obstacle_list[0], env.obstacle_list[1]
     touched = False
@@ -190,7 +184,7 @@ def test_in_contact_mode_a_recorded_obstacle_is_where_it_was_recorded(drive: str
     assert np.hypot(*(env.robot.state[:2, 0] - walker.state[:2, 0])) > 0.59
 
 
-def test_a_recorded_obstacle_takes_who_stands_in_its_way_along() -> None:
+def test_a_recorded_obstacle_takes_who_stands_in_its_way_along(make) -> None:
     env = make(CROWD.format(mode="contact", drive="omni", y=5.0))
     for _ in range(25):
         env.step()
@@ -198,41 +192,32 @@ def test_a_recorded_obstacle_takes_who_stands_in_its_way_along() -> None:
         assert gap > 0.6 - 1e-3, "no robot is inside of it"
 
 
+def lap(end: float = 8.0, poses: str = SQUARE, keys: str = "") -> str:
+    return LAP.format(keys=keys, times=f"[0, 2, 4, 6, {end}]", poses=poses)
+
+
 def test_a_robot_that_ends_where_it_began_arrives_when_its_recording_ends() -> None:
-    result = irsim.run(text=LAP.format(keys="", times="[0, 2, 4, 6, 8]", poses=SQUARE), seed=0)
-    [robot] = result.robots
-    assert (result.outcome, robot.time_to_goal, result.steps) == ("success", pytest.approx(8.0), 80)
-    assert robot.path_length == pytest.approx(24.0)
-    assert [event.kind for event in result.events] == ["arrival"]
+    result = irsim.run(text=lap(), seed=0)
+    assert (result.outcome, result.steps, result.robots[0].path_length) == ("success", 80, pytest.approx(24.0))
+    assert [(event.kind, event.time) for event in result.events] == [("arrival", pytest.approx(8.0))]
 
 
-def test_a_robot_that_passes_its_last_place_goes_on() -> None:
-    poses = "[[2, 5], [5, 5], [8, 5], [8, 8], [5, 5]]"
-    result = irsim.run(text=LAP.format(keys="", times="[0, 2, 4, 6, 8]", poses=poses), seed=0)
-    assert (result.outcome, result.robots[0].time_to_goal) == ("success", pytest.approx(8.0))
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        (lap(poses="[[2, 5], [5, 5], [8, 5], [8, 8], [5, 5]]"), 8.0),  # it passes its last place before
+        (lap(7.96), 7.9),
+        (lap(8.04), 8.0),
+        (lap(keys="goal: [8, 8]"), 4.0),  # a goal that is written counts on the way
+        (LAP.format(keys="", times="[0]", poses="[[3, 3]]"), 0.0),
+        (LAP.format(keys="", times="[0, 2]", poses="[[3, 3], [3, 3]]"), 2.0),
+    ],
+)
+def test_a_recording_arrives_at(text: str, seconds: float) -> None:
+    assert assert_success(text, seed=0).robots[0].time_to_goal == pytest.approx(seconds, abs=0.11 if seconds else 0)
 
 
-@pytest.mark.parametrize(("end", "arrival"), [(8.0, 8.0), (7.96, 7.9), (8.04, 8.0)])
-def test_an_end_between_two_steps(end: float, arrival: float) -> None:
-    result = irsim.run(text=LAP.format(keys="", times=f"[0, 2, 4, 6, {end}]", poses=SQUARE), seed=0)
-    assert result.robots[0].time_to_goal == pytest.approx(arrival, abs=0.1001)
-    assert result.outcome == "success"
-
-
-def test_a_goal_that_is_written_elsewhere_counts_on_the_way() -> None:
-    keys = "goal: [8, 8]"
-    result = irsim.run(text=LAP.format(keys=keys, times="[0, 2, 4, 6, 8]", poses=SQUARE), seed=0)
-    assert result.robots[0].time_to_goal == pytest.approx(4.0, abs=0.11)
-
-
-def test_somebody_who_stands_in_one_place_arrives_at_once_or_at_the_end() -> None:
-    once = irsim.run(text=LAP.format(keys="", times="[0]", poses="[[3, 3]]"), seed=0)
-    stays = irsim.run(text=LAP.format(keys="", times="[0, 2]", poses="[[3, 3], [3, 3]]"), seed=0)
-    assert once.robots[0].time_to_goal == 0
-    assert stays.robots[0].time_to_goal == pytest.approx(2.0)
-
-
-def test_an_obstacle_that_comes_back_is_said_to_arrive_once_and_late() -> None:
+def test_an_obstacle_that_comes_back_is_said_to_arrive_once_and_late(make) -> None:
     text = CROWD.format(mode="stop", drive="omni", y=2.0).replace(
         "[[1, 5], [9, 5], [9, 8]]", "[[1, 5], [9, 5], [1, 5]]"
     )
@@ -243,8 +228,8 @@ def test_an_obstacle_that_comes_back_is_said_to_arrive_once_and_late() -> None:
     assert [round(event.time, 3) for event in mine] == [6.0]
 
 
-def test_a_reset_replays_it_again() -> None:
-    env = make(LAP.format(keys="", times="[0, 2, 4, 6, 8]", poses=SQUARE))
+def test_a_reset_replays_it_again(make) -> None:
+    env = make(lap())
     for _ in range(2):
         assert not env.robot.arrive
         steps = 0

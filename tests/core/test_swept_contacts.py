@@ -9,21 +9,7 @@ import numpy as np
 import pytest
 
 import irsim._core as core
-from tests.core.worlds import (
-    DRIVES,
-    PI,
-    apply,
-    assert_identical,
-    circle,
-    command,
-    everything,
-    line,
-    obstacle,
-    polygon,
-    rectangle,
-    robot,
-    scene,
-)
+from tests.core.worlds import DRIVES, PI, apply, circle, command, line, obstacle, polygon, rectangle, robot, scene
 
 FAST = {"vel_min": [-100.0, -100.0, -100.0], "vel_max": [100.0, 100.0, 100.0], "behavior": None}
 OMNI = {**FAST, "drive": DRIVES["omni_angular"]}
@@ -236,7 +222,7 @@ def test_a_robot_that_is_freed_goes_on() -> None:
     assert state.stopped.tolist() == [0, 0]
 
 
-def crowd(copies: int, order: int = 1) -> tuple[core.World, core.State]:
+def crowd(order: int) -> tuple[core.World, core.State]:
     rng = np.random.default_rng(8)
     starts = rng.uniform(0, 4, (14, 2))
     starts = starts[[k for k in range(14) if k == 0 or min(np.hypot(*(starts[:k] - starts[k]).T)) > 0.5]]
@@ -246,37 +232,24 @@ def crowd(copies: int, order: int = 1) -> tuple[core.World, core.State]:
         for k, place in enumerate(starts.tolist())
     ]
     objects.append(obstacle(number=len(objects), pose=[2.0, 2.0, 0.3], parts=[rectangle(3.0, 0.02)]))
-    return swept(*objects[::order], seeds=range(copies))
+    return swept(*objects[::order])
 
 
-def drive(world: core.World, state: core.State, copies: int, order: int = 1, threads: int = 1) -> None:
+def drive(order: int = 1) -> core.State:
+    """The state of a crowd after some steps with random controls."""
+    world, state = crowd(order)
     rng = np.random.default_rng(5)
-    count = state.pose.shape[0] // copies
     for _ in range(6):
-        controls = rng.uniform(-8, 8, (count, 3))[::order]
-        apply(world, state, *np.tile(controls, (copies, 1)).tolist(), threads=threads)
-
-
-def test_batches_equal_single_worlds_on_any_number_of_threads() -> None:
-    world, state = crowd(1)
-    drive(world, state, 1)
-    assert len(state.collision_pairs(0)) >= 3
-    for threads in (1, 3):
-        many, states = crowd(4)
-        drive(many, states, 4, threads=threads)
-        alone = {name: np.concatenate([values] * 4) for name, values in everything(state).items() if name != "seed"}
-        assert_identical(alone, everything(states))
+        apply(world, state, *rng.uniform(-8, 8, (state.pose.shape[0], 3))[::order].tolist())
+    return state
 
 
 def test_the_order_of_objects_does_not_matter() -> None:
-    (_, state), (_, other) = runs = [crowd(1, order) for order in (1, -1)]
-    for (world, moved), order in zip(runs, (1, -1), strict=True):
-        drive(world, moved, 1, order)
+    state, other = drive(), drive(-1)
+    assert len(state.collision_pairs(0)) >= 3
     assert other.pose[::-1] == pytest.approx(state.pose, abs=1e-6)
     assert other.stopped[::-1].tolist() == state.stopped.tolist()
 
 
 def test_nothing_passes_through_anything() -> None:
-    world, state = crowd(1)
-    drive(world, state, 1)
-    assert not [kind for kind in kinds(state) if kind in BETWEEN]
+    assert not [kind for kind in kinds(drive()) if kind in BETWEEN]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ import shapely
 from hypothesis import strategies as st
 
 import irsim._core as core
+from tests.core import oracle
 from tests.core.worlds import PI, advanced, circle, fmcw, lidar, line, obstacle, polygon, rectangle, robot, scene
 from tests.effort import for_all
 
@@ -26,17 +29,31 @@ SHAPES = [
 ARC = 1000
 
 
-def shape_of(state: core.State, row: int) -> shapely.Geometry:
-    parts = []
-    for part, kind in enumerate(state.parts(row)):
-        if kind == "circle":
-            x, y, radius = state.circle(row, part, True)
-            parts.append(shapely.Point(x, y).buffer(radius, quad_segs=ARC // 4))
-        elif kind == "polygon":
-            parts.append(shapely.Polygon(state.vertices(row, part, True)))
-        else:
-            parts.append(shapely.LineString(state.vertices(row, part, True)))
-    return shapely.union_all(parts)
+def random_things(rng: np.random.Generator, count: int, clear: int) -> list[core.ObjectSpec]:
+    """Things of any shape, every other one static; each one of so many is unobstructed."""
+    return [
+        obstacle(
+            pose=rng.uniform([-5, -5, -PI], [5, 5, PI]).tolist(),
+            parts=SHAPES[rng.integers(len(SHAPES))],
+            static=bool(k % 2),
+            unobstructed=k % clear == clear - 1,
+        )
+        for k in range(count)
+    ]
+
+
+def seen_by_rays(own: Sequence[float], angle: float, reach: float, bodies: dict[int, Any], clear: int = 0) -> set[int]:
+    """Rows that one of 600 lines of sight meets first; one of so many rows hides nothing."""
+    eye, seen = shapely.Point(own[:2]), set[int]()
+    for bearing in own[2] + np.linspace(-angle / 2 + 1e-6, angle / 2 - 1e-6, 600):
+        ray = shapely.LineString([own[:2], np.add(own[:2], reach * np.array([math.cos(bearing), math.sin(bearing)]))])
+        near = {}
+        for row, body in bodies.items():
+            hit = ray.intersection(body if body.geom_type == "LineString" else body.boundary)
+            near[row] = math.inf if hit.is_empty else eye.distance(hit)
+        first = min((d for row, d in near.items() if not clear or row % clear), default=math.inf)
+        seen |= {row for row, d in near.items() if d < math.inf and d <= first + 1e-9}
+    return seen
 
 
 def sector_of(pose, angle: float, reach: float) -> shapely.Geometry:
@@ -54,21 +71,13 @@ def test_seen_is_what_meets_the_sector(data: st.DataObject) -> None:
     angle = data.draw(st.sampled_from([0.05, 0.6, PI / 2, PI - 0.1, PI, PI + 0.2, 5.0, 6.2, 2 * PI]))
     reach = data.draw(st.sampled_from([0.4, 2.0, 6.0]))
     count = data.draw(st.integers(1, 10))
-    objects = [
-        obstacle(
-            pose=rng.uniform([-5, -5, -PI], [5, 5, PI]).tolist(),
-            parts=SHAPES[rng.integers(len(SHAPES))],
-            static=bool(k % 2),
-            unobstructed=bool(k % 3),
-        )
-        for k in range(count)
-    ]
+    objects = random_things(rng, count, 3)
     own = rng.uniform([-1, -1, -PI], [1, 1, PI]).tolist()
     _, state = scene(robot(pose=own), *objects, mode=1)
     seen = state.in_view(0, angle, reach, False)
     sector = sector_of(own, angle, reach)
     for row in range(1, count + 1):
-        body = shape_of(state, row)
+        body = oracle.shape_of(state, row)
         if body.intersects(sector.buffer(-1e-3)) or body.buffer(-1e-3).intersects(sector):
             assert row in seen
         elif body.distance(sector) > 1e-3:
@@ -125,33 +134,15 @@ def test_occlusion_agrees_with_many_lines_of_sight(seed: int, angle: float) -> N
     """Sampled lines of sight: what one of them sees is seen; what is seen is seen by one, slivers apart."""
     rng = np.random.default_rng(seed)
     count, reach = int(rng.integers(2, 9)), 6.0
-    objects = [
-        obstacle(
-            pose=rng.uniform([-5, -5, -PI], [5, 5, PI]).tolist(),
-            parts=SHAPES[rng.integers(len(SHAPES))],
-            static=bool(k % 2),
-            unobstructed=k % 4 == 3,
-        )
-        for k in range(count)
-    ]
+    objects = random_things(rng, count, 4)
     own = rng.uniform([-1, -1, -PI], [1, 1, PI]).tolist()
     _, state = scene(robot(pose=own), *objects, mode=1)
-    bodies = {row: shape_of(state, row) for row in range(1, count + 1)}
+    bodies = {row: oracle.shape_of(state, row) for row in range(1, count + 1)}
     if any(body.boundary.distance(shapely.Point(own[:2])) < 0.05 for body in bodies.values()):
         return
     seen = set(state.in_view(0, angle, reach, True))
     assert seen <= set(state.in_view(0, angle, reach, False))
-    sampled, half = set(), angle / 2 - 1e-6
-    eye = shapely.Point(own[:2])
-    for bearing in own[2] + np.linspace(-half, half, 600):
-        end = (own[0] + reach * math.cos(bearing), own[1] + reach * math.sin(bearing))
-        ray = shapely.LineString([own[:2], end])
-        near = {}
-        for row, body in bodies.items():
-            hit = ray.intersection(body.boundary if body.geom_type != "LineString" else body)
-            near[row] = math.inf if hit.is_empty else eye.distance(hit)
-        first = min((d for row, d in near.items() if row % 4 != 0), default=math.inf)
-        sampled |= {row for row, d in near.items() if d < math.inf and d <= first + 1e-9}
+    sampled, eye = seen_by_rays(own, angle, reach, bodies, clear=4), shapely.Point(own[:2])
     inside = {row for row, body in bodies.items() if body.geom_type != "LineString" and body.contains(eye)}
     assert sampled <= seen | inside
     assert len(seen - sampled - inside) <= 1  # what is narrower than the lines are apart
@@ -199,16 +190,11 @@ def test_cells_hide_what_is_behind_them(seed: int, angle: float) -> None:
     eye, reach = shapely.Point(own[:2]), 7.0
     objects = [obstacle(pose=[*rng.uniform(-5, 5, 2), 1.0], parts=SHAPES[rng.integers(3)]) for _ in range(4)]
     _, state = scene(robot(pose=own), *objects, obstacle(parts=[core.GridCells(grid=grid)]), mode=1)
-    bodies = {row: shape_of(state, row) for row in range(1, 5)}
+    bodies = {row: oracle.shape_of(state, row) for row in range(1, 5)}
     if min(body.distance(eye) for body in [walls, *bodies.values()]) < 0.05:
         return
     seen = set(state.in_view(0, angle, reach, True))
-    sampled = set()
-    for bearing in own[2] + np.linspace(-angle / 2 + 1e-6, angle / 2 - 1e-6, 600):
-        ray = shapely.LineString([own[:2], np.add(own[:2], reach * np.array([math.cos(bearing), math.sin(bearing)]))])
-        near = {row: eye.distance(ray.intersection(body)) for row, body in {**bodies, 5: walls}.items()
-                if ray.intersects(body)}  # fmt: skip
-        sampled |= {row for row, d in near.items() if d <= min(near.values()) + 1e-9}
+    sampled = seen_by_rays(own, angle, reach, {**bodies, 5: walls})
     assert sampled <= seen
     assert len(seen - sampled) <= 1
 

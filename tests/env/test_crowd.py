@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
-from irsim.objects.neighbors import centres, discs
+from irsim.objects.surroundings import centres, discs
 from tests.env.driving import Make, take_steps
 
 TEXT = """

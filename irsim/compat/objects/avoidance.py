@@ -13,7 +13,7 @@ from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Polygon, outline
 from irsim.compat.functions.polygons import polygon_inequality
 from irsim.objects.base import column
-from irsim.objects.neighbors import AVOIDANCE_MARGIN, discs
+from irsim.objects.surroundings import AVOIDANCE_MARGIN, discs
 from irsim.objects.view import ObjectView
 
 if TYPE_CHECKING:

@@ -33,9 +33,8 @@ from irsim.objects.drawing.object_marks import (
     view_sector,
 )
 from irsim.objects.sensors.contact import Contact2D
-from irsim.objects.sensors.contact_drawing import draw_forces
+from irsim.objects.sensors.drawing import draw_forces, draw_scan
 from irsim.objects.sensors.lidar import Lidar2D
-from irsim.objects.sensors.lidar_drawing import draw_scan
 from irsim.simulation.fog import FOG_COLOR
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import BehaviorError, ScenarioError
 from irsim.objects.surroundings import Surroundings
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
+from irsim.simulation.build import group_behaviors
 
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
@@ -43,8 +44,6 @@ class PythonBehaviors:
 
     def find(self) -> bool:
         """Find the objects and groups whose behaviors are user code; return whether there are any."""
-        from irsim.simulation.build import group_behaviors
-
         records = self._simulation.scenario.objects
         native = group_behaviors(records)
         own: dict[tuple[str, str], bool] = {}

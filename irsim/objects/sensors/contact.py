@@ -10,6 +10,8 @@ import numpy as np
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.components.sensors.contact2d import Contact2d
+from irsim.objects.sensors.drawing import draw_forces
 
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
@@ -60,13 +62,8 @@ class Contact2D:
     sensor_type = "contact2d"
 
     def __init__(self, parent: SimObject, options: Any = None) -> None:
-        if options is None:
-            from irsim.components.sensors.contact2d import Contact2d
-
-            options = Contact2d()
-        self.parent = parent
-        self.options = options
-        self.obj_id = parent.id
+        self.parent, self.obj_id = parent, parent.id
+        self.options = options = Contact2d() if options is None else options
         self.force_scale: float = options.force_scale
         self.marker_size: float = options.marker_size
         self.linewidth: float = options.linewidth
@@ -142,7 +139,6 @@ class Contact2D:
             **kwargs: ``force_scale``, ``marker_size``, ``linewidth``, ``alpha``, ``color``, which later drawings keep.
         """
         from irsim.graphics.figure.artists import add_dots, add_mark
-        from irsim.objects.sensors.contact_drawing import draw_forces
 
         self.plot_clear()
         for name in ("force_scale", "marker_size", "linewidth", "alpha", "color"):

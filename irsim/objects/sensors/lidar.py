@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.objects.base import column
+from irsim.objects.sensors.drawing import draw_scan
 from irsim.objects.setters import refuse, sensor_options
 
 if TYPE_CHECKING:
@@ -29,26 +30,11 @@ _VELOCITY_COLORS = frozenset(
     {"zero_velocity_color", "positive_velocity_color", "negative_velocity_color", "no_hit_color"}
 )
 """Drawing options of an FMCW lidar that are read as arrays."""
-_FIXED = frozenset(
-    {
-        "parent",
-        "obj_id",
-        "sensor_type",
-        "angle_list",
-        "angle_min",
-        "angle_max",
-        "angle_inc",
-        "time_inc",
-        "range_data",
-        "valid",
-        "hits",
-        "velocity",
-        "lidar_origin",
-        "cast_angles",
-        "state",
-        "radial_velocity",
-    }
-)
+_FIXED = frozenset({
+    "parent", "obj_id", "sensor_type", "angle_list", "angle_min", "angle_max", "angle_inc", "time_inc", "range_data",
+    "valid", "hits", "velocity", "lidar_origin", "cast_angles", "state", "radial_velocity",
+})  # fmt: skip
+"""Attributes that cannot be set."""
 _HINT = "it follows from `number`, `angle_range` and the other options, and from the scan"
 
 
@@ -101,18 +87,9 @@ class Lidar2D:
     _velocities: Floats
     _no_velocities: Floats
     _settings: ClassVar[tuple[str, ...]] = (
-        "number",
-        "endpoint",
-        "range_min",
-        "range_max",
-        "angle_range",
-        "scan_time",
-        "noise",
-        "std",
-        "angle_std",
-        "offset",
-        "has_velocity",
-    )
+        "number", "endpoint", "range_min", "range_max", "angle_range", "scan_time", "noise", "std", "angle_std",
+        "offset", "has_velocity",
+    )  # fmt: skip
 
     def __init__(self, simulation: Simulation, parent: SimObject, options: Any, index: int) -> None:
         self.options = options
@@ -300,8 +277,6 @@ class Lidar2D:
         self._drawn = None
 
     def _show(self, state: Any) -> None:
-        from irsim.objects.sensors.lidar_drawing import draw_scan
-
         origin = None if state is None else self._placed(np.asarray(state, dtype=np.float64).reshape(-1)[:3])
         self._drawn.show(draw_scan(self, origin=origin))
 
@@ -371,8 +346,5 @@ class FMCWLidar2D(Lidar2D):
 
     def get_scan(self) -> dict[str, Any]:
         """Return the scan as a dictionary, with ``radial_velocity`` (number,) [m/s] in place of ``velocity``."""
-        scan: dict[str, Any] = dict(self._fixed)
-        scan["ranges"] = self._ranges.copy()
-        scan["radial_velocity"] = self._velocities[0].copy()
-        scan["valid"] = self._valid.copy()
-        return scan
+        scan = {"ranges": self._ranges.copy(), "radial_velocity": self._velocities[0].copy()}
+        return {**self._fixed, **scan, "valid": self._valid.copy()}

@@ -1,4 +1,4 @@
-"""One decision of each random scene equals the one recorded from the reference implementation (see record.py)."""
+"""One decision of each random scene equals the one recorded from the reference implementation (../record.py)."""
 
 from __future__ import annotations
 

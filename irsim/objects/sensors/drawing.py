@@ -1,4 +1,4 @@
-"""Draws a scan: the beams of a lidar, coloured by radial velocity if the lidar measures it."""
+"""Draws what sensors measure: beams of a lidar, coloured by radial velocity if it measures that, and contact forces."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.scene import Beams, Dots
+from irsim.graphics.scene.scene import Beams, Dots, Line, Mark, Stroke
 
-__all__ = ["BEAM_ZORDER", "draw_scan"]
+__all__ = ["BEAM_ZORDER", "draw_forces", "draw_scan"]
 
 BEAM_ZORDER = 2
 _DOT_ZORDER = 4
+_CONTACT_ZORDER = 5
 
 
 class Scan(Protocol):
@@ -106,3 +107,37 @@ def velocity_colors(velocity: Floats, look: dict[str, Any]) -> Floats:
     away, near = (np.array(to_rgba(look[f"{way}_velocity_color"])) for way in ("positive", "negative"))
     colors: Floats = rest + share * (np.where(velocity[:, None] >= 0.0, away, near) - rest)
     return colors
+
+
+def draw_forces(contact: Any, sensor: int = 0) -> tuple[list[Mark], list[Beams]]:
+    """Return the lines of the contact forces on an object, and the dots at which they start.
+
+    Args:
+        contact: The :class:`irsim.objects.sensors.contact.Contact2D` of the object.
+        sensor: Index among the sensors of the object.
+    """
+    reports = contact.reports
+    if not reports:
+        return [], []
+    from matplotlib.colors import to_rgba
+
+    points = np.array([report.point for report in reports])
+    forces = np.array([report.normal * report.force for report in reports])
+    number, alpha = contact.obj_id, contact.alpha
+    stroke = Stroke(contact.color, contact.linewidth)
+    marks = [
+        Mark(number, "contact", Line(np.array([p, p + f * contact.force_scale])), None, stroke, alpha, _CONTACT_ZORDER)
+        for p, f in zip(points, forces, strict=True)
+    ]
+    dots = Dots(
+        points=points,
+        colors=np.tile(to_rgba(contact.color, alpha), (len(points), 1)),
+        area=contact.marker_size**2,
+        edge_color=contact.color,
+        edge_width=0.0,
+        zorder=_CONTACT_ZORDER,
+    )
+    nothing = np.zeros((0, 2))
+    beams = Beams(number, sensor, (0.0, 0.0), nothing, contact.color, alpha, _CONTACT_ZORDER)
+    beams.dots = dots
+    return marks, [beams]
