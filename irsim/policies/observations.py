@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -10,25 +11,37 @@ from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
 
-__all__ = ["Map", "Neighbors", "Observations", "Scan"]
+__all__ = ["Bodies", "Map", "Neighbors", "Observations", "Scan"]
 
 
 @dataclass(frozen=True)
-class Neighbors:
+class Bodies:
+    """Where bodies are, how they move and how large they are; the shape (...) is (B,) for robots, (B, K) for neighbors.
+
+    Attributes:
+        pose: (..., 3) x, y [m], heading [rad], world frame.
+        velocity: (..., 2) true velocity [m/s], world frame.
+        radius: (...) radius of the bounding circle [m].
+        arrived: (...) whether it is a robot that has reached its last goal.
+    """
+
+    pose: Floats
+    velocity: Floats
+    radius: Floats
+    arrived: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Neighbors(Bodies):
     """The K nearest other objects of each of B robots, nearest first by the distance of the bounding circles.
 
     They are the moving objects whose role the robot targets (``target_roles``) and, if the policy asks for them, static
     objects; unobstructed static ones, the map and the walls round the world are not among them. Rows of absent
-    neighbors (``mask`` False) hold zeros.
+    neighbors (``mask`` False) hold zeros. The x, y of a pose is the center of the bounding circle.
 
     Attributes:
         mask: (B, K) whether there is such a neighbor.
         index: (B, K) index of the object in its world; -1 for absent neighbors.
-        position: (B, K, 2) x, y of the center of the bounding circle [m], world frame.
-        heading: (B, K) [rad], world frame.
-        velocity: (B, K, 2) true velocity [m/s], world frame.
-        radius: (B, K) radius of the bounding circle [m].
-        arrived: (B, K) whether the neighbor is a robot that has reached its last goal.
         robot: (B, K) whether the neighbor is a robot.
         extent: (B, K) how far its footprint reaches from the center of its bounding circle toward the robot, along the
             line between the centers [m]; None unless the policy asks for it.
@@ -37,14 +50,19 @@ class Neighbors:
 
     mask: NDArray[np.bool_]
     index: NDArray[np.int64]
-    position: Floats
-    heading: Floats
-    velocity: Floats
-    radius: Floats
-    arrived: NDArray[np.bool_]
     robot: NDArray[np.bool_]
     extent: Floats | None = None
     own_extent: Floats | None = None
+
+    @cached_property
+    def position(self) -> Floats:
+        """(B, K, 2) x, y of the center of the bounding circle [m], world frame."""
+        return np.ascontiguousarray(self.pose[..., :2])
+
+    @cached_property
+    def heading(self) -> Floats:
+        """(B, K) [rad], world frame."""
+        return np.ascontiguousarray(self.pose[..., 2])
 
 
 @dataclass(frozen=True)
@@ -81,10 +99,11 @@ class Map(Protocol):
 
 
 @dataclass(frozen=True)
-class Observations:
+class Observations(Bodies):
     """Observations of B robots that decide; row b is one robot of one world.
 
-    Neighbors, scans and maps are present only if the policy needs them (:class:`irsim.policies.Needs`).
+    Robots that have arrived are among them as long as they are controlled. Neighbors, scans and maps are present only
+    if the policy needs them (:class:`irsim.policies.Needs`).
 
     Attributes:
         world: (B,) index of the world of each robot, as in :meth:`irsim.policies.Policy.reset`.
@@ -92,16 +111,12 @@ class Observations:
         first: (B,) whether this is the robot's first decision of an episode.
         time: (B,) simulated time [s].
         step_time: Period of the simulation [s].
-        pose: (B, 3) x, y [m], heading [rad], world frame.
         steering: (B,) steering angle [rad]; 0 for drives that do not steer.
-        velocity: (B, 2) true velocity [m/s], world frame.
         yaw_rate: (B,) [rad/s].
         control: (B, 3) control executed in the last step, in the command frame of each drive, zero padded.
         goal: (B, 3) present goal: x, y [m], heading [rad], world frame; NaN without one.
         goal_threshold: (B,) distance to the goal below which a robot has arrived [m].
-        radius: (B,) radius of the bounding circle [m].
         low, high: (B, 3) limits of the controls, zero padded.
-        arrived: (B,) whether the robot has reached its last goal and is still controlled.
         neighbors: The nearest other objects.
         scan: Ranges of a lidar.
         maps: One map per row; rows of one world share it.
@@ -114,17 +129,13 @@ class Observations:
     first: NDArray[np.bool_]
     time: Floats
     step_time: float
-    pose: Floats
     steering: Floats
-    velocity: Floats
     yaw_rate: Floats
     control: Floats
     goal: Floats
     goal_threshold: Floats
-    radius: Floats
     low: Floats
     high: Floats
-    arrived: NDArray[np.bool_]
     neighbors: Neighbors | None = None
     scan: Scan | None = None
     maps: tuple[Map, ...] | None = None

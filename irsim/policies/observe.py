@@ -212,8 +212,9 @@ class Observer:
         result = core.find_neighbors(simulation.world, simulation.state, self.looking, rows)
         mask, index, position, heading, velocity, radius, arrived, robot, extent, own_extent = result
         measured = self._needs.neighbor_extents
+        pose = np.concatenate([position, heading[..., None]], axis=-1)
         return Neighbors(
-            mask.view(bool), index, position, heading, velocity, radius, arrived.view(bool), robot.view(bool),
+            pose, velocity, radius, arrived.view(bool), mask.view(bool), index, robot.view(bool),
             extent=extent if measured else None, own_extent=own_extent if measured else None,
         )  # fmt: skip
 

@@ -1,10 +1,51 @@
-"""A marker for all tests of this folder."""
+"""What tests of benchmarks share: a suite, a marker, and processes that start at once."""
 
 from __future__ import annotations
 
+import os
+
 import pytest
+
+from irsim.common.child import ONE_THREAD, Child, python
+from tests.warm import warm
+
+SUITE = """
+suite: small
+version: 1
+title: Robots in a square
+scenarios:
+  - name: robots
+    vary: {"robot[0].number": [3, 6]}
+    scenario:
+      world: {width: 8, height: 8}
+      robot:
+        - number: 3
+          kinematics: {name: diff}
+          shape: {name: circle, radius: 0.2}
+          distribution: {name: random}
+seeds: {first: 7, count: 10}
+steps: 150
+protocols: [freeze, yield]
+policies: {orca: {name: orca, timeHorizon: 2}, dash: dash}
+"""
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
     """Processes and their files are the same on every Python."""
     item.add_marker("one_python")
+
+
+@pytest.fixture(autouse=True)
+def warm_helpers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Further processes of a benchmark have loaded already what takes long."""
+
+    def start() -> Child:
+        return Child(warm(python("irsim.benchmarks.pool")), start_new_session=False, env=os.environ | ONE_THREAD)
+
+    monkeypatch.setattr("irsim.benchmarks.pool._start", start)
+
+
+@pytest.fixture
+def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Further processes start with the benchmark, not some time later."""
+    monkeypatch.setattr("irsim.benchmarks.pool._START_DELAY_S", 0.0)

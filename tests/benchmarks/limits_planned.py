@@ -2,7 +2,7 @@
 
 The scenes are the suite ``random_polygons_v1`` with ``acce: [1, 4]``, and variants of it. They are fixed here, before
 anything is measured. An episode succeeds if every robot arrives within 50 s without contact: contacts at the
-ends of steps and between them are both counted, the latter by the core and, with ``--sampled``, by shapely as well.
+ends of steps and between them are both counted.
 """
 
 from __future__ import annotations
@@ -12,10 +12,6 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-
-import numpy as np
-import shapely
-from numpy.typing import NDArray
 
 from irsim.scenario.read import or_raise, read
 from irsim.simulation.events import BETWEEN_STEPS, read_events
@@ -122,18 +118,13 @@ class Result:
     collided: int = 0
     late: int = 0
     between: int = 0
-    sampled: int = 0
 
 
-def run(cell: Cell, seeds: list[int], threads: int, *, sampled: bool) -> Result:
+def run(cell: Cell, seeds: list[int], threads: int) -> Result:
     """Run one episode for each seed."""
     simulation = Simulation(or_raise(read(cell.text(), strict=False))[0], seeds, threads=threads)
-    steps = round(DURATION / cell.step_time)
+    simulation.advance(round(DURATION / cell.step_time), until_done=True)
     result = Result()
-    if sampled:
-        result.sampled = int(_sampled(simulation, cell, steps).sum())
-    else:
-        simulation.advance(steps, until_done=True)
     arrived = simulation.arrived.reshape(simulation.copies, -1)[:, simulation.robots[: simulation.objects]]
     for w in range(simulation.copies):
         kinds = [event.kind for event in read_events(simulation, w)]
@@ -146,80 +137,6 @@ def run(cell: Cell, seeds: list[int], threads: int, *, sampled: bool) -> Result:
     return result
 
 
-def _sampled(simulation: Simulation, cell: Cell, steps: int) -> NDArray[np.bool_]:
-    """(W,) whether two bodies meet within a step though they are apart at both its ends."""
-    count, copies = simulation.objects, simulation.copies
-    bodies = [_Body(simulation, row) for row in range(count * copies)]
-    met = np.zeros(copies, dtype=bool)
-    before = simulation.pose.copy()
-    for _ in range(steps):
-        simulation.advance(1, until_done=True)
-        now = simulation.pose.copy()
-        for w in range(copies):
-            met[w] = met[w] or _meets(bodies, before, now, range(w * count, (w + 1) * count), cell.integration)
-        before = now
-        if simulation.done().all():
-            break
-    return met
-
-
-class _Body:
-    """The outline of a row in its own frame."""
-
-    def __init__(self, simulation: Simulation, row: int) -> None:
-        state = simulation.state
-        if state.parts(row)[0] == "circle":
-            x, y, radius = state.circle(row, 0, False)
-            angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)
-            self.corners = np.stack([x + radius * np.cos(angle), y + radius * np.sin(angle)], 1)
-        else:
-            self.corners = np.array(state.vertices(row, 0, False))
-        self.reach = float(np.hypot(*self.corners.T).max())
-
-    def at(self, poses: NDArray[np.float64]) -> NDArray[np.object_]:
-        """(K,) polygons at (K, 3) poses."""
-        c, s = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
-        x, y = self.corners.T
-        points = np.stack([poses[:, :1] + c * x - s * y, poses[:, 1:2] + s * x + c * y], -1)
-        return np.asarray(shapely.polygons(points))
-
-
-def _path(before: NDArray[np.float64], now: NDArray[np.float64], integration: str) -> NDArray[np.float64]:
-    """(K, 3) poses within a step."""
-    share = np.linspace(0, 1, 65)
-    turn = (now[2] - before[2] + np.pi) % (2 * np.pi) - np.pi
-    chord = now[:2] - before[:2]
-    if integration == "euler" or abs(turn) < 1e-9:
-        way = share[:, None] * chord
-    else:
-        length = np.sin(share * turn / 2) / np.sin(turn / 2)
-        angle = (share - 1) * turn / 2
-        c, s = np.cos(angle) * length, np.sin(angle) * length
-        way = np.stack([c * chord[0] - s * chord[1], s * chord[0] + c * chord[1]], 1)
-    return np.column_stack([before[:2] + way, before[2] + share * turn])
-
-
-def _meets(
-    bodies: list[_Body], before: NDArray[np.float64], now: NDArray[np.float64], rows: range, integration: str
-) -> bool:
-    moved = np.hypot(*(now[:, :2] - before[:, :2]).T)
-    turned = np.abs((now[:, 2] - before[:, 2] + np.pi) % (2 * np.pi) - np.pi)
-    for i in rows:
-        for j in range(i + 1, rows.stop):
-            travel = moved[i] + moved[j] + bodies[i].reach * turned[i] + bodies[j].reach * turned[j]
-            apart = np.hypot(*(before[i, :2] - before[j, :2])) - bodies[i].reach - bodies[j].reach
-            if not travel > 0 or not apart < travel:
-                continue
-            [one], [other] = bodies[i].at(before[i : i + 1]), bodies[j].at(before[j : j + 1])
-            if shapely.distance(one, other) > 1.2 * travel:
-                continue
-            paths = [_path(before[k], now[k], integration) for k in (i, j)]
-            hits = shapely.intersects(bodies[i].at(paths[0]), bodies[j].at(paths[1]))
-            if hits.any() and not hits[0] and not hits[-1]:
-                return True
-    return False
-
-
 def main(arguments: list[str] | None = None) -> int:
     """Print a table in Markdown, line by line."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.limits_planned", description=__doc__)
@@ -229,10 +146,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--groups", nargs="*", help="only the rows of these groups")
     parser.add_argument("--behavior", default=Cell.behavior, help="the behavior of the robots, as in a scenario")
     parser.add_argument("--unlimited", action="store_true", help="without acce")
-    parser.add_argument("--sampled", action="store_true", help="count contacts between steps with shapely, too (slow)")
     given = parser.parse_args(arguments)
     head = ["scene", "robots", "protocol", "drive", "integration", "step", "success", "collided", "late", "between"]
-    head += ["sampled"] * given.sampled
     print(f"| {' | '.join(head)} | time |\n|{'---|' * (len(head) + 1)}")
     seeds = list(range(given.first_seed, given.first_seed + given.episodes))
     for cell in cells():
@@ -240,10 +155,9 @@ def main(arguments: list[str] | None = None) -> int:
             continue
         start = time.perf_counter()
         cell = replace(cell, behavior=given.behavior, limited=cell.limited and not given.unlimited)
-        result = run(cell, seeds, given.threads, sampled=given.sampled)
+        result = run(cell, seeds, given.threads)
         row = [cell.group, cell.robots, cell.protocol, cell.drive, cell.integration, f"{cell.step_time:g} s"]
         row += [f"{100 * result.success / len(seeds):.1f} %", result.collided, result.late, result.between]
-        row += [result.sampled] * given.sampled
         print(f"| {' | '.join(map(str, row))} | {time.perf_counter() - start:.0f} s |", flush=True)
     return 0
 

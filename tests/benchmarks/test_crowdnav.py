@@ -9,6 +9,8 @@ import yaml
 
 from irsim.benchmarks.suite import load_suite
 from irsim.benchmarks.suite_plan import suite_plan
+from irsim.env import Env
+from irsim.scenario.open import read_scenario
 from tests.benchmarks.crowdnav.write import FILE, rows
 
 LINES = FILE.read_text(encoding="utf-8").splitlines()[1:]
@@ -64,8 +66,6 @@ def test_its_scenes_are_those_of_crowdnav() -> None:
 
 def test_people_who_do_not_see_the_robot_walk_as_if_it_were_not_there() -> None:
     """People make room for the robot in the visible scenes only, whatever it does."""
-    from irsim.env import Env
-    from irsim.scenario.open import read_scenario
 
     def paths(name: str, behavior: str) -> list[list[float]]:
         (one,) = suite_plan(SUITE, scenarios=[name]).scenarios

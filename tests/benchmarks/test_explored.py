@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -27,42 +27,28 @@ robot:
 POST = "obstacle: [{shape: {name: circle, radius: 0.2}, state: [3.4, 1]}]\n"
 
 
-def explored_by_hand(text: str, steps: int, tmp_path: Path) -> float:
-    path = tmp_path / "by_hand.yaml"
-    path.write_text(text)
-    env = irsim.make(path, seed=0, headless=True, log_level="ERROR")
+def explored_by_hand(env: irsim.Env, steps: int) -> float:
     for _ in range(steps):
         env.step()
-    cells = np.array(env.simulation.state.explored[0])
-    return float((cells > 0).mean())
+    return float((np.array(env.simulation.state.explored[0]) > 0).mean())
 
 
-def test_the_share_is_that_of_the_cells_at_the_end(tmp_path: Path) -> None:
-    path = tmp_path / "fog.yaml"
-    path.write_text(FOG)
-    [episode] = irsim.benchmark(str(path), seeds=1).episodes
-    assert episode.outcome == "success"
-    assert episode.metrics["explored"] == explored_by_hand(FOG, episode.steps, tmp_path)
-    assert episode.metrics["explored"] == irsim.run(path, seed=0).explored
-    assert 0.6 < episode.metrics["explored"] < 1.0
+def test_the_share_is_that_of_the_cells_at_the_end(make: Callable[..., irsim.Env]) -> None:
+    [episode] = irsim.benchmark(FOG, seeds=1).episodes
+    share = episode.metrics["explored"]
+    assert (episode.outcome, share) == ("success", explored_by_hand(make(FOG, seed=0), episode.steps))
+    assert share == irsim.run(text=FOG, seed=0).explored
+    assert 0.6 < share < 1.0
+    [clear] = irsim.benchmark(FOG.replace("fog_map: true, fog_map_resolution: 1", "time_limit: 9"), seeds=1).episodes
+    assert clear.metrics["explored"] is None
 
 
-def test_an_episode_that_ends_at_a_collision_has_explored_less(tmp_path: Path) -> None:
+def test_an_episode_that_ends_at_a_collision_has_explored_less(make: Callable[..., irsim.Env]) -> None:
     text = FOG.replace("fog_map: true", "fog_map: true, collision_mode: unobstructed") + POST
-    path = tmp_path / "fog.yaml"
-    path.write_text(text)
-    [whole] = irsim.benchmark(str(path), seeds=1).episodes
-    [cut] = irsim.benchmark(str(path), seeds=1, until="first_collision").episodes
+    [whole] = irsim.benchmark(text, seeds=1).episodes
+    [cut] = irsim.benchmark(text, seeds=1, until="first_collision").episodes
     assert cut.steps < whole.steps
-    assert cut.metrics["explored"] == explored_by_hand(text, cut.steps, tmp_path)
-    assert cut.metrics["explored"] < (whole.metrics["explored"] or 0.0)
-
-
-def test_without_fog_there_is_no_share(tmp_path: Path) -> None:
-    path = tmp_path / "clear.yaml"
-    path.write_text(FOG.replace("fog_map: true, fog_map_resolution: 1", "time_limit: 9"))
-    [episode] = irsim.benchmark(str(path), seeds=1).episodes
-    assert episode.metrics["explored"] is None
+    assert cut.metrics["explored"] == explored_by_hand(make(text, seed=0), cut.steps) < whole.metrics["explored"]
 
 
 @pytest.mark.parametrize("count", [1, 3])

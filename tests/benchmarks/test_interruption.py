@@ -18,30 +18,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.benchmarks.conftest import SUITE
 from tests.warm import warm
 
 SCRIPT = Path(__file__).with_name("interrupted.py")
-SCENARIO = """
-      world: {width: 8, height: 8}
-      robot:
-        - number: 3
-          kinematics: {name: diff}
-          shape: {name: circle, radius: 0.2}
-          distribution: {name: random}
-"""
-SUITE = f"""
-suite: small
-version: 1
-title: Robots in a square
-scenarios:
-  - name: robots
-    vary: {{"robot[0].number": [3, 6]}}
-    scenario: {SCENARIO}
-seeds: {{first: 7, count: 10}}
-steps: 150
-protocols: [freeze, yield]
-policies: {{orca: {{name: orca, timeHorizon: 2}}, dash: dash}}
-"""
 EASY = """
 suite: easy
 version: 1
@@ -85,16 +65,25 @@ class Folder:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, request: pytest.FixtureRequest) -> Folder:
-    return Folder(tmp_path, request.param)
+def easy(tmp_path: Path) -> Folder:
+    return Folder(tmp_path, EASY)
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Folder:
+    return Folder(tmp_path, SUITE)
+
+
+Hashes = dict[str, str]
+"""File of a run -> its hash."""
 
 
 @pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, str]]:
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Hashes]:
     """The files of each suite that was run without a disturbance; made once they are asked for."""
 
-    class Known(dict[str, dict[str, str]]):
-        def __missing__(self, text: str) -> dict[str, str]:
+    class Known(dict[str, Hashes]):
+        def __missing__(self, text: str) -> Hashes:
             self[text] = Folder(tmp_path_factory.mktemp("undisturbed"), text).finish()
             return self[text]
 
@@ -108,39 +97,30 @@ def assert_refused(done: subprocess.CompletedProcess[str]) -> None:
 
 
 @needs_kill
-@pytest.mark.parametrize("folder", [EASY], indirect=True)
-def test_a_killed_run_goes_on_as_if_nothing_had_happened(
-    folder: Folder, undisturbed: dict[str, dict[str, str]]
-) -> None:
+def test_a_killed_run_goes_on_as_if_nothing_had_happened(easy: Folder, undisturbed: dict[str, Hashes]) -> None:
     for moment in (("run", 9, "half"), ("run", 10, "before"), ("report", 2, "half")):
-        assert folder.run(moment).returncode == -signal.SIGKILL
-    assert folder.finish() == undisturbed[EASY]
+        assert easy.run(moment).returncode == -signal.SIGKILL
+    assert easy.finish() == undisturbed[EASY]
 
 
-@pytest.mark.parametrize("folder", [EASY], indirect=True)
-def test_a_full_disk_is_an_error_after_which_the_run_goes_on(
-    folder: Folder, undisturbed: dict[str, dict[str, str]]
-) -> None:
+def test_a_full_disk_is_an_error_after_which_the_run_goes_on(easy: Folder, undisturbed: dict[str, Hashes]) -> None:
     for moment in (("run", 8, "full"), ("report", 1, "full")):
-        assert_refused(folder.run(moment))
-    assert folder.finish() == undisturbed[EASY]
+        assert_refused(easy.run(moment))
+    assert easy.finish() == undisturbed[EASY]
 
 
 @needs_kill
 @pytest.mark.slow(60)
-@pytest.mark.parametrize("folder", [SUITE], indirect=True)
 @pytest.mark.parametrize("draw", range(4))
-def test_five_kills_at_random_moments_change_no_file(
-    draw: int, folder: Folder, undisturbed: dict[str, dict[str, str]]
-) -> None:
+def test_five_kills_at_random_moments_change_no_file(draw: int, small: Folder, undisturbed: dict[str, Hashes]) -> None:
     for moment in random_moments(random.Random(draw)):
         if isinstance(moment, float):
-            kill_after(moment, folder)
+            kill_after(moment, small)
         else:
-            assert folder.run(moment, workers=2).returncode == -signal.SIGKILL, moment
-        if draw % 2 and (folder.place / "run" / "plan.json").exists():
-            folder.arguments = ["benchmark", "-o", "run", "--resume"]
-    assert folder.finish(workers=2) == undisturbed[SUITE]
+            assert small.run(moment, workers=2).returncode == -signal.SIGKILL, moment
+        if draw % 2 and (small.place / "run" / "plan.json").exists():
+            small.arguments = ["benchmark", "-o", "run", "--resume"]
+    assert small.finish(workers=2) == undisturbed[SUITE]
 
 
 def random_moments(rng: random.Random) -> Iterable[Moment | float]:
@@ -165,27 +145,19 @@ def kill_after(seconds: float, folder: Folder) -> None:
 
 
 @pytest.mark.slow(20)
-@pytest.mark.parametrize("folder", [SUITE], indirect=True)
-def test_a_disk_that_is_full_at_any_moment_changes_no_file(
-    folder: Folder, undisturbed: dict[str, dict[str, str]]
-) -> None:
+def test_a_disk_that_is_full_at_any_moment_changes_no_file(small: Folder, undisturbed: dict[str, Hashes]) -> None:
     for phase, number in (("run", 1), ("run", 3), ("run", 30), ("report", 1), ("report", 7), ("report", 20)):
-        assert_refused(folder.run((phase, number, "full"), workers=2))
-    assert folder.finish() == undisturbed[SUITE]
+        assert_refused(small.run((phase, number, "full"), workers=2))
+    assert small.finish() == undisturbed[SUITE]
 
 
 @pytest.mark.slow(10)
-@pytest.mark.skipif(sys.platform == "win32", reason="needs limits of processes")
-@pytest.mark.parametrize("folder", [SUITE], indirect=True)
-def test_files_that_may_not_grow_any_more_change_no_file(
-    folder: Folder, undisturbed: dict[str, dict[str, str]]
-) -> None:
-    import resource
-
+def test_files_that_may_not_grow_any_more_change_no_file(small: Folder, undisturbed: dict[str, Hashes]) -> None:
+    resource = pytest.importorskip("resource")
     for limit in (10, 3_000, 40_000, 150_000):
         done = subprocess.run(
-            [sys.executable, "-m", "irsim", *folder.arguments],
-            cwd=folder.place,
+            [sys.executable, "-m", "irsim", *small.arguments],
+            cwd=small.place,
             capture_output=True,
             text=True,
             check=False,
@@ -194,4 +166,4 @@ def test_files_that_may_not_grow_any_more_change_no_file(
         assert done.returncode == 1, done.stderr
         assert "Traceback" not in done.stderr
         assert "File too large" in done.stderr
-    assert folder.finish() == undisturbed[SUITE]
+    assert small.finish() == undisturbed[SUITE]

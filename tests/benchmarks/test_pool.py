@@ -1,9 +1,11 @@
-"""Episodes in several processes: one that dies is replaced, and nothing of its work is lost or done twice."""
+"""Episodes in several processes: what they write, when they end, and that no work of one that dies is lost."""
 
 from __future__ import annotations
 
+import json
 import os
 import signal
+import subprocess
 import sys
 from pathlib import Path
 
@@ -36,13 +38,12 @@ def fragile(scenario, env, *rest, plain=episode.horizon_of):
 
 episode.horizon_of = fragile
 """
-pytestmark = [pytest.mark.slow(3), pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs signals")]
+needs_kill = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs signals")
 
 
-@pytest.fixture(autouse=True)
-def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Further processes start at once; the module of a test is forgotten."""
-    monkeypatch.setattr("irsim.benchmarks.pool._START_DELAY_S", 0.0)
+@pytest.fixture
+def forgotten(monkeypatch: pytest.MonkeyPatch, at_once: None, ordinary_processes: None) -> None:
+    """The module of a test is forgotten."""
     monkeypatch.setattr("irsim.benchmarks.episode.horizon_of", episode.horizon_of)
     monkeypatch.delitem(sys.modules, "fragile", raising=False)
     episode.scenario_of.cache_clear()
@@ -55,6 +56,9 @@ def fragile(monkeypatch: pytest.MonkeyPatch, folder: Path, seeds: range, *, alwa
     monkeypatch.syspath_prepend(folder)
 
 
+@needs_kill
+@pytest.mark.slow(3)
+@pytest.mark.usefixtures("forgotten")
 def test_a_process_that_is_killed_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     undisturbed = irsim.benchmark(SCENE, ["dash", "orca"], 12, workers=1)
     fragile(monkeypatch, tmp_path, range(4, 12, 2), always=False)
@@ -68,6 +72,9 @@ def test_a_process_that_is_killed_is_replaced(tmp_path: Path, monkeypatch: pytes
     assert counts[-1] == (24, 24)
 
 
+@needs_kill
+@pytest.mark.slow(3)
+@pytest.mark.usefixtures("forgotten")
 def test_an_episode_in_which_every_process_dies_is_given_up_and_the_others_are_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -78,3 +85,34 @@ def test_an_episode_in_which_every_process_dies_is_given_up_and_the_others_are_k
     kept = irsim.benchmarks.logged(tmp_path / "log")
     assert {row.seed for row in kept.episodes} >= set(range(7))
     assert 7 not in {row.seed for row in kept.episodes}
+
+
+PROGRAM = """
+import os, threading
+from irsim.benchmarks import episode, together
+def run_together(job, seeds):
+    for seed in seeds:
+        print("from Python")
+        os.write(1, b"from a library")
+        if seed < 0:
+            threading.Event().wait()
+        yield seed
+together.run_together = run_together
+episode.Job.of_data = staticmethod(lambda data: data)
+from irsim.benchmarks.pool import main
+main()
+"""
+
+
+def test_prints_do_not_mix_with_results_and_the_process_ends_with_its_input_though_an_episode_goes_on() -> None:
+    pipe, nowhere = subprocess.PIPE, subprocess.DEVNULL
+    with subprocess.Popen([sys.executable, "-c", PROGRAM], stdin=pipe, stdout=pipe, stderr=nowhere) as process:
+        process.stdin.write(json.dumps({"job": {}, "seeds": [3, 4, -1]}).encode() + b"\n")
+        process.stdin.flush()
+        told = [process.stdout.readline() for _ in range(3)]
+        assert told == [b"ready\n", b'{"result": 3}\n', b'{"result": 4}\n']
+        process.stdin.close()
+        try:
+            assert process.wait(20) == 0
+        finally:
+            process.kill()

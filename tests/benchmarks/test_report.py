@@ -1,4 +1,4 @@
-"""Terminal, page and tables of a benchmark: summaries by protocol, zones, facts of a suite."""
+"""Terminal, page and tables of a benchmark: summaries by protocol, zones, facts of a suite, assumptions."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ import io
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from rich.console import Console
 from typer.testing import CliRunner
 
 from irsim.api.benchmark_report import MARKDOWN, PAGE, REPLAYS, write_report
+from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.report.charts import charts
+from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.app import app
@@ -62,20 +65,19 @@ def shown(result: SuiteResult) -> str:
 def test_each_protocol_is_summarised_on_its_own(made: tuple[Path, SuiteResult]) -> None:
     place, result = made
     summaries = [row for row in result.rows if row.scenario.startswith("(all)")]
-    names = [row.scenario for row in summaries]
-    assert names == ["(all)/freeze", "(all)/freeze", "(all)/yield", "(all)/yield"]
-    assert [row.episodes for row in summaries] == [4, 4, 4, 4]  # 2 scenarios with 2 seeds
+    names = [(row.scenario, row.episodes) for row in summaries]
+    assert names == [("(all)/freeze", 4)] * 2 + [("(all)/yield", 4)] * 2  # 2 scenarios with 2 seeds
     assert [row.paired["success"].n for row in summaries if row.paired] == [4, 4]
     for row in summaries:
         protocol = row.scenario.partition("/")[2]
         own = [r for r in result.rows if r.scenario.endswith(f"-2/{protocol}") or r.scenario.endswith(f"-3/{protocol}")]
         assert row.timeout.count == sum(r.timeout.count for r in own if r.behavior == row.behavior)
-    text = shown(result)
+    text, table, page = shown(result), (place / MARKDOWN).read_text("utf-8"), (place / PAGE).read_text("utf-8")
     for protocol in ("freeze", "yield"):
         assert f"\n(all)/{protocol}: dash minus orca, same seeds: " in text
-        assert f"| (all)/{protocol} | dash | 4 |" in (place / MARKDOWN).read_text(encoding="utf-8")
-        assert f"<td>(all)/{protocol}</td>" in (place / PAGE).read_text(encoding="utf-8")
-    assert "| (all) |" not in (place / MARKDOWN).read_text(encoding="utf-8")
+        assert f"| (all)/{protocol} | dash | 4 |" in table
+        assert f"<td>(all)/{protocol}</td>" in page
+    assert "| (all) |" not in table
 
 
 def test_charts_of_all_episodes_are_of_one_protocol(made: tuple[Path, SuiteResult]) -> None:
@@ -87,16 +89,15 @@ def test_charts_of_all_episodes_are_of_one_protocol(made: tuple[Path, SuiteResul
 def test_a_suite_prints_few_lines_of_failures(made: tuple[Path, SuiteResult]) -> None:
     lines = [line for line in shown(made[1]).splitlines() if line.startswith("failed: ")]
     count = sum(bool(row.failed) for row in made[1].rows)
-    assert count > 5
-    assert len(lines) == 6
+    assert (count > 5, len(lines)) == (True, 6)
     assert f"failed: {count - 5} more rows; rates are in results.md, seeds in results.json" == lines[-1]
 
 
-def test_csv_of_a_suite_names_policy_family_protocol_and_values(made: tuple[Path, SuiteResult], tmp_path: Path) -> None:
-    (tmp_path / "small.yaml").write_text(SUITE, encoding="utf-8")
-    words = ["benchmark", str(tmp_path / "small.yaml"), "--csv", "-o", str(tmp_path / "run"), "--workers", "1"]
+def test_csv_of_a_suite_names_policy_family_protocol_and_values(made: tuple[Path, SuiteResult]) -> None:
+    place = made[0]  # the run is finished, so that its results are read
+    words = ["benchmark", str(place.with_name("small.yaml")), "--csv", "-o", str(place), "--resume"]
     done = CliRunner().invoke(app, words)
-    assert done.exit_code == 0
+    assert done.exit_code == 0, done.output
     rows = list(csv.DictReader(io.StringIO(done.stdout)))
     assert len(rows) == len(made[1].episodes)
     row = next(row for row in rows if row["scenario"] == "square-3/yield" and row["behavior"] == "dash")
@@ -114,24 +115,26 @@ def test_one_protocol_needs_no_name(tmp_path: Path) -> None:
 def test_tables_of_zones_and_differences_and_what_the_suite_says(made: tuple[Path, SuiteResult]) -> None:
     place, _ = made
     text, html = (place / MARKDOWN).read_text(encoding="utf-8"), (place / PAGE).read_text(encoding="utf-8")
-    assert "| scenario | policy | zone | zone_crossings |" in text
-    assert "| square-2/freeze | orca | door | " in text
-    assert "Differences to orca with the same seeds:" in text
-    assert "| square-2/freeze | dash | 2 | " in text
-    for page in (text, html):
-        assert "Two sizes of a group that crosses a door." in page
-        assert "Sources: A. Author: Doors, 2020" in page
-        assert "The horizon is 3 s; an episode ends with the first collision." in page
-        assert "crossings of zones" in page
-        assert "human [m]" not in page  # there are no people
-    assert "<h2>Zones</h2>" in html
     failed = sum(one.outcome != "success" for one in made[1].episodes)
-    assert f"<p>4 of {failed} are shown.</p>" in html
+    in_both = (
+        "Two sizes of a group that crosses a door.",
+        "Sources: A. Author: Doors, 2020",
+        "The horizon is 3 s; an episode ends with the first collision.",
+        "crossings of zones",
+    )
+    in_text = (
+        "| scenario | policy | zone | zone_crossings |",
+        "| square-2/freeze | orca | door | ",
+        "Differences to orca with the same seeds:",
+        "| square-2/freeze | dash | 2 | ",
+    )
+    assert [part for part in (*in_both, *in_text) if part not in text] == []
+    in_page = ("<h2>Zones</h2>", f"<p>4 of {failed} are shown.</p>")
+    assert [part for part in (*in_both, *in_page) if part not in html] == []
+    assert "human [m]" not in text + html  # there are no people
 
 
 def test_a_scenario_with_a_picture_as_map_has_replays(tmp_path: Path) -> None:
-    from PIL import Image
-
     (tmp_path / "suites").mkdir()
     Image.new("L", (20, 20), 255).save(tmp_path / "hall.png")
     scene = "world: {width: 5, height: 5, obstacle_map: ../hall.png}\nrobot: {goal: [4, 4, 0]}\n"
@@ -162,3 +165,70 @@ def test_without_a_terminal_progress_is_a_line_from_time_to_time(
             now[0] = float(done)
             report(done, 1000)
     assert capsys.readouterr().err.splitlines() == [f"simulating: {done} of 1,000" for done in (30, 60, 90)]
+
+
+SCENE = "robot: {state: [1, 1], goal: [2, 1], behavior: {name: dash}}\n"
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty current folder."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.usefixtures("here")
+def test_without_the_library_terminal_and_report_say_how_to_get_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("irsim.benchmarks.report.table.find_spec", lambda name: None)
+    Path("a.yaml").write_text(SCENE, encoding="utf-8")
+    done = CliRunner().invoke(app, ["benchmark", "a.yaml", "-o", "run"])
+    assert done.exit_code == 0
+    line = "results.parquet was not written: pyarrow is not installed (pip install 'irsim-mcp[records]')"
+    assert f"note: {line}" in done.stderr.splitlines()
+    assert f"Note: {line}" in Path("run/results.md").read_text(encoding="utf-8")
+    assert not Path("run/results.parquet").exists()
+
+
+ARRIVES = "robot:\n  - {state: [1, 1], goal: [2, 1], kinematics: {name: diff}, behavior: {name: dash}}\n"
+STANDS = "  - {state: [5, 5], goal: [9, 5], kinematics: {name: diff}}\n"
+
+
+@pytest.mark.usefixtures("here")
+def test_times_beside_failures_are_those_of_robots_that_arrived() -> None:
+    told = {}
+    for name, text in (("all", ARRIVES), ("one", ARRIVES + STANDS)):
+        Path(f"{name}.yaml").write_text(text, encoding="utf-8")
+        told[name] = CliRunner().invoke(app, ["benchmark", f"{name}.yaml"]).stdout
+    assert "time: of the robots that arrived, in any episode" in told["one"]
+    assert "of the robots that arrived" not in told["all"]
+
+
+ROBOT = "{kinematics: {name: diff}, state: [1, 1, 0], goal: [3, 2, 0], behavior: {name: dash}%s}"
+
+
+def assumed(folder: Path, **scenes: tuple[str, str]) -> str:
+    """Assumptions in the report of some scenes; (keys of the world, keys of the robot) by name."""
+    texts = {
+        name: f"world: {{width: 5, height: 5{world}}}\nrobot:\n  - {ROBOT % robot}\n"
+        for name, (world, robot) in scenes.items()
+    }
+    files = {name: folder / f"{name}.yaml" for name in texts}
+    for name, text in texts.items():
+        files[name].write_text(text, encoding="utf-8")
+    report = markdown(benchmark(files, seeds=1, workers=1))
+    line, *others = [line for line in report.splitlines() if line.startswith("Taken for granted: ")]
+    assert not others
+    return line.removeprefix("Taken for granted: ").rstrip()
+
+
+def test_what_is_taken_for_granted_is_said_and_scenes_that_differ_are_named(tmp_path: Path) -> None:
+    assert assumed(tmp_path, plain=(", step_time: 0.2", "")) == (  # as in 2.12
+        "contacts count at the ends of steps of 0.2 s only; robots change their speed at once (no acce); "
+        "behaviors know the poses and velocities of all objects exactly."
+    )
+    real = assumed(tmp_path, real=(", contacts: swept", ", acce: [1, 2]"))
+    assert real.startswith("contacts within steps count, too; accelerations are limited; ")
+    mixed = assumed(tmp_path, a=("", ""), b=(", contacts: swept", ""), c=("", ""))
+    assert mixed.startswith(
+        "in a, c contacts count at the ends of steps of 0.1 s only, in b contacts within steps count, too; robots "
+    )

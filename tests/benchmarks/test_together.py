@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import irsim
 from irsim.benchmarks import together
 from irsim.benchmarks.episode import Job, Task, run_task
 from irsim.benchmarks.together import run_together, worlds_at_once
@@ -68,8 +69,6 @@ def test_few_worlds_at_a_time_are_the_same(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_python_behaviors_run_one_by_one_with_the_same_results() -> None:
-    import irsim
-
     @irsim.register_behavior("diff", "creep")  # type: ignore[untyped-decorator]
     def creep(ego_object: object, external_objects: object, **_: object) -> object:
         return [0.1, 0.2]

@@ -1,8 +1,11 @@
-"""Small tasks for tests of learning."""
+"""Small tasks for tests of learning, and reward functions for them."""
 
 from __future__ import annotations
 
+import os
 from typing import Any
+
+import numpy as np
 
 ROBOT: dict[str, Any] = {
     "kinematics": {"name": "diff"},
@@ -15,7 +18,18 @@ ROBOT: dict[str, Any] = {
 }
 RANDOM = {"name": "random", "range_low": [1, 1, -3], "range_high": [9, 9, 3]}
 LIDAR = {"name": "lidar2d", "range_max": 4, "angle_range": 4.7, "number": 45}
+NOISY = {**LIDAR, "noise": True, "std": 0.1, "angle_std": 0.01}
 PARTS: list[dict[str, Any]] = [{"name": "goal"}, {"name": "own"}]
+CHOICES = {"choices": [[0, 0], [1, 0], [0.5, 1], [0.5, -1]]}
+EVERYTHING: dict[str, Any] = {
+    "number": {"obstacle[0]": [0, 4]},
+    "size": {"obstacle[0]": [0.5, 1.5]},
+    "speed": {"learners": [0.5, 1.5]},
+    "acceleration": {"learners": [0.5, 1.5]},
+    "sensor_noise": {"learners": [0, 2]},
+    "latency": {"learners": [0, 3]},
+}
+STARTS: list[dict[str, Any]] = [{"position": 0.5, "heading": "20deg", "objects": ["robot"]}]
 
 
 def task(*robots: dict[str, Any], obstacles: Any = (), world: Any = None, **keys: Any) -> dict[str, Any]:
@@ -47,3 +61,42 @@ def corridor(**keys: Any) -> dict[str, Any]:
     made = task(**{"randomize": {"parameters": {"width": [1.3, 3.3]}, "variants": 5}, **keys})
     del made["scenario"]
     return {**made, "template": "corridor-passing"}
+
+
+def rich(**keys: Any) -> dict[str, Any]:
+    """A robot with a noisy lidar among boxes, of which everything is drawn."""
+    made = lidar_among_boxes(**{"randomize": EVERYTHING, **keys})
+    made["scenario"]["robot"][0] |= {"sensors": [NOISY], "acce": [2, 4]}
+    return made
+
+
+def of_python(name: str, **keys: Any) -> dict[str, Any]:
+    """A reward function of this module."""
+    return {"name": "python", "function": f"tests.learning.tasks:{name}", **keys}
+
+
+def zeros(moment: Any) -> Any:
+    return np.zeros(moment.arrived.shape)
+
+
+def speed(moment: Any) -> Any:
+    return np.linalg.norm(moment.velocity, axis=-1)
+
+
+def chatty(moment: Any) -> Any:
+    print("a reward function prints this")
+    return moment.distance_before - 2.0 * moment.distance
+
+
+def picky(moment: Any) -> Any:
+    """Fails in processes with two worlds."""
+    if len(moment.arrived) == 2:
+        raise ZeroDivisionError("there are two worlds", {"number": 2})
+    return moment.distance
+
+
+def deadly(moment: Any) -> Any:
+    """Ends a process with two worlds."""
+    if len(moment.arrived) == 2:
+        os._exit(3)
+    return moment.distance

@@ -10,7 +10,6 @@ import pytest
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning import Env, VectorEnv
 from irsim.learning.ladder import Ladder
-from irsim.learning.tasks.files import TaskError, open_task
 from irsim.learning.worlds import Worlds
 from tests.learning.tasks import lidar_among_boxes, task
 
@@ -64,8 +63,7 @@ def test_a_level_is_the_same_however_it_was_reached() -> None:
 def test_environments_take_levels() -> None:
     env = Env(stairs(), seed=3)
     _, info = env.reset(options={"level": 2})
-    assert info["level"] == 2
-    assert info["drawn"]["number.obstacle[0]"] >= 3
+    assert (info["level"], info["drawn"]["number.obstacle[0]"] >= 3) == (2, True)
     env.set_level(0)
     _, info = env.reset()
     assert (info["level"], info["drawn"]["number.obstacle[0]"]) == (0, 0)
@@ -97,66 +95,30 @@ def near(**keys: Any) -> dict[str, Any]:
     return task({"state": [8.5, 5, 0]}, horizon=1, curriculum=curriculum)
 
 
+def climbing(**keys: Any) -> tuple[Worlds, Ladder]:
+    worlds = Worlds(near(**keys), 4)
+    return worlds, Ladder(worlds, worlds.task.curriculum)
+
+
 def test_successes_move_up_and_failures_down() -> None:
-    made = near()
-    worlds = Worlds(made, 4)
-    ladder = Ladder(worlds, worlds.task.curriculum)  # type: ignore[arg-type] # it has one
+    worlds, ladder = climbing()
     play(worlds, ladder, True, 4)
     assert ladder.level == 0  # too few episodes
     play(worlds, ladder, True, 4)
-    assert ladder.level == 1
-    assert worlds.level.tolist() == [1] * 4
-    play(worlds, ladder, True, 16)
-    assert ladder.level == 2  # there is no higher one
-    play(worlds, ladder, False, 8)
-    assert ladder.level == 1
-    play(worlds, ladder, False, 20)
-    assert ladder.level == 0
-    stubborn = Worlds(near(down=None, start=1), 4)
-    ladder = Ladder(stubborn, stubborn.task.curriculum)  # type: ignore[arg-type] # it has one
+    assert (ladder.level, worlds.level.tolist()) == (1, [1] * 4)
+    for success, episodes, level in ((True, 16, 2), (False, 8, 1), (False, 20, 0)):  # 2 is the highest one
+        play(worlds, ladder, success, episodes)
+        assert ladder.level == level
+    stubborn, ladder = climbing(down=None, start=1)
     play(stubborn, ladder, False, 20)
     assert ladder.level == 1
 
 
 def test_a_ladder_goes_on_from_its_facts() -> None:
-    worlds, other = Worlds(near(), 4), Worlds(near(), 4)
-    first = Ladder(worlds, worlds.task.curriculum)  # type: ignore[arg-type] # it has one
+    (worlds, first), (other, second) = climbing(), climbing()
     play(worlds, first, True, 12)
-    second = Ladder(other, other.task.curriculum)  # type: ignore[arg-type] # it has one
     second.restore(first.facts())
     other.reset()
     assert second.facts() == first.facts() == {"level": 1, "recent": "1111"}
     play(other, second, True, 4)
     assert second.level == 2
-
-
-@pytest.mark.parametrize(
-    ("curriculum", "message"),
-    [
-        ({"levels": []}, "curriculum.levels"),
-        ({"levels": [{}], "start": 1}, "the last of the 1 levels is 0"),
-        ({"levels": [{}, {}], "up": 0.5, "down": 0.6}, "must be less than 'up'"),
-        ({"stages": [{}]}, r"(?s)stages.*'levels'"),
-        ({"levels": [{"randomise": {}}]}, r"(?s)levels\[0\].*Did you mean 'randomize'"),
-    ],
-)
-def test_curricula_are_checked(curriculum: dict[str, Any], message: str) -> None:
-    with pytest.raises(TaskError, match=message):
-        open_task(task(curriculum=curriculum))
-
-
-@pytest.mark.parametrize(
-    ("level", "message"),
-    [
-        (
-            {"values": {"robot[0].distribution.goal_distanc": 5}},
-            r"(?s)levels\[1\].*no 'robot.*did you mean goal_distance",
-        ),
-        ({"values": {"robot[0].vel_max": [2, 2]}}, r"(?s)levels\[1\].*'vel_max'.*randomize: \{speed"),
-        ({"values": {"obstacle[0].number": 9}}, r"(?s)levels\[1\].*randomize: \{number"),
-        ({"randomize": {"number": {"obstacle[0]": [0, 9]}}}, r"levels\[1\].randomize.number"),
-    ],
-)
-def test_levels_are_checked_against_the_scenario(level: dict[str, Any], message: str) -> None:
-    with pytest.raises(TaskError, match=message):
-        Worlds(lidar_among_boxes(curriculum={"levels": [{}, level]}))

@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import irsim
+from irsim.bundled.templates.fill import fill
+from irsim.bundled.templates.store import load
 from irsim.learning import Env, ParallelEnv, VectorEnv
+from irsim.learning.tasks.files import TaskError
 from irsim.learning.worlds import Worlds
-from tests.learning.tasks import LIDAR, PARTS, RANDOM, ROBOT, corridor, crowd, lidar_among_boxes, task
+from tests.learning.tasks import (
+    EVERYTHING,
+    LIDAR,
+    NOISY,
+    PARTS,
+    RANDOM,
+    ROBOT,
+    STARTS,
+    corridor,
+    crowd,
+    lidar_among_boxes,
+    rich,
+    task,
+)
 
 FLAT_OUT = np.array([[1.0, 0.0]])
 PEOPLE = {
@@ -23,22 +40,6 @@ PEOPLE = {
     "vel_max": [1, 1],
     "acce": [2, 2],
 }
-NOISY = {**LIDAR, "noise": True, "std": 0.1, "angle_std": 0.01}
-EVERYTHING: dict[str, Any] = {
-    "number": {"obstacle[0]": [0, 4]},
-    "size": {"obstacle[0]": [0.5, 1.5]},
-    "speed": {"learners": [0.5, 1.5]},
-    "acceleration": {"learners": [0.5, 1.5]},
-    "sensor_noise": {"learners": [0, 2]},
-    "latency": {"learners": [0, 3]},
-}
-
-
-def rich(**keys: Any) -> dict[str, Any]:
-    """A robot with a noisy lidar among boxes, of which everything is drawn."""
-    made = lidar_among_boxes(**{"randomize": EVERYTHING, **keys})
-    made["scenario"]["robot"][0] |= {"sensors": [NOISY], "acce": [2, 4]}
-    return made
 
 
 def drawn_over(worlds: Worlds, episodes: int) -> dict[str, Any]:
@@ -54,16 +55,11 @@ def drawn_over(worlds: Worlds, episodes: int) -> dict[str, Any]:
 def test_draws_keep_to_their_ranges_and_reach_both_ends() -> None:
     drawn = drawn_over(Worlds(rich(), 100, seed=1), 10)
     counts = np.bincount(drawn["number.obstacle[0]"], minlength=5)
-    assert len(counts) == 5
-    assert counts.min() > 150
+    assert (len(counts), counts.min() > 150) == (5, True)
     assert np.bincount(drawn["latency.learners"].ravel()).min() > 200
-    for name, low, high in (
-        ("size.obstacle[0]", 0.5, 1.5),
-        ("speed.learners", 0.5, 1.5),
-        ("acceleration.learners", 0.5, 1.5),
-        ("sensor_noise.learners", 0.0, 2.0),
-    ):
-        values = drawn[name]
+    for quantity in ("size", "speed", "acceleration", "sensor_noise"):
+        [(objects, (low, high))] = EVERYTHING[quantity].items()
+        values = drawn[f"{quantity}.{objects}"]
         assert low <= values.min() < low + 0.02 * (high - low)
         assert high - 0.02 * (high - low) < values.max() <= high
         assert values.mean() == pytest.approx((low + high) / 2, abs=0.05 * (high - low))
@@ -124,9 +120,8 @@ def test_a_task_without_the_keys_draws_nothing_more() -> None:
     plain, empty = Worlds(lidar_among_boxes(), 3, seed=1), Worlds(lidar_among_boxes(randomize={}), 3, seed=1)
     assert plain.drawn == {}
     assert not plain.varies
-    ones = Worlds(
-        lidar_among_boxes(randomize={"size": {"obstacle[0]": [1, 1]}, "speed": {"robots": [1, 1]}}), 3, seed=1
-    )
+    unchanged = {"size": {"obstacle[0]": [1, 1]}, "speed": {"robots": [1, 1]}}
+    ones = Worlds(lidar_among_boxes(randomize=unchanged), 3, seed=1)
     for _ in range(60):
         for worlds in (plain, empty, ones):
             worlds.step(np.ones((3, 2)))
@@ -178,9 +173,7 @@ def test_absent_learners_are_slots_that_wait() -> None:
     for step in range(1, 31):
         seen, reward, terminated, truncated, info = env.step(np.ones((32, 2)))
         assert np.isfinite(reward).all()
-        assert (reward[~here] == 0).all()
-        assert not info["active"][~here].any()
-        assert not terminated[~here].any()
+        assert not np.array([reward, info["active"], terminated])[:, ~here].any()
         assert truncated[~here].all() == (step == 30)
 
 
@@ -225,19 +218,15 @@ def test_each_learner_has_its_own_latency_or_all_share_one() -> None:
 
 def test_limits_are_scaled() -> None:
     made = task({"acce": [0.5, 1.0]}, {**ROBOT, "state": [1, 2, 0]}, obstacles=[PEOPLE])
-    made["randomize"] = {
-        "speed": {"robot[0]": [0.5, 0.5], "people": [0.25, 0.25]},
-        "acceleration": {"robot[0]": [2, 2]},
-    }
+    slower = {"robot[0]": [0.5, 0.5], "people": [0.25, 0.25]}
+    made["randomize"] = {"speed": slower, "acceleration": {"robot[0]": [2, 2]}}
     worlds = Worlds(made, 1, seed=0)
     state = worlds.simulation.state
-    assert state.vel_max[0].tolist() == [0.5, 2.0, 0.0]  # turn rates are not speeds
+    assert state.vel_max[:2].tolist() == [[0.5, 2.0, 0.0], [1.0, 2.0, 0.0]]  # turn rates are not speeds
     assert state.vel_min[0].tolist() == [-0.5, -2.0, 0.0]
-    assert state.vel_max[1].tolist() == [1.0, 2.0, 0.0]
     for _ in range(3):
         worlds.step(np.array([[1.0, 0.0], [1.0, 0.0]]))
-    assert worlds.simulation.control[0, 0] == pytest.approx(0.3)  # 2 * 0.5 m/s^2 for 0.3 s
-    assert worlds.simulation.control[1, 0] == 1.0
+    assert worlds.simulation.control[:2, 0] == pytest.approx([0.3, 1.0])  # 2 * 0.5 m/s^2 for 0.3 s
     for _ in range(20):
         worlds.step(np.array([[1.0, 0.0], [1.0, 0.0]]))
         assert (np.abs(worlds.simulation.control[2:, :2]) <= 0.25 + 1e-12).all()
@@ -272,29 +261,19 @@ def test_noise_of_sensors_is_scaled() -> None:
 
 
 # variants -------------------------------------------------------------------------------------------------------------
-def test_parameters_of_a_template_are_drawn_as_variants() -> None:
+def test_parameters_of_a_template_are_drawn_as_variants(tmp_path: Path) -> None:
     worlds = Worlds(corridor(), 60, seed=1)
     width, variant = worlds.drawn["parameters.width"], worlds.drawn["variant"]
     assert sorted(set(width.tolist())) == pytest.approx([1.3, 1.8, 2.3, 2.8, 3.3])
     assert len(set(zip(variant.tolist(), width.tolist(), strict=True))) == 5
     pose = worlds.simulation.pose.reshape(60, -1, 3)
     assert pose[:, 2, 1] - pose[:, 3, 1] == pytest.approx(width + 0.3)  # the walls are 0.3 m thick
-    one = irsim.make(_filled(width=float(width[0])), seed=1)
-    assert np.array_equal(one.simulation.pose, pose[0])
+    file = tmp_path / "filled.yaml"
+    file.write_text(fill(load("corridor-passing"), {"width": float(width[0])}))
+    assert np.array_equal(irsim.make(file, seed=1).simulation.pose, pose[0])
     env = VectorEnv(corridor(), 120, seed=1)
     _, info = env.reset()
     assert np.array_equal(info["drawn"]["parameters.width"], np.repeat(width, 2))
-
-
-def _filled(**parameters: float) -> str:
-    import tempfile
-
-    from irsim.bundled.templates.fill import fill
-    from irsim.bundled.templates.store import load
-
-    with tempfile.NamedTemporaryFile("w", suffix=".yaml", delete=False) as file:
-        file.write(fill(load("corridor-passing"), parameters))
-    return file.name
 
 
 def test_worlds_with_variants_move_like_their_variants() -> None:
@@ -320,9 +299,8 @@ def test_env_tells_what_was_drawn() -> None:
     assert set(info) == {"drawn", "level"}
     assert info["drawn"].keys() == {f"{quantity}.{word}" for quantity, words in EVERYTHING.items() for word in words}
     _, again = Env(rich(), seed=99).reset(seed=5)
-    assert all(np.array_equal(info["drawn"][name], value) for name, value in again["drawn"].items())
-    *_, info = env.step(np.zeros(2, dtype=np.float32))
-    assert all(np.array_equal(info["drawn"][name], value) for name, value in again["drawn"].items())
+    for told in (info, env.step(np.zeros(2, dtype=np.float32))[-1]):
+        assert all(np.array_equal(told["drawn"][name], value) for name, value in again["drawn"].items())
     assert Env(lidar_among_boxes()).reset()[1] == {}
 
 
@@ -339,3 +317,37 @@ def test_draws_are_observed_only_if_asked() -> None:
         assert seen[:, -1] == pytest.approx(drawn["number.obstacle[0]"] / 4)
         plain.reset()
         asked.reset()
+
+
+# perturbed starts -----------------------------------------------------------------------------------------------------
+DISTANCE = [{"name": "goal", "features": ["distance", "sin"], "distance_max": 10}]
+
+
+def test_starts_differ_and_goals_stay() -> None:
+    seen = Worlds(task(perturb=STARTS, observation=DISTANCE), 200, seed=1).observe()
+    distances = 10 * seen[:, 0]  # the way from (1, 5) to (9, 5)
+    assert (distances.min(), distances.max()) == pytest.approx((7.5, 8.5), abs=0.05)
+    turned = np.degrees(np.arcsin(seen[:, 1]))
+    assert 18 < np.abs(turned).max() < 24
+
+
+def test_every_episode_draws_again_alone_as_in_a_batch() -> None:
+    given = task(perturb=STARTS, observation=DISTANCE, horizon=0.3)
+    batch, alone = VectorEnv(given, 3), VectorEnv(given, 1)
+    seen, _ = batch.reset(seed=7)
+    starts = [seen[2]]
+    single, _ = alone.reset(seed=9)
+    over = False
+    for _ in range(9):
+        np.testing.assert_array_equal(single[0], seen[2])
+        seen, _, _, cut, _ = batch.step(np.zeros((3, 2)))
+        single = alone.step(np.zeros((1, 2)))[0]
+        if over:  # this step has begun the next episode
+            starts.append(seen[2])
+        over = bool(cut[2])
+    assert len({tuple(one) for one in starts}) == len(starts) > 1
+
+
+def test_unknown_objects_are_refused() -> None:
+    with pytest.raises(TaskError, match=r"(?s)name, tag or role 'robto'.*did you mean robot"):
+        Worlds(task(perturb=[{"position": 0.5, "objects": ["robto"]}]))

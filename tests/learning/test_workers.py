@@ -16,45 +16,36 @@ import pytest
 
 from irsim.diagnostics.errors import ArgumentError, WorkerError
 from irsim.learning import VectorEnv
-from irsim.learning.step import Moment
-from irsim.learning.workers.divided import DividedWorlds
 from irsim.learning.worlds import Worlds
 from irsim.plugins import register_behavior
 from tests.effort import some
-from tests.learning.tasks import LIDAR, RANDOM, corridor, crowd, lidar_among_boxes, task
+from tests.learning.tasks import (
+    CHOICES,
+    EVERYTHING,
+    NOISY,
+    RANDOM,
+    STARTS,
+    corridor,
+    crowd,
+    lidar_among_boxes,
+    of_python,
+    rich,
+    task,
+)
 
 pytestmark = pytest.mark.one_python
 
-NOISY = {**LIDAR, "noise": True, "std": 0.1}
-EVERYTHING: dict[str, Any] = {
-    "number": {"obstacle[0]": [0, 4]},
-    "size": {"obstacle[0]": [0.5, 1.5]},
-    "speed": {"learners": [0.5, 1.5]},
-    "sensor_noise": {"learners": [0, 2]},
-    "latency": {"learners": [0, 3]},
-    "observed": ["latency", "speed"],
-}
 STAIRS: dict[str, Any] = {"levels": [{"randomize": {"number": {"obstacle[0]": [1, 2]}}}, {"horizon": 2}], "episodes": 8}
-PERTURBED = [{"position": 0.5, "heading": "20deg", "objects": ["robot"]}]
+PEOPLE = {"number": 3, "kinematics": {"name": "omni"}, "behavior": {"name": "sfm"}, "distribution": RANDOM}
+TERMS = [{"name": "progress"}, {"name": "social"}, {"name": "smoothness"}, {"name": "clearance"}]
 TASKS = {
     "lidar": lidar_among_boxes(horizon=1.5),
-    "drawn": task(
-        {"sensors": [NOISY]},
-        obstacles=[{"number": 4, "distribution": RANDOM}],
-        observation=[{"name": "scan", "sectors": 9}, {"name": "own"}],
-        randomize=EVERYTHING,
-        horizon=1.5,
-    ),
-    "perturbed": task(horizon=1.5, perturb=PERTURBED),
+    "drawn": rich(randomize={**EVERYTHING, "observed": ["latency", "speed"]}, horizon=1.5),
+    "perturbed": task(horizon=1.5, perturb=STARTS),
     "variants": corridor(horizon=1.5),
     "crowd": crowd(3, horizon=2, ends={"world": "all"}, randomize={"number": {"learners": [1, 3]}}),
-    "choices": lidar_among_boxes(horizon=1, action={"choices": [[0, 0], [1, 0], [0.5, 1], [0.5, -1]]}),
-    "people": task(
-        {"sensors": [NOISY], "distribution": RANDOM},
-        obstacles=[{"number": 3, "kinematics": {"name": "omni"}, "behavior": {"name": "sfm"}, "distribution": RANDOM}],
-        reward=[{"name": "progress"}, {"name": "social"}, {"name": "smoothness"}, {"name": "clearance"}],
-        horizon=1.5,
-    ),
+    "choices": lidar_among_boxes(horizon=1, action=CHOICES),
+    "people": task({"sensors": [NOISY], "distribution": RANDOM}, obstacles=[PEOPLE], reward=TERMS, horizon=1.5),
 }
 PROGRAM = """
 import sys, time
@@ -97,40 +88,44 @@ def lives(pid: int) -> bool:
         return False
 
 
+def pair(made: Any, slots: int, workers: int = 2, **keys: Any) -> tuple[VectorEnv, VectorEnv]:
+    """The same worlds in this process and divided among several, both reset with seed 0."""
+    plain, divided = (VectorEnv(made, slots, workers=w, threads=w, **keys) for w in (1, workers))
+    assert [len(getattr(env.worlds, "pids", ())) for env in (plain, divided)] == [0, workers - 1]
+    assert same(plain.reset(seed=0), divided.reset(seed=0))
+    return plain, divided
+
+
 # results --------------------------------------------------------------------------------------------------------------
+@pytest.mark.usefixtures("warm_workers")
 @pytest.mark.parametrize(
     ("name", "mode"), some([*((name, "SameStep") for name in TASKS), ("drawn", "NextStep"), ("crowd", "NextStep")], 3)
 )
 def test_results_do_not_depend_on_the_number_of_workers(name: str, mode: str) -> None:
     slots = 5 * Worlds(TASKS[name]).learners
-    envs = [VectorEnv(TASKS[name], slots, autoreset_mode=mode, workers=w, threads=w) for w in (1, 3)]
-    plain, *divided = envs
-    assert [len(getattr(env.worlds, "pids", ())) for env in envs] == [0, 2]
-    first = [env.reset(seed=3) for env in envs]
-    assert all(same(first[0], one) for one in first)
+    plain, divided = pair(TASKS[name], slots, 3, autoreset_mode=mode)
     plain.action_space.seed(1)
     ended = 0
     for _ in range(60):
         actions = plain.action_space.sample()
         expected = plain.step(actions)
-        assert all(same(env.step(actions), expected) for env in divided)
+        assert same(divided.step(actions), expected)
         ended += (expected[2] | expected[3]).sum()
     assert ended >= 2 * slots
-    for env in envs:
-        env.close()
+    divided.close()
 
 
+@pytest.mark.usefixtures("warm_workers")
 def test_masks_seeds_and_levels_reach_the_worlds_of_all_processes() -> None:
     made = lidar_among_boxes(horizon=2, curriculum=STAIRS)
-    plain, divided = (VectorEnv(made, 5, autoreset_mode="Disabled", workers=w, copy=False) for w in (1, 3))
+    plain, divided = pair(made, 5, 3, autoreset_mode="Disabled", copy=False)
     mask = np.array([False, True, False, True, True])
-    all_of_them = np.ones(5, dtype=bool)
     for asked in (
         {"options": {"level": 1}},
         {"options": {"reset_mask": mask}},
         {"seed": [5, 1, 8, 2, 9]},
         {"seed": [7, 7, 7, 7, 7], "options": {"reset_mask": mask}},
-        {"options": {"reset_mask": all_of_them, "level": 0}},
+        {"options": {"reset_mask": np.ones(5, dtype=bool), "level": 0}},
     ):
         assert same(plain.reset(**asked), divided.reset(**asked))
         assert plain.worlds.seeds == divided.worlds.seeds
@@ -142,82 +137,47 @@ def test_masks_seeds_and_levels_reach_the_worlds_of_all_processes() -> None:
     divided.close()
 
 
-def test_observations_are_not_copied_unless_asked_for() -> None:
-    env = VectorEnv(lidar_among_boxes(), 4, copy=False, workers=2)
+@pytest.mark.usefixtures("warm_workers")
+@pytest.mark.parametrize("copy", [False, True])
+def test_observations_are_not_copied_unless_asked_for(copy: bool) -> None:
+    env = VectorEnv(lidar_among_boxes(), 4, copy=copy, workers=2)
     first, _ = env.reset(seed=0)
+    before = first.copy()
     second = env.step(np.ones((4, 2)))[0]
-    assert np.shares_memory(first, second)
     kept = second.copy()
+    assert np.shares_memory(first, second) is not copy
+    assert np.array_equal(first, before) is copy
     env.close()
     assert np.array_equal(second, kept)  # the memory lives as long as the array
-    other = VectorEnv(lidar_among_boxes(), 4, workers=2)
-    before, _ = other.reset(seed=0)
-    kept = before.copy()
-    other.step(np.ones((4, 2)))
-    assert np.array_equal(before, kept)
-    other.close()
 
 
-def test_pictures_show_the_first_world() -> None:
-    plain, divided = (VectorEnv(task(), 2, workers=w, render_mode="rgb_array") for w in (1, 2))
-    pictures = []
-    for env in (plain, divided):
-        env.reset(seed=0)
-        env.step(np.ones((2, 2)))
-        pictures.append(env.render())
-        env.close()
-    assert same(*pictures)
-
-
-# functions of the user ------------------------------------------------------------------------------------------------
-def chatty(moment: Moment) -> Any:
-    """A reward that prints."""
-    print("a reward function prints this")
-    return moment.distance_before - 2.0 * moment.distance
-
-
-def picky(moment: Moment) -> Any:
-    """A reward that fails in processes with two worlds."""
-    if len(moment.arrived) == 2:
-        raise ZeroDivisionError("there are two worlds", {"number": 2})
-    return moment.distance
-
-
-def deadly(moment: Moment) -> Any:
-    """A reward that ends a process with two worlds."""
-    if len(moment.arrived) == 2:
-        os._exit(3)
-    return moment.distance
-
-
-def of_python(name: str) -> dict[str, Any]:
-    return task(reward=[{"name": "python", "function": f"tests.learning.test_workers:{name}"}])
-
-
-def test_reward_functions_in_python_get_the_worlds_of_their_process() -> None:
-    plain, divided = (VectorEnv(of_python("chatty"), 3, workers=w) for w in (1, 2))
-    plain.reset(seed=0)
-    divided.reset(seed=0)
+# functions of the user, pictures, arguments ---------------------------------------------------------------------------
+@pytest.mark.usefixtures("warm_workers")
+def test_pictures_show_the_first_world_and_reward_functions_get_those_of_their_process() -> None:
+    plain, divided = pair(task(reward=[of_python("chatty")]), 3, render_mode="rgb_array")
     for _ in range(3):
         assert same(plain.step(np.ones((3, 2))), divided.step(np.ones((3, 2))))
+    assert same(plain.render(), divided.render())
     divided.close()
 
 
+@pytest.mark.usefixtures("warm_workers")
 def test_an_error_in_another_process_is_the_same_error_here() -> None:
-    env = VectorEnv(of_python("picky"), 3, workers=2)
+    env = VectorEnv(task(reward=[of_python("picky")]), 3, workers=2)
     env.reset(seed=0)
     for _ in range(2):  # the processes are still in step with each other
         with pytest.raises(ZeroDivisionError, match="there are two worlds") as failed:
             env.step(np.zeros((3, 2)))
         assert failed.value.args[1] == {"number": 2}
     env.close()
-    wrong = VectorEnv(of_python("nothing"), 3, workers=2)
+    wrong = VectorEnv(task(reward=[of_python("nothing")]), 3, workers=2)
     with pytest.raises(ArgumentError, match="cannot be imported") as refused:
         wrong.step(np.zeros((3, 2)))
     assert refused.value.fix == "give MODULE:FUNCTION of a module that Python finds"
     wrong.close()
 
 
+@pytest.mark.usefixtures("warm_workers")
 def test_behaviors_that_only_this_program_knows_are_refused() -> None:
     @register_behavior("diff", "circling")
     def circling(ego_object: Any, **keys: Any) -> Any:
@@ -230,11 +190,9 @@ def test_behaviors_that_only_this_program_knows_are_refused() -> None:
         VectorEnv(made, 2, workers=2)
 
 
-# arguments ------------------------------------------------------------------------------------------------------------
-def test_actions_are_checked_before_any_world_moves() -> None:
-    plain, divided = (VectorEnv(task(), 4, workers=w) for w in (1, 2))
-    plain.reset(seed=0)
-    divided.reset(seed=0)
+@pytest.mark.usefixtures("warm_workers")
+def test_arguments_are_checked_before_any_world_moves() -> None:
+    plain, divided = pair(task(), 4)
     for wrong in (np.zeros((3, 2)), np.array([[0, 0]] * 3 + [[np.nan, 0]])):
         with pytest.raises(ArgumentError, match="action"):
             divided.step(wrong)
@@ -252,9 +210,9 @@ def test_numbers_of_workers_that_make_no_sense_are_refused(wrong: int) -> None:
         VectorEnv(task(), 4, workers=wrong)
 
 
+@pytest.mark.usefixtures("warm_workers")
 def test_there_are_no_more_processes_than_worlds() -> None:
     env = VectorEnv(task(), 2, workers=50)
-    assert isinstance(env.worlds, DividedWorlds)
     assert len(env.worlds.pids) == 1
     env.close()
     assert not hasattr(VectorEnv(task(), 1, workers=50).worlds, "pids")
@@ -264,7 +222,6 @@ def test_there_are_no_more_processes_than_worlds() -> None:
 def divided_env(made: Any, slots: int = 3) -> tuple[VectorEnv, list[int]]:
     env = VectorEnv(made, slots, workers=2)
     env.reset(seed=0)
-    assert isinstance(env.worlds, DividedWorlds)
     return env, env.worlds.pids
 
 
@@ -280,7 +237,7 @@ def test_a_process_that_is_killed_is_an_error() -> None:
 
 
 def test_a_process_that_ends_itself_is_an_error() -> None:
-    env, pids = divided_env(of_python("deadly"))
+    env, pids = divided_env(task(reward=[of_python("deadly")]))
     with pytest.raises(WorkerError, match="exit code 3"):
         env.step(np.zeros((3, 2)))
     wait_for_end(pids)

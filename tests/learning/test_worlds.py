@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 
 from irsim.diagnostics.errors import ArgumentError
-from irsim.learning.step import Result
 from irsim.learning.tasks.files import TaskError
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.layout import Layout, layout_needs, observe
 from irsim.policies.observe import Observer
-from tests.learning.tasks import LIDAR, RANDOM, crowd, lidar_among_boxes, task
+from tests.learning.tasks import LIDAR, RANDOM, crowd, lidar_among_boxes, of_python, task
 
 AHEAD = np.array([[1.0, 0.0]])
+
+
+def rectangle(length: float, width: float, **keys: Any) -> dict[str, Any]:
+    return {"shape": {"name": "rectangle", "length": length, "width": width}, **keys}
 
 
 def drive(worlds: Worlds, steps: int, seed: int = 0) -> list[tuple[Any, ...]]:
@@ -49,12 +52,10 @@ def test_a_world_is_the_same_alone_and_among_others_on_any_number_of_threads(mad
     for _ in range(120):
         actions = rng.uniform(-1, 1, (5, alone[0].learners, 2))
         one, other = (one_step(worlds, actions.reshape(-1, 2)) for worlds in together)
-        for a, b in zip(one, other, strict=True):
-            assert np.array_equal(a, b)
+        assert all(map(np.array_equal, one, other))
         for i, world in enumerate(alone):
-            for mine, all_of_them in zip(one_step(world, actions[i]), one, strict=True):
-                part = all_of_them.reshape(5, *np.shape(mine)) if mine.ndim == 2 and len(mine) > 1 else all_of_them
-                assert np.array_equal(np.ravel(mine), np.ravel(part[i]))
+            mine = one_step(world, actions[i])
+            assert all(np.array_equal(a.ravel(), b.reshape(5, -1)[i]) for a, b in zip(mine, one, strict=True))
 
 
 TERMS = [
@@ -69,16 +70,11 @@ TERMS = [
 ]
 
 
-def zeros(moment: Any) -> Any:
-    return np.zeros(moment.arrived.shape)
-
-
 @pytest.mark.parametrize("action", [{}, {"returns": "velocity", "low": [-1, -1], "high": [1, 1]}], ids=["", "velocity"])
 def test_one_loop_of_the_core_is_its_parts_one_after_the_other(action: dict[str, Any]) -> None:
-    python = {"name": "python", "function": "tests.learning.test_worlds:zeros"}
     worlds = Worlds(crowd(reward=TERMS, action=action), 5, seed=3, threads=2)
     other = Worlds(crowd(reward=TERMS, action=action), 5, seed=3)
-    third = Worlds(crowd(reward=[*TERMS, python], action=action), 5, seed=3)
+    third = Worlds(crowd(reward=[*TERMS, of_python("zeros")], action=action), 5, seed=3)
     rng = np.random.default_rng(2)
     for _ in range(120):
         actions = rng.uniform(-1, 1, (len(worlds.rows), worlds.width))
@@ -93,14 +89,13 @@ def test_one_loop_of_the_core_is_its_parts_one_after_the_other(action: dict[str,
 
 
 def test_a_seed_decides_about_all_episodes() -> None:
-    first, again = (drive(Worlds(crowd(), 3, seed=4), 150) for _ in range(2))
-    for a, b in zip(first, again, strict=True):
-        assert all(np.array_equal(x, y) for x, y in zip(a, b, strict=True))
     worlds = Worlds(crowd(), 3, seed=9)
     drive(worlds, 20)
     worlds.reset(seeds=[4, 5, 6])
-    for a, b in zip(first, drive(worlds, 150), strict=True):
-        assert all(np.array_equal(x, y) for x, y in zip(a, b, strict=True))
+    runs = [drive(one, 150) for one in (Worlds(crowd(), 3, seed=4), Worlds(crowd(), 3, seed=4), worlds)]
+    for first, again, later in zip(*runs, strict=True):
+        assert all(map(np.array_equal, first, again))
+        assert all(map(np.array_equal, first, later))
 
 
 def test_learners_observe_what_a_network_with_the_same_layout_does() -> None:
@@ -112,7 +107,7 @@ def test_learners_observe_what_a_network_with_the_same_layout_does() -> None:
         {"name": "goal", "features": ["x", "y", "present"]},
     ]
     robot = {"number": 3, "distribution": RANDOM, "sensors": [LIDAR]}
-    box = {"number": 3, "distribution": RANDOM, "shape": {"name": "rectangle", "length": 1, "width": 0.5}}
+    box = {"number": 3, "distribution": RANDOM, **rectangle(1, 0.5)}
     worlds = Worlds(task(robot, obstacles=[box], observation=parts), 4, seed=1)
     drive(worlds, 15)
     layout = Layout.model_validate({"parts": parts})
@@ -127,71 +122,56 @@ def test_learners_observe_what_a_network_with_the_same_layout_does() -> None:
 
 
 # rewards -------------------------------------------------------------------------------------------------------------
-def earned(result: Result) -> float:
-    return float(result.reward[0, 0])
+WALL = rectangle(1, 4, state=[1.85, 5, 0])
+"""Its gap to the robot is 0.15 m."""
+PERSON = {"kinematics": {"name": "omni"}, "behavior": {"name": "dash"}, "goal": [1, 9], "vel_max": [0, 0],
+          "shape": {"name": "circle", "radius": 0.2}, "state": [1, 5.5, 0]}  # fmt: skip
+"""One who stands 0.1 m beside the robot."""
 
 
-def test_progress_is_the_way_towards_the_goal() -> None:
-    worlds = Worlds(task())
-    assert earned(worlds.step(AHEAD)) == pytest.approx(0.1)
-    assert earned(worlds.step(-AHEAD)) == pytest.approx(-0.1)
+@pytest.mark.parametrize(
+    ("reward", "obstacles", "speeds", "earned"),
+    [
+        ({"name": "progress"}, [], (1, -1), [0.1, -0.1]),
+        ({"name": "clearance", "weight": -1, "margin": 0.3}, [WALL], (0,), [-0.1 * 0.5]),
+        ({"name": "social", "weight": -1, "distance": 0.2}, [WALL, PERSON], (0,), [-0.1 * 0.5]),
+        ({"name": "collision", "weight": -3}, [WALL], (1, 1), [0, -3]),
+    ],
+    ids=["way towards the goal", "missing share of the margin per second", "only people", "a collision ends"],
+)
+def test_rewards_by_hand(reward: dict[str, Any], obstacles: list[Any], speeds: Any, earned: list[float]) -> None:
+    worlds = Worlds(task(obstacles=obstacles, reward=[reward]))
+    results = [worlds.step(speed * AHEAD) for speed in speeds]
+    assert [float(one.reward[0, 0]) for one in results] == pytest.approx(earned)
+    collided = reward["name"] == "collision"
+    assert (results[-1].terminated.all(), results[-1].arrived.any()) == (collided, False)
 
 
 def test_arrival_is_earned_once_and_ends_the_episode() -> None:
     worlds = Worlds(task({"state": [8.55, 5, 0]}, reward=[{"name": "arrival", "weight": 5}]))
-    first, second = worlds.step(AHEAD), worlds.step(AHEAD)
-    assert (earned(first), earned(second)) == (0, 5)
+    first, second, third = (worlds.step(AHEAD) for _ in range(3))
+    assert [float(one.reward[0, 0]) for one in (first, second, third)] == [0, 5, 0]
     assert not first.terminated.any()
-    assert second.terminated.all()
-    assert second.over.all()
-    assert not second.truncated.any()
-    assert earned(worlds.step(AHEAD)) == 0
-
-
-def test_a_collision_costs_once_and_ends_the_episode() -> None:
-    wall = {"shape": {"name": "rectangle", "length": 1, "width": 4}, "state": [1.85, 5, 0]}
-    worlds = Worlds(task(obstacles=[wall], reward=[{"name": "collision", "weight": -3}]))
-    first, second = worlds.step(AHEAD), worlds.step(AHEAD)
-    assert (earned(first), earned(second)) == (0, -3)
-    assert second.terminated.all()
-    assert not second.arrived.any()
-
-
-def test_clearance_is_the_missing_share_of_the_margin_per_second() -> None:
-    wall = {"shape": {"name": "rectangle", "length": 1, "width": 4}, "state": [1.9, 5, 0]}
-    worlds = Worlds(task(obstacles=[wall], reward=[{"name": "clearance", "weight": -1, "margin": 0.4}]))
-    assert earned(worlds.step(0 * AHEAD)) == pytest.approx(-0.1 * 0.5)  # the gap is 0.2 m
-
-
-def test_only_people_disturb_socially() -> None:
-    wall = {"shape": {"name": "rectangle", "length": 1, "width": 4}, "state": [1.85, 5, 0]}
-    person = {"kinematics": {"name": "omni"}, "behavior": {"name": "dash"}, "goal": [1, 9], "vel_max": [0, 0],
-              "shape": {"name": "circle", "radius": 0.2}, "state": [1, 5.5, 0]}  # fmt: skip
-    worlds = Worlds(task(obstacles=[wall, person], reward=[{"name": "social", "weight": -1, "distance": 0.2}]))
-    assert earned(worlds.step(0 * AHEAD)) == pytest.approx(-0.1 * 0.5)
+    assert (second.terminated.all(), second.over.all(), second.truncated.any()) == (True, True, False)
 
 
 def test_time_and_smoothness() -> None:
-    reward = [{"name": "time", "weight": -1}, {"name": "smoothness", "weight": -1},
-              {"name": "smoothness", "weight": -1, "of": "turning"}]  # fmt: skip
+    smoothness = {"name": "smoothness", "weight": -1}
+    reward = [{"name": "time", "weight": -1}, smoothness, {**smoothness, "of": "turning"}]
     result = Worlds(task(reward=reward)).step(np.array([[1.0, 0.5]]))
     change, turn = (0.5**2 + 0.25**2) / 2, 1.0
     assert result.terms[:, 0, 0] == pytest.approx([-0.1, -0.1 * change, -0.1 * turn])
-    assert earned(result) == pytest.approx(result.terms.sum())
+    assert result.reward[0, 0] == pytest.approx(result.terms.sum())
 
 
 def test_a_function_of_the_user_sees_all_learners_at_once() -> None:
-    worlds = Worlds(crowd(reward=[{"name": "python", "function": "tests.learning.test_worlds:speed", "weight": 2}]), 3)
+    worlds = Worlds(crowd(reward=[of_python("speed", weight=2)]), 3)
     result = worlds.step(np.ones((12, 2)))
     speeds = np.linalg.norm(worlds.simulation.twist[worlds.rows, :2], axis=1)
     assert np.allclose(result.reward.reshape(-1), 2 * speeds)
-    wrong = Worlds(task(reward=[{"name": "python", "function": "tests.learning.test_worlds:nothing"}]))
+    wrong = Worlds(task(reward=[of_python("nothing")]))
     with pytest.raises(ArgumentError, match=r"cannot be imported"):
         wrong.step(AHEAD)
-
-
-def speed(moment: Any) -> Any:
-    return np.linalg.norm(moment.velocity, axis=-1)
 
 
 # ends ----------------------------------------------------------------------------------------------------------------
@@ -202,48 +182,46 @@ def test_the_horizon_cuts_off_and_is_no_end() -> None:
     assert not any(r.terminated.any() for r in results)
 
 
+NEAR, BESIDE = {"state": [8.65, 5, 0]}, {"state": [1, 2, 0], "goal": [9, 2]}
+BOTH_AHEAD = np.array([[1.0, 0.0], [1.0, 0.0]])
+
+
 def test_robots_that_wait_for_others_earn_nothing() -> None:
-    near = {"state": [8.65, 5, 0]}
-    far = {"state": [1, 2, 0], "goal": [9, 2]}
-    worlds = Worlds(task(near, far, protocol="freeze", horizon=0.3))
-    ahead = np.array([[1.0, 0.0], [1.0, 0.0]])
-    first, second, third = (worlds.step(ahead) for _ in range(3))
-    assert first.terminated.tolist() == [[True, False]]
-    assert not first.over.any()
+    worlds = Worlds(task(NEAR, BESIDE, protocol="freeze", horizon=0.3))
+    first, second, third = (worlds.step(BOTH_AHEAD) for _ in range(3))
+    assert (first.terminated.tolist(), first.over.any()) == ([[True, False]], False)
     assert second.active.tolist() == [[False, True]]
     assert second.reward[0, 0] == 0 < second.reward[0, 1]
-    assert third.truncated.tolist() == [[False, True]]
-    assert third.over.all()
+    assert (third.truncated.tolist(), third.over.all()) == ([[False, True]], True)
 
 
 def test_robots_that_make_room_learn_until_all_have_arrived() -> None:
-    near, far = {"state": [8.65, 5, 0]}, {"state": [8.55, 2, 0], "goal": [9, 2]}
-    worlds = Worlds(task(near, far, protocol="yield"))
-    first, second = (worlds.step(np.array([[1.0, 0.0], [1.0, 0.0]])) for _ in range(2))
-    assert first.arrived.tolist() == [[True, False]]
-    assert not first.terminated.any()
-    assert second.active.all()
-    assert second.terminated.all()
-    assert second.over.all()
+    worlds = Worlds(task(NEAR, {**BESIDE, "state": [8.55, 2, 0]}, protocol="yield"))
+    first, second = (worlds.step(BOTH_AHEAD) for _ in range(2))
+    assert (first.arrived.tolist(), first.terminated.any()) == ([[True, False]], False)
+    assert (second.active.all(), second.terminated.all(), second.over.all()) == (True, True, True)
 
 
 @pytest.mark.parametrize(("when", "over"), [("all", False), ("any", True), ("collision", True)])
 def test_when_a_world_is_over(when: str, over: bool) -> None:
-    wall = {"shape": {"name": "rectangle", "length": 1, "width": 1}, "state": [1.75, 5, 0]}
-    worlds = Worlds(task({}, {"state": [1, 2, 0], "goal": [9, 2]}, obstacles=[wall], ends={"world": when}))
-    result = worlds.step(np.array([[1.0, 0.0], [1.0, 0.0]]))
-    assert result.terminated.tolist() == [[True, False]]
+    wall = rectangle(1, 1, state=[1.75, 5, 0])
+    result = Worlds(task({}, BESIDE, obstacles=[wall], ends={"world": when})).step(BOTH_AHEAD)
+    assert (result.terminated.tolist(), result.truncated.tolist()) == ([[True, False]], [[False, over]])
     assert result.over.tolist() == [over]
-    assert result.truncated.tolist() == [[False, over]]
 
 
-def test_scenes_without_room_are_skipped() -> None:
-    crowded = {"number": 6, "shape": {"name": "circle", "radius": 0.8}, "distribution": {
-        "name": "random", "range_low": [1, 1, -3], "range_high": [4, 7, 3], "min_distance": 0.05}}  # fmt: skip
-    worlds = Worlds(task(crowded), 20, seed=0)
+def test_scenes_without_room_are_skipped_at_first_and_later() -> None:
+    crowded = {**RANDOM, "range_low": [1, 1, -3], "range_high": [4, 7, 3], "min_distance": 0.05}
+    shape = {"name": "circle", "radius": 0.8}
+    worlds = Worlds(task({"number": 6, "shape": shape, "distribution": crowded}), 20, seed=0)
     for _ in range(5):
         worlds.reset(np.ones(20, dtype=bool))
     assert np.isfinite(worlds.simulation.pose).all()
+    far = {"number": 2, "distribution": {**RANDOM, "goal_distance": 10.9, "min_distance": 0}}
+    simulation = Worlds(task(far), 60, seed=1).simulation
+    scenes = [simulation.key(k)[1] for k in range(60)]
+    assert 0 < sum(scene > 0 for scene in scenes) < 60
+    assert Worlds(task(far), 1, seed=7).simulation.key(0) == simulation.key(6)
 
 
 # actions -------------------------------------------------------------------------------------------------------------
@@ -291,40 +269,25 @@ def test_wrong_actions_are_refused(wrong: Any) -> None:
 def test_others_follow_their_behaviors() -> None:
     names = {"name": "ann"}, {"name": "bob", "state": [1, 2, 0], "goal": [9, 2], "behavior": {"name": "dash"}}
     worlds = Worlds(task(*names, learners=["ann"]))
-    result = worlds.step(0 * AHEAD)
-    assert worlds.names == ("ann",)
-    assert result.reward.shape == (1, 1)
+    assert (worlds.names, worlds.step(0 * AHEAD).reward.shape) == (("ann",), (1, 1))
     assert worlds.simulation.twist[1, 0] > 0.5
-    with pytest.raises(
-        TaskError, match=r"no robot that can move has the name or the tag 'anne'. Fix: did you mean ann"
-    ):
-        Worlds(task(*names, learners=["anne"]))
 
 
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ({"observation": [{"name": "scan"}]}, r"needs the scan of a lidar, but 'robot_0' has no lidar"),
+        ({"observation": [{"name": "scan"}]}, r"needs the scan of a lidar, but 'ann' has no lidar"),
         ({"action": {"low": [0], "high": [1]}}, r"action.low has 1 numbers"),
         ({"action": {"choices": [[1, 2, 3]]}}, r"action.choices has 3 numbers"),
+        ({"learners": ["anne"]}, r"no robot that can move has the name or the tag 'anne'. Fix: did you mean ann"),
+        ({"learners": ["ann", "robot_1"]}, r"different drives"),
     ],
 )
 def test_tasks_that_do_not_fit_their_scenario_are_refused(keys: dict[str, Any], message: str) -> None:
     with pytest.raises(TaskError, match=message):
-        Worlds(task(**keys))
-
-
-def test_learners_share_a_drive() -> None:
-    with pytest.raises(TaskError, match=r"different drives"):
-        Worlds(task({}, {"kinematics": {"name": "omni"}, "state": [1, 2, 0]}))
-
-
-def test_first_scenes_without_room_are_skipped_as_later_ones_are() -> None:
-    far = {"name": "random", "range_low": [1, 1, -3], "range_high": [9, 9, 3], "goal_distance": 10.9, "min_distance": 0}
-    worlds = Worlds(task({"number": 2, "distribution": far}), 60, seed=1)
-    scenes = [worlds.simulation.key(k)[1] for k in range(60)]
-    assert 0 < sum(scene > 0 for scene in scenes) < 60
-    assert Worlds(task({"number": 2, "distribution": far}), 1, seed=7).simulation.key(0) == worlds.simulation.key(6)
+        Worlds(
+            task({"name": "ann"}, {"kinematics": {"name": "omni"}, "state": [1, 2, 0]}, **{"learners": ["ann"], **keys})
+        )
 
 
 def test_without_actions_the_behaviors_of_the_scenario_drive_the_learners() -> None:

@@ -12,7 +12,7 @@ from tests.packaging import house
 @pytest.mark.parametrize(
     ("find", "most"),
     [
-        (house.object_types, 10),
+        (house.object_types, 9),
         (house.part_loops, 1),
         (house.process_limits, 1),
         (house.translators, 5),

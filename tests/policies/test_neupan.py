@@ -87,6 +87,11 @@ def config(folder: Path, **robot: Any) -> str:
     return str(file)
 
 
+def planner(folder: Path, options: dict[str, Any] | None = None, **robot: Any) -> Any:
+    """The policy with such a file."""
+    return open_policy({"name": "neupan", "config": config(folder, **robot), **(options or {})})
+
+
 def scene(folder: Path, **robot: Any) -> Path:
     file = folder / "scene.yaml"
     file.write_text(yaml.safe_dump({**SCENE, "robot": [{**SCENE["robot"][0], **robot}]}))
@@ -95,56 +100,50 @@ def scene(folder: Path, **robot: Any) -> Path:
 
 def test_each_robot_has_a_planner_with_its_footprint_and_arrives(package: list[StandIn], tmp_path: Path) -> None:
     (tmp_path / "model.pth").touch()
-    policy = open_policy({"name": "neupan", "config": config(tmp_path)})
+    policy = planner(tmp_path)
     result = irsim.run(scene(tmp_path, number=2, state=[[1, 5, 0.3], [1, 8, 0]], goal=[[5, 5], [5, 8]]), policy=policy)
     assert result.outcome == "success"
     assert len(package) == 2
     given = package[0].config
-    corners = sorted(given["robot_kwargs"]["vertices"])
-    assert corners == sorted([[x, y] for x in (-0.3, 0.3) for y in (-0.2, 0.2)])
-    assert given["step_time"] == pytest.approx(0.1)
-    assert given["ref_speed"] == 0.8
+    assert sorted(given["robot_kwargs"]["vertices"]) == [[x, y] for x in (-0.3, 0.3) for y in (-0.2, 0.2)]
+    assert (given["step_time"], given["ref_speed"]) == (pytest.approx(0.1), 0.8)
     assert given["ipath_kwargs"] == {"curve_style": "line", "arrive_threshold": 0.3}
     assert given["pan_kwargs"]["dune_checkpoint"] == str(tmp_path / "model.pth")
     assert given["adjust_kwargs"] == {"q_s": 0.1}
-    assert package[1].goal is not None
     np.testing.assert_allclose(package[1].goal, [5, 8, 0])
 
 
 def test_points_lie_on_what_the_lidar_sees_and_move_with_it(package: list[StandIn], tmp_path: Path) -> None:
-    policy = open_policy({"name": "neupan", "config": config(tmp_path), "velocities": True})
+    policy = planner(tmp_path, {"velocities": True})
     irsim.run(scene(tmp_path), policy=policy, steps=5)
     _, points, velocities = package[0].seen[3]
     assert points.shape == velocities.shape
     assert points.shape[1] > 5
     post = np.abs(np.hypot(points[0] - 3, points[1] - 7) - 0.5) < 0.02
     walker = ~post
-    assert post.sum() >= 3
-    assert walker.sum() >= 3
+    assert min(post.sum(), walker.sum()) >= 3
     assert np.hypot(points[0, walker] - 2.15, points[1, walker] - 3).max() < 0.45  # it has moved for 3 steps
     np.testing.assert_allclose(velocities[:, post], 0.0)
     np.testing.assert_allclose(velocities[:, walker].T, np.tile([0.5, 0.0], (walker.sum(), 1)), atol=1e-9)
-    irsim.run(scene(tmp_path), policy=open_policy({"name": "neupan", "config": config(tmp_path)}), steps=2)
+    irsim.run(scene(tmp_path), policy=planner(tmp_path), steps=2)
     assert package[1].seen[0][2] is None
 
 
-def test_nothing_in_sight_and_no_goal(package: list[StandIn], tmp_path: Path) -> None:
+def test_nothing_in_sight(package: list[StandIn], tmp_path: Path) -> None:
     sensors = [{**SCENE["robot"][0]["sensors"][0], "range_max": 0.5}]
-    irsim.run(
-        scene(tmp_path, sensors=sensors), policy=open_policy({"name": "neupan", "config": config(tmp_path)}), steps=2
-    )
+    irsim.run(scene(tmp_path, sensors=sensors), policy=planner(tmp_path), steps=2)
     assert package[0].seen[0][1] is None
 
 
 def test_an_omni_robot_follows_velocities_of_the_world(package: list[StandIn], tmp_path: Path) -> None:
-    policy = open_policy({"name": "neupan", "config": config(tmp_path, kinematics="omni")})
+    policy = planner(tmp_path, kinematics="omni")
     assert policy.output == "velocity"
     result = irsim.run(scene(tmp_path, kinematics={"name": "omni"}, state=[1, 5, 1.2]), policy=policy)
     assert result.outcome == "success"
 
 
 def test_a_new_episode_resets_the_planner_and_the_path(package: list[StandIn], tmp_path: Path) -> None:
-    policy = open_policy({"name": "neupan", "config": config(tmp_path), "speed": 0.5})
+    policy = planner(tmp_path, {"speed": 0.5})
     env = irsim.make(scene(tmp_path), policy=policy, headless=True)
     for _ in range(3):
         env.step()
@@ -152,22 +151,18 @@ def test_a_new_episode_resets_the_planner_and_the_path(package: list[StandIn], t
     env.reset()
     env.step()
     assert len(package) == 1
-    assert package[0].resets == 1
-    assert package[0].goal is not None
-    assert package[0].config["ref_speed"] == 0.5
+    assert (package[0].resets, package[0].goal is None, package[0].config["ref_speed"]) == (1, False, 0.5)
     env.end(ending_time=0)
 
 
 def test_a_robot_with_another_footprint_than_the_network_is_refused(package: list[StandIn], tmp_path: Path) -> None:
-    same = open_policy({"name": "neupan", "config": config(tmp_path, length=0.6, width=0.4)})
+    same = planner(tmp_path, length=0.6, width=0.4)
     assert irsim.run(scene(tmp_path), policy=same, steps=2).steps == 2
-    other = open_policy({"name": "neupan", "config": config(tmp_path, length=1.6, width=2.0)})
+    other = planner(tmp_path, length=1.6, width=2.0)
     with pytest.raises(PolicyError, match="policy-mismatch") as raised:
         irsim.run(scene(tmp_path), policy=other, steps=2)
     assert "trained for a robot with the corners [[-0.8, -1.0]" in raised.value.message
-    car = open_policy(
-        {"name": "neupan", "config": config(tmp_path, kinematics="acker", length=4.6, width=1.6, wheelbase=3)}
-    )
+    car = planner(tmp_path, kinematics="acker", length=4.6, width=1.6, wheelbase=3)
     shape = {"name": "rectangle", "length": 4.6, "width": 1.6, "wheelbase": 3}
     driven = scene(tmp_path, kinematics={"name": "acker", "wheelbase": 3}, shape=shape, state=[3, 5, 0], goal=[8, 5])
     assert irsim.run(driven, policy=car, steps=2).steps == 2
@@ -180,29 +175,24 @@ def test_a_robot_with_another_footprint_than_the_network_is_refused(package: lis
     [
         ({"config": "no-such.yaml"}, PolicyError, "cannot be read"),
         ({"config": 5}, PolicyError, "cannot be read"),
-        ({"config": "PLANNER", "velocities": 1}, ArgumentError, "velocities must be true or false"),
-        ({"config": "PLANNER", "speed": 0}, ArgumentError, "speed must be above 0"),
-        ({"config": "PLANNER", "sped": 1}, PolicyError, "has no option 'sped'"),
-        ({}, PolicyError, "config"),
+        ({"velocities": 1}, ArgumentError, "velocities must be true or false"),
+        ({"speed": 0}, ArgumentError, "speed must be above 0"),
+        ({"sped": 1}, PolicyError, "has no option 'sped'"),
     ],
 )
 def test_options_that_cannot_be_used(
     options: dict[str, Any], error: type[Exception], why: str, package: list[StandIn], tmp_path: Path
 ) -> None:
-    planner = config(tmp_path)
     with pytest.raises(error, match=why):
-        open_policy({"name": "neupan", **{k: planner if v == "PLANNER" else v for k, v in options.items()}})
-
-
-def test_other_kinematics_than_those_of_neupan(package: list[StandIn], tmp_path: Path) -> None:
+        planner(tmp_path, options)
     with pytest.raises(PolicyError, match="has the kinematics 'legged'"):
-        open_policy({"name": "neupan", "config": config(tmp_path, kinematics="legged")})
+        planner(tmp_path, kinematics="legged")
 
 
 @pytest.mark.skipif(importlib.util.find_spec("neupan") is not None, reason="NeuPAN is installed")
 def test_without_the_package_the_command_that_installs_it_is_told(tmp_path: Path) -> None:
     with pytest.raises(PolicyError, match="missing-extra: the policy 'neupan' needs the package neupan") as raised:
-        open_policy({"name": "neupan", "config": config(tmp_path)})
+        planner(tmp_path)
     assert "git clone https://github.com/hanruihua/NeuPAN" in str(raised.value.fix)
     assert "neupan" in irsim.policies.registry.POLICIES.names()
     with pytest.raises(PolicyError, match="needs the package neupan"):

@@ -33,28 +33,20 @@ def test_robots_know_themselves() -> None:
     )  # fmt: skip
     made.step()
     seen = observe(made)
-    assert len(seen) == 4
-    assert seen.step_time == 0.2
-    assert seen.world.tolist() == [0, 0, 1, 1]
-    assert seen.robot.tolist() == [0, 1, 0, 1]
-    assert seen.time.tolist() == [0.2] * 4
+    assert (len(seen), seen.step_time, seen.time.tolist()) == (4, 0.2, [0.2] * 4)
+    assert (seen.world.tolist(), seen.robot.tolist()) == ([0, 0, 1, 1], [0, 1, 0, 1])
     assert seen.steering[0] == made.extra[0, 0] != 0.0
     assert seen.steering[1] == 0.0
     np.testing.assert_array_equal(seen.pose[2:], made.pose[2:])
     np.testing.assert_array_equal(seen.velocity, made.twist[:, :2])
     np.testing.assert_array_equal(seen.yaw_rate, made.twist[:, 2])
     np.testing.assert_array_equal(seen.control, made.control)
-    assert seen.goal[0, :2].tolist() == [5, 2]
-    assert math.isnan(seen.goal[0, 2])
-    assert seen.goal[1].tolist() == [9, 1, 0]
+    np.testing.assert_array_equal(seen.goal[:2], [[5, 2, math.nan], [9, 1, 0]])
     assert seen.goal_threshold.tolist() == [0.25, 0.1] * 2
     assert seen.radius.tolist() == [0.3, 0.2] * 2
-    assert seen.high[0].tolist() == [2.0, 0.5, 0.0]
-    assert seen.low[0].tolist() == [-1.0, -0.5, 0.0]
+    assert (seen.high[0].tolist(), seen.low[0].tolist()) == ([2.0, 0.5, 0.0], [-1.0, -0.5, 0.0])
     assert not seen.arrived.any()
-    assert seen.neighbors is None
-    assert seen.scan is None
-    assert seen.maps is None
+    assert (seen.neighbors, seen.scan, seen.maps) == (None, None, None)
 
 
 def test_observations_are_copies() -> None:
@@ -70,15 +62,15 @@ def test_neighbors_have_true_velocities_flags_and_zeros_where_there_are_none() -
     made = simulation({}, {"state": [3, 1, 0], "goal": [3.05, 1, 0]}, obstacles=[person])
     made.step()
     seen = observe(made, Needs(neighbors=3), rows=[0]).neighbors
-    assert seen is not None
     assert seen.mask.tolist() == [[True, True, False]]
     assert seen.index.tolist() == [[1, 2, -1]]
     np.testing.assert_array_equal(seen.velocity[0, :2], made.twist[[1, 2], :2])
     assert seen.velocity[0, 1, 1] == 1.0
     assert seen.arrived.tolist() == [[True, False, False]]
     assert seen.robot.tolist() == [[True, False, False]]
-    assert not seen.position[0, 2].any()
-    assert seen.radius[0, 2] == 0.0
+    assert (seen.position[0, 2].tolist(), seen.radius[0, 2]) == ([0, 0], 0.0)
+    np.testing.assert_array_equal(seen.pose[0, :2], made.pose[[1, 2]])
+    np.testing.assert_array_equal(np.dstack([seen.position, seen.heading]), seen.pose)
 
 
 def test_a_neighbor_whose_start_is_delayed_stands() -> None:
@@ -86,7 +78,6 @@ def test_a_neighbor_whose_start_is_delayed_stands() -> None:
     made.start_step[1] = 5
     made.step()
     seen = observe(made, Needs(neighbors=1), rows=[0]).neighbors
-    assert seen is not None
     assert seen.mask.all()
     assert not seen.velocity.any()
 
@@ -95,11 +86,7 @@ def test_static_neighbors_are_seen_on_request() -> None:
     wall = {"shape": {"name": "rectangle", "length": 0.6, "width": 0.8}, "state": [2, 1, 0]}
     made = simulation({}, obstacles=[wall])
     without, also = (observe(made, Needs(neighbors=1, static_neighbors=flag)).neighbors for flag in (False, True))
-    assert without is not None
-    assert also is not None
-    assert not without.mask.any()
-    assert also.mask.all()
-    assert also.radius[0, 0] == 0.5
+    assert (without.mask.tolist(), also.mask.tolist(), also.radius[0, 0]) == ([[False]], [[True]], 0.5)
 
 
 def test_speed_limits_are_those_of_the_scene() -> None:
@@ -117,7 +104,6 @@ def test_scans_are_those_of_the_first_lidar_in_the_frame_of_the_robot() -> None:
     other = {"name": "lidar2d", "number": 5}
     made = simulation({"sensors": [turned, other]}, {"state": [1, 5, 0], "sensors": [turned]}, seeds=(0, 1))
     scan = observe(made, Needs(scan=True)).scan
-    assert scan is not None
     assert scan.range_max == 4.0
     np.testing.assert_allclose(scan.angles, [0.5 - math.pi / 2, 0.5, 0.5 + math.pi / 2])
     ranges = made.ranges.reshape(2, 11)
@@ -128,21 +114,16 @@ def test_maps_mark_the_cells_that_static_objects_touch() -> None:
     box = {"shape": {"name": "rectangle", "length": 1.8, "width": 0.8}, "state": [5, 2.5, 0]}
     made = simulation({}, obstacles=[box, {**box, "state": [5, 7, 0], "unobstructed": True}], seeds=range(3))
     maps = observe(made, Needs(map=True, map_resolution=1.0)).maps
-    assert maps is not None
     assert len(maps) == 3
     assert maps[0] is maps[1] is maps[2]
-    assert maps[0].occupied.shape == (10, 10)
-    assert maps[0].origin == (0.0, 0.0)
-    assert maps[0].resolution == 1.0
+    assert (maps[0].occupied.shape, maps[0].origin, maps[0].resolution) == ((10, 10), (0.0, 0.0), 1.0)
     assert np.argwhere(maps[0].occupied).tolist() == [[4, 2], [5, 2]]
 
 
 def test_maps_differ_where_static_objects_do_and_follow_them() -> None:
     crate = {"distribution": {"name": "random", "range_low": [2, 2, 0], "range_high": [8, 8, 0]}, "number": 1}
     made = simulation({}, obstacles=[crate], seeds=(1, 2))
-    robots = np.flatnonzero(made.robots)
-    observer = Observer(made, Needs(map=True), robots)
-    rows = np.array([0, 2])
+    observer, rows = Observer(made, Needs(map=True), np.flatnonzero(made.robots)), np.array([0, 2])
 
     def maps() -> Any:
         return observer.observe(rows, rows > 9, rows // 2).maps

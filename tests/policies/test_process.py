@@ -30,11 +30,16 @@ PROGRAM = lookup("process").example or ""
 ACT = 'asked["type"] == "act"'
 
 
-def program(folder: Path, *, before: str = "", text: str = PROGRAM) -> ProcessPolicy:
-    """A policy whose program runs a statement before it answers."""
+def script(folder: Path, before: str = "", text: str = PROGRAM) -> Path:
+    """A program that runs a statement before it answers."""
     file = folder / f"program{len(list(folder.iterdir()))}.py"
     file.write_text(text.replace("    print(json", f"    {before}\n    print(json") if before else text)
-    return ProcessPolicy([sys.executable, str(file)], timeout=1.0)
+    return file
+
+
+def program(folder: Path, *, before: str = "", text: str = PROGRAM) -> ProcessPolicy:
+    """The policy of such a program."""
+    return ProcessPolicy([sys.executable, str(script(folder, before, text))], timeout=1.0)
 
 
 def straight(seen: irsim.policies.Observations) -> np.ndarray:
@@ -77,11 +82,8 @@ def test_the_program_of_the_guide_drives_as_the_same_function_here(tmp_path: Pat
 def test_a_process_that_fails_ends_the_run_with_a_reason(before: str, why: str, tmp_path: Path) -> None:
     began = time.monotonic()
     result = irsim.run(text=FREE, policy=program(tmp_path, before=before))
-    assert result.outcome == "timeout"
-    assert result.lost is not None
+    assert (result.outcome, result.steps, result.reason) == ("timeout", 0, f"{result.lost}; the run ended")
     assert why in result.lost
-    assert result.reason == f"{result.lost}; the run ended"
-    assert result.steps == 0
     assert "the policy was lost" in result.summary
     assert time.monotonic() - began < 20
 
@@ -107,12 +109,13 @@ def test_a_process_that_does_not_say_what_it_is_cannot_be_opened(said: str, why:
 
 
 def test_what_is_declared_is_checked_like_that_of_any_policy(tmp_path: Path) -> None:
-    text = PROGRAM.replace('"output": "velocity"', '"output": "speed"')
-    with pytest.raises(PolicyError, match="output of policy 'process' must be 'control' or 'velocity'"):
-        irsim.run(text=FREE, policy=program(tmp_path, text=text))
-    text = PROGRAM.replace('"output": "velocity"', '"drives": ["acker"]')
-    with pytest.raises(PolicyError, match="policy-mismatch"):
-        irsim.run(text=FREE, policy=program(tmp_path, text=text))
+    for declared, message in (
+        ('"output": "speed"', "output of policy 'process' must be 'control' or 'velocity'"),
+        ('"drives": ["acker"]', "policy-mismatch"),
+    ):
+        text = PROGRAM.replace('"output": "velocity"', declared)
+        with pytest.raises(PolicyError, match=message):
+            irsim.run(text=FREE, policy=program(tmp_path, text=text))
 
 
 def test_lost_episodes_of_a_benchmark_are_counted_and_the_others_go_on(tmp_path: Path) -> None:
@@ -120,11 +123,8 @@ def test_lost_episodes_of_a_benchmark_are_counted_and_the_others_go_on(tmp_path:
     file.write_text(FREE)
     before = f'if {ACT} and asked["time"][0] > 1 and seed % 2: sys.exit()'
     text = PROGRAM.replace('answer = {"type": "ready"}', 'answer, seed = {"type": "ready"}, asked["seed"]')
-    script = tmp_path / "sometimes.py"
-    script.write_text(text.replace("    print(json", f"    {before}\n    print(json"))
-    result = irsim.benchmark(
-        file, ["dash", f"{{name: process, command: [{sys.executable}, {script}]}}"], 8, perturb="position=0.1"
-    )
+    policy = f"{{name: process, command: [{sys.executable}, {script(tmp_path, before, text)}]}}"
+    result = irsim.benchmark(file, ["dash", policy], 8, perturb="position=0.1")
     mine = [episode for episode in result.episodes if episode.behavior != "dash"]
     lost = [episode for episode in mine if episode.lost]
     assert 0 < len(lost) < 8
@@ -133,7 +133,7 @@ def test_lost_episodes_of_a_benchmark_are_counted_and_the_others_go_on(tmp_path:
     assert {episode.outcome for episode in mine if not episode.lost} == {"success"}
     assert result.rows[1].incidents["policy-lost"] == len(lost)
     assert any(f"the policy was lost in {len(lost)} of 16 episodes" in text for text in result.incidents)
-    [again] = [irsim.benchmark(file, [result.behaviors[1]], 8, perturb="position=0.1")]
+    again = irsim.benchmark(file, [result.behaviors[1]], 8, perturb="position=0.1")
     assert [episode.lost for episode in again.episodes] == [episode.lost for episode in mine]  # seeds decide
 
 
@@ -167,9 +167,7 @@ def test_one_that_listens_on_a_socket_is_asked_the_same(family: str, tmp_path: P
         address = f"127.0.0.1:{server.getsockname()[1]}"
     else:
         address = str(tmp_path / "s")
-        server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        server.bind(address)
-        server.listen()
+        server = socket.create_server(address, family=socket.AF_UNIX)
     asked: list[dict[str, Any]] = []
     thread = threading.Thread(target=_serve, args=(server, asked), daemon=True)
     thread.start()
@@ -180,8 +178,9 @@ def test_one_that_listens_on_a_socket_is_asked_the_same(family: str, tmp_path: P
     assert (kinds[0], kinds[1], set(kinds[2:])) == ("hello", "reset", {"act"})
     assert asked[1]["robots"] == [0, 1]
     first = asked[2]
-    assert np.shape(first["pose"]) == (2, 3)
-    assert np.shape(first["neighbors"]["position"]) == (2, 1, 2)
+    assert set(first["neighbors"]) == {"position", "heading", "velocity", "radius", "arrived", "mask", "index", "robot",
+                                       "extent", "own_extent"}  # fmt: skip
+    assert (np.shape(first["pose"]), np.shape(first["neighbors"]["position"])) == ((2, 3), (2, 1, 2))
     assert first["goal"][0][2] is None or isinstance(first["goal"][0][2], float)
     assert first["maps"]["of_row"] == [0, 0]
     assert first["maps"]["distinct"][0]["resolution"] > 0
@@ -244,11 +243,10 @@ def test_each_cause_has_its_own_fix(options: dict[str, Any], fix: str) -> None:
 
 
 def test_the_report_of_a_benchmark_shows_lost_episodes_as_far_as_they_went(tmp_path: Path) -> None:
-    file, script = tmp_path / "scene.yaml", tmp_path / "sometimes.py"
+    file = tmp_path / "scene.yaml"
     file.write_text(FREE)
     before = f'if {ACT} and asked["time"][0] > 1: sys.exit()'
-    script.write_text(PROGRAM.replace("    print(json", f"    {before}\n    print(json"))
-    policy = f"{{name: process, command: [{sys.executable}, {script}]}}"
+    policy = f"{{name: process, command: [{sys.executable}, {script(tmp_path, before)}]}}"
     result = CliRunner().invoke(app, ["benchmark", str(file), "--policies", policy, "-o", str(tmp_path / "out")])
     assert result.exit_code == 0
     assert "has ended with exit code 0" in result.output

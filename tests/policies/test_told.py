@@ -80,9 +80,6 @@ def test_the_measured_tables_are_found(topic: str) -> None:
     assert answer.topic == "which-policy"
     assert RESULTS.as_posix() in answer.text
     assert (skills_directory() / RESULTS).is_file()
-
-
-def test_a_question_in_words_leads_there() -> None:
     assert lookup("which policy avoids collisions best").groups["topics"][0].name == "which-policy"
 
 
@@ -115,22 +112,18 @@ def test_trained_policies_say_what_they_do_not_see() -> None:
 
 
 def test_common_names_are_those_of_the_suites() -> None:
-    for name, policy in COMMON_NAMES.items():
-        assert policy in trained_policies()
-        assert lookup(name).topic == policy
+    assert {*COMMON_NAMES.values()} <= {*trained_policies()}
+    assert {name: lookup(name).topic for name in COMMON_NAMES} == dict(COMMON_NAMES)
 
 
 def test_converters_and_their_options_are_explained() -> None:
+    assert lookup("policy").topic == "policies"
     answer = lookup("convert")
     for name in CONVERTERS.names():
         assert f"{name}: " in answer.text
         assert lookup(f"convert {name}").topic == f"convert {name}"
     [options] = lookup("convert sarl").groups.values()
     assert {"license", "headings", "gamma"} <= {key.name for key in options}
-
-
-def test_policy_is_the_list_of_policies() -> None:
-    assert lookup("policy").topic == "policies"
 
 
 def test_a_picture_says_which_policy_drives(tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ def test_it_reaches_its_success_in_scenes_of_its_task(name: str, tmp_path: Path)
 
 
 @pytest.mark.parametrize("name", trained_policies())
-def test_its_card_and_its_curve_are_those_of_the_file(name: str) -> None:
+def test_its_card_and_curve_are_those_of_the_file_and_a_lookup_tells_what_it_is_for(name: str) -> None:
     file = trained_policy(name)
     assert file.stat().st_size < 1_000_000
     card = (RECIPES / f"{name}.md").read_text(encoding="utf-8")
@@ -55,10 +55,6 @@ def test_its_card_and_its_curve_are_those_of_the_file(name: str) -> None:
     assert f"![learning curve]({name}.png)" in card
     assert (RECIPES / f"{name}.png").is_file()
     assert f"[{name}]({name}.md)" in (RECIPES / "README.md").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize("name", trained_policies())
-def test_a_lookup_tells_what_a_policy_is_for(name: str) -> None:
     answer = lookup(f"policy {name}")
     facts = {key.name: key.text for key in answer.groups["facts"]}
     assert (answer.kind, answer.topic) == ("policy", name)
@@ -89,13 +85,10 @@ robot:
 
 
 def test_it_says_what_it_is() -> None:
-    description = describe_policy("sarl")
-    assert (description.kind, description.output, description.needs, description.drives) == (
-        "trained", "velocity", ["5 nearest neighbors"], ["any"]
-    )  # fmt: skip
-    assert description.decision_dt == 0.25
-    assert description.facts["parameters"] == 96_502
-    assert description.facts["card"]["license"] == "MIT"
+    told = describe_policy("sarl")
+    assert (told.kind, told.output, told.needs) == ("trained", "velocity", ["5 nearest neighbors"])
+    assert (told.drives, told.decision_dt, told.facts["parameters"]) == (["any"], 0.25, 96_502)
+    assert told.facts["card"]["license"] == "MIT"
     shown = CliRunner().invoke(app, ["policies", "sarl"])
     assert shown.exit_code == 0
     assert "the best of 81 velocities, 0.25 s ahead" in " ".join(shown.output.split())
@@ -130,8 +123,7 @@ def test_robots_with_a_differential_drive_cross_each_other(tmp_path: Path) -> No
         if env.done():
             break
     assert batch.pose[1].tobytes() == env.simulation.pose.tobytes()
-    assert all(robot.arrive for robot in env.robot_list)
-    assert not any(robot.collision for robot in env.robot_list)
+    assert [(robot.arrive, robot.collision) for robot in env.robot_list] == [(True, False)] * 4
     env.end()
 
 

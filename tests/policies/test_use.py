@@ -1,4 +1,4 @@
-"""One policy in an environment, a batch and a recorded run."""
+"""One policy in an environment, a batch, a benchmark and a recorded run; its memory belongs to a robot."""
 
 from __future__ import annotations
 
@@ -10,7 +10,12 @@ import pytest
 
 import irsim
 from irsim.diagnostics.errors import PolicyError
+from irsim.policies.description import describe_policy
 from irsim.policies.driver import driver_of
+from irsim.policies.networks import save_network
+from irsim.runs.reading import open_run
+from irsim.runs.resimulation import resimulate
+from tests.policies.networks.examples import crowd, filled, go_to_goal
 
 TWO = """
 world: {width: 10, height: 10, time_limit: 4}
@@ -41,12 +46,10 @@ def test_functions_drive_an_environment(scene: str) -> None:
     np.testing.assert_allclose(env.simulation.pose[:, :2], [[1, 1.05], [1, 5.05]])
     env.step([1.0, 0.0])  # an action takes precedence
     np.testing.assert_allclose(env.simulation.pose[:, :2], [[1.1, 1.05], [1, 5.1]])
-    env.reset()
-    env.step()
-    np.testing.assert_allclose(env.simulation.pose[:, :2], [[1, 1.05], [1, 5.05]])
-    env.reload()
-    env.step()
-    np.testing.assert_allclose(env.simulation.pose[:, :2], [[1, 1.05], [1, 5.05]])
+    for begin_again in (env.reset, env.reload):
+        begin_again()
+        env.step()
+        np.testing.assert_allclose(env.simulation.pose[:, :2], [[1, 1.05], [1, 5.05]])
 
 
 def test_policies_are_changed_while_an_environment_runs(scene: str) -> None:
@@ -82,9 +85,8 @@ def test_robots_that_come_and_go_are_driven(scene: str) -> None:
     for policy in (upward, "sfm"):
         env = make(scene, policy=policy)
         env.step()
-        env.add_object(
-            env.create_robot({"name": "omni"}, name="c", state=[5, 5, 0], goal=[8, 5, 0], behavior={"name": "dash"})
-        )
+        new = {"name": "c", "state": [5, 5, 0], "goal": [8, 5, 0], "behavior": {"name": "dash"}}
+        env.add_object(env.create_robot({"name": "omni"}, **new))
         env.delete_object("a")
         before = env.simulation.pose.copy()
         env.step()
@@ -135,9 +137,6 @@ def test_runs_know_their_policy_and_are_read_without_it(scene: str, tmp_path: Pa
     assert (result.behavior, result.policy, result.policy_digest) == (None, "random", None)
     assert "--policy random" in result.reproduce
     assert irsim.run(scene, policy="random", steps=20, seed=2).robots == result.robots
-    from irsim.runs.reading import open_run
-    from irsim.runs.resimulation import resimulate
-
     run = open_run(str(tmp_path / "run"))
     assert run.options["policy"] == "random"
     env = resimulate(run, 20)
@@ -156,3 +155,98 @@ def test_policy_and_behavior_are_one_argument(scene: str) -> None:
     assert irsim.run(scene, policy="as-written").behavior is None
     with pytest.raises(ValueError, match="two names of one argument"):
         irsim.run(scene, policy="sfm", behavior="dash")
+
+
+CROWD = """
+world: {width: 10, height: 10, time_limit: 25}
+robot:
+  - number: 2
+    kinematics: {name: diff}
+    distribution: {name: random, range_low: [1, 1, -3], range_high: [9, 9, 3]}
+    behavior: {name: dash}
+"""
+FAR = """
+world: {width: 100, height: 100, step_time: 0.1}
+robot:
+  - number: 4
+    kinematics: {name: diff}
+    distribution: {name: manual}
+    state: [[10, 10, 0], [10, 50, 0], [50, 10, 0], [50, 50, 0]]
+    goal: [[90, 10], [90, 50], [90, 20], [90, 60]]
+    name: [a, b, c, d]
+"""
+
+
+@pytest.fixture
+def network(tmp_path: Path) -> str:
+    """A file whose network remembers."""
+    data = crowd()
+    data["layout"]["parts"][2]["range"] = 2.0
+    save_network(tmp_path / "net.npz", filled(data))
+    return str(tmp_path / "net.npz")
+
+
+@pytest.fixture
+def far(tmp_path: Path) -> str:
+    (tmp_path / "far.yaml").write_text(FAR)
+    return str(tmp_path / "far.yaml")
+
+
+def drive(*envs: irsim.Env, steps: int) -> None:
+    """Step environments in turns."""
+    for _ in range(steps):
+        for env in envs:
+            env.step()
+
+
+def test_a_network_drives_batches_and_benchmarks_as_single_environments(tmp_path: Path) -> None:
+    scene, file = tmp_path / "scene.yaml", str(tmp_path / "net.npz")
+    scene.write_text(CROWD)
+    save_network(file, go_to_goal())
+    batch = irsim.batch(scene, 3, seeds=[4, 5, 6], policy=file)
+    batch.advance(60)
+    for world, seed in enumerate((4, 5, 6)):
+        env = make(str(scene), seed=seed, policy=file)
+        drive(env, steps=60)
+        assert batch.pose[world].tobytes() == env.simulation.pose.tobytes()
+    one, two = (irsim.benchmark(scene, [file, "random"], 4, workers=workers) for workers in (1, 2))
+    assert one.rows[0].success.count + one.rows[0].collision.count == 4
+    assert one == two
+    description = describe_policy(file)
+    assert (description.kind, description.drives, description.output) == ("file", ["diff"], "control")
+    assert description.digest == irsim.open_policy(file).digest
+
+
+def test_a_removed_robot_takes_its_memory_with_it(far: str, network: str) -> None:
+    with_all, without = (make(far, policy=network) for _ in range(2))
+    drive(with_all, without, steps=10)
+    without.delete_object("b")
+    drive(with_all, without, steps=10)
+    kept = [robot for robot in with_all.robot_list if robot.name != "b"]
+    for left, right in zip(kept, without.robot_list, strict=True):
+        np.testing.assert_array_equal(left.state, right.state)
+
+
+def test_one_policy_drives_two_simulations_in_turns(far: str, network: str) -> None:
+    alone = make(far, policy=network)
+    drive(alone, steps=20)
+    shared = irsim.open_policy(network)
+    first, second = (make(far, policy=shared) for _ in range(2))
+    drive(second, steps=3)
+    drive(first, second, steps=20)
+    for left, right in zip(alone.robot_list, first.robot_list, strict=True):
+        np.testing.assert_array_equal(left.state, right.state)
+
+
+def test_a_robot_with_another_drive_may_join_if_it_fits(far: str) -> None:
+    ahead = irsim.policies.FunctionPolicy(upward, drives=frozenset({"diff"}))
+    env, only_diff = make(far, policy="random", seed=3), make(far, policy=ahead)
+    for one in (env, only_diff):
+        drive(one, steps=3)
+        one.add_object(one.create_robot(kinematics={"name": "omni"}, state=[30, 30, 0], goal=[40, 40]))
+    before = env.robot_list[-1].state.copy()
+    drive(env, steps=3)
+    assert not np.array_equal(before, env.robot_list[-1].state)
+    for _ in range(2):
+        with pytest.raises(PolicyError, match="omni"):
+            only_diff.step()

@@ -160,7 +160,8 @@ def look_ahead(options: Lookahead, observations: Observations) -> Futures:
     seen = later.neighbors
     reward = _reward(options, later, pose, flat).reshape(size, count)
     if seen is not None:
-        seen = replace(seen, position=seen.position + seen.velocity * dt)
+        moved = np.concatenate([seen.position + seen.velocity * dt, seen.heading[..., None]], axis=-1)
+        seen = replace(seen, pose=moved)
     turned = (pose[:, 2] - later.pose[:, 2]) / dt if options.moves.kind == "unicycle" else np.zeros(len(flat))
     later = replace(later, pose=pose, velocity=flat, yaw_rate=turned, time=later.time + dt, neighbors=seen)
     discount = np.array([options.gamma ** (dt * v) for v in o.high[:, 0].tolist()])

@@ -22,7 +22,7 @@ import numpy as np
 from irsim.common.installed import version
 from irsim.common.text import clean
 from irsim.options.registry import KINEMATICS
-from irsim.policies.observations import Observations
+from irsim.policies.observations import Neighbors, Observations
 from irsim.policies.policy import Episode, Needs
 from irsim.policies.process.channel import PeerError
 
@@ -118,6 +118,9 @@ def _plain(thing: Any) -> Any:
             told[~np.isfinite(thing)] = None
             return told.tolist()
         return thing.tolist()
+    if isinstance(thing, Neighbors):
+        names = ["position", "heading", *(field.name for field in fields(thing) if field.name != "pose")]
+        return {name: _plain(getattr(thing, name)) for name in names}
     if hasattr(thing, "__dataclass_fields__"):
         return {field.name: _plain(getattr(thing, field.name)) for field in fields(thing)}
     if isinstance(thing, tuple):  # the maps: rows of one world share theirs

@@ -81,6 +81,22 @@ def files_of(
     return {str(path.relative_to(run)): hashlib.sha256(path.read_bytes()).hexdigest() for path in kept}
 
 
+def test_auto_starts_a_cluster_and_says_nothing(tmp_path: Path) -> None:
+    """First, as long as there is no cluster."""
+    (tmp_path / "scene.yaml").write_text(SCENE.replace(", obstacle_map: floor.png", ""), encoding="utf-8")
+    environment = {name: value for name, value in os.environ.items() if name != "RAY_ADDRESS"}
+    outputs = []
+    for words in ([], ["--cluster", "auto", "--workers", "2"]):
+        done = subprocess.run(
+            [sys.executable, "-m", "irsim", "benchmark", "scene.yaml", "--seeds", "3", "--steps", "30", *words],
+            cwd=tmp_path, env=environment, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        said = [line for line in done.stderr.splitlines() if not line.startswith("simulating: ")]  # after some seconds
+        outputs.append((done.returncode, done.stdout, said))
+    assert outputs[1] == outputs[0]
+    assert outputs[0][0] == 0
+
+
 def test_files_are_those_of_a_local_run_however_many_processes_there_are(folder: Path, cluster: LocalCluster) -> None:
     local = files_of("local", workers=1)
     assert {"episodes.jsonl", "results.json", "results.html"} <= set(local)

@@ -13,42 +13,41 @@ import irsim
 from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
 from irsim.policies.converters.convert import convert_policy
-from irsim.policies.networks import PolicyFileError, observe, open_network, save_network
+from irsim.policies.networks import PolicyFileError, observe, open_network
+from irsim.policies.networks.network import run_graph
 from irsim.policies.networks.sarl import sarl_network
+from irsim.policies.networks.values import Value
 from tests.policies.converters.torch_bytes import as_files, closed, name, text, zip_file
 from tests.policies.networks.observed import observations
-from tests.policies.networks.sarl_weights import sarl_file, sarl_weights, value_of
+from tests.policies.networks.sarl_weights import Arrays, sarl_file, sarl_weights, value_of
 
 AHEAD = {"moves": {"kind": "holonomic"}}
 
 
-@pytest.mark.parametrize(("kind", "parameters"), [("holonomic", 96_502), ("unicycle", 86_502)])
-def test_values_are_those_of_plain_numpy(tmp_path: Path, kind: str, parameters: int) -> None:
-    save_network(tmp_path / "net.npz", sarl_file(kind))
-    policy: Any = open_network(tmp_path / "net.npz")
-    assert policy.describe()["parameters"] == parameters
-    weights, seen = sarl_weights(kind == "holonomic"), observations(30)
+def assert_values(policy: Any, weights: Arrays, count: int = 30) -> Any:
+    """Compare the values of a policy with those of plain NumPy; returns what its robots observe of themselves."""
+    seen = observations(count)
     observed = observe(policy.head.layout, seen)
-    values = policy.compute(observed, seen)[:, 0]
     own, people = observed["self"].array, observed["people"]
-    assert people.mask is not None
     assert len(set(people.mask.sum(axis=1).tolist())) > 3  # also no person at all
-    expected = [value_of(weights, own[b], people.array[b, people.mask[b]]) for b in range(30)]
-    np.testing.assert_allclose(values, expected, rtol=1e-5, atol=1e-5)
+    expected = [value_of(weights, own[b], people.array[b, people.mask[b]]) for b in range(count)]
+    np.testing.assert_allclose(policy.compute(observed, seen)[:, 0], expected, rtol=1e-5, atol=1e-5)
+    return own
+
+
+@pytest.mark.parametrize(("kind", "parameters"), [("holonomic", 96_502), ("unicycle", 86_502)])
+def test_values_are_those_of_plain_numpy(opened: Any, kind: str, parameters: int) -> None:
+    policy = opened(sarl_file(kind))
+    assert policy.describe()["parameters"] == parameters
+    assert_values(policy, sarl_weights(kind == "holonomic"))
 
 
 def test_people_whose_score_is_exactly_zero_do_not_count() -> None:
     """All scores are 0 if the last layer of the attention is, so no person has a share."""
     weights = sarl_weights()
-    blind = weights | {
-        "attention.4.weight": np.zeros((1, 100), np.float32),
-        "attention.4.bias": np.zeros(1, np.float32),
-    }
-    network = sarl_network(blind, lookahead=AHEAD, neighbors=5)
+    last = {"attention.4.weight": np.zeros((1, 100), np.float32), "attention.4.bias": np.zeros(1, np.float32)}
+    network = sarl_network(weights | last, lookahead=AHEAD, neighbors=5)
     alone = sarl_network(weights, lookahead=AHEAD, neighbors=5)
-    from irsim.policies.networks.network import run_graph
-    from irsim.policies.networks.values import Value
-
     seen = observe(network.document.layout, observations(8))
     seen = {label: Value(value.array.astype(np.float32), value.mask) for label, value in seen.items()}
     nobody = {**seen, "people": Value(seen["people"].array, np.zeros((8, 5), bool))}
@@ -96,25 +95,16 @@ robot:
 
 
 @pytest.mark.parametrize("old", [False, True], ids=["zip", "old"])
-@pytest.mark.parametrize(("global_state", "kind"), [(True, "holonomic"), (False, "unicycle")])
-def test_a_converted_file_has_the_values_of_its_weights(
-    tmp_path: Path, old: bool, global_state: bool, kind: str
-) -> None:
-    weights = sarl_weights(global_state, seed=3)
+@pytest.mark.parametrize("kind", ["holonomic", "unicycle"])
+def test_a_converted_file_has_the_values_of_its_weights(tmp_path: Path, old: bool, kind: str) -> None:
+    weights = sarl_weights(kind == "holonomic", seed=3)
     (tmp_path / "rl_model.pth").write_bytes(as_files(weights)[old])
     convert_policy("sarl", tmp_path / "rl_model.pth", tmp_path / "net.npz", {"license": "MIT", "neighbors": 5})
     policy: Any = open_network(tmp_path / "net.npz")
     moves = policy.lookahead.moves
-    assert (moves.kind, moves.count) == ((kind, 81) if kind == "holonomic" else (kind, 36))
-    assert moves.frame == "world"
+    assert (moves.kind, moves.count, moves.frame) == (kind, 81 if kind == "holonomic" else 36, "world")
     assert policy.head.card.license == "MIT"
-    seen = observations(20)
-    observed = observe(policy.head.layout, seen)
-    own, people = observed["self"].array, observed["people"]
-    assert people.mask is not None
-    assert (own[:, 2] != 0).any() == (kind == "unicycle")
-    expected = [value_of(weights, own[b], people.array[b, people.mask[b]]) for b in range(20)]
-    np.testing.assert_allclose(policy.compute(observed, seen)[:, 0], expected, rtol=1e-5, atol=1e-5)
+    assert (assert_values(policy, weights)[:, 2] != 0).any() == (kind == "unicycle")
     (tmp_path / "scene.yaml").write_text(SCENE)
     result = irsim.benchmark(tmp_path / "scene.yaml", policies=[str(tmp_path / "net.npz")], seeds=2, workers=1)
     assert result.rows[0].episodes == 2
@@ -125,9 +115,7 @@ def test_names_of_a_wrapping_module_do_not_matter(tmp_path: Path) -> None:
     other = {"other.weight": np.zeros((2, 2), np.float32)}
     (tmp_path / "net.pth").write_bytes(as_files({**wrapped, **other})[0])
     made = convert_policy("sarl", tmp_path / "net.pth", tmp_path / "net.npz", {"kinematics": "unicycle", "headings": 9})
-    ahead = made.document.lookahead
-    assert ahead is not None
-    assert ahead.moves.count == 46
+    assert made.document.lookahead.moves.count == 46
 
 
 def test_the_command_writes_a_file_that_drives(tmp_path: Path) -> None:
@@ -152,13 +140,13 @@ def refused(tmp_path: Path, content: bytes) -> str:
 
 def test_files_of_something_else_are_refused(tmp_path: Path) -> None:
     weights = sarl_weights()
-    wrong = {**weights, "mlp3.0.weight": np.zeros((150, 60), np.float32)}
-    assert "mlp3.0.weight: has another number of inputs, given: 60" in refused(tmp_path, as_files(wrong)[0])
-    broken = {**weights, "mlp2.2.bias": np.full(50, np.inf, np.float32)}
-    assert "mlp2.2.bias" in refused(tmp_path, as_files(broken)[0])
-    assert "mlp1.0.weight" in refused(tmp_path, as_files({"actor.weight": np.zeros((2, 2), np.float32)})[0])
-    twice = {**weights, **{f"target.{key}": x for key, x in weights.items()}}
-    assert "several arrays are called mlp1.0.weight" in refused(tmp_path, as_files(twice)[1])
+    for wrong, message in (
+        ({**weights, "mlp3.0.weight": np.zeros((150, 60), np.float32)}, "mlp3.0.weight: has another number of inputs"),
+        ({**weights, "mlp2.2.bias": np.full(50, np.inf, np.float32)}, "mlp2.2.bias"),
+        ({"actor.weight": np.zeros((2, 2), np.float32)}, "mlp1.0.weight"),
+        (weights | {f"target.{key}": x for key, x in weights.items()}, "several arrays are called mlp1.0.weight"),
+    ):
+        assert message in refused(tmp_path, as_files(wrong)[0])
     with pytest.raises(ArgumentError, match="kinematics"):
         convert_policy("sarl", tmp_path / "net.pth", tmp_path / "net.npz", {"kinematics": "car"})
 
@@ -168,7 +156,6 @@ def test_files_with_code_or_huge_sizes_are_refused(tmp_path: Path) -> None:
     refused(tmp_path, zip_file(harmful, {}))
     refused(tmp_path, closed(harmful))
     assert not (tmp_path / "harm").exists()
-    shrunk = sarl_weights()
-    content = bytearray(as_files(shrunk)[0])
+    content = bytearray(as_files(sarl_weights())[0])
     content[-22 + 12 : -22 + 16] = (0xFFFFFFF0).to_bytes(4, "little")  # a directory of 4 GB
     refused(tmp_path, bytes(content))

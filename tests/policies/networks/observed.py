@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from irsim.policies import Neighbors, Observations, Scan
+from irsim.policies.networks.lookahead import take_rows
 
 BEAMS = 24
 
@@ -28,19 +29,23 @@ def observations(count: int = 7, seed: int = 0, neighbors: int = 5) -> Observati
     goal[-1] = np.nan
     mask = np.arange(neighbors) < rng.integers(0, neighbors + 1, count)[:, None]
     mask[0] = False
-    there = mask[:, :, None]
     limit = np.tile([1.0, 3.0, 0.0], (count, 1))
+
+    def seen(low: float, high: float, *more: int) -> Any:
+        there = mask[:, :, None] if more else mask
+        return np.where(there, rng.uniform(low, high, (count, neighbors, *more)), 0.0)
+
+    places, headings = seen(-5, 5, 2), seen(-3, 3)
     others = Neighbors(
+        pose=np.concatenate([places, headings[..., None]], axis=2),
+        velocity=seen(-1, 1, 2),
+        radius=seen(0.1, 0.5),
+        arrived=mask & (rng.uniform(size=mask.shape) < 0.3),
         mask=mask,
         index=np.where(mask, np.arange(neighbors), -1),
-        position=np.where(there, rng.uniform(-5, 5, (count, neighbors, 2)), 0.0),
-        heading=np.where(mask, rng.uniform(-3, 3, (count, neighbors)), 0.0),
-        velocity=np.where(there, rng.uniform(-1, 1, (count, neighbors, 2)), 0.0),
-        radius=np.where(mask, rng.uniform(0.1, 0.5, (count, neighbors)), 0.0),
-        arrived=mask & (rng.uniform(size=mask.shape) < 0.3),
         robot=mask & (rng.uniform(size=mask.shape) < 0.7),
-        extent=np.where(mask, rng.uniform(0.1, 0.5, mask.shape), 0.0),
-        own_extent=np.where(mask, rng.uniform(0.1, 0.5, mask.shape), 0.0),
+        extent=seen(0.1, 0.5),
+        own_extent=seen(0.1, 0.5),
     )
     maps = [Grid(rng.uniform(size=(60, 50)) < 0.1, (-3.0, -2.5), 0.1) for _ in range(2)]
     world = np.arange(count) % 2
@@ -68,22 +73,26 @@ def observations(count: int = 7, seed: int = 0, neighbors: int = 5) -> Observati
     )
 
 
+def people(*rows: tuple[float, ...], count: int | None = None, radius: float = 0.3, **given: Any) -> Neighbors:
+    """What one robot sees of others that stand at x, y or move with x, y, vx, vy; padded to ``count`` rows."""
+    size = len(rows) if count is None else count
+    table = np.zeros((1, size, 4))
+    for k, row in enumerate(rows):
+        table[0, k, : len(row)] = row
+    mask = (np.arange(size) < len(rows))[None]
+    pose = np.concatenate([table[:, :, :2], np.zeros((1, size, 1))], axis=2)
+    flags = np.zeros((1, size), bool)
+    index, radii = np.where(mask, np.arange(size), -1), np.where(mask, radius, 0.0)
+    made = Neighbors(pose, table[:, :, 2:].copy(), radii, flags, mask, index, flags)
+    return replace(made, **{key: np.array(value) for key, value in given.items()})
+
+
 def rows(whole: Observations, wanted: Any) -> Observations:
     """Some of the robots, in this order."""
     wanted = np.asarray(wanted)
-    changed: dict[str, Any] = {
-        field.name: value[wanted]
-        for field in fields(whole)
-        if isinstance(value := getattr(whole, field.name), np.ndarray)
-    }
-    if whole.neighbors is not None:
-        seen = whole.neighbors
-        changed["neighbors"] = Neighbors(**{field.name: getattr(seen, field.name)[wanted] for field in fields(seen)})
-    if whole.scan is not None:
-        changed["scan"] = replace(whole.scan, ranges=whole.scan.ranges[wanted])
-    if whole.maps is not None:
-        changed["maps"] = tuple(whole.maps[k] for k in wanted)
-    return replace(whole, **changed)
+    scan = None if whole.scan is None else replace(whole.scan, ranges=whole.scan.ranges[wanted])
+    maps = None if whole.maps is None else tuple(whole.maps[k] for k in wanted)
+    return replace(take_rows(whole, wanted), scan=scan, maps=maps)
 
 
 def moved(whole: Observations, turn: float, shift: tuple[float, float]) -> Observations:
@@ -92,22 +101,12 @@ def moved(whole: Observations, turn: float, shift: tuple[float, float]) -> Obser
     turned = np.array([[c, s], [-s, c]])
 
     def placed(poses: Any) -> Any:
-        return np.concatenate([poses[:, :2] @ turned + shift, poses[:, 2:] + turn], axis=1)
+        return np.concatenate([poses[..., :2] @ turned + shift, poses[..., 2:] + turn], axis=-1)
 
     seen = whole.neighbors
-    assert seen is not None
-    others = replace(
-        seen, position=seen.position @ turned + shift, heading=seen.heading + turn, velocity=seen.velocity @ turned
-    )
-    return replace(
-        whole,
-        pose=placed(whole.pose),
-        goal=placed(whole.goal),
-        velocity=whole.velocity @ turned,
-        neighbors=others,
-        scan=None,
-        maps=None,
-    )
+    others = replace(seen, pose=placed(seen.pose), velocity=seen.velocity @ turned)
+    there = {"pose": placed(whole.pose), "goal": placed(whole.goal), "velocity": whole.velocity @ turned}
+    return replace(whole, **there, neighbors=others, scan=None, maps=None)
 
 
 def same_bits(a: Any, b: Any) -> bool:

@@ -50,8 +50,7 @@ VARIANTS = [
 
 
 def plan(name: str, **options: Any) -> tuple[list[Any], GraphPlan]:
-    feature = LAYERS.get(name)
-    assert feature is not None
+    feature: Any = LAYERS.get(name)
     layers = [feature.options.model_validate({"name": name, "label": "out", **options})]
     return layers, plan_graph(PARTS, layers)
 
@@ -102,8 +101,7 @@ def test_a_row_is_the_same_alone_and_in_any_batch(name: str, options: Any, dtype
         before = np.random.default_rng(2).normal(size=(rows, 4)).astype(dtype) if name == "memory" else None
         after = None if before is None else before.copy()
         whole = run(name, options, values, arrays, after)
-        assert whole.shape == needs.shapes["out"]
-        assert whole.array.dtype == dtype
+        assert (whole.shape, whole.array.dtype) == (needs.shapes["out"], dtype)
         assert np.isfinite(whole.array).all()
         for k in range(rows):
             one = {
@@ -120,7 +118,6 @@ def test_a_row_is_the_same_alone_and_in_any_batch(name: str, options: Any, dtype
 def test_absent_members_have_no_influence(name: str, options: Any) -> None:
     values = observed(9, np.float64)
     crowd = values["crowd"]
-    assert crowd.mask is not None
     other = {**values, "crowd": Value(np.where(crowd.mask[:, :, None], crowd.array, 1e6), crowd.mask)}
     arrays, memory = weights(plan(name, **options)[1], np.float64), np.zeros((9, 4))
     one, two = (run(name, options, seen, arrays, memory.copy()) for seen in (values, other))
@@ -188,7 +185,6 @@ def test_numbers_of_plain_numpy(name: str, options: Any) -> None:
     h = np.random.default_rng(5).normal(size=(7, 4))
     result = run(name, options, values, a, h.copy())
     mask = values["crowd"].mask
-    assert mask is not None
     for b in range(7):
         own, crowd, score = values["own"].array[b], values["crowd"].array[b][mask[b]], values["score"].array[b][mask[b]]
         ours = result.array[b] if result.mask is None else result.array[b][mask[b]]
@@ -232,13 +228,10 @@ def test_layers_that_do_not_fit_are_named(name: str, options: Any, message: str)
 
 
 def test_a_label_is_used_once_and_layers_after_a_bad_one_are_not_blamed() -> None:
-    dense = LAYERS.get("dense")
-    assert dense is not None
-    layers: list[Any] = [
+    dense: Any = LAYERS.get("dense")
+    layers = [
         dense.options.model_validate({"label": label, "inputs": inputs, "units": 2})
         for label, inputs in (("goal", ["own"]), ("bad", ["missing"]), ("after", ["bad"]))
     ]
-    assert [problem.path for problem in plan_graph(PARTS, layers).problems] == [
-        ("network", 0, "label"),
-        ("network", 1, "inputs"),
-    ]
+    places = [problem.path for problem in plan_graph(PARTS, layers).problems]
+    assert places == [("network", 0, "label"), ("network", 1, "inputs")]

@@ -11,13 +11,13 @@ import pytest
 from pydantic import ValidationError
 
 from irsim.options.registry import Feature
-from irsim.policies import Neighbors, Observations, Scan
+from irsim.policies import Needs, Observations, Scan
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.layout import Layout, layout_bounds, layout_needs, layout_shapes, observe
 from irsim.policies.networks.parts import neighbors, robot
 from irsim.policies.networks.parts._options import PARTS
 from irsim.testing import conformance
-from tests.policies.networks.observed import Grid, moved, observations, rows, same_bits
+from tests.policies.networks.observed import Grid, moved, observations, people, rows, same_bits
 
 ALL: dict[str, dict[str, Any]] = {
     "goal": {"features": list(get_args(robot.GoalFeature))},
@@ -29,8 +29,8 @@ ALL: dict[str, dict[str, Any]] = {
     "rvo_self": {},
     "self_state": {"heading": "wrapped"},
 }
-WITHOUT_FRAME = ("scan", "rvo_cones", "rvo_self", "self_state")
 """Every part, with all of its features."""
+WITHOUT_FRAME = ("scan", "rvo_cones", "rvo_self", "self_state")
 
 
 def layout(**parts: Any) -> Layout:
@@ -60,10 +60,8 @@ def test_declaration(feature: Feature) -> None:
 
 @pytest.mark.parametrize("frame", ["own", "goal", "world"])
 def test_a_robot_observes_the_same_alone_and_in_any_company(frame: str) -> None:
-    framed = {
-        name: {**options} if name in WITHOUT_FRAME else {**options, "frame": frame} for name, options in ALL.items()
-    }
-    chosen = layout(**framed)
+    framed = {name: {**options, "frame": frame} for name, options in ALL.items() if name not in WITHOUT_FRAME}
+    chosen = layout(**{**ALL, **framed})
     for count in (1, 2, 3, 9, 33):
         whole = observations(count, seed=count)
         together = observe(chosen, whole)
@@ -92,10 +90,9 @@ def test_numbers_have_the_declared_shape_and_bounds() -> None:
 
 
 def test_own_frame_and_goal_frame_do_not_see_where_the_world_lies() -> None:
-    kept = {name: dict(ALL[name]) for name in ("goal", "own", "neighbors")}
     whole = observations(30)
     for frame in ("own", "goal"):
-        chosen = layout(**{name: {**options, "frame": frame} for name, options in kept.items()})
+        chosen = layout(**{name: {**ALL[name], "frame": frame} for name in ("goal", "own", "neighbors")})
         there = observe(chosen, moved(whole, 1.1, (3.0, -2.0)))
         for label, value in observe(chosen, whole).items():
             np.testing.assert_allclose(there[label].present(), value.present(), atol=1e-12)
@@ -119,14 +116,9 @@ def test_robots_at_their_goal_and_without_one() -> None:
 
 
 def test_the_robot_itself() -> None:
-    seen = alone(
-        [0, 0, math.pi / 2],
-        velocity=np.array([[0.0, 0.6]]),
-        yaw_rate=np.array([-6.0]),
-        control=np.array([[0.6, -6.0, 0.0]]),
-        low=np.array([[-0.2, -3.0, 0.0]]),
-        high=np.array([[1.0, 3.0, 0.0]]),
-    )
+    limits = {"low": np.array([[-0.2, -3.0, 0.0]]), "high": np.array([[1.0, 3.0, 0.0]])}
+    motion = {"velocity": np.array([[0.0, 0.6]]), "yaw_rate": np.array([-6.0]), "control": np.array([[0.6, -6.0, 0.0]])}
+    seen = alone([0, 0, math.pi / 2], **motion, **limits)
     np.testing.assert_allclose(numbers(seen, "own", features=["vx", "vy", "yaw_rate"]), [[0.6, 0, -1]], atol=1e-15)
     np.testing.assert_allclose(numbers(seen, "own", features=["control"]), [[1 / 3, -1]])
     np.testing.assert_allclose(numbers(seen, "own", features=["control"], clip=False), [[1 / 3, -2]])
@@ -148,21 +140,10 @@ def test_sectors_of_a_scan_hold_the_shortest_range() -> None:
 
 
 def test_neighbors_relative_to_the_robot() -> None:
-    others = Neighbors(
-        mask=np.array([[True, True, False]]),
-        index=np.array([[3, 4, -1]]),
-        position=np.array([[[0.0, 1.0], [0.0, -3.0], [0.0, 0.0]]]),
-        heading=np.array([[math.pi / 2, 0.0, 0.0]]),
-        velocity=np.array([[[0.0, 1.0], [0.0, 0.0], [0.0, 0.0]]]),
-        radius=np.array([[0.3, 0.5, 0.0]]),
-        arrived=np.array([[True, False, False]]),
-        robot=np.array([[True, False, False]]),
-    )
-    seen = replace(
-        alone([0, 0, math.pi / 2], velocity=np.array([[0.0, 0.5]]), radius=np.array([0.2])),
-        goal=np.array([[0.0, 2.0, 0.0]]),
-        neighbors=others,
-    )
+    pose, first = [[[0.0, 1.0, math.pi / 2], [0.0, -3.0, 0.0], [0.0] * 3]], [[True, False, False]]
+    others = people((0, 1, 0, 1), (0, -3), count=3, pose=pose, radius=[[0.3, 0.5, 0.0]], arrived=first, robot=first)
+    own = {"velocity": np.array([[0.0, 0.5]]), "radius": np.array([0.2]), "goal": np.array([[0.0, 2.0, 0.0]])}
+    seen = replace(alone([0, 0, math.pi / 2], **own), neighbors=others)
     features = ["x", "y", "vx", "vy", "heading_cos", "radius", "radii", "gap", "nearness", "goal_distance", "arrived"]
     expected = [
         [0.25, 0, 0.5, 0, 1, 0.3, 0.5, 0.125, math.exp(-0.5), 0.25, 1],
@@ -172,16 +153,14 @@ def test_neighbors_relative_to_the_robot() -> None:
     np.testing.assert_allclose(numbers(seen, "neighbors", features=features, count=3), [expected], atol=1e-15)
     last = observe(layout(neighbors={"features": ["x"], "count": 3, "nearest_last": True, "range": 1.0}), seen)
     assert last["neighbors"].array.tolist() == [[[0], [0], [0.25]]]
-    assert last["neighbors"].mask is not None
     assert last["neighbors"].mask.tolist() == [[False, False, True]]
     still = numbers(seen, "neighbors", features=["vx"], count=2, relative_velocity=False)
     np.testing.assert_allclose(still, [[[1], [0]]], atol=1e-15)
     with pytest.raises(PolicyInputError, match="observes extents of neighbors"):
         numbers(seen, "neighbors", features=["extent"], count=1)
     extents = replace(others, extent=np.array([[0.2, 0.5, 0]]), own_extent=np.array([[0.1, 0.2, 0]]))
-    reaching = numbers(
-        replace(seen, neighbors=extents), "neighbors", features=["extent", "own_extent", "extent_gap"], count=2
-    )
+    features = ["extent", "own_extent", "extent_gap"]
+    reaching = numbers(replace(seen, neighbors=extents), "neighbors", features=features, count=2)
     np.testing.assert_allclose(reaching, [[[0.2, 0.1, 0.7 / 4], [0.5, 0.2, 2.3 / 4]]], atol=1e-15)
     with pytest.raises(PolicyInputError, match="observes 4 neighbors, not 3"):
         numbers(seen, "neighbors", count=4)
@@ -201,19 +180,10 @@ def test_picture_of_the_map_turns_with_the_robot() -> None:
 
 
 def test_a_layout_declares_what_all_of_its_parts_need() -> None:
-    two = Layout.model_validate(
-        {
-            "parts": [
-                {"name": "neighbors", "label": "near", "count": 3, "range": 1.0},
-                {"name": "neighbors", "label": "far", "count": 8, "range": 5.0},
-                {"name": "scan"},
-            ]
-        }
-    )
-    needs = layout_needs(two)
-    assert (needs.neighbors, needs.neighbor_range, needs.static_neighbors) == (8, 5.0, False)
-    assert needs.scan
-    assert not needs.map
+    near = {"name": "neighbors", "label": "near", "count": 3, "range": 1.0}
+    far = {"name": "neighbors", "label": "far", "count": 8, "range": 5.0}
+    needs = layout_needs(Layout.model_validate({"parts": [near, far, {"name": "scan"}]}))
+    assert needs == Needs(neighbors=8, neighbor_range=5.0, scan=True)
     assert layout_needs(layout(map={"cells": 10, "size": 4.0})).map_resolution == 0.2
     assert layout_needs(layout(goal={})) == layout_needs(layout(own={}))
 
@@ -226,10 +196,7 @@ def test_a_layout_declares_what_all_of_its_parts_need() -> None:
         ([{"name": "goal", "features": ["x", "x"]}], "'x' is listed twice"),
         ([{"name": "goal", "distance_max": 0}], "greater than 0"),
         ([{"name": "own", "range": 3}], "Extra inputs"),
-        (
-            [{"name": "neighbors"}, {"name": "neighbors", "label": "walls", "static": True}],
-            "'static' differs between two parts",
-        ),
+        ([{"name": "neighbors"}, {"name": "neighbors", "label": "a", "static": True}], "'static' differs between two"),
         ([], "at least 1 item"),
     ],
 )

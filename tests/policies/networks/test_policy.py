@@ -11,26 +11,9 @@ import pytest
 
 import irsim
 from irsim.policies import Observations
-from irsim.policies.networks import (
-    Network,
-    NetworkPolicy,
-    PolicyInputError,
-    mlp,
-    network_policy,
-    open_network,
-    save_network,
-)
+from irsim.policies.networks import Network, PolicyInputError, mlp, network_policy, save_network
 from tests.policies.networks.examples import crowd, filled, go_to_goal
 from tests.policies.networks.observed import observations, rows, same_bits
-
-
-@pytest.fixture
-def opened(tmp_path: Path) -> Any:
-    def make(network: Network) -> NetworkPolicy:
-        save_network(tmp_path / "net.npz", network)
-        return open_network(tmp_path / "net.npz")
-
-    return make
 
 
 def raw(output: dict[str, Any], units: int = 2, **options: Any) -> Network:
@@ -86,7 +69,6 @@ def test_a_perceptron_computes_what_plain_numpy_computes(opened: Any) -> None:
     away = seen.goal[:, :2] - seen.pose[:, :2]
     distance, bearing = np.hypot(*away.T), np.arctan2(away[:, 1], away[:, 0]) - seen.pose[:, 2]
     observed = [np.minimum(distance, 4) / 4, np.cos(bearing), np.sin(bearing)]
-    assert seen.neighbors is not None
     for k in range(2):
         rel = seen.neighbors.position[:, k] - seen.pose[:, :2]
         c, s = np.cos(seen.pose[:, 2]), np.sin(seen.pose[:, 2])

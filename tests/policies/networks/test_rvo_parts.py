@@ -9,39 +9,30 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.policies import Neighbors, Observations
+from irsim.policies import Observations
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.layout import observe
 from irsim.policies.networks.values import Value
-from tests.policies.networks.observed import observations, rows
+from tests.policies.networks.observed import observations, people, rows
 from tests.policies.networks.test_parts import alone, layout, numbers
 
 
-def seen(others: list[tuple[float, float, float, float, float]], **changed: Any) -> Observations:
-    """A robot of radius 0.2 in the origin, and others with x, y, vx, vy and radius, nearest first."""
-    count = len(others)
-    table = np.array(others, float).reshape(1, count, 5)
-    flags = np.zeros((1, count), dtype=bool)
-    neighbors = Neighbors(
-        mask=~flags, index=np.arange(count)[None], position=table[:, :, :2], heading=np.zeros((1, count)),
-        velocity=table[:, :, 2:4], radius=table[:, :, 4], arrived=flags, robot=~flags,
-    )  # fmt: skip
+def seen(*others: tuple[float, ...], **changed: Any) -> Observations:
+    """A robot of radius 0.2 in the origin, and others of its size with x, y, vx and vy, nearest first."""
     basis = {"velocity": np.zeros((1, 2)), "radius": np.array([0.2]), "commanded": np.zeros((1, 2))}
-    return replace(alone([0, 0, 0]), **{**basis, **changed, "neighbors": neighbors})
+    return replace(alone([0, 0, 0]), **{**basis, **changed, "neighbors": people(*others, radius=0.2)})
 
 
 def cones(what: Observations, **options: Any) -> Value:
-    assert what.neighbors is not None
     return observe(layout(rvo_cones={"nearest": what.neighbors.mask.shape[1], **options}), what)["rvo_cones"]
 
 
 def test_a_robot_ahead_that_comes_closer() -> None:
-    ahead = seen([(1.0, 0.0, -1.0, 0.0, 0.2)], velocity=np.array([[0.5, 0.0]]), commanded=np.array([[0.75, 0.0]]))
+    ahead = seen((1.0, 0.0, -1.0, 0.0), velocity=np.array([[0.5, 0.0]]), commanded=np.array([[0.75, 0.0]]))
     observed = cones(ahead)
     # 2 (0.75, 0) - (-1, 0) - (0.5, 0) = (2, 0) closes the gap of 1 - (0.2 + 0.1 + 0.2) m in 0.25 s; asin(0.5) = 30 deg
     assert observed.array[0, :4].tolist() == [[0] * 8] * 4
     np.testing.assert_array_equal(observed.array[0, 4], [-0.25, 0, 0.87, 0.5, 0.87, -0.5, 0.8, 2.22])
-    assert observed.mask is not None
     assert observed.mask.tolist() == [[False, False, False, False, True]]
     exact = cones(ahead, decimals=None).array[0, 4]
     root = math.sqrt(0.75)
@@ -49,14 +40,14 @@ def test_a_robot_ahead_that_comes_closer() -> None:
 
 
 def test_one_that_stands_still_has_a_velocity_obstacle_at_its_own_velocity() -> None:
-    still = seen([(2.0, 0.0, 0.0, 0.0, 0.2)], velocity=np.array([[0.5, 0.3]]), commanded=np.array([[1.0, 0.0]]))
+    still = seen((2.0, 0.0, 0.0, 0.0), velocity=np.array([[0.5, 0.3]]), commanded=np.array([[1.0, 0.0]]))
     apex_and_end = cones(still).array[0, 4, [0, 1, 6, 7]]
     assert apex_and_end.tolist() == [0, 0, 1.8, round(1 / 1.7, 2)]  # 1.5 m at 1 m/s, not at 2 - 0.5 m/s
 
 
 def test_what_is_outside_the_cone_or_later_than_the_horizon_is_not_urgent() -> None:
-    away = seen([(2.0, 0.0, 0.0, 0.0, 0.2)], commanded=np.array([[-1.0, 0.0]]))
-    slow = seen([(2.0, 0.0, 0.0, 0.0, 0.2)], commanded=np.array([[0.25, 0.0]]))
+    away = seen((2.0, 0.0, 0.0, 0.0), commanded=np.array([[-1.0, 0.0]]))
+    slow = seen((2.0, 0.0, 0.0, 0.0), commanded=np.array([[0.25, 0.0]]))
     assert cones(away).array[0, 4, 7] == 0
     assert cones(slow).array[0, 4, 7] == 0
     assert cones(slow, horizon=6.5).array[0, 4, 7] == round(1 / 6.2, 2)
@@ -64,15 +55,13 @@ def test_what_is_outside_the_cone_or_later_than_the_horizon_is_not_urgent() -> N
 
 
 def test_discs_that_overlap_collide_now_and_their_cone_is_a_half_plane() -> None:
-    touching = seen([(0.3, 0.0, 0.0, 0.0, 0.2)], commanded=np.array([[0.1, 0.0]]))
+    touching = seen((0.3, 0.0, 0.0, 0.0), commanded=np.array([[0.1, 0.0]]))
     np.testing.assert_array_equal(cones(touching).array[0, 4], [0, 0, 0, 1, 0, -1, 0.1, 5])
 
 
 def test_a_robot_that_sees_nobody_sees_one_member_of_zeros() -> None:
-    far = seen([(5.0, 0.0, -1.0, 0.0, 0.2)])
+    far = seen((5.0, 0.0, -1.0, 0.0))
     padded, without = cones(far), cones(far, zero_row=False)
-    assert padded.mask is not None
-    assert without.mask is not None
     assert not padded.array.any()
     assert padded.mask.tolist() == [[False, False, False, False, True]]
     assert not without.mask.any()
@@ -81,14 +70,9 @@ def test_a_robot_that_sees_nobody_sees_one_member_of_zeros() -> None:
 
 def test_the_most_urgent_ones_are_kept_and_come_last() -> None:
     wanted = np.array([[1.0, 0.0]])
-    several = seen([(0.0, 1.0, 0, 0, 0.2), (1.5, 0.0, 0, 0, 0.2), (2.5, 0.0, 0, 0, 0.2), (0.0, -3.0, 0, 0, 0.2)],
-                   commanded=wanted)  # fmt: skip
-    observed = cones(several, count=3)
-    assert observed.array[0, :, 6].tolist() == [
-        0.8,
-        2.3,
-        1.3,
-    ]  # beside, ahead, nearer ahead; the farther one beside is left out
+    several = seen((0.0, 1.0), (1.5, 0.0), (2.5, 0.0), (0.0, -3.0), commanded=wanted)
+    beside, ahead, nearer_ahead = cones(several, count=3).array[0, :, 6]  # the farther one beside is left out
+    assert (beside, ahead, nearer_ahead) == (0.8, 2.3, 1.3)
 
 
 def test_the_robot_itself() -> None:
@@ -103,7 +87,7 @@ def test_the_robot_itself() -> None:
 
 
 def test_observations_without_the_velocity_commanded_last_are_refused() -> None:
-    without = replace(seen([(1.0, 0, 0, 0, 0.2)]), commanded=None)
+    without = replace(seen((1.0, 0, 0, 0)), commanded=None)
     with pytest.raises(PolicyInputError, match="commanded last"):
         cones(without)
     cones(without, velocity="present")
@@ -113,8 +97,6 @@ def test_observations_without_the_velocity_commanded_last_are_refused() -> None:
 
 def reference(what: Observations, b: int, margin: float, decimals: int | None) -> list[list[float]]:
     """The members that are present, from the formulas of the paper, with angles."""
-    assert what.neighbors is not None
-    assert what.commanded is not None
     n, members = what.neighbors, []
     (x, y), (vx, vy), (ax, ay) = what.pose[b, :2], what.velocity[b], what.commanded[b]
     for k in np.flatnonzero(n.mask[b]):
@@ -149,11 +131,9 @@ def test_many_scenes_agree_with_the_reference(decimals: int | None) -> None:
     tried = timed = 0
     for seed in range(20):
         whole = observations(30, seed, neighbors=8)
-        assert whole.neighbors is not None
         velocity = np.where(whole.neighbors.index[:, :, None] % 3 == 0, 0.0, whole.neighbors.velocity)
         whole = replace(whole, neighbors=replace(whole.neighbors, velocity=velocity))
         observed = cones(whole, decimals=decimals)
-        assert observed.mask is not None
         for b in range(len(whole)):
             expected = reference(whole, b, 0.1, decimals)
             present = observed.array[b][observed.mask[b]]

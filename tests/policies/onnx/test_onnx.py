@@ -35,9 +35,8 @@ def test_a_model_decides_as_the_same_network_of_our_layers(tmp_path: Path, insid
     w = weights()
     parts = DOCUMENT["layout"]["parts"]
     output = {key: value for key, value in DOCUMENT["output"].items() if key != "input"}
-    save_network(
-        tmp_path / "own.npz", mlp([(w["w0"], w["b0"]), (w["w1"], w["b1"])], parts, output=output, drives=["diff"])
-    )
+    layers = [(w["w0"], w["b0"]), (w["w1"], w["b1"])]
+    save_network(tmp_path / "own.npz", mlp(layers, parts, output=output, drives=["diff"]))
     seen = observations(40)
     np.testing.assert_allclose(policy.act(seen), open_network(tmp_path / "own.npz").act(seen), atol=1e-5)
     assert (policy.name, policy.output, policy.drives) == ("net", "control", {"diff"})
@@ -60,33 +59,23 @@ def test_a_decision_is_the_same_alone_and_in_any_batch(tmp_path: Path) -> None:
 def test_sets_masks_and_joined_inputs(tmp_path: Path) -> None:
     from onnx import helper
 
-    parts = [
-        {"name": "goal"},
-        {"name": "neighbors", "label": "others", "count": 3, "features": ["x", "y"]},
-    ]
+    parts = [{"name": "goal"}, {"name": "neighbors", "label": "others", "count": 3, "features": ["x", "y"]}]
     nodes = [
         helper.make_node("Unsqueeze", ["others_mask", "last"], ["m"]),
         helper.make_node("Mul", ["others", "m"], ["shown"]),
         helper.make_node("ReduceSum", ["shown", "one"], ["action"], keepdims=0),
     ]
-    ends = (
-        [tensor("goal", ["n", 3]), tensor("others", ["n", 3, 2]), tensor("others_mask", ["n", 3])],
-        [tensor("action", ["n", 2])],
-    )
+    inputs = [tensor("goal", ["n", 3]), tensor("others", ["n", 3, 2]), tensor("others_mask", ["n", 3])]
+    result = [tensor("action", ["n", 2])]
     arrays = {"last": np.array([2]), "one": np.array([1])}
     document = {**DOCUMENT, "layout": {"parts": parts}, "output": {"input": "action"}}
     seen = observations(9)
-    summed = open_network(write(tmp_path / "sum.onnx", model(nodes, *ends, arrays), document)).act(seen)
+    summed = open_network(write(tmp_path / "sum.onnx", model(nodes, inputs, result, arrays), document)).act(seen)
     joined = {**document, "joined": "obs"}
-    take = model(
-        [helper.make_node("Gemm", ["obs", "w"], ["action"])],
-        [tensor("obs", ["n", 9])],
-        [tensor("action", ["n", 2])],
-        {"w": np.concatenate([np.zeros((3, 2)), np.tile(np.eye(2), (3, 1))]).astype(np.float32)},
-    )
+    w = np.concatenate([np.zeros((3, 2)), np.tile(np.eye(2), (3, 1))]).astype(np.float32)
+    take = model([helper.make_node("Gemm", ["obs", "w"], ["action"])], [tensor("obs", ["n", 9])], result, {"w": w})
     policy = open_network(write(tmp_path / "joined.onnx", take, joined))
     np.testing.assert_allclose(policy.act(seen), summed, atol=1e-6)
-    assert seen.neighbors is not None
     assert not summed[~seen.neighbors.mask[:, :3].any(axis=1)].any()
 
 
@@ -99,13 +88,11 @@ def test_memory_belongs_to_a_robot_and_ends_with_its_episode(tmp_path: Path) -> 
         helper.make_node("ReduceSum", ["z", "one"], ["s"]),
         helper.make_node("Add", ["next", "s"], ["action"]),
     ]
-    ends = (
-        [tensor("goal", ["n", 3]), tensor("count", ["n", 2])],
-        [tensor("action", ["n", 2]), tensor("next", ["n", 2])],
-    )
+    inputs = [tensor("goal", ["n", 3]), tensor("count", ["n", 2])]
+    outputs = [tensor("action", ["n", 2]), tensor("next", ["n", 2])]
     arrays = {"step": np.ones((1, 2), np.float32), "zero": np.zeros(1, np.float32), "one": np.array([1])}
     document = {**DOCUMENT, "output": {"input": "action"}, "memory": {"count": "next"}}
-    policy = open_network(write(tmp_path / "count.onnx", model(nodes, *ends, arrays), document))
+    policy = open_network(write(tmp_path / "count.onnx", model(nodes, inputs, outputs, arrays), document))
     seen = observations(4)
     policy.act(replace(seen, first=np.ones(4, dtype=bool)))
     policy.act(seen)
@@ -116,10 +103,7 @@ def test_memory_belongs_to_a_robot_and_ends_with_its_episode(tmp_path: Path) -> 
     ("change", "message"),
     [
         ({"layout": {"parts": [{"name": "own"}]}}, "own: the model has no such input, allowed: goal"),
-        (
-            {"layout": {"parts": [{"name": "goal", "features": ["x"]}]}},
-            "float32 1 x 3, allowed: float32 or float64 1 x 1",
-        ),
+        ({"layout": {"parts": [{"name": "goal", "features": ["x"]}]}}, "1 x 3, allowed: float32 or float64 1 x 1"),
         ({"layout": {"parts": [{"name": "goal"}, {"name": "own"}]}}, "own: the model has no such input"),
         ({"output": {"input": "result"}}, "output.input: the model has no such output, given: result, allowed: action"),
         ({"drives": ["omni_angular"]}, "omni_angular has 3 controls, given: 2"),
@@ -192,9 +176,8 @@ def test_work_and_memory_are_bounded_before_anything_runs(tmp_path: Path) -> Non
     assert "too many numbers that operations return for a robot, given: 5000000" in message
     free = one_node("Reshape", ["goal", "shape"], ["n", "m"], {})
     free.graph.input.append(tensor("shape", [2], 7))
-    assert "action: the size of this tensor is not known before the model runs" in refused(
-        write(tmp_path / "free.onnx", free)
-    )
+    message = refused(write(tmp_path / "free.onnx", free))
+    assert "action: the size of this tensor is not known before the model runs" in message
     path = write(tmp_path / "net.onnx", perceptron())
     for limit, what in (
         ({"parameters": 100}, "too many parameters, given: 386"),
@@ -296,11 +279,12 @@ def test_equal_networks_give_equal_bytes() -> None:
 
 
 def test_layers_that_are_not_written_are_named() -> None:
-    layers = [{"name": "layer_norm", "label": "action", "inputs": ["goal"]}]
-    data = {"layout": {"parts": [{"name": "goal"}]}, "network": layers, "output": {"input": "action"}, "drives": None}
+    data = {
+        "layout": {"parts": [{"name": "goal"}]}, "drives": ["omni_angular"],
+        "network": [{"name": "layer_norm", "label": "action", "inputs": ["goal"]}],
+        "output": {"input": "action", "low": [0, -1, 0], "high": [1, 1, 1]},
+    }  # fmt: skip
     arrays = {"action.scale": np.ones(3, np.float32), "action.shift": np.zeros(3, np.float32)}
-    data["output"] = {"input": "action", "low": [0, -1, 0], "high": [1, 1, 1]}
-    data["drives"] = ["omni_angular"]
     made = Network(read_document(PolicyDocument, data, "test"), arrays)
     with pytest.raises(PolicyFileError, match=r"network\[0\]: this layer is not written as ONNX, given: layer_norm"):
         onnx_bytes(made)
