@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import gc
+import importlib
 import os
 import signal
 import sys
@@ -24,9 +26,24 @@ from tests import warm
 from tests.browser import chromium, watched  # noqa: F401  # fixtures
 from tests.warm import schema
 
+ROOT = Path(__file__).resolve().parents[1]
 # How fast a machine draws and runs examples is no property of the code.
 settings.register_profile("irsim", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("irsim")
+
+
+def pytest_collection(session: pytest.Session) -> None:
+    """With ``-n``, let each process first import a share of the modules, which the others then find compiled.
+
+    Assertions are rewritten when a module is compiled, which takes longer than all else of the collection.
+    """
+    worker = getattr(session.config, "workerinput", None)
+    if worker is None or session.config.args != session.config.getini("testpaths"):
+        return
+    names = [".".join(path.relative_to(ROOT).with_suffix("").parts) for path in sorted(ROOT.glob("tests/**/test_*.py"))]
+    for name in names[int(worker["workerid"][2:]) :: worker["workercount"]]:
+        with contextlib.suppress(Exception, pytest.skip.Exception):  # the collection tells
+            importlib.import_module(name)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

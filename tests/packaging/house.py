@@ -23,7 +23,6 @@ PACKAGES = ("irsim", "mcp_server", "evals")
 _POSE = {"at", "pose", "poses", "position", "record", "state", "view"}
 _SHAPE = {"corners", "footprint", "geometry", "outline", "parts", "radius", "shape", "vertices"}
 _PARTS_LOOP = r"enumerate\([\w.]*(?:state)?\.?(?:parts\(|kinds\))|kinds = [\w.]*state\.parts"
-_CHILD = r"subprocess\.Popen\(|anyio\.open_process\(|\.Process\(|get_context\("
 _PROBE = Path(__file__).with_name("house_probe.py")
 
 
@@ -56,6 +55,16 @@ def object_types() -> list[str]:
         for path, tree in trees().items()
         for node in ast.walk(tree)
         if isinstance(node, ast.ClassDef) and (names := _fields(node)) & _POSE and names & _SHAPE
+    ]
+
+
+def problem_types() -> list[str]:
+    """Classes that describe a problem: they have a code and a fix among their fields."""
+    return [
+        f"{path}:{node.name}"
+        for path, tree in trees().items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef) and _fields(node) >= {"code", "fix"}
     ]
 
 
@@ -108,6 +117,11 @@ def part_loops() -> list[str]:
     return files_with(_PARTS_LOOP)
 
 
+def process_starts() -> list[str]:
+    """Files that start a process."""
+    return files_with(r"subprocess\.Popen\(|anyio\.open_process\(|\.Process\(|get_context\(")
+
+
 def process_limits() -> list[str]:
     """Files that limit what a process uses."""
     return files_with(r"\.setrlimit\(")
@@ -157,7 +171,8 @@ def rows() -> Iterator[tuple[str, object]]:
         "loops over the kinds of parts": part_loops,
         "files that limit a process": process_limits,
         "files that translate errors of models": translators,
-        "files that start a process": lambda: files_with(_CHILD),
+        "types that describe a problem": problem_types,
+        "files that start a process": process_starts,
         "files that hash": lambda: files_with(r"hashlib\."),
     }
     for name, find in counted.items():

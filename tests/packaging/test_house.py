@@ -15,6 +15,8 @@ from tests.packaging import house
         (house.object_types, 9),
         (house.part_loops, 1),
         (house.process_limits, 1),
+        (house.process_starts, 7),
+        (house.problem_types, 5),
         (house.translators, 5),
     ],
 )
