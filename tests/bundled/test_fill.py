@@ -6,6 +6,8 @@ import yaml
 from irsim.bundled.templates import Template, TemplateError, fill, parse_settings
 from irsim.bundled.templates.fill import evaluate, parse_path, replace_values
 
+pytestmark = pytest.mark.one_python
+
 TEXT = """\
 # a room
 world:
@@ -18,23 +20,15 @@ robot:
 
 @pytest.fixture
 def room() -> Template:
-    return Template.model_validate(
-        {
-            "name": "room",
-            "title": "Room",
-            "purpose": "A room.",
-            "tags": ["room"],
-            "outcomes": ["success"],
-            "parameters": {
-                "width": {"type": "number", "default": 10, "min": 2, "max": 50, "unit": "m", "description": "Extent."},
-                "count": {"type": "integer", "default": 1, "min": 1, "description": "How many."},
-                "drive": {"type": "choice", "default": "diff", "choices": ["diff", "omni"], "description": "Drive."},
-                "walls": {"type": "boolean", "default": True, "description": "Walls."},
-            },
-            "sets": {"world.width": "width", "robot[0].goal": "[width - 1.5, 6.5, 0]"},
-            "text": TEXT,
-        }
-    )
+    about = {"name": "room", "title": "Room", "purpose": "A room.", "tags": ["room"], "outcomes": ["success"]}
+    parameters = {
+        "width": {"type": "number", "default": 10, "min": 2, "max": 50, "unit": "m", "description": "Extent."},
+        "count": {"type": "integer", "default": 1, "min": 1, "description": "How many."},
+        "drive": {"type": "choice", "default": "diff", "choices": ["diff", "omni"], "description": "Drive."},
+        "walls": {"type": "boolean", "default": True, "description": "Walls."},
+    }
+    sets = {"world.width": "width", "robot[0].goal": "[width - 1.5, 6.5, 0]"}
+    return Template.model_validate({**about, "parameters": parameters, "sets": sets, "text": TEXT})
 
 
 def test_defaults_leave_the_text_as_it_is(room: Template) -> None:
@@ -110,22 +104,10 @@ def test_expressions(expression: str, expected: object) -> None:
     assert evaluate(expression, {"a": 3, "kind": "y"}) == expected
 
 
-@pytest.mark.parametrize(
-    "expression",
-    [
-        "b",
-        "a.real",
-        "a ** 9 ** 9",
-        "__import__('os')",
-        "[x for x in 'ab']",
-        "'a' * 3",
-        "(lambda: 1)()",
-        "f'{a}'",
-        "[1][-1]",
-        "[1][0.5]",
-        "'a'[0]",
-    ],
-)
+HARMFUL = ["a ** 9 ** 9", "__import__('os')", "[x for x in 'ab']", "'a' * 3", "(lambda: 1)()", "f'{a}'", "a.real"]
+
+
+@pytest.mark.parametrize("expression", [*HARMFUL, "b", "[1][-1]", "[1][0.5]", "'a'[0]"])
 def test_expressions_can_do_no_more_than_arithmetic(expression: str) -> None:
     with pytest.raises(ValueError, match="template expression"):
         evaluate(expression, {"a": 3})

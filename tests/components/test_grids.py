@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 from PIL import Image
 
 import irsim
 from irsim.components.maps._bundled import bundled_map, bundled_names
 from irsim.diagnostics.errors import ScenarioError
+from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.scenario.limits import Limits
 from irsim.scenario.read import read
 from irsim.world.map import (
@@ -76,12 +78,8 @@ def test_orientation(tmp_path) -> None:
     wall = env.obstacle_list[-1]
     assert isinstance(wall, ObstacleMap)
     assert (wall.name, wall.shape, wall.static, wall.kinematics, wall.goal) == ("obstacle_1", "map", True, None, None)
-    assert wall.geometry.bounds == (-2.0, 10.0, 0.0, 13.0)
-    assert [line.length for line in wall.linestrings] == [10.0]
-    assert wall.world_offset == [-2.0, 10.0]
-    assert wall.grid_map.shape == (6, 3)
-    import shapely
-
+    assert (wall.geometry.bounds, wall.world_offset) == ((-2.0, 10.0, 0.0, 13.0), [-2.0, 10.0])
+    assert ([line.length for line in wall.linestrings], wall.grid_map.shape) == ([10.0], (6, 3))
     assert wall.check_grid_collision(shapely.Point(-1, 12))  # touches
     assert not wall.is_collision(shapely.Point(-0.9, 12))
     assert not wall.is_collision(shapely.Point(40, 12))
@@ -142,14 +140,12 @@ def test_bundled_maps() -> None:
     assert bundled_map("../_data/cave.png") is None
 
 
-@pytest.mark.parametrize("place", [(5, 5), (45, 45), (25, 25), (5, 45), (45, 5)])
-def test_the_cave_is_free_where_scripts_put_robots(place) -> None:
-    text = (
-        "world: {width: 50, height: 50, obstacle_map: cave.png}\n"
-        "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 1.5}, behavior: {name: dash}, goal: [9, 9],\n"
-        f"        state: [{place[0]}, {place[1]}, 0]}}\n"
-    )
-    assert read(text).diagnostics == []
+def test_the_cave_is_free_where_scripts_put_robots() -> None:
+    robot = {"kinematics": {"name": "diff"}, "shape": {"name": "circle", "radius": 1.5}, "behavior": {"name": "dash"}}
+    for x, y in ((5, 5), (45, 45), (25, 25), (5, 45), (45, 5)):
+        world = {"width": 50, "height": 50, "obstacle_map": "cave.png"}
+        data = {"world": world, "robot": {**robot, "goal": [9, 9], "state": [x, y, 0]}}
+        assert read(data).diagnostics == [], (x, y)
 
 
 @pytest.fixture
@@ -270,8 +266,6 @@ def test_maps_are_drawn(tmp_path) -> None:
     env.render()
     picture = np.asarray(Image.open(env.save_figure(tmp_path / "out.png")).convert("L"))
     assert (picture == 0).mean() > 0.2
-    from irsim.objects.drawing.scene_builder import SceneBuilder
-
     [grid] = SceneBuilder(env.simulation).build().as_dict()["grids"]
     assert sum(grid["runs"][1::2]) == env.simulation.state.cells(1).count
     assert sum(grid["runs"]) == 7 * 11

@@ -12,10 +12,12 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
+from typer.testing import CliRunner
 
 from irsim import api
 from irsim.bridges.maps import import_map
 from irsim.bridges.maps.ros_server import MapFileError, export_map
+from irsim.cli.app import app
 from irsim.common.files import TargetError
 from irsim.components.maps._rosmap import MODES, RosMeta, occupancy_of, pixels_of
 from irsim.scenario.limits import Limits
@@ -32,16 +34,15 @@ def write(folder: Path, pixels: np.ndarray, **keys) -> Path:
     """A map of the map server."""
     Image.fromarray(pixels).save(folder / "map.pgm")
     file = folder / "map.yaml"
-    values = {
-        "image": "map.pgm",
-        "resolution": 0.5,
-        "origin": [-1.0, 2.0, 0.0],
-        "negate": 0,
-        "occupied_thresh": 0.65,
-        "free_thresh": 0.196,
-        **keys,
-    }
-    file.write_text(yaml.safe_dump(values))
+    values = {"image": "map.pgm", "resolution": 0.5, "origin": [-1.0, 2.0, 0.0], "negate": 0}
+    file.write_text(yaml.safe_dump({**values, "occupied_thresh": 0.65, "free_thresh": 0.196, **keys}))
+    return file
+
+
+def world_of(folder: Path, keys: str = "", more: str = "") -> Path:
+    """A scenario of the map beside it."""
+    file = folder / "s.yaml"
+    file.write_text(f"world: {{{keys}obstacle_map: {{name: ros, path: map.yaml{more}}}}}\n")
     return file
 
 
@@ -87,23 +88,19 @@ def test_round_trip(seed, mode, negate, thresholds) -> None:
 
 def test_the_world_takes_its_extent_from_the_map(tmp_path) -> None:
     write(tmp_path, corner())
-    (tmp_path / "s.yaml").write_text("world: {obstacle_map: {name: ros, path: map.yaml}}\n")
-    reading = read(tmp_path / "s.yaml")
+    reading = read(world_of(tmp_path))
     world, grid = reading.scenario.world, reading.scenario.grid
     assert reading.diagnostics == []
     assert (world.width, world.height, world.offset) == (3.0, 2.0, [-1.0, 2.0])
     assert grid.cell == (0.5, 0.5)
     assert np.argwhere(grid.cells.occupied).tolist() == [[0, 3]]
-    (tmp_path / "s.yaml").write_text("world: {obstacle_map: {name: ros, path: map.yaml, unknown: occupied}}\n")
-    grid = read(tmp_path / "s.yaml").scenario.grid
+    grid = read(world_of(tmp_path, more=", unknown: occupied")).scenario.grid
     assert np.argwhere(grid.cells.occupied).tolist() == [[0, 3], [5, 0]]
 
 
 def test_a_given_extent_cuts_and_pads(tmp_path) -> None:
     write(tmp_path, corner())
-    text = "world: {width: 5, height: 3, offset: [-2, 2], obstacle_map: {name: ros, path: map.yaml}}\n"
-    (tmp_path / "s.yaml").write_text(text)
-    scenario = read(tmp_path / "s.yaml").scenario
+    scenario = read(world_of(tmp_path, "width: 5, height: 3, offset: [-2, 2], ")).scenario
     assert scenario.world.bounds == (-2.0, 2.0, 3.0, 5.0)
     assert scenario.grid.size == (10, 6)
     [cell] = np.argwhere(scenario.grid.cells.occupied)
@@ -115,8 +112,7 @@ def test_turned_maps_are_sampled_anew(tmp_path, yaw) -> None:
     pixels = np.full((40, 60), 254, np.uint8)
     pixels[5:9, 10:50] = 0  # a bar, 4 m x 0.4 m
     write(tmp_path, pixels, resolution=0.1, origin=[1.0, 2.0, yaw])
-    (tmp_path / "s.yaml").write_text("world: {obstacle_map: {name: ros, path: map.yaml}}\n")
-    scenario = read(tmp_path / "s.yaml").scenario
+    scenario = read(world_of(tmp_path)).scenario
     c, s = math.cos(yaw), math.sin(yaw)
     cells = scenario.grid.cells
     i, j = np.nonzero(cells.occupied)
@@ -176,8 +172,7 @@ def test_oblong_cells_become_square(tmp_path) -> None:
 )
 def test_wrong_files_are_refused(tmp_path, change, said) -> None:
     write(tmp_path, corner(), **change)
-    (tmp_path / "s.yaml").write_text("world: {obstacle_map: {name: ros, path: map.yaml}}\n")
-    [diagnostic] = read(tmp_path / "s.yaml").diagnostics
+    [diagnostic] = read(world_of(tmp_path)).diagnostics
     assert (diagnostic.code, diagnostic.severity, diagnostic.line) == ("map-unreadable", "error", 1)
     assert said in diagnostic.message
     with pytest.raises(MapFileError, match=said):
@@ -185,27 +180,22 @@ def test_wrong_files_are_refused(tmp_path, change, said) -> None:
 
 
 def test_no_map_no_picture_no_escape(tmp_path) -> None:
-    (tmp_path / "s.yaml").write_text("world: {obstacle_map: {name: ros, path: map.yaml}}\n")
-    assert [item.code for item in read(tmp_path / "s.yaml").diagnostics] == ["map-not-found"]
+    file = world_of(tmp_path)
+    assert [item.code for item in read(file).diagnostics] == ["map-not-found"]
     write(tmp_path, corner(), image="other.pgm")
-    assert [item.code for item in read(tmp_path / "s.yaml").diagnostics] == ["map-not-found"]
+    assert [item.code for item in read(file).diagnostics] == ["map-not-found"]
     (tmp_path / "map.yaml").write_text("- a list\n")
-    assert [item.code for item in read(tmp_path / "s.yaml").diagnostics] == ["map-unreadable"]
+    assert [item.code for item in read(file).diagnostics] == ["map-unreadable"]
     inside = tmp_path / "inside"
     inside.mkdir()
     write(tmp_path, corner())
     write(inside, corner(), image="../map.pgm")
-    (inside / "s.yaml").write_text("world: {obstacle_map: {name: ros, path: map.yaml}}\n")
-    reading = read(inside / "s.yaml", limits=Limits(root=str(inside)))
+    reading = read(world_of(inside), limits=Limits(root=str(inside)))
     assert reading.scenario is None or reading.scenario.grid is None
     assert [item.code for item in reading.diagnostics] == ["path-outside-workspace"]
 
 
 def test_the_command(tmp_path, monkeypatch) -> None:
-    from typer.testing import CliRunner
-
-    from irsim.cli.app import app
-
     monkeypatch.chdir(tmp_path)
     write(tmp_path, corner())
 

@@ -1,24 +1,31 @@
-"""The manifests for agents' hosts name the same package, version, server and skills."""
+"""Manifests and blocks for agents' hosts: the same package, version, server and skills, and each starts the server."""
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 from typing import Any
 
 import pytest
+from mcp import Client, StdioServerParameters
 
 from irsim import __version__
+from tests.warm import warm
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
+
+pytestmark = pytest.mark.one_python
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -33,6 +40,10 @@ CLAUDE, MARKET = load(".claude-plugin/plugin.json"), load(".claude-plugin/market
 COPILOT = load(".github/plugin/marketplace.json")
 CODEX, GEMINI = load(".codex-plugin/plugin.json"), load("gemini-extension.json")
 BUNDLE = load("mcp_server/bundle/manifest.json")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SECTION = README.partition("## For agents\n")[2].partition("\n## ")[0]
+TOOLS = {"lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run", "benchmark", "get_job"}
+SCRIPTS = "/path/to/irsim/.venv/bin"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 MANIFESTS = {
     "claude": CLAUDE,
@@ -95,9 +106,8 @@ def test_each_starts_the_server_of_this_version() -> None:
     )
     assert BUNDLE["user_config"]["workspace"]["type"] == "directory"
     assert BUNDLE["user_config"]["workspace"]["required"] is True
-    assert (
-        BUNDLE["user_config"]["workspace"]["description"] == SERVER["packages"][0]["packageArguments"][0]["description"]
-    )
+    described = SERVER["packages"][0]["packageArguments"][0]["description"]
+    assert BUNDLE["user_config"]["workspace"]["description"] == described
 
 
 def test_the_bundle_asks_for_this_version_and_starts_it(tmp_path: Path) -> None:
@@ -106,13 +116,8 @@ def test_the_bundle_asks_for_this_version_and_starts_it(tmp_path: Path) -> None:
     assert project["dependencies"] == [f"{PROJECT['name']}=={PROJECT['version']}"]
     assert project["version"] == PROJECT["version"]
     assert project["requires-python"] == PROJECT["requires-python"] == BUNDLE["compatibility"]["runtimes"]["python"]
-    done = subprocess.run(
-        [sys.executable, str(folder / BUNDLE["server"]["entry_point"]), "--version"],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        check=False,
-    )
+    command = [sys.executable, str(folder / BUNDLE["server"]["entry_point"]), "--version"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
     assert done.stdout == f"irsim-mcp {__version__}\n", done.stderr
 
 
@@ -125,13 +130,7 @@ def test_skills_are_where_the_plugins_say() -> None:
 
 def test_keys_are_those_the_hosts_know() -> None:
     assert set(GEMINI) <= {
-        "name",
-        "version",
-        "description",
-        "mcpServers",
-        "contextFileName",
-        "excludeTools",
-        "settings",
+        *("name", "version", "description", "mcpServers", "contextFileName", "excludeTools", "settings")
     }
     assert re.fullmatch(r"[a-z0-9-]+", GEMINI["name"])
     assert set(CODEX) <= {
@@ -163,9 +162,112 @@ def test_claude_accepts_the_plugin(path: str, tmp_path: Path) -> None:
 
 
 def test_claude_installs_the_plugin_by_the_readmes_commands(tmp_path: Path) -> None:
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    commands = re.findall(r"`claude (plugin [^`]+)`", readme)
+    commands = re.findall(r"`claude (plugin [^`]+)`", README)
     assert len(commands) == 2
     for command in commands:
         words = command.replace("/path/to/irsim", str(ROOT)).split()
         validated(shutil.which("claude"), *words, home=tmp_path)
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^ *```{language}\n(.*?)^ *```", SECTION, re.DOTALL | re.MULTILINE)
+
+
+def configurations() -> list[dict[str, Any]]:
+    """The entry for irsim in each block: two forms of JSON and TOML."""
+    loaded = [*map(json.loads, blocks("json")), *map(tomllib.loads, blocks("toml"))]
+    return [block.get("mcpServers", block.get("servers", block.get("mcp_servers")))["irsim"] for block in loaded]
+
+
+def test_each_host_has_a_block() -> None:
+    for host in ("Claude Code", "Claude Desktop", "Cursor", "Codex", "VS Code"):
+        assert host in SECTION
+    keys = [next(iter(json.loads(block))) for block in blocks("json")]
+    assert keys == ["mcpServers", "servers"]
+    assert [list(tomllib.loads(block)) for block in blocks("toml")] == [["mcp_servers"]]
+
+
+async def served(command: str, arguments: list[str], mode: str) -> tuple[str, set[str]]:
+    server = StdioServerParameters(command=command, args=arguments)
+    async with Client(server, mode=mode) as client:
+        tools = await client.list_tools()
+        return client.server_info.name, {tool.name for tool in tools.tools}
+
+
+@pytest.mark.parametrize("mode", ["auto", pytest.param("legacy", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("index", [0, *(pytest.param(index, marks=pytest.mark.slow) for index in (1, 2))])
+def test_the_command_of_each_block_starts_a_server_that_answers(tmp_path: Path, index: int, mode: str) -> None:
+    entry = configurations()[index]
+    assert set(entry) <= {"type", "command", "args"}
+    assert entry.get("type", "stdio") == "stdio"
+    folder, _, program = entry["command"].rpartition("/")
+    assert folder == SCRIPTS
+    arguments = [word.replace("/path/to/scenarios", str(tmp_path)) for word in entry["args"]]
+    assert str(tmp_path) in arguments
+    installed = str(Path(sysconfig.get_path("scripts"), program))  # a clone's environment, this one
+    name, tools = asyncio.run(served(installed, arguments, mode))
+    assert name == "irsim"
+    assert tools == TOOLS
+
+
+def test_the_tools_are_named_and_the_published_form_is_called_future() -> None:
+    assert set(re.findall(r"`(\w+)`", SECTION)) >= TOOLS
+    later = SECTION.partition("Once the package is published")[2].partition("\n\n")[0]
+    assert "`uvx`" in later
+    assert '["irsim-mcp", "--workspace", …]' in later
+    assert SECTION.count("uvx") == 1
+
+
+def test_the_skills_are_installed_where_hosts_look(tmp_path: Path) -> None:
+    lines = [line for block in blocks("bash") for line in block.splitlines()]
+    assert len(lines) == 4
+    for line in lines:
+        command, _, place = line.partition("  #")
+        subprocess.run(warm([sys.executable, "-m", *shlex.split(command)]), cwd=tmp_path, check=True, timeout=60)
+        assert (tmp_path / place.split(",")[0].strip() / "irsim-scenario" / "SKILL.md").is_file()
+
+
+def test_every_skill_is_named() -> None:
+    for page in (ROOT / "skills").glob("*/SKILL.md"):
+        assert f"({page.relative_to(ROOT).as_posix()})" in SECTION
+
+
+def test_the_registry_can_see_that_the_package_is_ours() -> None:
+    assert f"<!-- mcp-name: {SERVER['name']} -->" in README
+
+
+def test_server_json_follows_the_registrys_rules() -> None:
+    assert SERVER["$schema"] == "https://static.modelcontextprotocol.io/schemas/2025-12-11/server.schema.json"
+    assert re.fullmatch(r"[a-zA-Z0-9.-]+/[a-zA-Z0-9._-]+", SERVER["name"])
+    assert 3 <= len(SERVER["name"]) <= 200
+    assert all(1 <= len(SERVER[key]) <= 100 for key in ("description", "title"))
+    assert set(SERVER) <= {
+        *("$schema", "name", "title", "description", "version", "repository", "websiteUrl", "icons", "packages"),
+        *("remotes", "_meta"),
+    }
+    assert re.fullmatch(r"\d+\.\d+\.\d+", SERVER["version"])  # exact: no range, not "latest"
+    assert SERVER["version"] == __version__
+
+
+def test_server_json_names_the_package_and_how_it_is_started() -> None:
+    [package] = SERVER["packages"]
+    assert set(package) <= {
+        *("registryType", "registryBaseUrl", "identifier", "version", "runtimeHint", "transport", "packageArguments"),
+        *("runtimeArguments", "environmentVariables", "fileSha256"),
+    }
+    assert (package["registryType"], package["registryBaseUrl"]) == ("pypi", "https://pypi.org")
+    assert package["identifier"] == PROJECT["name"]
+    assert package["version"] == SERVER["version"] == PROJECT["version"]
+    assert package["identifier"] in PROJECT["scripts"]  # what uvx runs
+    assert package["runtimeHint"] == "uvx"
+    assert package["transport"] == {"type": "stdio"}
+    for argument in package["packageArguments"]:
+        assert argument["type"] == "named"
+        assert argument["format"] in {"string", "number", "boolean", "filepath"}
+
+
+def test_arguments_of_server_json_are_the_servers_own() -> None:
+    command = warm([sys.executable, "-m", "irsim_mcp", "--help"])
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    for argument in SERVER["packages"][0]["packageArguments"]:
+        assert argument["name"] in done.stdout

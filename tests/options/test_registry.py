@@ -47,6 +47,13 @@ def test_features_of_plug_ins_are_loaded_when_they_are_asked_for(registry: Regis
     assert (feature.options, feature.function) == (Boat, len)
 
 
+def test_a_feature_without_a_function_is_known_and_not_simulated(registry: Registry) -> None:
+    registry.register(Boat)
+    feature = registry.get("boat")
+    assert feature is not None
+    assert (feature.simulated, feature.origin) == (False, __name__)
+
+
 def test_a_feature_that_lacks_a_library_is_not_called_unknown(registry: Registry) -> None:
     with pytest.raises(ModuleNotFoundError, match="a_library_that_nobody_has"):
         registry.get("hovercraft")

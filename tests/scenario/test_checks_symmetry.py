@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 
 import irsim
+from irsim.results.findings import Finding
 
 
-def codes(text: str) -> list[str]:
-    return [finding.code for finding in irsim.validate(text=text).findings]
+def reports(text: str, code: str = "exact-symmetry") -> list[Finding]:
+    return [finding for finding in irsim.validate(text=text).findings if finding.code == code]
 
 
 def pair(behavior: str, starts: str, goals: str, tops: tuple[float, float] = (1.0, 1.0)) -> str:
@@ -20,29 +21,42 @@ def pair(behavior: str, starts: str, goals: str, tops: tuple[float, float] = (1.
     return f"world: {{width: 20, height: 10}}\nrobot:\n{entries}"
 
 
-@pytest.mark.parametrize("behavior", ["name: orca", "name: rvo", "name: sfm", "name: follow, local: {name: orca}"])
-def test_head_on_is_reported_only_where_ties_are_left(behavior: str) -> None:
-    places = "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]"
-    assert "exact-symmetry" not in codes(pair(behavior, *places))
-    for angle in (0, 10):
-        chosen = behavior.replace("{name: orca}", f"{{name: orca, sidestep: {angle}}}")
-        chosen = chosen if chosen != behavior else f"{behavior}, sidestep: {angle}"
-        assert ("exact-symmetry" in codes(pair(chosen, *places))) == (angle == 0)
+HEAD_ON = "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]"
+BEHIND = "[1, 5, 0];[3, 5, 0]", "[15, 5];[18, 5]"
+DRAWN = "robot: {number: 6, distribution: {name: random}, kinematics: {name: omni}, behavior: {name: orca}}"
 
 
-def test_the_noise_of_avocado_chooses_a_side() -> None:
-    places = "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]"
-    assert "exact-symmetry" not in codes(pair("name: avocado, sidestep: 0", *places))
-    assert "exact-symmetry" in codes(pair("name: avocado, noise: 0, sidestep: 0", *places))
+@pytest.mark.parametrize(
+    "behavior", ["name: orca%s", "name: rvo%s", "name: sfm%s", "name: follow, local: {name: orca%s}"]
+)
+@pytest.mark.parametrize(("sidestep", "reported"), [("", False), (", sidestep: 10", False), (", sidestep: 0", True)])
+def test_head_on_is_reported_only_where_ties_are_left(behavior: str, sidestep: str, reported: bool) -> None:
+    assert bool(reports(pair(behavior % sidestep, *HEAD_ON))) == reported
+
+
+@pytest.mark.parametrize(
+    ("text", "reported"),
+    [
+        (pair("name: avocado, sidestep: 0", *HEAD_ON), False),  # its noise chooses a side
+        (pair("name: avocado, noise: 0, sidestep: 0", *HEAD_ON), True),
+        (pair("name: orca", "[1, 5, 0];[12, 5.2, 3.14]", "[12, 5];[1, 5.2]"), False),  # they pass beside each other
+        (pair("name: orca", *BEHIND, tops=(1.0, 0.4)), True),  # it catches up with a slower one
+        (pair("name: orca", *BEHIND, tops=(1.0, 1.0)), False),
+        (pair("name: orca", *BEHIND, tops=(1.0, 0.95)), False),
+        (DRAWN, False),
+    ],
+)
+def test_only_starts_that_stay_symmetric_are_reported(text: str, reported: bool) -> None:
+    assert bool(reports(text)) == reported
 
 
 @pytest.mark.parametrize("law", ["rvo", "sfm"])
 def test_cars_that_would_not_pass_are_told_of_the_behavior_that_does(law: str) -> None:
-    text = pair(f"name: {law}", "[1, 5, 0];[12, 5, 3.14]", "[12, 5];[1, 5]").replace("omni", "acker")
-    [finding] = [one for one in irsim.validate(text=text).findings if one.code == "exact-symmetry"]
+    text = pair(f"name: {law}", *HEAD_ON).replace("omni", "acker")
+    [finding] = reports(text)
     assert "'follow' with 'local: {name: footprint_orca}'" in (finding.fix or "")
     cured = text.replace(f"name: {law}", "name: follow, local: {name: footprint_orca}")
-    assert "exact-symmetry" not in codes(cured)
+    assert not reports(cured)
     assert irsim.run(text=cured, seed=0).outcome == "success"
 
 
@@ -59,7 +73,7 @@ def test_what_is_said_to_rings_of_cars_lets_them_pass(law: str, count: int) -> N
     """Under ``orca`` four of these cars stand for ever."""
     drive, cure = "name: acker, wheelbase: 1", "name: follow, local: {name: footprint_orca}"
     text = RING.format(count=count, drive=drive, behavior=f"name: {law}")
-    [finding] = [one for one in irsim.validate(text=text).findings if one.code == "exact-symmetry"]
+    [finding] = reports(text)
     assert "footprint_orca" in (finding.fix or "")
     assert irsim.run(text=RING.format(count=count, drive=drive, behavior=cure), seed=0).outcome == "success"
 
@@ -69,21 +83,10 @@ def test_what_is_said_to_rings_of_cars_lets_them_pass(law: str, count: int) -> N
 def test_rings_under_social_forces_are_reported_where_they_stand(drive: str, count: int) -> None:
     text = RING.format(count=count, drive=drive, behavior="name: sfm")
     stands = irsim.run(text=text, seed=0).outcome != "success"
-    assert ("exact-symmetry" in codes(text)) == stands == (count > 9)
+    assert bool(reports(text)) == stands == (count > 9)
     cured = text.replace("name: sfm", "name: footprint_orca")
-    assert "exact-symmetry" not in codes(cured)
+    assert not reports(cured)
     assert irsim.run(text=cured, seed=0).outcome == "success"
-
-
-def test_ways_beside_each_other_are_not_reported() -> None:
-    assert "exact-symmetry" not in codes(pair("name: orca", "[1, 5, 0];[12, 5.2, 3.14]", "[12, 5];[1, 5.2]"))
-
-
-def test_behind_a_slower_one_is_reported_only_if_it_catches_up() -> None:
-    places = "[1, 5, 0];[3, 5, 0]", "[15, 5];[18, 5]"
-    assert "exact-symmetry" in codes(pair("name: orca", *places, tops=(1.0, 0.4)))
-    assert "exact-symmetry" not in codes(pair("name: orca", *places, tops=(1.0, 1.0)))
-    assert "exact-symmetry" not in codes(pair("name: orca", *places, tops=(1.0, 0.95)))
 
 
 @pytest.mark.parametrize(
@@ -100,21 +103,15 @@ def test_behind_a_slower_one_is_reported_only_if_it_catches_up() -> None:
     ],
 )
 def test_what_is_said_of_one_behind_a_slower_one_is_what_it_does(behavior: str, words: str | None, end: str) -> None:
-    text = pair(behavior, "[1, 5, 0];[3, 5, 0]", "[15, 5];[18, 5]", tops=(1.0, 0.4))
-    messages = [f.message for f in irsim.validate(text=text).findings if f.code == "exact-symmetry"]
+    text = pair(behavior, *BEHIND, tops=(1.0, 0.4))
+    messages = [finding.message for finding in reports(text)]
     assert len(messages) == (words is not None)
     assert words is None or words in messages[0]
     first = irsim.run(text=text, seed=0).robots[0]
     slow_time = 12 / 0.4  # the one ahead needs this long to the goal of the one behind
     arrived = first.time_to_goal
-    assert (
-        "collides" if first.outcome == "collision" else "passes" if arrived and arrived < 0.8 * slow_time else "trails"
-    ) == end
-
-
-def test_starts_that_are_drawn_are_not_reported() -> None:
-    text = "robot: {number: 6, distribution: {name: random}, kinematics: {name: omni}, behavior: {name: orca}}"
-    assert "exact-symmetry" not in codes(text)
+    passes = arrived is not None and arrived < 0.8 * slow_time
+    assert ("collides" if first.outcome == "collision" else "passes" if passes else "trails") == end
 
 
 def car(threshold: float, reverse: bool) -> str:
@@ -129,10 +126,10 @@ def car(threshold: float, reverse: bool) -> str:
 
 def test_a_car_on_a_route_is_warned_of_a_goal_narrower_than_its_step() -> None:
     for reverse, words in ((True, "shunt"), (False, "never get to its goal")):
-        overshoots = [f for f in irsim.validate(text=car(0.1, reverse)).findings if f.code == "goal-overshoot"]
-        assert [f.severity for f in overshoots] == ["warning"]
-        assert words in overshoots[0].message
-    assert "goal-overshoot" not in codes(car(0.3, True))
+        [overshoot] = reports(car(0.1, reverse), "goal-overshoot")
+        assert overshoot.severity == "warning"
+        assert words in overshoot.message
+    assert not reports(car(0.3, True), "goal-overshoot")
 
 
 def test_the_summary_says_how_long_a_car_shunted_at_its_goal() -> None:
@@ -149,6 +146,7 @@ def test_a_ring_whose_ties_are_left_is_reported_once(behavior: str, count: int) 
         "distribution: {name: circle, center: [6, 6], radius: 4}, vel_max: [1, 1], vel_min: [-1, -1], "
         "shape: {name: circle, radius: 0.25}, behavior: {BEHAVIOR}}\n"
     )
-    assert "exact-symmetry" not in codes(text.replace("BEHAVIOR", behavior))
-    assert codes(text.replace("BEHAVIOR", f"{behavior}, sidestep: 0")).count("exact-symmetry") == 1
-    assert "exact-symmetry" not in codes(text.replace("BEHAVIOR", f"{behavior}, sidestep: 10"))
+    counts = [
+        len(reports(text.replace("BEHAVIOR", behavior + more))) for more in ("", ", sidestep: 0", ", sidestep: 10")
+    ]
+    assert counts == [0, 1, 0]

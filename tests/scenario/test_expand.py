@@ -1,7 +1,8 @@
-"""From a scenario to one record per object: numbers, names, groups, defaults."""
+"""From a scenario to one record per object: values spread over them, numbers, names, groups, defaults."""
 
 from __future__ import annotations
 
+import copy
 import math
 from typing import Any
 
@@ -11,9 +12,11 @@ from hypothesis import strategies as st
 
 from irsim.options.colors import CYCLE
 from irsim.scenario.read import read
+from irsim.scenario.resolve.per_object import is_per_object, kind_of, spread
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 DIFF = {"kinematics": {"name": "diff"}}
+WIDE = {"width": 20, "height": 8, "offset": [-10, 2]}
 
 
 def resolved(data: dict[str, Any]) -> ResolvedScenario:
@@ -55,17 +58,12 @@ def test_group_numbers(data: dict[str, Any], groups: list[int]) -> None:
 
 def test_defaults_of_a_bare_object() -> None:
     record = one()
-    assert record.state == [1, 1, 0]
-    assert record.goals == [[1, 9, 0]]
-    assert getattr(record.shape, "radius", None) == 1
-    assert record.kinematics is None
-    assert record.static
+    assert (record.state, record.goals) == ([1, 1, 0], [[1, 9, 0]])
+    assert (getattr(record.shape, "radius", None), record.kinematics, record.static) == (1, None, True)
     assert (record.mass, record.friction, record.restitution, record.inertia) == (math.inf, 0.5, 0, None)
-    assert (record.color, record.description) == ("k", None)
+    assert (record.color, record.description, record.sensors) == ("k", None, [])
     assert (record.fov, record.fov_radius, record.wheelbase) == (None, None, None)
-    assert record.sensors == []
-    assert not record.wander
-    assert record.target_roles == "all"
+    assert (record.wander, record.target_roles) == (False, "all")
 
 
 @pytest.mark.parametrize(
@@ -74,13 +72,9 @@ def test_defaults_of_a_bare_object() -> None:
 def test_dimensions_and_limits(name: str, state: int, vel: int) -> None:
     record = one(kinematics={"name": name})
     assert (record.state_dim, record.vel_dim, len(record.state)) == (state, vel, state)
-    assert record.vel_min == [-1] * vel
-    assert record.vel_max == [1] * vel
-    assert record.acce == [math.inf] * vel
-    assert record.velocity == [0] * vel
-    assert record.angle_range == (-math.pi, math.pi)
-    assert not record.static
-    assert record.mass == 1
+    assert (record.vel_min, record.vel_max) == ([-1] * vel, [1] * vel)
+    assert (record.acce, record.velocity) == ([math.inf] * vel, [0] * vel)
+    assert (record.angle_range, record.static, record.mass) == ((-math.pi, math.pi), False, 1)
 
 
 @pytest.mark.parametrize(
@@ -137,8 +131,7 @@ def test_circle_distribution(count: int, radius: float, cx: float, cy: float) ->
 
 
 def test_circle_defaults_and_own_goal() -> None:
-    world = {"width": 20, "height": 8, "offset": [-10, 2]}
-    data = {"world": world, "robot": {**DIFF, "number": 2, "distribution": {"name": "circle"}}}
+    data = {"world": WIDE, "robot": {**DIFF, "number": 2, "distribution": {"name": "circle"}}}
     first = resolved(data).objects[0]
     assert first.state == pytest.approx([3.5, 6, -math.pi])
     assert first.goals[0] == pytest.approx([-3.5, 6, -math.pi])
@@ -147,21 +140,13 @@ def test_circle_defaults_and_own_goal() -> None:
 
 
 def test_random_distribution_is_a_placement() -> None:
-    scenario = resolved(
-        {
-            "world": {"width": 20, "height": 8, "offset": [-10, 2]},
-            "robot": [DIFF, {**DIFF, "number": 3, "distribution": {"name": "random"}}],
-            "obstacle": {"number": 2, "distribution": {"name": "random", "range_low": [0, 3, 0], "min_distance": 0.2}},
-        }
-    )
+    robots = [DIFF, {**DIFF, "number": 3, "distribution": {"name": "random"}}]
+    obstacle = {"number": 2, "distribution": {"name": "random", "range_low": [0, 3, 0], "min_distance": 0.2}}
+    scenario = resolved({"world": WIDE, "robot": robots, "obstacle": obstacle})
     first, second = scenario.placements
-    assert first.objects == [1, 2, 3]
-    assert first.range_low == [-9.5, 2.5, -math.pi]
-    assert first.range_high == [9.5, 9.5, math.pi]
-    assert first.min_distance == 1.0
-    assert first.path == ("robot", 1)
-    assert second.objects == [4, 5]
-    assert (second.range_low, second.min_distance) == ([0, 3, 0], 0.2)
+    assert (first.objects, first.path, first.min_distance) == ([1, 2, 3], ("robot", 1), 1.0)
+    assert (first.range_low, first.range_high) == ([-9.5, 2.5, -math.pi], [9.5, 9.5, math.pi])
+    assert (second.objects, second.range_low, second.min_distance) == ([4, 5], [0, 3, 0], 0.2)
     assert scenario.objects[1].goals == []
 
 
@@ -171,9 +156,7 @@ def test_wander_box_is_the_world_unless_given() -> None:
         "robot": {**DIFF, "behavior": {"name": "dash", "wander": True}},
     }
     record = resolved(data).objects[0]
-    assert record.wander
-    assert record.range_low == [-5, 5, -math.pi]
-    assert record.range_high == [25, 25, math.pi]
+    assert (record.wander, record.range_low, record.range_high) == (True, [-5, 5, -math.pi], [25, 25, math.pi])
     data["robot"]["behavior"].update(range_low=[0, 6], range_high=[1, 7, 1])
     record = resolved(data).objects[0]
     assert (record.range_low, record.range_high) == ([0, 6, -math.pi], [1, 7, 1])
@@ -201,9 +184,7 @@ def test_default_colors(role: str, keys: dict[str, Any], color: Any) -> None:
 def test_cycle_starts_anew_with_every_entry() -> None:
     entry = {**DIFF, "number": 10, "color": "cycle", "distribution": {"name": "random"}}
     colors = [o.color for o in resolved({"robot": [entry, entry]}).objects]
-    assert colors[:8] == list(CYCLE)
-    assert colors[8:10] == list(CYCLE[:2])
-    assert colors[10:] == colors[:10]
+    assert colors == [*CYCLE, *CYCLE[:2]] * 2
     listed = {**entry, "number": 3, "color": ["cycle", "r"]}
     assert [o.color for o in resolved({"robot": listed}).objects] == [CYCLE[0], "r", "r"]
 
@@ -234,11 +215,9 @@ def test_field_of_view(keys: dict[str, Any], view: tuple[float | None, float | N
 
 def test_sensors_for_all_or_each() -> None:
     lidar = {"name": "lidar2d", "number": 5}
-    states = [[1, 1], [2, 2], [3, 3]]
-    for_all = resolved({"robot": {"number": 3, "state": states, "sensors": [lidar, lidar]}})
-    assert [len(o.sensors) for o in for_all.objects] == [2, 2, 2]
-    each = resolved({"robot": {"number": 3, "state": states, "sensors": [[lidar], []]}})
-    assert [len(o.sensors) for o in each.objects] == [1, 0, 0]
+    for sensors, counts in (([lidar, lidar], [2, 2, 2]), ([[lidar], []], [1, 0, 0])):
+        scenario = resolved({"robot": {"number": 3, "state": [[1, 1], [2, 2], [3, 3]], "sensors": sensors}})
+        assert [len(o.sensors) for o in scenario.objects] == counts
 
 
 def test_wheelbase_of_kinematics_first() -> None:
@@ -255,9 +234,9 @@ def test_world_values_are_defaults_of_objects() -> None:
 def test_name_of_the_world() -> None:
     assert resolved({}).name == "world"
     assert resolved({"world": {"name": "yard"}}).name == "yard"
-    reading = read("world: {height: 3}\n", name="/some/where/yard.v2.yaml")
-    assert reading.scenario is not None
-    assert reading.scenario.name == "yard"
+    named = read("world: {height: 3}\n", name="/some/where/yard.v2.yaml").scenario
+    assert named is not None
+    assert named.name == "yard"
 
 
 def test_document_is_kept_as_written() -> None:
@@ -265,8 +244,7 @@ def test_document_is_kept_as_written() -> None:
     scenario = read(text).scenario
     assert scenario is not None
     assert scenario.document == {"world": {"height": 3, "unknown": 1}, "custom": {"a": [1]}}
-    assert scenario.custom == {"a": [1]}
-    assert scenario.text == text
+    assert (scenario.custom, scenario.text) == ({"a": [1]}, text)
 
 
 def test_tags() -> None:
@@ -278,9 +256,85 @@ def test_tags() -> None:
 def test_nothing_is_shared_that_changes() -> None:
     scenario = resolved({"robot": {**DIFF, "number": 2, "vel_max": [2, 2], "distribution": {"name": "circle"}}})
     first, second = scenario.objects
-    first.vel_max[0] = 9
-    first.state[0] = 9
-    first.goals[0][0] = 9
-    assert second.vel_max == [2, 2]
-    assert second.state[0] != 9
-    assert second.goals[0][0] != 9
+    before = copy.deepcopy(second)
+    first.vel_max[0] = first.state[0] = first.goals[0][0] = 9
+    assert second == before
+
+
+numbers = st.floats(allow_nan=False) | st.integers() | st.booleans()
+vectors = st.lists(numbers, max_size=4)
+scalars = numbers | st.none() | st.text(max_size=3) | st.dictionaries(st.text(max_size=3), numbers, max_size=2)
+others = st.text(max_size=3) | st.none() | vectors | st.dictionaries(st.text(max_size=3), numbers, max_size=2)
+
+
+@pytest.mark.parametrize(
+    ("value", "count", "expected"),
+    [
+        (0.3, 3, [0.3, 0.3, 0.3]),
+        ("r", 2, ["r", "r"]),
+        (None, 2, [None, None]),
+        ({"name": "diff"}, 2, [{"name": "diff"}] * 2),
+        ([1, 2], 3, [[1, 2]] * 3),
+        ([True, False], 2, [[True, False]] * 2),
+        ([], 2, [[], []]),
+        ([[1, 2], [3, 4]], 2, [[1, 2], [3, 4]]),
+        ([[1, 2], [3, 4]], 4, [[1, 2], [3, 4], [3, 4], [3, 4]]),
+        ([[1, 2], [3, 4], [5, 6]], 2, [[1, 2], [3, 4]]),
+        (["r", "b"], 3, ["r", "b", "b"]),
+        ([1, "a"], 2, [1, "a"]),
+        ([{"name": "a"}], 2, [{"name": "a"}] * 2),
+        ([[[1, 1], [2, 2]]], 2, [[[1, 1], [2, 2]]] * 2),
+        ([[[1, 1], [2, 2]], [3, 3]], 2, [[[1, 1], [2, 2]], [3, 3]]),
+        ([1, 2], 0, []),
+        (["a"], 0, []),
+    ],
+)
+def test_the_rule(value: Any, count: int, expected: list[Any]) -> None:
+    assert spread(value, count) == expected
+
+
+def test_exceptions() -> None:
+    sensor, other = {"name": "lidar2d"}, {"name": "contact2d"}
+    assert kind_of("vel_max") == kind_of("color") == "value"
+    assert spread([sensor, other], 2, kind_of("sensors")) == [[sensor, other]] * 2
+    assert spread([[sensor], [other]], 3, kind_of("sensors")) == [[sensor], [other], [other]]
+    assert spread([1.0, 2.0], 3, kind_of("mass")) == [1.0, 2.0, 2.0]
+    assert spread(["a", "b"], 2, kind_of("tags")) == [["a", "b"]] * 2
+    assert spread([[1, 1], [2, 2]], 2, kind_of("waypoints")) == [[[1, 1], [2, 2]]] * 2
+    assert spread([[[1, 1], [2, 2]], [[3, 3]]], 2, kind_of("waypoints")) == [[[1, 1], [2, 2]], [[3, 3]]]
+
+
+@given(scalars | vectors, st.integers(0, 6))
+def test_one_value_goes_to_all(value: Any, count: int) -> None:
+    assert spread(value, count) == [value] * count
+
+
+@given(st.lists(others, min_size=1, max_size=6), st.integers(0, 8))
+def test_lists_go_by_element_and_the_last_is_repeated(values: list[Any], count: int) -> None:
+    result = spread(values, count)
+    assert len(result) == count
+    if is_per_object(values):
+        for i, item in enumerate(result):
+            assert item is values[min(i, len(values) - 1)]
+    else:
+        assert all(item is values for item in result)
+
+
+@given(others | st.lists(others, max_size=6), st.integers(0, 5))
+def test_what_more_objects_get_does_not_change_the_first(values: Any, count: int) -> None:
+    before = repr(values)
+    assert spread(values, count + 3)[:count] == spread(values, count)
+    assert repr(values) == before
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)).map(list), min_size=1, max_size=5),
+    st.lists(st.sampled_from("rgbk"), min_size=1, max_size=5),
+    st.integers(1, 6),
+)
+def test_objects_get_what_the_rule_says(states: list[list[int]], colors: list[str], count: int) -> None:
+    reading = read({"obstacle": {"number": count, "state": states, "color": colors, "shape": [{"name": "circle"}]}})
+    assert reading.scenario is not None
+    expected = zip(spread(states, count), spread(colors, count), strict=True)
+    rows = [(record.state[:2], record.color) for record in reading.scenario.objects]
+    assert rows == [([float(x), float(y)], color) for (x, y), color in expected]

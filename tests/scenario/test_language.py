@@ -1,4 +1,4 @@
-"""The language as users write it: every form that 2.12 takes, and what is new."""
+"""The language as users write it: every form that 2.12 takes, what it tolerates, and what is new."""
 
 from __future__ import annotations
 
@@ -9,19 +9,21 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from pydantic import BaseModel
 
 from irsim.components.kinematics._options import CustomKinematics
 from irsim.options import registry
 from irsim.options.base import field_docs
-from irsim.options.registry import Registry
 from irsim.scenario.model.scenario import Entry, Scenario
 from irsim.scenario.read import read
+from irsim.scenario.resolve.resolved import ObjectRecord
 
 COMPLETE = """
-world: {height: 20, width: 20, step_time: 0.1, offset: [-10, -10], collision_mode: stop,
-        obstacle_map: {name: perlin, resolution: 0.2, fill: 0.01, seed: 3}, fog_map: true}
+world: {height: 20, width: 20, step_time: 0.1, offset: [-10, -10], collision_mode: stop, sample_time: 0.2, seed: 3,
+        obstacle_map: {name: perlin, resolution: 0.2, fill: 0.01, seed: 3}, fog_map: true,
+        plot: {viewpoint: [0, 0], saved_figure: {dpi: 80}}}
 robot:
   - kinematics: {name: acker, mode: steer}
     shape: {name: rectangle, length: 4.6, width: 1.6, wheelbase: 3}
@@ -32,12 +34,14 @@ robot:
     goal_threshold: 0.3
     behavior: {name: dash, loop: true}
     sensors: [{type: lidar2d, number: 91, range_max: 8, angle_range: 6.28, plot: {alpha: 0.2}}]
+    color: cycle
   - number: 4
     kinematics: {name: omni}
     shape: [{name: circle, radius: 0.3}]
     distribution: {name: circle, radius: 6, center: [0, 0]}
     group_behavior: {name: orca, safe_radius: 0.2, sidestep: 10}
     color: [r, g, b]
+    tags: [pedestrian]
 obstacle:
   - number: 5
     distribution: {name: random, range_low: [-9, -9, -3.14], range_high: [9, 9, 3.14]}
@@ -47,8 +51,14 @@ obstacle:
   - shape: {name: linestring, vertices: [[0, 0], [3, 0], [3, 3]]}
     state: [0, 0, 0]
     unobstructed: true
+    plot: {show_text: true, text_position: [0.1, 0.1]}
+  - shape: {name: compound, parts: [{name: circle, radius: 0.5, pose: [1, 0, 0]}]}
+    state: [4, -4, 0]
+    mass: [2.0]
 gui: {keyboard: {backend: mpl, key_lv_max: 2.0}, mouse: {zoom_factor: 1.2}}
+custom: {anything: [1, {goes: null}]}
 """
+"""Every section, and keys of each kind of value."""
 
 
 def accepted(text: str) -> None:
@@ -139,17 +149,12 @@ def test_keys_of_the_world(world: str) -> None:
 
 
 def test_a_map_as_an_array() -> None:
-    import numpy as np
-
-    reading = read({"world": {"obstacle_map": np.zeros((4, 4))}})
-    assert [item.code for item in reading.diagnostics] == ["map-empty"]
+    for cells, code in ((np.zeros((4, 4)), "map-empty"), (np.zeros(4), "map-values"), ([[0, 100]], "not-a-mapping")):
+        assert [item.code for item in read({"world": {"obstacle_map": cells}}).diagnostics] == [code]
     reading = read({"world": {"obstacle_map": np.eye(3) * 51, "width": 6}})
     assert reading.diagnostics == []
     assert reading.scenario is not None
     assert [(o.name, o.shape.name) for o in reading.scenario.objects] == [("obstacle_0", "map")]
-    assert [item.code for item in read({"world": {"obstacle_map": np.zeros(4)}}).diagnostics] == ["map-values"]
-    codes = [item.code for item in read({"world": {"obstacle_map": [[0, 100], [0, 0]]}}).diagnostics]
-    assert codes == ["not-a-mapping"]
 
 
 def test_tuples_and_numpy_numbers_from_python() -> None:
@@ -162,26 +167,12 @@ def test_drives_of_user_code(monkeypatch: pytest.MonkeyPatch) -> None:
     drives = registry.KINEMATICS
     monkeypatch.setattr(drives, "_features", dict(drives._features))
     drives.register(CustomKinematics, name="tracked", function=lambda *_: None)
-    reading = read(
-        {"robot": {"kinematics": {"name": "tracked", "slip": 0.2}, "behavior": {"name": "dash"}}}, strict=True
-    )
+    robot = {"kinematics": {"name": "tracked", "slip": 0.2}, "behavior": {"name": "dash"}}
+    reading = read({"robot": robot}, strict=True)
     assert [d for d in reading.diagnostics if d.severity != "hint"] == []
     assert reading.scenario is not None
     kinematics: Any = reading.scenario.objects[0].kinematics
     assert (kinematics.name, kinematics.slip) == ("tracked", 0.2)
-
-
-def test_features_of_plug_ins_are_validated_like_ours() -> None:
-    class Bounce(BaseModel):
-        name: str = "bounce"
-
-    own = Registry("behavior", "irsim.components.behaviors", "irsim.none")
-    own.register(Bounce)
-    assert "bounce" in own.names()
-    feature = own.get("bounce")
-    assert feature is not None
-    assert not feature.simulated
-    assert feature.origin == __name__
 
 
 @pytest.mark.parametrize("model", [Scenario, Entry, *(Scenario.model_fields[k].annotation for k in ("world", "gui"))])
@@ -217,3 +208,31 @@ def test_five_hundred_polygons_are_read_at_once() -> None:
     assert reading.scenario is not None
     assert len(reading.scenario.objects) == 500
     assert reading.diagnostics == []
+
+
+ROBOT = "robot: {{kinematics: {{name: diff}}, shape: {{name: circle}}, behavior: {{name: dash}}, {keys}}}\n"
+
+
+def resolved(text: str, *, strict: bool = False) -> list[ObjectRecord]:
+    scenario = read(text, strict=strict).scenario
+    assert scenario is not None
+    return scenario.objects
+
+
+@pytest.mark.parametrize("limit", ["0.5", "[0.5]"])
+def test_one_number_limits_every_component(limit: str) -> None:
+    text = ROBOT.format(keys=f"vel_max: {limit}")
+    assert resolved(text)[0].vel_max == [0.5, 0.5]
+    assert [d.path for d in read(text).diagnostics if d.severity == "warning"] == [("robot", "vel_max")]
+    assert read(text, strict=True).scenario is None
+
+
+def test_null_among_goals_is_no_goal() -> None:
+    pair = resolved(ROBOT.format(keys="number: 2, state: [[1, 1], [4, 4]], goal: [null, [1, 2]]"))
+    assert [record.goals for record in pair] == [[], [[1.0, 2.0]]]
+    assert resolved(ROBOT.format(keys="goal: null"))[0].goals == [[1.0, 9.0, 0.0]]
+
+
+def test_limits_of_things_that_never_move_may_have_any_length() -> None:
+    text = "obstacle: {shape: {name: circle, radius: 0.3}, state: [2, 2], vel_max: [1, 1]}\n"
+    assert resolved(text, strict=True)[0].vel_max == [1, 1, 1]

@@ -1,9 +1,10 @@
-"""Reading YAML: what values become, where things stand, and what is refused."""
+"""Reading files: where they are looked for, what values become, where things stand, and what is refused."""
 
 from __future__ import annotations
 
 import datetime
 import math
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,9 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from irsim.diagnostics.errors import ScenarioNotFoundError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.locate import default_name, locate
 from irsim.scenario.yaml import compose as compose_module
 from irsim.scenario.yaml.compose import compose
 from irsim.scenario.yaml.document import load_data, load_path, load_text
@@ -158,6 +161,7 @@ def test_refused(text: str, code: str, line: int) -> None:
     assert document.fatal
     assert [problem.code for problem in document.problems] == [code]
     assert document.problems[0].line in (line, line + 1, None)
+    assert "\t" not in text or "tab" in document.problems[0].message
 
 
 def test_duplicate_keys_keep_the_last_value() -> None:
@@ -166,11 +170,6 @@ def test_duplicate_keys_keep_the_last_value() -> None:
     (problem,) = document.problems
     assert (problem.code, problem.line, problem.column, problem.tolerated) == ("duplicate-key", 4, 3, True)
     assert problem.path == ("world", "height")
-
-
-def test_tabs_are_named() -> None:
-    (problem,) = load_text("a:\n\tb: 1\n").problems
-    assert "tab" in problem.message
 
 
 def test_missing_directory_device_binary(tmp_path: Path) -> None:
@@ -202,3 +201,64 @@ def test_limits() -> None:
     assert load_text("a: &a [1, 2, 3, 4]\nb: [*a, *a, *a]\n", limits=tight).problems[0].code == "alias-expansion"
     assert load_text("a: &a [[1]]\nb: [*a]\n", limits=tight).problems[0].code == "too-deep"
     assert not load_text("a: &a [[1]]\nb: *a\n", limits=tight).fatal
+
+
+@pytest.fixture
+def places(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Path]:
+    """The current directory, the first entry of the import path, and the folder of the script."""
+    folders = {name: tmp_path / name for name in ("here", "first", "script")}
+    for folder in folders.values():
+        folder.mkdir()
+    monkeypatch.chdir(folders["here"])
+    monkeypatch.setattr(sys, "path", [str(folders["first"]), *sys.path])
+    monkeypatch.setattr(sys, "argv", [str(folders["script"] / "my_run.v2.py")])
+    return folders
+
+
+def written(file: Path) -> Path:
+    file.parent.mkdir(exist_ok=True)
+    file.write_text("", encoding="utf-8")
+    return file
+
+
+def test_order(places: dict[str, Path]) -> None:
+    for name in ("script", "first", "here"):
+        file = written(places[name] / "a.yaml")
+        assert Path(locate("a.yaml")).resolve() == file.resolve()
+
+
+def test_absolute_and_below(places: dict[str, Path]) -> None:
+    file = written(places["script"] / "worlds" / "b.yaml")
+    assert locate(file) == str(file)
+    assert Path(locate("worlds/b.yaml")) == file
+    assert locate(file.parent) == str(file.parent), "a directory is left to the reader"
+
+
+def test_named_like_the_script(places: dict[str, Path]) -> None:
+    assert default_name() == "my_run.yaml"
+    file = written(places["script"] / "my_run.yaml")
+    assert Path(locate()) == file
+
+
+def not_found(wanted: str) -> str:
+    with pytest.raises(ScenarioNotFoundError) as caught:
+        locate(wanted)
+    return str(caught.value)
+
+
+def test_not_found_says_where_and_what_is_near(places: dict[str, Path]) -> None:
+    written(places["first"] / "crossing.yaml")
+    for wanted in ("crosing.yaml", "crossing"):
+        message = not_found(wanted)
+        assert all(str(folder) in message for folder in places.values())
+        assert "Did you mean" in message
+        assert "crossing.yaml" in message
+    assert issubclass(ScenarioNotFoundError, FileNotFoundError)
+    assert "Did you mean" not in not_found("entirely-different.yaml")
+
+
+@pytest.mark.parametrize("wanted", ["doorway", "doorway.yaml", "templates/doorway", "templates/doorway/scenario.yaml"])
+def test_the_name_of_a_template_says_how_to_make_a_file_of_it(places: dict[str, Path], wanted: str) -> None:
+    last = not_found(wanted).splitlines()[-1]
+    assert last == "'doorway' is a template: `irsim new doorway` writes doorway.yaml, which can then be used."
+    assert "irsim new" not in not_found("doorways")

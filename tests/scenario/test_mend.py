@@ -1,13 +1,21 @@
-"""Repairs: what needs no guessing is mended in the text, the rest is left for the author."""
+"""Edits and repairs of the text: what is asked or needs no guessing changes, every other character stays."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.autofix import repair_text
 from irsim.scenario.yaml.comments import comments
+from irsim.scenario.yaml.edits import apply_edits
+from irsim.scenario.yaml.rewrite import rewrite, yaml_flow
+from tests.effort import examples
 
 BAD = sorted((Path(__file__).parents[1] / "bad").glob("*.yaml"))
 
@@ -130,20 +138,14 @@ def test_a_key_is_not_renamed_to_one_that_is_there() -> None:
 
 def test_places_written_as_mappings() -> None:
     text = "robot: {kinematics: {name: diff}, state: {x: 1, y: 5, theta: 0}, goal: {x: 9, y: 5}, waypoints: null}\n"
-    mended = repair_text(text)
-    assert "state: [1, 5, 0], goal: [9, 5]" in mended.text
+    assert "state: [1, 5, 0], goal: [9, 5]" in repair_text(text).text
     assert "waypoints: [[9, 5]]" in repair_text("robot: {kinematics: {name: diff}, waypoints: [9, 5]}\n").text
 
 
 def test_lines_below_a_renamed_key_are_their_own() -> None:
     text = "world: {width: 10}\nrobots:\n  - kinematics: {name: diff}\n    position: [1, 5, pi]\n    color: bleu\n"
-    mended = repair_text(text)
-    assert {(repair.finding.code, repair.finding.line) for repair in mended.repairs} == {
-        ("unknown-key", 2),
-        ("unknown-key", 4),
-        ("wrong-type", 4),
-        ("unknown-color", 5),
-    }
+    repaired = {(repair.finding.code, repair.finding.line) for repair in repair_text(text).repairs}
+    assert repaired == {("unknown-key", 2), ("unknown-key", 4), ("wrong-type", 4), ("unknown-color", 5)}
 
 
 COMMENTED = """\
@@ -176,10 +178,8 @@ def test_a_repair_that_would_lose_comments_is_left_to_the_author() -> None:
     assert mended.text == COMMENTED.replace("nme", "name").replace("{x: 9, y: 5}", "[9, 5]")
     left = {item.path: item.fix or "" for item in mended.reading.errors}
     assert list(left) == [("robot", 0, "state"), ("robot", 0, "sensors"), ("obstacle", 0, "shape", "vertices")]
-    assert all(
-        fix.endswith("(by hand: --fix does not change it, because comments there would be lost)")
-        for fix in left.values()
-    )
+    by_hand = "(by hand: --fix does not change it, because comments there would be lost)"
+    assert all(fix.endswith(by_hand) for fix in left.values())
     assert left["robot", 0, "state"].startswith("write [1, 5, 0]")
     bare = repair_text("\n".join(line.partition("  #")[0] for line in COMMENTED.splitlines()) + "\n")
     assert not bare.reading.errors
@@ -193,8 +193,7 @@ def test_goals_of_several_objects_do_not_become_the_way_of_each() -> None:
     mended = repair_text(text)
     assert mended.text == text
     (item,) = [item for item in mended.reading.diagnostics if item.code == "goal-levels"]
-    assert item.fix is not None
-    assert item.fix.startswith("goal: [[9, 5], [9, 7]], or number: 3")
+    assert str(item.fix).startswith("goal: [[9, 5], [9, 7]], or number: 3")
 
 
 @pytest.mark.parametrize(
@@ -221,9 +220,8 @@ def test_keys_of_follow_written_into_its_local_behavior_move_one_level_up() -> N
     )
     mended = repair_text(text)
     assert [repair.finding.code for repair in mended.repairs] == ["ignored-key"]
-    assert "behavior: {name: follow, local: {name: orca, timeHorizon: 2}, wander: true, target_roles: robot}" in (
-        mended.text
-    )
+    moved = "behavior: {name: follow, local: {name: orca, timeHorizon: 2}, wander: true, target_roles: robot}"
+    assert moved in mended.text
     scenario = mended.reading.scenario
     assert scenario is not None
     assert [(o.wander, o.target_roles) for o in scenario.objects] == [(True, "robot")] * 2
@@ -238,3 +236,126 @@ def test_keys_that_stand_in_both_places_go_from_the_inner_one() -> None:
         "obstacle: [{shape: {name: circle}, state: [5, 5, 0]}]\n"
     )
     assert "{name: follow, target_roles: obstacle, local: {name: orca}}" in repair_text(text).text
+
+
+TEXT = """\
+# a scene
+world:
+  width: 10        # m
+  plot: {grid: true,  title: 'a # b'}   # drawn
+
+robot:
+  - name: a        # first
+    goal: [1, 2]   # there
+    behavior:
+      name: dash   # straight
+      loop: true
+    # last words
+  - {name: b, goal: [3, 4]}   # second
+obstacle:
+"""
+
+
+@pytest.mark.parametrize(
+    ("edit", "before", "after"),
+    [
+        (Edit("replace", ("world", "width"), 12.5), "  width: 10        # m", "  width: 12.5        # m"),
+        (Edit("rename", ("robot", 0, "goal"), "waypoints"), "    goal: [1, 2]", "    waypoints: [1, 2]"),
+        (Edit("remove", ("robot", 0, "goal")), "    goal: [1, 2]   # there", "    # there"),
+        (Edit("remove", ("robot", 0, "name")), "  - name: a        # first\n    goal", "  - goal"),
+        (Edit("remove", ("robot", 1, "goal")), "{name: b, goal: [3, 4]}", "{name: b}"),
+        (Edit("remove", ("robot", 1, "name")), "{name: b, goal", "{goal"),
+        (Edit("remove", ("world", "plot", "grid")), "{grid: true,  title", "{title"),
+        (Edit("add", ("robot", 1, "group"), 2), "goal: [3, 4]}", "goal: [3, 4], group: 2}"),
+        (
+            Edit("add", ("robot", 0, "vel_min"), [0, -1.5]),
+            "      loop: true\n    # last",
+            "      loop: true\n    vel_min: [0, -1.5]\n    # last",
+        ),
+        (Edit("replace", ("robot", 0, "behavior"), {"name": "orca"}), None, None),
+        (Edit("replace", ("obstacle",), []), "obstacle:", "obstacle: []"),
+        (Edit("replace", ("world", "plot", "title"), "yes"), "'a # b'", "'yes'"),
+        (Edit("replace", ("robot", 0), "gone"), None, None),
+    ],
+)
+def test_changes_one_place(edit: Edit, before: str | None, after: str | None) -> None:
+    changed = rewrite(TEXT, edit)
+    assert changed is not None
+    assert yaml.safe_load(changed) == apply_edits(yaml.safe_load(TEXT), [edit])
+    if before is not None and after is not None:
+        assert TEXT.count(before) == 1
+        assert changed == TEXT.replace(before, after)
+
+
+@pytest.mark.parametrize(
+    ("text", "edit", "changed"),
+    [
+        ("a:\n  b: 1  # why\nc: 2\n", Edit("remove", ("a", "b")), "a:\n  {}  # why\nc: 2\n"),
+        ("a: 1\r\nb: 2\r\n", Edit("add", ("c",), 3), "a: 1\r\nb: 2\r\nc: 3\r\n"),
+        ("a: 1\r\nb: 2\r\n", Edit("remove", ("a",)), "b: 2\r\n"),
+        ("a: &x {k: 1}\nb: 2\nc: 3\n", Edit("remove", ("b",)), "a: &x {k: 1}\nc: 3\n"),
+        ("a: &x {k: 1}\nb: *x\n", Edit("replace", ("a", "k"), 2), None),  # would change b as well
+        ("a: &x {k: 1}\nb: *x\n", Edit("replace", ("b", "k"), 2), None),
+        ("a: &x {k: 1}\nb: *x\n", Edit("add", ("b", "l"), 2), None),
+        ("a: &x {k: 1}\nb: {<<: *x}\n", Edit("replace", ("b", "k"), 2), None),
+        ("a: 1\n", Edit("replace", ("b",), 2), None),
+        ("a: 1\n", Edit("rename", ("b", "c"), "d"), None),
+        ("a: [1]\n", Edit("remove", ("a", 0)), None),
+        ("a: {b: 1}\n", Edit("add", ("a", "b"), 2), None),
+        ("a: [", Edit("remove", ("a",)), None),
+    ],
+)
+def test_small_texts_are_changed_or_left_alone(text: str, edit: Edit, changed: str | None) -> None:
+    assert rewrite(text, edit) == changed
+
+
+scalars = (
+    st.none() | st.booleans() | st.integers(-99, 99) | st.floats(-1e6, 1e6) | st.text("abc #:-'\"[]{}é\n", max_size=6)
+)
+trees = st.recursive(
+    scalars,
+    lambda inner: (
+        st.lists(inner, max_size=3) | st.dictionaries(st.text("abcd", min_size=1, max_size=3), inner, max_size=3)
+    ),
+    max_leaves=8,
+)
+
+
+def paths(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    return [path, *(deeper for key, item in items for deeper in paths(item, (*path, key)))]
+
+
+@settings(max_examples=examples(150))
+@given(
+    st.dictionaries(st.text("xyz", min_size=1, max_size=3), trees, min_size=1, max_size=4),
+    trees,
+    st.data(),
+    st.booleans(),
+)
+def test_the_text_means_what_the_edit_means(data: dict[str, Any], value: Any, draw: st.DataObject, flow: bool) -> None:
+    text = yaml.safe_dump(data, default_flow_style=flow, allow_unicode=True, sort_keys=False)
+    places = [path for path in paths(data) if path]
+    path = draw.draw(st.sampled_from(places))
+    action = draw.draw(st.sampled_from(["remove", "replace", "rename", "add"]))
+    edit = Edit(action, (*path[:-1], "new") if action == "add" else path, "renamed" if action == "rename" else value)
+    changed = rewrite(text, edit)
+    if changed is not None:
+        assert _near(yaml.safe_load(changed), apply_edits(data, [edit]))
+
+
+@settings(max_examples=examples(200))
+@given(trees)
+def test_a_value_on_one_line_is_read_back(value: Any) -> None:
+    line = yaml_flow(value)
+    assert "\n" not in line
+    back = yaml.safe_load(f"[{line}]")[0]
+    assert back == pytest.approx(value, rel=1e-9) if isinstance(value, float) else back == value or _near(back, value)
+
+
+def _near(a: Any, b: Any) -> bool:
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(_near(a[key], b[key]) for key in a)
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(_near, a, b))
+    return bool(a == b or (isinstance(a, (int, float)) and a == pytest.approx(b, rel=1e-9)))

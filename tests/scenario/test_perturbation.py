@@ -114,16 +114,10 @@ def test_everything_that_is_wrong_is_said_at_once(given: object, words: list[str
 
 def test_everybody_that_can_move(hall: ResolvedScenario) -> None:
     """Static objects, the walls round the world and random starts stay; what has no drive has no speed and no delay."""
-    by_name = spreads(hall, "position=0.1,speed=0.2,delay=3")
-    everything = Spreads(0.1, 0.0, 0.2, 3.0)
-    assert by_name == {
-        "scout": everything,
-        "car": everything,
-        "robot_2": Spreads(speed=0.2, delay=3.0),
-        "robot_3": Spreads(speed=0.2, delay=3.0),
-        "walker": everything,
-        "crate": Spreads(0.1),
-    }
+    everything, drawn = Spreads(0.1, 0.0, 0.2, 3.0), Spreads(speed=0.2, delay=3.0)
+    expected = dict.fromkeys(("scout", "car", "walker"), everything) | {"crate": Spreads(0.1)}
+    expected |= dict.fromkeys(("robot_2", "robot_3"), drawn)
+    assert spreads(hall, "position=0.1,speed=0.2,delay=3") == expected
 
 
 @pytest.mark.parametrize(
@@ -159,10 +153,8 @@ def test_the_scenario_itself_stays_as_it_is(hall: ResolvedScenario) -> None:
 
 
 def test_what_is_perturbed_is_said_by_groups(hall: ResolvedScenario) -> None:
-    changed = perturbed(
-        hall, read_perturbations("position=0.1,heading=0.2,objects=robot; speed=10%,delay=2,objects=walker")
-    )
-    assert perturbed_message(changed) == [
+    given = "position=0.1,heading=0.2,objects=robot; speed=10%,delay=2,objects=walker"
+    assert perturbed_message(perturbed(hall, read_perturbations(given))) == [
         "start ±0.1 m in x and in y, heading ±0.2 rad of 'scout', 'car'",
         "speeds ±10 %, start delayed by 0 to 2 s of 'walker'",
     ]

@@ -11,16 +11,18 @@ from typing import Any
 
 import jsonschema
 import pytest
+import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.options.registry import REGISTRIES
+from irsim.options import registry
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.model import json_schema as schema_module
 from irsim.scenario.model.json_schema import INEXPRESSIBLE, check, json_schema, schema_text
 from irsim.scenario.read import read
 from irsim.scenario.yaml.compose import compose
 from tests.effort import examples
+from tests.scenario.test_language import COMPLETE
 
 pytestmark = pytest.mark.one_python
 
@@ -28,45 +30,7 @@ ROOT = Path(__file__).parent.parent.parent
 VALID = sorted(ROOT.glob("templates/*/scenario.yaml")) + sorted(ROOT.glob("tests/parity/scenarios/*.yaml"))
 CONTROLS = {"vel_min", "vel_max", "acce", "velocity"}
 
-FULL = {
-    "world": {
-        "height": 20, "width": 20, "step_time": 0.1, "offset": [-10, -10], "collision_mode": "stop",
-        "plot": {"viewpoint": [0, 0], "saved_figure": {"dpi": 80}}, "sample_time": 0.2, "seed": 3,
-    },
-    "robot": [
-        {
-            "kinematics": {"name": "acker", "mode": "steer"},
-            "shape": {"name": "rectangle", "length": 4.6, "width": 1.6, "wheelbase": 3},
-            "state": [-8, -8, 0, 0],
-            "goal": [[[0, 0, 0], [8, 8, 0]]],
-            "vel_max": [4, 1],
-            "vel_min": [-4, -1],
-            "behavior": {"name": "dash", "loop": True},
-            "sensors": [{"type": "lidar2d", "number": 90, "range_max": 8, "angle_range": 6.28,
-            "plot": {"alpha": 0.2}}],
-            "color": "cycle",
-        },
-        {
-            "number": 4, "kinematics": {"name": "omni"}, "shape": [{"name": "circle", "radius": 0.3}],
-            "distribution": {"name": "circle", "radius": 6, "center": [0, 0]}, "color": ["r", "g", "b"],
-            "behavior": {"name": "dash"}, "tags": ["pedestrian"], "arrive_mode": "state",
-        },
-    ],
-    "obstacle": [
-        {
-            "number": 5, "distribution": {"name": "random", "range_low": [-9, -9, -3.14], "range_high": [9, 9, 3.14]},
-            "shape": [{"name": "polygon", "random_shape": True, "is_convex": True, "avg_radius_range": [0.3, 0.8]}],
-        },
-        {
-            "shape": {"name": "linestring", "vertices": [[0, 0], [3, 0], [3, 3]]}, "state": [0, 0, 0],
-            "unobstructed": True, "plot": {"show_text": True, "text_position": [0.1, 0.1]},
-        },
-        {"shape": {"name": "compound", "parts": [{"name": "circle", "radius": 0.5, "pose": [1, 0, 0]}]},
-        "mass": [2.0]},
-    ],
-    "gui": {"keyboard": {"backend": "mpl"}, "mouse": {"zoom_factor": 1.2}},
-    "custom": {"anything": [1, {"goes": None}]},
-}  # fmt: skip
+FULL = yaml.safe_load(COMPLETE)
 
 
 @cache
@@ -122,14 +86,12 @@ def test_nodes_are_described() -> None:
 
 def test_offers_every_feature() -> None:
     text = schema_text()
-    for registry in REGISTRIES.values():
-        for name in registry.installed():
+    for features in registry.REGISTRIES.values():
+        for name in features.installed():
             assert f'"const": "{name}"' in text
 
 
 def test_names_registered_by_user_code_are_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    from irsim.options import registry
-
     data = {"robot": {"kinematics": {"name": "diff"}, "behavior": {"name": "zigzag", "width": 2}}}
     assert not validator().is_valid(data)
     monkeypatch.setattr(registry.CUSTOM_BEHAVIORS, "functions", {("diff", "zigzag"): print})

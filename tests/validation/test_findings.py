@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import irsim
-from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.diagnostics.diagnostic import Diagnostic, format_path
 from irsim.env import Env
 from irsim.scenario.read import read
 from irsim.validation.feasibility.check import feasibility_findings
@@ -59,12 +59,41 @@ def scenario(robot: dict[str, Any], *obstacles: dict[str, Any], **world: Any) ->
     return copy.deepcopy(data)
 
 
-def door(width: float, **world: Any) -> dict[str, Any]:
+def door(width: float, robot: dict[str, Any] = ROBOT, **world: Any) -> dict[str, Any]:
     """A wall across the world at x = 6 with a door in the middle."""
     part = (10 - width) / 2
     shape = {"name": "rectangle", "length": 0.2, "width": part}
     walls = {"number": 2, "shape": shape, "state": [[6, part / 2, 0], [6, 10 - part / 2, 0]]}
-    return scenario(ROBOT, walls, **world)
+    return scenario(robot, walls, **world)
+
+
+def box(length: float, width: float, *state: float) -> dict[str, Any]:
+    return {"shape": {"name": "rectangle", "length": length, "width": width}, "state": [*state, 0]}
+
+
+def disc(radius: float, *state: float) -> dict[str, Any]:
+    return {"shape": {"name": "circle", "radius": radius}, "state": [*state, 0]}
+
+
+def arrives(data: Any) -> bool:
+    """Whether the robot gets there within 40 s."""
+    env = Env(read(data).scenario, headless=True, seed=0)
+    env.rollout(400)
+    return bool(env.robot.arrive)
+
+
+def places_all(data: Any, seed: int | None = None) -> bool:
+    """Whether all objects find a place."""
+    try:
+        Env(read(data).scenario, headless=True, seed=seed)
+    except irsim.ScenarioError:
+        return False
+    return True
+
+
+def free_place(item: Diagnostic) -> list[float]:
+    """Where the fix says that there is room."""
+    return list(map(float, re.findall(r"\((-?[\d.]+), (-?[\d.]+)\) is free", str(item.fix))[0]))
 
 
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda p: p.parent.name if p.name == "scenario.yaml" else p.stem)
@@ -98,24 +127,52 @@ def test_what_is_unreachable_is_not_reached_and_the_other_is() -> None:
         data = door(width, boundary="walls")
         data["robot"][0]["behavior"] = {"name": "follow"}
         assert ("goal-unreachable" in codes(data)) is not reached
-        env = Env(read(data).scenario, headless=True, seed=0)
-        for _ in range(400):
-            env.step()
-        assert env.robot.arrive is reached
-        env.end()
+        assert arrives(data) is reached
 
 
 @pytest.mark.parametrize("radius", [0.1, 0.3, 0.6])
 def test_a_place_that_can_be_reached_is_offered(radius: float) -> None:
     data = door(radius, boundary="walls")
     data["robot"][0]["shape"] = {"name": "circle", "radius": radius}
-    place = [
-        float(number)
-        for number in re.findall(r"get to \(([\d.]+), ([\d.]+)\)", one(data, "goal-unreachable").fix or "")[0]
-    ]
+    fix = one(data, "goal-unreachable").fix or ""
+    place = list(map(float, re.findall(r"get to \(([\d.]+), ([\d.]+)\)", fix)[0]))
     assert place[0] < 6  # this side of the door
     data["robot"][0]["goal"] = place
     assert codes(data) == []
+
+
+CAR = {**ROBOT, "shape": {"name": "rectangle", "length": 1.0, "width": 0.5}}
+RING = {"shape": {"name": "linestring", "vertices": [[8, 3], [11.5, 3], [11.5, 7], [8, 7], [8, 3]]}, "state": [0, 0, 0]}
+BESIDE = box(1, 2, 10.65, 5)  # nearer to the goal than the radius of the robot
+
+
+@pytest.mark.parametrize(
+    ("data", "expected"),
+    [
+        (scenario(ROBOT, RING), "warning goal-unreachable: obstacles separate them completely"),
+        (door(0.0), "warning goal-unreachable: outside the world"),
+        (door(0.0, boundary="walls"), "warning goal-unreachable: obstacles separate them completely"),
+        (door(0.0, collision_mode="unobstructed"), ""),
+        (scenario(ROBOT, {**box(0.2, 10, 6, 5), "unobstructed": True}), ""),
+        (door(0.4, robot=CAR), "warning goal-unreachable: gap of 0.4 m"),
+        (door(0.55, robot=CAR), "hint narrow-passage: gap of 0.55 m"),
+        (door(1.0, robot=CAR), ""),
+        # A gap that is a little too narrow on a widest way does not hide a longer way.
+        (scenario(ROBOT, box(0.2, 4.0, 6, 2.0), box(0.2, 3.0, 6, 6.09), box(0.2, 1.5, 6, 9.25)), ""),
+        (scenario({**ROBOT, "goal": [14, 5]}, boundary="walls"), "warning goal-unreachable: outside the walls"),
+        (scenario({**ROBOT, "goal": [14, 5]}), ""),
+        (scenario({**ROBOT, "goal": [14, 5], "goal_threshold": 3}, boundary="walls"), ""),
+        (scenario(ROBOT, BESIDE), "warning goal-blocked: closer than"),
+        (scenario({**ROBOT, "goal_threshold": 0.2}, BESIDE), ""),
+        (scenario(ROBOT, {**DISC, "state": [6, 3, 0], "goal": [6, 8]}, disc(1, 6, 8)),
+            "hint goal-blocked: obstacle[0].goal"),
+    ],
+)  # fmt: skip
+def test_whether_a_goal_can_be_reached(data: dict[str, Any], expected: str) -> None:
+    shown = [d for d in findings(data) if d.code in ("goal-unreachable", "narrow-passage", "goal-blocked")]
+    finding, _, words = expected.partition(": ")
+    assert [f"{d.severity} {d.code}" for d in shown] == ([finding] if expected else [])
+    assert all(words in f"{format_path(d.path)} {d.message}" for d in shown)
 
 
 def test_a_generated_map_has_another_fix() -> None:
@@ -127,59 +184,18 @@ def test_a_generated_map_has_another_fix() -> None:
     assert "get to (" in fix
 
 
-def test_closed_off() -> None:
-    ring = {"shape": {"name": "linestring", "vertices": [[8, 3], [11.5, 3], [11.5, 7], [8, 7], [8, 3]]}}
-    item = one(scenario(ROBOT, {**ring, "state": [0, 0, 0]}), "goal-unreachable")
-    assert "obstacles separate them completely" in item.message
-
-
-def test_only_round_the_outside() -> None:
-    item = one(door(0.0), "goal-unreachable")
-    assert "outside the world" in item.message
-    assert "outside the world" not in one(door(0.0, boundary="walls"), "goal-unreachable").message
-
-
-def test_walls_that_stop_nobody() -> None:
-    assert codes(door(0.0, collision_mode="unobstructed")) == []
-    data = door(0.0)
-    data["obstacle"][0]["unobstructed"] = True
-    assert codes(data) == []
-
-
-def test_a_body_that_is_no_disc() -> None:
-    car = {**ROBOT, "shape": {"name": "rectangle", "length": 1.0, "width": 0.5}}
-    for width, code in ((0.4, "goal-unreachable"), (0.55, "narrow-passage")):
-        data = door(width)
-        data["robot"] = [car]
-        assert code in codes(data)
-    data = door(1.0)
-    data["robot"] = [car]
-    assert codes(data) == []
-
-
-def test_a_wider_way_elsewhere_counts() -> None:
-    """A gap that is a little too narrow on a widest way does not hide a longer way."""
-    walls = [
-        {"shape": {"name": "rectangle", "length": 0.2, "width": 4.0}, "state": [6, 2.0, 0]},
-        {"shape": {"name": "rectangle", "length": 0.2, "width": 3.0}, "state": [6, 6.09, 0]},
-        {"shape": {"name": "rectangle", "length": 0.2, "width": 1.5}, "state": [6, 9.25, 0]},
-    ]
-    assert "goal-unreachable" not in codes(scenario(ROBOT, *walls))
-
-
 @pytest.mark.parametrize(
-    ("goal", "obstacle", "words"),
+    ("obstacle", "words"),
     [
-        ([10, 5], {"shape": {"name": "circle", "radius": 1}, "state": [10.3, 5, 0]}, "inside 'obstacle_1'"),
-        ([10, 5], {"shape": {"name": "rectangle", "length": 0.1, "width": 2}, "state": [10.2, 5, 0]}, "closer than"),
+        (disc(1, 10.3, 5), "inside 'obstacle_1'"),
+        (box(0.1, 2, 10.2, 5), "closer than"),
     ],
 )
-def test_goals_without_room(goal: list[float], obstacle: dict[str, Any], words: str) -> None:
-    data = scenario({**ROBOT, "goal": goal}, obstacle)
+def test_goals_without_room(obstacle: dict[str, Any], words: str) -> None:
+    data = scenario(ROBOT, obstacle)
     item = one(data, "goal-blocked")
     assert words in item.message
-    x, y = map(float, re.findall(r"\((-?[\d.]+), (-?[\d.]+)\) is free", str(item.fix))[0])
-    data["robot"][0]["goal"] = [x, y]
+    data["robot"][0]["goal"] = free_place(item)
     assert codes(data) == []
 
 
@@ -191,15 +207,6 @@ def test_goals_by_the_wall_of_the_world() -> None:
     assert item.path == ("robot", 0, "waypoints", 1)
     data["robot"][0]["waypoints"][1] = [11.65, 5]
     assert codes(data) == []
-
-
-def test_goals_behind_the_wall_of_the_world_are_unreachable() -> None:
-    data = scenario({**ROBOT, "goal": [14, 5]}, boundary="walls")
-    item = one(data, "goal-unreachable")
-    assert (item.severity, item.path) == ("warning", ("robot", 0, "goal"))
-    assert "outside the walls" in item.message
-    assert "goal-unreachable" not in codes(scenario({**ROBOT, "goal": [14, 5]}))
-    assert "goal-unreachable" not in codes(scenario({**ROBOT, "goal": [14, 5], "goal_threshold": 3}, boundary="walls"))
 
 
 def test_the_waypoint_is_told_with_its_line() -> None:
@@ -225,27 +232,13 @@ obstacle:
     assert (outside.path, outside.line) == (("robot", 0, "waypoints", 1), 9)
 
 
-def test_goals_of_pedestrians_are_hinted_at() -> None:
-    post = {"shape": {"name": "circle", "radius": 1}, "state": [6, 8, 0]}
-    walker = {**DISC, "state": [6, 3, 0], "goal": [6, 8]}
-    item = one(scenario(ROBOT, walker, post), "goal-blocked")
-    assert item.severity == "hint"
-    assert item.path == ("obstacle", 0, "goal")
-
-
-def test_the_threshold_counts() -> None:
-    wall = {"shape": {"name": "rectangle", "length": 1, "width": 2}, "state": [10.65, 5, 0]}
-    assert codes(scenario(ROBOT, wall)) == ["goal-blocked"]
-    assert "goal-blocked" not in codes(scenario({**ROBOT, "goal_threshold": 0.2}, wall))
-
-
 def test_overlaps_say_how_deep_and_where_to() -> None:
     data = {"robot": [{**DISC, "state": [2, 2, 0], "goal": [9, 9]}, {**DISC, "state": [2.4, 2, 0], "goal": [9, 2]}]}
     item = one(data, "initial-overlap")
     assert "0.2 m deep" in item.message
     assert "'robot_0'" in item.message
     assert "'robot_1'" in item.message
-    place = list(map(float, re.findall(r"\((-?[\d.]+), (-?[\d.]+)\) is free", str(item.fix))[0]))
+    place = free_place(item)
     assert math.dist(place, [2, 2]) < 0.5
     data["robot"][0]["state"] = [*place, 0]
     assert codes(data) == []
@@ -254,9 +247,7 @@ def test_overlaps_say_how_deep_and_where_to() -> None:
 def test_a_start_in_the_map() -> None:
     robot = {**DISC, "state": [0.05, 0.05, 0], "goal": [18, 13], "behavior": {"name": "follow"}}
     data = {"world": {"width": 20, "height": 15, "obstacle_map": "office.png"}, "robot": [robot]}
-    item = one(data, "initial-overlap")
-    place = list(map(float, re.findall(r"\((-?[\d.]+), (-?[\d.]+)\) is free", str(item.fix))[0]))
-    data["robot"][0]["state"] = [*place, 0]
+    data["robot"][0]["state"] = [*free_place(one(data, "initial-overlap")), 0]
     assert "initial-overlap" not in codes(data)
 
 
@@ -273,19 +264,12 @@ def test_random_placement_is_tried_with_20_seeds() -> None:
     tight = crowd(31, **BIG)
     item = one(tight, "placement-tight")
     failing = int(re.findall(r"with (\d+) of 20 seeds, not all objects find", item.message)[0])
-    truth = 0
-    for seed in range(20):
-        try:
-            Env(read(tight).scenario, headless=True, seed=seed).end()
-        except irsim.ScenarioError:
-            truth += 1
-    assert failing == truth
+    assert failing == sum(not places_all(tight, seed) for seed in range(20))
     assert 0 < failing < 20
 
 
 def test_random_placement_that_never_works_is_an_error() -> None:
-    block = {"shape": {"name": "rectangle", "length": 7, "width": 7}, "state": [4, 4, 0]}
-    item = one({**crowd(12), "obstacle": [block]}, "placement-crowded")
+    item = one({**crowd(12), "obstacle": [box(7, 7, 4, 4)]}, "placement-crowded")
     assert item.severity == "error"
     assert "with none of 20 seeds" in item.message
 
@@ -295,31 +279,18 @@ def test_the_scenarios_own_seed_counts() -> None:
     outcome = set()
     for seed in range(30):
         data["world"]["seed"] = seed
-        try:
-            Env(read(data).scenario, headless=True).end()
-            works = True
-        except irsim.ScenarioError:
-            works = False
-        errors = [d for d in findings(data) if d.code == "placement-crowded"]
-        assert bool(errors) is not works
+        works = places_all(data)
+        assert ("placement-crowded" in codes(data)) is not works
         outcome.add(works)
         if outcome == {True, False}:
             break
 
 
 def test_random_obstacles_on_a_goal_are_counted() -> None:
-    data = {
-        "world": {"width": 8, "height": 8},
-        "robot": [{**DISC, "state": [1, 1, 0], "goal": [7, 7]}],
-        "obstacle": [
-            {
-                "number": 14,
-                "distribution": {"name": "random", "range_low": [2, 2, -3], "range_high": [8, 8, 3]},
-                "shape": {"name": "circle", "radius": 0.5},
-            }
-        ],
-    }
-    blocked = one(data, "goal-blocked").message
+    drawn = {"name": "random", "range_low": [2, 2, -3], "range_high": [8, 8, 3]}
+    posts = {"number": 14, "distribution": drawn, "shape": {"name": "circle", "radius": 0.5}}
+    robot = {**DISC, "state": [1, 1, 0], "goal": [7, 7]}
+    blocked = one(scenario(robot, posts, width=8, height=8), "goal-blocked").message
     assert re.match(r"in \d of 5 seeds, for example seed \d+: 'robot_0' does not fit", blocked)
 
 

@@ -11,11 +11,9 @@ import pytest
 
 import irsim
 import irsim._core as core
-from irsim.diagnostics.diagnostic import Diagnostic
-from irsim.scenario.read import read
-from irsim.validation.feasibility.check import feasibility_findings
 from irsim.validation.feasibility.gaps import find_gaps
 from irsim.validation.feasibility.scenes import FAR, Scene
+from tests.validation.test_findings import DISC, box, codes, findings
 
 pytestmark = pytest.mark.one_python
 LONG = (pytest.mark.slow, pytest.mark.rotates(4))
@@ -41,14 +39,6 @@ def door(size: float, gap: float, **more: Any) -> dict[str, Any]:
     """A wall across the world with a door."""
     x, y = size / 2, 0.7 * size
     return world(size, line((x, 0), (x, y)), line((x, y + gap), (x, size)), **more)
-
-
-def findings(data: Any) -> list[Diagnostic]:
-    return list(read(data, strict=True, feasibility=feasibility_findings).diagnostics)
-
-
-def codes(data: Any) -> list[str]:
-    return [d.code for d in findings(data)]
 
 
 @pytest.mark.parametrize(("size", "radius"), [(60, 0.15), (100, 0.3), (400, 0.3), (3000, 0.2)])
@@ -163,7 +153,7 @@ def test_gaps_are_those_that_fine_cells_show(open_edge: bool) -> None:
     """Against the widest way over a lattice, whose distances are at most half a diagonal off."""
     rng = np.random.default_rng(7)
     bounds, narrow = (0.0, 0.0, 10.0, 10.0), 0
-    for _ in range(30):
+    for _ in range(20):
         low, high = (3.6, 6.4) if open_edge else (0.0, 10.0)  # cells do not see what is outside of an open edge
         things = random_things(rng, low, high)
         if not open_edge:
@@ -188,16 +178,9 @@ def test_gaps_are_those_that_fine_cells_show(open_edge: bool) -> None:
 
 
 def test_a_goal_between_walls_that_the_body_just_touches_can_be_reached() -> None:
-    walls = [{"shape": {"name": "rectangle", "length": 6, "width": 1}, "state": [8, y, 0]} for y in (3.8, 2.2)]
-    robot = {
-        "kinematics": {"name": "diff"},
-        "shape": {"name": "circle", "radius": 0.3},
-        "behavior": {"name": "dash"},
-        "state": [1, 3, 0],
-        "goal": [8, 3, 0],
-        "goal_threshold": 0.05,
-    }
+    walls = [box(6, 1, 8, y) for y in (3.8, 2.2)]
+    robot = {**DISC, "behavior": {"name": "dash"}, "state": [1, 3, 0], "goal": [8, 3, 0], "goal_threshold": 0.05}
     data = {"world": {"width": 12, "height": 6}, "robot": [robot], "obstacle": walls}
-    assert "goal-blocked" not in {finding.code for finding in findings(data)}
+    assert "goal-blocked" not in codes(data)
     walls[0]["state"] = [8, 3.79, 0]
-    assert "goal-blocked" in {finding.code for finding in findings(data)}
+    assert "goal-blocked" in codes(data)

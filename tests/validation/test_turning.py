@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import irsim
+from tests.scenario.test_checks_single import named
 
 CAR = """
 world: {width: 60, height: 60, time_limit: 60}
@@ -25,7 +26,7 @@ def text(goal: str, back: float = 0, local: str = "dash") -> str:
 
 
 def messages(scenario: str) -> list[str]:
-    return [f.message for f in irsim.validate(text=scenario).findings if f.code == "turning-circle"]
+    return [finding.message for finding in named("turning-circle", scenario)]
 
 
 @pytest.mark.parametrize("goal", ["[30, 30]", "[30, 27]", "[26, 22]"])

@@ -1,4 +1,4 @@
-"""The README: every file, program and command in it works as printed, and the program generates its tables."""
+"""Pages: paths, links, sessions, programs and commands in them exist and work; the program generates the tables."""
 
 from __future__ import annotations
 
@@ -14,7 +14,12 @@ import pytest
 from irsim.cli.overview import SENTENCES_FILE, commands_table, sentences_text
 from tests.warm import warm
 
+pytestmark = pytest.mark.one_python
+
 ROOT = Path(__file__).resolve().parents[2]
+PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "AGENTS.md", "evals/README.md", "irsim/core/README.md")
+TOP = r"(?:irsim|mcp_server|tests|skills|templates|schema|evals|\.ci|\.github)"
+each = pytest.mark.parametrize("name", PAGES)
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"(?:<!-- (\w+): ([^>]*?) -->\n)?```(\w*)\n(.*?)```", re.DOTALL)
 BLOCKS = [match.groups() for match in BLOCK.finditer(README)]
@@ -30,15 +35,8 @@ def folder(tmp_path: Path) -> Path:
 
 
 def execute(command: list[str], folder: Path) -> str:
-    done = subprocess.run(
-        command,
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-        env={**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)},
-    )
+    env = {**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120, env=env)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -57,11 +55,6 @@ def test_the_picture_is_there_and_small() -> None:
     assert pictures
     for picture in pictures:
         assert (ROOT / picture).stat().st_size < 600_000
-
-
-def test_links_lead_somewhere() -> None:
-    for link in re.findall(r"(?<!!)\[[^]]+\]\(([^)#]+)[^)]*\)", README):
-        assert link.startswith("https://") or (ROOT / link).exists(), link
 
 
 def test_python_programs_run(folder: Path) -> None:
@@ -84,7 +77,8 @@ def test_irsim_commands_run(folder: Path) -> None:
         if language == "python" and "save_network(" in content:  # commands below it name the file
             execute([sys.executable, "-c", content], folder)
     for command in commands:
-        execute(warm([sys.executable, "-m", *shlex.split(command)]), folder)
+        shorter = command.replace("--seeds 2", "--seeds 1")  # a whole suite, whose pages take long enough
+        execute(warm([sys.executable, "-m", *shlex.split(shorter)]), folder)
 
 
 def test_the_table_of_commands_is_the_programs_own() -> None:
@@ -92,3 +86,36 @@ def test_the_table_of_commands_is_the_programs_own() -> None:
     assert table
     assert table[1] == commands_table(), "write it again: python -m irsim.cli.overview README.md"
     assert SENTENCES_FILE.read_text(encoding="utf-8") == sentences_text(), "write it again, too"
+
+
+def spans(name: str) -> list[str]:
+    return re.findall(r"`([^`\n]+)`", (ROOT / name).read_text(encoding="utf-8"))
+
+
+@each
+def test_paths_exist(name: str) -> None:
+    paths = [span for span in spans(name) if re.fullmatch(rf"{TOP}/[\w./-]+", span)]
+    written = [path for path in paths if not re.search(r"(^|[/_])x([./]|$)", path)]  # x is made by the reader
+    folders = (ROOT, (ROOT / name).parent)
+    assert [path for path in written if not any((folder / path).exists() for folder in folders)] == []
+
+
+@each
+def test_folders_of_patterns_exist(name: str) -> None:
+    patterns = [span for span in spans(name) if re.fullmatch(rf"{TOP}/[\w./-]*[<*].*", span)]
+    folders = [re.split("[<*]", pattern)[0].rpartition("/")[0] for pattern in patterns]
+    assert [folder for folder in folders if not (ROOT / folder).is_dir()] == []
+
+
+@each
+def test_links_lead_somewhere(name: str) -> None:
+    page = ROOT / name
+    links = re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8"))
+    assert [link for link in links if not link.startswith("https://") and not (page.parent / link).exists()] == []
+
+
+@each
+def test_sessions_are_those_of_the_noxfile(name: str) -> None:
+    noxfile = (ROOT / "noxfile.py").read_text(encoding="utf-8")
+    named = re.findall(r"nox -s (\w+)", (ROOT / name).read_text(encoding="utf-8"))
+    assert [session for session in named if f"def {session}(" not in noxfile] == []
