@@ -221,7 +221,8 @@ def test_every_group_is_kept_with_all_its_starts() -> None:
 
 
 def test_some_groups_are_the_kept_ones(tmp_path: Path) -> None:
-    short = [group for group in groups(BEHAVIORS) if group.dt == 0.2 and part(group) == 0 and group.case.name != "30"]
+    chosen = groups(BEHAVIORS)[::3]
+    short = [group for group in chosen if group.dt == 0.2 and part(group) == 0 and group.case.name != "30"]
     assert different(short, tmp_path) == []
 
 

@@ -203,9 +203,10 @@ def picture(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("local", ["dash", "rvo", "orca", "sfm"])
-@pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("drive", DRIVES)
-@pytest.mark.parametrize("made_of", ["walls", "map", "boundary"])
+@pytest.mark.parametrize(
+    ("made_of", "shape"), [*(("walls", shape) for shape in SHAPES), ("map", "rectangle"), ("boundary", "polygon")]
+)
 def test_through_a_maze(made_of: str, drive: str, shape: str, local: str, picture: Path) -> None:
     world = {"walls": "", "map": f", obstacle_map: '{picture}'", "boundary": ", boundary: walls"}[made_of]
     walls = "" if made_of == "map" else WALLS

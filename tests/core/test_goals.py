@@ -31,11 +31,6 @@ def test_arrival(pose, goal, mode: int) -> None:
         assert state.arrived[0] == (distance < 0.7)
 
 
-def test_state_arrival_wraps_the_heading() -> None:
-    _, state = scene(robot(pose=[0, 0, 3.14], goals=[[0, 0, -3.14]], arrive_mode=1))
-    assert state.arrived[0] == 1
-
-
 def test_an_object_that_leaves_its_goal_has_not_arrived() -> None:
     world, state = scene(robot(goals=[[0, 0]], behavior=None))
     assert state.arrived[0] == 1
@@ -59,6 +54,12 @@ def test_waypoints_are_passed_in_order() -> None:
 def test_a_goal_of_two_numbers_has_no_heading() -> None:
     _, state = scene(robot(goals=[[1, 2]]), robot(goals=[[1, 2, 3]]), robot())
     np.testing.assert_array_equal(state.goal, [[1, 2, math.nan], [1, 2, 3], [math.nan] * 3])
+
+
+def test_headings_wrap_and_static_objects_arrive_too() -> None:
+    turned = robot(pose=[0, 5, 3.14], goals=[[0, 5, -3.14]], arrive_mode=1)
+    _, state = scene(turned, obstacle(goals=[[0, 0]]), obstacle(pose=[3, 0, 0], goals=[[0, 0]]))
+    assert state.arrived.tolist() == [1, 1, 0]
 
 
 def test_loop_over_waypoints() -> None:
@@ -112,8 +113,3 @@ def test_set_goals() -> None:
         state.set_goals(0, [[1.0]], False)
     with pytest.raises(IndexError):
         state.set_goals(2, [], False)
-
-
-def test_static_objects_arrive_too() -> None:
-    _, state = scene(obstacle(goals=[[0, 0]]), obstacle(pose=[3, 0, 0], goals=[[0, 0]]))
-    assert state.arrived.tolist() == [1, 0]

@@ -27,7 +27,7 @@ def turning(crowd: Crowd, i: int) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@for_all(60, seed=st.integers(0, 2**32 - 1))
+@for_all(40, seed=st.integers(0, 2**32 - 1))
 def test_each_object_alone(drive: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
     options = kernel(
@@ -49,7 +49,7 @@ def test_each_object_alone(drive: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@for_all(60, seed=st.integers(0, 2**32 - 1))
+@for_all(40, seed=st.integers(0, 2**32 - 1))
 def test_members_of_a_group(drive: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
     order = rng.permutation(5).tolist()

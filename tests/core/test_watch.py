@@ -42,24 +42,20 @@ def kinds(events: Sequence[Event]) -> list[tuple[str, int]]:
 BOX = polygon((4, 0), (6, 0), (6, 2), (4, 2))
 
 
-def test_a_body_is_inside_as_long_as_it_touches_the_region() -> None:
-    # a disc of 0.25 m touches the box with its centre from 3.75 to 6.25; these numbers have no rounding errors
-    way = [(3.5, 1), (3.75, 1), (5, 1), (6.25, 1), (6.5, 1)]
-    events = drive(way, zones=[BOX], parts=[circle(0.25)])
-    assert kinds(events) == [("zone_entry", 1), ("zone_exit", 4)]
-    assert [event[4:] for event in events] == [(3.75, 1.0), (6.5, 1.0)]
+# a disc of 0.25 m touches the box with its centre from 3.75 to 6.25; these numbers have no rounding errors
+VISITS = {
+    "touching": (BOX, circle(0.25), [(3.5, 1), (3.75, 1), (5, 1), (6.25, 1), (6.5, 1)], [1, 4]),
+    "starting inside, never leaving": (BOX, circle(0.2), [(5, 1), (5.5, 1), (5, 1.5)], [0]),
+    "covering a small region": (circle(0.01, center=(5, 1)), rectangle(2, 2), [(3, 1), (5, 1), (7, 1)], [1, 2]),
+}
 
 
-def test_a_body_that_starts_inside_enters_at_step_0_and_one_that_stays_never_leaves() -> None:
-    assert kinds(drive([(5, 1), (5.5, 1), (5, 1.5)], zones=[BOX])) == [("zone_entry", 0)]
-
-
-def test_a_region_smaller_than_the_body_counts_when_the_body_covers_it() -> None:
-    tiny = circle(0.01, center=(5, 1))
-    assert kinds(drive([(3, 1), (5, 1), (7, 1)], zones=[tiny], parts=[rectangle(2, 2)])) == [
-        ("zone_entry", 1),
-        ("zone_exit", 2),
-    ]
+@pytest.mark.parametrize("case", VISITS)
+def test_a_body_is_inside_as_long_as_it_touches_the_region(case: str) -> None:
+    zone, body, way, steps = VISITS[case]
+    events = drive(way, zones=[zone], parts=[body])
+    assert kinds(events) == list(zip(("zone_entry", "zone_exit"), steps, strict=False))
+    assert [event[4:] for event in events] == [way[step] for step in steps]
 
 
 def test_each_region_counts_on_its_own_and_events_name_its_index() -> None:
