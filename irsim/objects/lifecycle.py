@@ -78,9 +78,7 @@ def move_out(simulation: Simulation, leaving: Iterable[SimObject]) -> None:
     staying = [view for view in simulation.views() if view not in gone]
     seed = simulation.key()[0]
     for view in gone:
-        own = lone_simulation(simulation.scenario, view.record, seed)
-        own.exchange(own.scenario, [(simulation, view.row)])
-        _keep(view, own)
+        _set_apart(simulation, view, seed)
     _exchange(simulation, staying, _with_leaders(simulation.scenario.objects, [view.record for view in staying]))
 
 
@@ -146,9 +144,7 @@ def restore(simulation: Simulation, scenario: ResolvedScenario, originals: Seque
     seed = simulation.key()[0]
     for view in simulation.views():
         if view not in originals:
-            own = lone_simulation(simulation.scenario, view.record, seed)
-            own.exchange(own.scenario, [(simulation, view.row)])
-            _keep(view, own)
+            _set_apart(simulation, view, seed)
     simulation.restore(scenario)
     _settle(simulation, originals, anew=True)
 
@@ -165,7 +161,10 @@ def _settle(simulation: Simulation, shown: Sequence[SimObject], *, anew: bool = 
     attach_python(simulation, anew=anew)
 
 
-def _keep(view: SimObject, own: Simulation) -> None:
+def _set_apart(simulation: Simulation, view: SimObject, seed: int) -> None:
+    """Move an object into a simulation of its own; its row in the old one stays."""
+    own = lone_simulation(simulation.scenario, view.record, seed)
+    own.exchange(own.scenario, [(simulation, view.row)])
     set_views(own, [view])
 
 

@@ -24,10 +24,10 @@ __all__ = [
     "SETTINGS",
     "FixedList",
     "change",
+    "changed_options",
     "goal_list",
     "names_only_read",
     "refuse",
-    "sensor_options",
     "set_state",
     "set_velocity",
 ]
@@ -112,13 +112,9 @@ SETTINGS: dict[str, Callable[[Any, str, Any], Any]] = {
 HINTS: dict[str, str] = {
     "name": "a name cannot change; give `name` in the scenario, or to `env.create_robot`",
     "id": "ids stay",
-    "state": "call `set_state`",
-    "position": "call `set_state`",
-    "orientation": "call `set_state`",
-    "heading": "call `set_state`",
+    **dict.fromkeys(("state", "position", "orientation", "heading"), "call `set_state`"),
     "init_state": "call `set_state(..., init=True)`",
-    "velocity": "call `set_velocity`",
-    "velocity_xy": "call `set_velocity`",
+    **dict.fromkeys(("velocity", "velocity_xy"), "call `set_velocity`"),
     "goal": "call `set_goal`",
     "goals": "call `set_goal` or `append_goal`",
     "trajectory": "it follows from the steps; `reset` clears it",
@@ -127,27 +123,18 @@ HINTS: dict[str, str] = {
     "max_speed": "set `vel_max`",
     "wheelbase": "it belongs to the shape in the scenario",
     "shape": "call `set_original_geometry`, or give `shape` in the scenario",
-    "geometry": "call `set_original_geometry`",
-    "original_geometry": "call `set_original_geometry`",
-    "radius": "call `set_original_geometry`",
-    "vertices": "call `set_original_geometry`",
+    **dict.fromkeys(("geometry", "original_geometry", "radius", "vertices", "gf"), "call `set_original_geometry`"),
     "kinematics": "give `kinematics` in the scenario, or make another object with `env.create_robot`",
     "kf": "give `kinematics` in the scenario; drives of your own are registered with `register_kinematics`",
-    "gf": "call `set_original_geometry`",
     "obj_behavior": "write into `beh_config`, or replace `gen_behavior_vel`",
     "group_behavior_dict": "give `group_behavior` in the scenario",
     "sensors": "give `sensors` in the scenario, or to `env.create_robot`",
     "lidar": "give `sensors` in the scenario; `range_max`, `noise`, ... of the lidar may be set",
-    "state_dim": "give `state_dim` in the scenario",
-    "state_shape": "give `state_dim` in the scenario",
-    "vel_dim": "give `vel_dim` in the scenario",
-    "vel_shape": "give `vel_dim` in the scenario",
+    **dict.fromkeys(("state_dim", "state_shape"), "give `state_dim` in the scenario"),
+    **dict.fromkeys(("vel_dim", "vel_shape"), "give `vel_dim` in the scenario"),
     "info": "it is a snapshot: set the attributes of the object",
     "plot_kwargs": "write into it",
-    "mass": "give `mass` in the scenario",
-    "friction": "give `friction` in the scenario",
-    "restitution": "give `restitution` in the scenario",
-    "inertia": "give `inertia` in the scenario",
+    **{name: f"give `{name}` in the scenario" for name in ("mass", "friction", "restitution", "inertia")},
     "external_objects": "call `env.add_object` or `env.delete_object`",
 }
 """Attributes of an object that cannot be written, each with advice on what to do instead."""
@@ -240,9 +227,8 @@ def _is_only_read(cls: type, name: str) -> bool:
     )
 
 
-# sensors -------------------------------------------------------------------------------------------------------------
-def sensor_options(options: Any, owner: str, **changed: Any) -> Any:
-    """Return a copy of the options of a sensor with changed values.
+def changed_options(options: Any, owner: str, **changed: Any) -> Any:
+    """Return a copy of an options model, of a sensor or of ``plot``, with changed values.
 
     Raises:
         ValueError: A value is not valid.

@@ -85,8 +85,8 @@ class SceneObject:
         radius: Radius of the circle around its center that encloses the footprint [m].
         low, high: Limits of its controls, in the words of the drive.
         acceleration: Limits of the change of its controls [1/s]; infinite without.
-        wheelbase: [m], of ``acker``; None for other
-        drives. mass: [kg]; infinite for an object that nothing pushes.
+        wheelbase: [m], of ``acker``; None for other drives.
+        mass: [kg]; infinite for an object that nothing pushes.
         color: Red, green, blue, from 0 to 1.
         lidars: Its lidars.
         solid: Whether it collides; false for ``unobstructed`` objects.

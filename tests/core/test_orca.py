@@ -144,17 +144,22 @@ def test_of_equally_near_points_those_on_the_right_come_first_wherever_they_are_
 # the law
 
 
-def test_alone_it_goes_straight_to_the_goal_at_its_own_speed() -> None:
-    for drive, speed in (("omni", 0.6), ("omni_angular", 0.6), ("diff", 1.0), ("steer", 1.0)):
-        state = decided(agent((1, 1, 0.0), (5, 1), drive, vel_max=[1.0, 0.6, 2.0]))
-        np.testing.assert_allclose(state.command[0, 0], speed, atol=1e-12)
-        np.testing.assert_allclose(state.command[0, 1:], 0.0, atol=1e-12)
+SLOWING = {"behavior": kernel("orca", approach_time=2.0)}
 
 
-@pytest.mark.parametrize("drive", ["omni", "diff", "omni_angular", "steer"])
-def test_inside_the_threshold_it_rests(drive: str) -> None:
-    state = decided(agent((1, 1), (1.05, 1.0), drive, goal_threshold=0.2))
-    np.testing.assert_array_equal(state.command[0, 0], 0.0)
+@pytest.mark.parametrize(
+    ("drive", "away", "speed", "options"),
+    [
+        *((drive, 4.0, 0.6 if drive.startswith("omni") else 1.0, {}) for drive in DRIVES),
+        *((drive, 0.05, 0.0, {"goal_threshold": 0.2}) for drive in DRIVES),  # within the threshold it rests
+        *(("omni", away, speed, SLOWING) for away, speed in ((3.0, 0.6), (1.0, 0.5), (0.3, 0.15))),
+    ],
+)
+def test_alone_it_goes_straight_to_the_goal_at_its_own_speed(
+    drive: str, away: float, speed: float, options: dict[str, Any]
+) -> None:
+    state = decided(agent((1, 1, 0.0), (1 + away, 1), drive, vel_max=[1.0, 0.6, 2.0], **options))
+    np.testing.assert_allclose(state.command[0], [speed, 0.0, 0.0], atol=1e-12)
 
 
 def test_two_share_the_change_and_others_leave_it_to_it() -> None:
@@ -190,12 +195,6 @@ def test_its_share_of_the_change_can_be_given() -> None:
     assert sideways(None, sees) == sideways(0.5, sees) == sideways(0.5, blind)
     assert sideways(None, blind) == sideways(1.0, blind) == sideways(1.0, sees)
     assert sideways(1.0, sees) < sideways(0.5, sees) < -1e-3
-
-
-def test_near_the_goal_it_slows_down_if_asked_to() -> None:
-    for away, speed in ((3.0, 1.0), (1.0, 0.5), (0.3, 0.15)):
-        state = decided(agent((1, 1), (1 + away, 1), behavior=kernel("orca", approach_time=2.0)))
-        np.testing.assert_allclose(state.command[0], [speed, 0.0, 0.0], atol=1e-12)
 
 
 def test_unobstructed_things_that_stand_are_no_obstacle() -> None:

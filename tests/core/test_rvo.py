@@ -68,9 +68,17 @@ def test_the_best_of_all_samples(drive: str, mode: str, seed: int) -> None:
         assert min(gaps) < 1e-6, (i, candidates[0], answers[0], crowd.state.command[i])
 
 
-def test_alone_one_takes_the_sample_nearest_to_the_desired_velocity() -> None:
-    state = decided(agent(goals=[[3.0, 4.0]]))
-    np.testing.assert_allclose(state.command[0, :2], [0.9, 0.95], atol=1e-9)  # of ..., 0.85, 0.9, 0.95
+@pytest.mark.parametrize(
+    ("options", "command"),
+    [
+        ({"goals": [[3.0, 4.0]]}, [0.9, 0.95]),  # the sample nearest to the desired velocity of ..., 0.85, 0.9, 0.95
+        ({"goals": [[9.0, 0.0]], "control": [1.5, 0.0, 0.0], "behavior": kernel("rvo", vxmax=0.4, acce=0.2)}, [0.4, 0]),
+        ({"goals": [[-5.0, 0.1]], "drive": DRIVES["diff"], "behavior": kernel("rvo", acce=0.001)}, [0.0, 1.5]),
+    ],
+    ids=["nearest sample", "braking to its limits", "turning in place"],
+)
+def test_alone_it_chooses(options: dict[str, Any], command: list[float]) -> None:
+    np.testing.assert_allclose(decided(agent(**options)).command[0, :2], command, atol=1e-9)
 
 
 @pytest.mark.parametrize("mode", ["rvo", "hrvo", "vo"])
@@ -171,17 +179,6 @@ def test_walls_are_never_run_into(drive: str, seed: int) -> None:
         return  # a box stands there
     core.advance(world, state, 400)
     assert not state.collided[0]
-
-
-def test_faster_than_the_limits_one_brakes_to_them() -> None:
-    state = decided(agent(control=[1.5, 0.0, 0.0], behavior=kernel("rvo", vxmax=0.4, acce=0.2), goals=[[9.0, 0.0]]))
-    np.testing.assert_allclose(state.command[0, :2], [0.4, 0.0], atol=1e-9)
-
-
-def test_a_turner_without_anybody_around_turns_in_place() -> None:
-    behavior = kernel("rvo", acce=0.001)
-    state = decided(agent(drive=DRIVES["diff"], behavior=behavior, goals=[[-5.0, 0.1]]))
-    np.testing.assert_allclose(state.command[0], [0.0, 1.5, 0.0])
 
 
 @pytest.mark.parametrize("far", [2.0, 9.0])

@@ -74,20 +74,13 @@ def test_members_of_a_group(drive: str, seed: int) -> None:
         )
 
 
-def test_alone_one_is_only_pulled_to_the_goal() -> None:
+def test_alone_one_is_pulled_to_the_goal_up_to_its_speed_and_rests_without_one() -> None:
+    assert np.abs(advanced(60, walker(control=[1.0, 0.0, 0.0])).control).max() < 1e-5
+    fast = decided(walker(goals=[[9.0, 0.0]], control=[1.5, 0.0, 0.0]))
+    np.testing.assert_allclose(fast.command[0], [1.5, 0.0, 0.0], atol=1e-12)
     state = decided(walker(goals=[[3.0, 4.0]], control=[0.2, 0.0, 0.0]))
     desired = 1.5 * np.array([0.6, 0.8])
     np.testing.assert_allclose(state.command[0, :2], [0.2, 0.0] + 0.1 * (desired - [0.2, 0.0]) / 0.5, atol=1e-12)
-
-
-def test_alone_without_a_goal_one_comes_to_rest() -> None:
-    state = advanced(60, walker(control=[1.0, 0.0, 0.0]))
-    assert np.abs(state.control).max() < 1e-5
-
-
-def test_at_top_speed_the_pull_is_gone() -> None:
-    state = decided(walker(goals=[[9.0, 0.0]], control=[1.5, 0.0, 0.0]))
-    np.testing.assert_allclose(state.command[0], [1.5, 0.0, 0.0], atol=1e-12)
 
 
 @pytest.mark.parametrize("drive", ["omni", "diff", "omni_angular"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -121,36 +122,31 @@ def discomfort(gap: float, steps: int) -> float:
     return total
 
 
-def test_an_arrival_is_worth_less_the_later_it_is() -> None:
-    assert reward(2.0, arrival=80) == pytest.approx(0.9**7.9)
-    assert reward(2.0, steps=40, arrival=40) == pytest.approx(0.9**3.9)
-    assert reward(2.0, arrival=1) == 1.0  # the first step is not discounted
-    assert reward(2.0, arrival=80, top=2.0) == pytest.approx(0.9 ** (7.9 * 2))
+COST = discomfort(0.1, 80)
+RETURNS = [
+    # an arrival is worth less the later it is; the first step is not discounted
+    ({"gap": 2.0, "arrival": 80}, 0.9**7.9),
+    ({"gap": 2.0, "steps": 40, "arrival": 40}, 0.9**3.9),
+    ({"gap": 2.0, "arrival": 1}, 1.0),
+    ({"gap": 2.0, "arrival": 80, "top": 2.0}, 0.9 ** (7.9 * 2)),
+    ({"gap": 2.0, "arrival": 80, "top": math.inf}, math.nan),
+    # a time-out is worth nothing; at exactly 0.2 m no person is disturbed
+    ({"gap": 2.0}, 0.0),
+    ({"gap": 0.2}, 0.0),
+    # to come close costs until the end
+    ({"gap": 0.1}, COST),
+    ({"gap": 0.1, "arrival": 80}, COST + 0.9**7.9),
+    ({"gap": 0.1, "steps": 40}, discomfort(0.1, 40)),
+    # the first contact ends it, replaces what its step would earn, and counts before an arrival, but not after one
+    ({"gap": 2.0, "contact": 31, "arrival": 80}, -0.25 * 0.9**3.0),
+    ({"gap": 0.1, "contact": 40}, discomfort(0.1, 39) - 0.25 * 0.9**3.9),
+    ({"gap": 2.0, "contact": 40, "arrival": 40}, -0.25 * 0.9**3.9),
+    ({"gap": 2.0, "contact": 0}, -0.25),
+    ({"gap": 2.0, "arrival": 40, "contact": 60}, 0.9**3.9),
+]
 
 
-def test_a_timeout_far_from_everybody_is_worth_nothing() -> None:
-    assert reward(2.0) == 0.0
-    assert reward(0.2) == 0.0  # at exactly 0.2 m no person is disturbed
-
-
-def test_coming_close_costs_until_the_end() -> None:
-    cost = discomfort(0.1, 80)
-    assert cost < -0.002
-    assert reward(0.1) == pytest.approx(cost)
-    assert reward(0.1, arrival=80) == pytest.approx(cost + 0.9**7.9)
-    assert reward(0.1, steps=40) == pytest.approx(discomfort(0.1, 40))
-
-
-def test_the_first_contact_ends_it_and_replaces_what_its_step_would_earn() -> None:
-    assert reward(2.0, contact=31, arrival=80) == pytest.approx(-0.25 * 0.9**3.0)
-    assert reward(0.1, contact=40) == pytest.approx(discomfort(0.1, 39) - 0.25 * 0.9**3.9)
-    assert reward(2.0, contact=40, arrival=40) == pytest.approx(-0.25 * 0.9**3.9)  # a contact counts before an arrival
-    assert reward(2.0, contact=0) == -0.25  # it began in contact
-
-
-def test_it_needs_a_limit_of_the_speed() -> None:
-    assert math.isnan(reward(2.0, arrival=80, top=math.inf))
-
-
-def test_a_contact_after_the_arrival_does_not_count() -> None:
-    assert reward(2.0, arrival=40, contact=60) == pytest.approx(0.9**3.9)
+@pytest.mark.parametrize(("episode", "expected"), RETURNS)
+def test_the_return_of_an_episode(episode: dict[str, Any], expected: float) -> None:
+    assert COST < -0.002
+    assert reward(**episode) == pytest.approx(expected, abs=1e-12, nan_ok=True)

@@ -1,7 +1,5 @@
 """A value that scripts write to objects, lidars or the world holds at once, or is an error that says what to do."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -26,13 +24,10 @@ obstacle:
 
 
 @pytest.fixture
-def env(tmp_path: Path):
-    path = tmp_path / "two.yaml"
-    path.write_text(TWO)
-    env = irsim.make(path, headless=True, seed=1)
+def env(make):
+    env = make(TWO, log_level="WARNING")
     go(env, 3)
-    yield env
-    env.end()
+    return env
 
 
 def go(env, steps):
@@ -91,26 +86,21 @@ def test_limits(env, value):
     env.robot.vel_max = [5, 1]
     go(env, 1)
     assert env.robot.velocity[0, 0] == pytest.approx(0.6)
-
-
-def test_vel_min(env):
-    env.robot.vel_min = [0.9, -1]
+    env.robot.acce, env.robot.vel_min = [np.inf, np.inf], [0.9, -1]
     env.step([0, 0])
     assert env.robot.velocity[0, 0] == 0.9
 
 
 def test_flags(env):
-    robot = env.robot
-    for name in ("stop_flag", "arrive_flag", "collision_flag"):
-        setattr(robot, name, True)
-        assert getattr(robot, name) is True
+    flags = ("stop_flag", "arrive_flag", "collision_flag")
+    for name in flags:
+        setattr(env.robot, name, True)
+        assert getattr(env.robot, name) is True
     assert env.done("any")
-    assert robot.collision
-    assert robot.arrive
-    go(env, 1)  # evaluated anew
-    assert not (robot.stop_flag)
-    assert not (robot.arrive_flag)
-    assert not (robot.collision_flag)
+    assert env.robot.collision
+    assert env.robot.arrive
+    go(env, 1)
+    assert not any(getattr(env.robot, name) for name in flags), "they are evaluated anew"
 
 
 def test_state_under_its_private_names(env):
@@ -226,21 +216,23 @@ def test_lidar_options(env):
     assert env.get_lidar_scan()["ranges"].shape == (3,)
 
 
-@pytest.mark.parametrize(("name", "value"), [("range_max", -1.0), ("number", 0), ("noise", "yes"), ("offset", "x")])
-def test_lidar_options_are_checked(env, name, value):
+@pytest.mark.parametrize(
+    ("name", "value", "error"),
+    [
+        ("range_max", -1.0, ValueError),
+        ("number", 0, ValueError),
+        ("noise", "yes", ValueError),
+        ("offset", "x", ValueError),
+        ("range_data", np.zeros(5), AttributeError),  # it follows from the options
+        ("angle_list", np.zeros(5), AttributeError),
+    ],
+)
+def test_what_a_lidar_does_not_take_is_refused(env, name, value, error):
     before = getattr(env.robot.lidar, name)
-    with pytest.raises(ValueError, match=name):
+    with pytest.raises(error, match=name):
         setattr(env.robot.lidar, name, value)
     assert np.all(getattr(env.robot.lidar, name) == before)
     go(env, 1)
-
-
-def test_what_follows_from_options_cannot_be_set(env):
-    with pytest.raises(AttributeError, match="range_data"):
-        env.robot.lidar.range_data = np.zeros(5)
-    with pytest.raises(AttributeError, match="angle_list"):
-        env.robot.lidar.angle_list = np.zeros(5)
-    env.robot.lidar.my_note = 1
 
 
 def test_objects_come_and_go_with_the_list(env):
@@ -341,10 +333,10 @@ def test_every_property_of_an_object_is_written_or_refused():
 
 
 def test_attributes_of_ones_own(env):
-    env.robot.my_data = {"a": 1}
+    env.robot.my_data, env.robot.lidar.my_note = {"a": 1}, 1
     go(env, 1)
     env.robot.static = True
-    assert env.robot.my_data == {"a": 1}
+    assert (env.robot.my_data, env.robot.lidar.my_note) == ({"a": 1}, 1)
 
 
 def test_lists_that_follow_from_the_world_cannot_be_changed(env):
@@ -375,9 +367,8 @@ def test_an_object_by_itself(env):
     assert made.goal_threshold == 0.4
 
 
-def test_objects_of_a_batch_share_their_scenario(tmp_path):
-    path = tmp_path / "two.yaml"
-    path.write_text(TWO)
-    simulation = irsim.batch(path, 2)._simulation
+def test_objects_of_a_batch_share_their_scenario(make, tmp_path):
+    make(TWO)
+    simulation = irsim.batch(tmp_path / "scenario.yaml", 2)._simulation
     with pytest.raises(AttributeError, match="batch"):
         views(simulation)[0].goal_threshold = 1.0

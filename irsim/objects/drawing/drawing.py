@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from pydantic import ValidationError
+from typing import Any
 
 from irsim.common.text import clean
 from irsim.objects.base import SimObject
 from irsim.objects.lifecycle import replace_plot
-
-if TYPE_CHECKING:
-    from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.objects.setters import changed_options
 
 __all__ = ["PLOT_KEYS", "Drawing"]
 
@@ -40,7 +35,8 @@ class Drawing:
     def __setattr__(self, name: str, value: Any) -> None:
         view: SimObject = self.__dict__["_view"]
         if name in PLOT_KEYS:
-            replace_plot(view, _with_plot_key(view.record, name, value))
+            plot = changed_options(view.record.plot, repr(view.record.name), **{name: value})
+            replace_plot(view, replace(view.record, plot=plot))
         else:
             object.__setattr__(self, name, value)
 
@@ -84,17 +80,3 @@ class Drawing:
     @property
     def _plot(self) -> Any:
         return self.__dict__["_view"].record.plot
-
-
-def _with_plot_key(record: ObjectRecord, name: str, value: Any) -> ObjectRecord:
-    """Return a record with another value of a key of ``plot``.
-
-    Raises:
-        ValueError: The value is not valid.
-    """
-    plain = value.item() if isinstance(value, np.generic) else value
-    try:
-        plot = type(record.plot).model_validate({**record.plot.model_dump(exclude_unset=True), name: plain})
-    except ValidationError as error:
-        raise ValueError(f"{name!r} of {record.name!r}: {error.errors()[0]['msg']}, not {value!r}") from None
-    return replace(record, plot=plot)

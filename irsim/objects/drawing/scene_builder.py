@@ -222,7 +222,7 @@ class SceneBuilder:
         tracks: list[Track],
     ) -> None:
         if view.record.is_map:
-            scene.grids.append(self._grid(view))
+            scene.grids.append(self.grid(view))
             return
         style, absent = self.style(view, overrides), self.simulation.appeared[view.row] < 0
         if absent and not (self.ghosts and self.simulation.state.takes_part[view.row]):
@@ -247,7 +247,7 @@ class SceneBuilder:
         if not absent and (style.show_trajectory or style.show_trail):
             self._tracks.add(scene, tracks, view.id, view.row, body, style)
 
-    def _grid(self, view: ObjectView) -> GridImage:
+    def grid(self, view: ObjectView) -> GridImage:
         """Return the image of a map, which is made once per scene."""
         if view.id not in self._grids:
             grid = self.simulation.scenario.grid
@@ -295,10 +295,6 @@ class SceneBuilder:
     def trail_mark(self, view: ObjectView, pose: Pose, overrides: Mapping[str, Any]) -> Mark:
         """Return a snapshot of an object at a pose."""
         return trail_mark(view.id, self.body(view), self.style(view, overrides), pose)
-
-    def grid(self, view: ObjectView) -> GridImage:
-        """Return the image of a map."""
-        return self._grid(view)
 
     # sensors ---------------------------------------------------------------------------------------------------------
     def _add_beams(self, scene: Scene, objects: Sequence[ObjectView], overrides: Mapping[str, Any], mode: str) -> None:

@@ -139,13 +139,10 @@ class PythonDrives:
 
     def control_alone(self, row: int, wanted: Floats) -> Floats:
         """Return the control (n,) that realizes the choice of a native behavior; native drives return the choice."""
-        if self._key(row) not in self._handlers:
-            return wanted
-        record, handler = self._of(row)
-        if row % self._simulation.objects not in self._decided_by_core:
-            return np.zeros(record.vel_dim)
-        control: Floats = control_from(handler, self.state(row, record), wanted[:2, None].copy())
-        return control
+        if self._key(row) in self._handlers and row % self._simulation.objects not in self._decided_by_core:
+            return np.zeros(self._of(row)[0].vel_dim)
+        control = self.control_for(row, wanted)
+        return wanted if control is None else control
 
     def control_for(self, row: int, velocity: Floats) -> Floats | None:
         """Return the control (n,) that follows a world-frame velocity (2,) [m/s]; None where the core moves the row."""

@@ -13,7 +13,7 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.objects.base import column
 from irsim.objects.sensors.drawing import draw_scan
-from irsim.objects.setters import refuse, sensor_options
+from irsim.objects.setters import changed_options, refuse
 
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
@@ -153,7 +153,7 @@ class Lidar2D:
     def _change(self, name: str, value: Any) -> None:
         """Set an option for all further scans, and repeat the present scan."""
         parent, before = self.parent, self.options
-        self.options = sensor_options(before, f"the {self.sensor_type} of {parent.name!r}", **{name: value})
+        self.options = changed_options(before, f"the {self.sensor_type} of {parent.name!r}", **{name: value})
         sensors = [self.options if options is before else options for options in parent.record.sensors]
         try:
             parent.amend(replace(parent.record, sensors=sensors))
@@ -335,7 +335,7 @@ class FMCWLidar2D(Lidar2D):
             ValueError: The value is not valid.
         """
         plain = tuple(value.tolist()) if isinstance(value, np.ndarray) else value
-        sensor_options(self.options, f"the {self.sensor_type} of {self.parent.name!r}", **{name: plain})
+        changed_options(self.options, f"the {self.sensor_type} of {self.parent.name!r}", **{name: plain})
         return plain
 
     @property
