@@ -9,7 +9,7 @@ from irsim.compat import DIFFERENCES, KEY_DIFFERENCES, NAME_DIFFERENCES, missing
 from irsim.compat.differences import ABSENT
 from irsim.lookup import lookup
 from tests.compat.scripts import SCRIPTS
-from tests.parity import differences as of_traces
+from tests.parity import test_parity as of_traces
 
 _IDS = re.compile(r"[\w-]+")
 
