@@ -79,6 +79,11 @@ def failed(verdict: Verdict) -> list[str]:
 
 
 @pytest.fixture
+def anyio_backend() -> str:
+    return "asyncio"
+
+
+@pytest.fixture
 def warm_programs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Programs of answers that end by themselves run in processes that have loaded irsim already."""
     monkeypatch.setattr(

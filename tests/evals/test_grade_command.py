@@ -1,9 +1,10 @@
-"""``irsim-evals grade``: the table of verdicts, what an answer cost, later turns, and folders that are worked on."""
+"""``irsim-evals grade``: the table of verdicts, what an answer cost, later turns, watching, commands of the README."""
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -20,15 +21,10 @@ from irsim_evals.cli.grade import Changes
 from irsim_evals.grader.artefact import cost_of, from_folder
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.results import read_results
-from tests.evals.conftest import RIGHT, failed, irsim_evals, made_up, refusal
+from tests.evals.conftest import EVALS, RIGHT, failed, irsim_evals, made_up, refusal
 from tests.warm import warm_mcp
 
 CALL = '{"call": 1, "tool": "lookup", "arguments": {}, "error": false, "tokens": 120}'
-
-
-@pytest.fixture
-def anyio_backend() -> str:
-    return "asyncio"
 
 
 @pytest.fixture
@@ -246,3 +242,22 @@ async def test_calls_of_a_real_server_are_the_cost_of_an_answer(exported: Path) 
     assert (verdict.cost.calls, verdict.cost.errors, verdict.cost.notes) == (3, 1, [])
     assert verdict.cost.tokens is not None
     assert 200 < verdict.cost.tokens < 2000
+
+
+BLOCKS = re.findall(r"(<!-- .*? -->\n)?```bash\n(.*?)```", (EVALS / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+RUN = [block for mark, block in BLOCKS if not mark]
+
+
+@pytest.mark.rotates(3)
+@pytest.mark.slow
+def test_commands_run(tmp_path: Path) -> None:
+    assert len(RUN) >= 3
+    environment = {**os.environ, "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
+    for block in RUN:
+        done = subprocess.run(
+            ["bash", "-euo", "pipefail", "-c", block], cwd=tmp_path, env=environment, capture_output=True, text=True,
+            check=False, timeout=300,
+        )  # fmt: skip
+        assert done.returncode == 0, (block, done.stdout, done.stderr)
+    assert (tmp_path / "report" / "report.html").is_file()
+    assert (tmp_path / "tasks").is_dir()

@@ -9,10 +9,9 @@ import pytest
 import yaml
 
 import irsim
-from tests.speed.__main__ import main
+from tests.speed.__main__ import main, measure
 from tests.speed.learning import CASES
 from tests.speed.learning import main as learning
-from tests.speed.measure import measure
 from tests.speed.scenes import SCENES
 
 pytestmark = pytest.mark.one_python

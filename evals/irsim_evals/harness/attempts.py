@@ -14,7 +14,17 @@ from inspect_ai.tool import ToolCall
 from irsim_evals.cases.store import Instance
 from irsim_evals.grader.grade import failed_verdict
 from irsim_evals.grader.outcome import Cost, Verdict
-from irsim_evals.harness.recording import Attempt, Call, Names, RecordingEnds, Turn, digest, scrubbed, task_hash
+from irsim_evals.harness.recording import (
+    Attempt,
+    Call,
+    Names,
+    RecordingEnds,
+    Turn,
+    digest,
+    scrubbed,
+    task_hash,
+    with_texts,
+)  # fmt: skip
 from irsim_evals.harness.task import SCORER, Work
 from irsim_evals.results import Trial, trial_of
 
@@ -183,6 +193,9 @@ def replayed_model(attempt: Attempt, model: str, folder: Path) -> Any:
     answers = [turn for turn in attempt.messages if turn.role == "assistant"]
     given = iter(answers)
 
+    def placed(text: str) -> str:
+        return text.replace("<folder>", str(folder))
+
     def answer(messages: list[Any], tools: Any, choice: Any, config: Any) -> Any:
         turn = next(given, None)
         if turn is None:
@@ -191,7 +204,7 @@ def replayed_model(attempt: Attempt, model: str, folder: Path) -> Any:
         for message in messages:
             if message.role == "tool":
                 names.numbered(scrubbed(_said_by(message), [folder, folder.parent]))
-        return _output(turn, model, lambda value: _placed(names.filled(value), str(folder)))
+        return _output(turn, model, lambda value: with_texts(names.filled(value), placed))
 
     return get_model("mockllm/replay", custom_outputs=answer, memoize=False)
 
@@ -223,14 +236,6 @@ def _differing(old: str, new: str) -> tuple[str, str]:
 
 def _said_by(message: Any) -> str:
     return message.error.message if message.error is not None else str(message.text)
-
-
-def _placed(value: Any, folder: str) -> Any:
-    if isinstance(value, str):
-        return value.replace("<folder>", folder)
-    if isinstance(value, dict):
-        return {key: _placed(one, folder) for key, one in value.items()}
-    return [_placed(one, folder) for one in value] if isinstance(value, list) else value
 
 
 def _output(turn: Turn, model: str, filled: Callable[[Any], Any]) -> Any:

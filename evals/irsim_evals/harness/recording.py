@@ -12,7 +12,7 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -28,8 +28,8 @@ from irsim_evals.grader.outcome import Cost, Record, name_of
 from irsim_evals.results import Trial, trial_of
 
 __all__ = [
-    "Attempt", "Call", "Header", "Names", "Recording", "RecordingEnds", "Turn", "check_task", "digest",
-    "find_recording", "grade_recording", "read_recording", "scrubbed", "task_hash", "write_recording",
+    "Attempt", "Call", "Header", "Names", "Recording", "RecordingEnds", "Turn", "digest", "find_recording",
+    "grade_recording", "matched", "read_recording", "scrubbed", "task_hash", "with_texts", "write_recording",
 ]  # fmt: skip
 
 _SECRET_NAMES = re.compile(r"KEY|TOKEN|SECRET|PASSWORD|CREDENTIAL", re.IGNORECASE)
@@ -194,19 +194,6 @@ def find_recording(path: Path, arm: str) -> Recording:
     return recording
 
 
-def check_task(attempt: Attempt, instance: Instance) -> None:
-    """Refuse an attempt at something else than the instance of today.
-
-    Raises:
-        ArgumentError: Prompt or files of the case were changed after the recording.
-    """
-    if attempt.task != task_hash(instance):
-        name = name_of(attempt.case, attempt.instance)
-        raise ArgumentError(
-            f"the prompt or the files of {name} have changed since the recording was made", "record it again"
-        )
-
-
 def grade_recording(recording: Recording, instances: Sequence[Instance] | None = None) -> list[Trial]:
     """Grade the recorded files with the grader of today, without tools and without a model.
 
@@ -217,23 +204,30 @@ def grade_recording(recording: Recording, instances: Sequence[Instance] | None =
     Raises:
         ArgumentError: A case has changed, or an instance was not recorded.
     """
-    trials = []
-    for instance, attempts in _matched(recording, instances):
-        for attempt in attempts:
-            check_task(attempt, instance)
-            trials.append(_graded(attempt, instance, recording.header))
-    return trials
-
-
-def _matched(recording: Recording, instances: Sequence[Instance] | None) -> Iterable[tuple[Instance, list[Attempt]]]:
     if instances is None:
         keys = dict.fromkeys((attempt.case, attempt.instance) for attempt in recording.attempts)
         instances = [case_of(case, int(instance) if instance else None) for case, instance in keys]
+    return [
+        _graded(attempt, instance, recording.header)
+        for instance, attempts in matched(recording, instances)
+        for attempt in attempts
+    ]
+
+
+def matched(recording: Recording, instances: Iterable[Instance]) -> Iterator[tuple[Instance, list[Attempt]]]:
+    """Instances with the recorded attempts at them.
+
+    Raises:
+        ArgumentError: An instance was not recorded, or prompt or files of the case were changed after the recording.
+    """
     for instance in instances:
-        attempts = recording.find(instance.case.id, instance.name)
+        name, attempts = name_of(instance.case.id, instance.name), recording.find(instance.case.id, instance.name)
         if not attempts:
-            name = name_of(instance.case.id, instance.name)
             raise ArgumentError(f"the recording has no attempt at {name}", "choose cases that it has")
+        if any(attempt.task != task_hash(instance) for attempt in attempts):
+            raise ArgumentError(
+                f"the prompt or the files of {name} have changed since the recording was made", "record it again"
+            )
         yield instance, attempts
 
 
@@ -259,16 +253,12 @@ def scrubbed(value: Any, folders: Iterable[Path | str] = ()) -> Any:
     """
     replaced = _replacements(folders)
 
-    def clean(item: Any) -> Any:
-        if isinstance(item, str):
-            for old, new in replaced:
-                item = item.replace(old, new)
-            return _SECRETS.sub("<secret>", item)
-        if isinstance(item, dict):
-            return {clean(key): clean(one) for key, one in item.items()}
-        return [clean(one) for one in item] if isinstance(item, (list, tuple)) else item
+    def clean(text: str) -> str:
+        for old, new in replaced:
+            text = text.replace(old, new)
+        return _SECRETS.sub("<secret>", text)
 
-    return clean(value)
+    return with_texts(value, clean)
 
 
 def _replacements(folders: Iterable[Path | str]) -> list[tuple[str, str]]:
@@ -293,16 +283,20 @@ class Names:
 
     def numbered(self, value: Any) -> Any:
         """A value in which each id is ``$run1``, ``$run2`` …; ids that are new get the next number."""
-        return _mapped(value, _RUN, lambda run_id: f"$run{self._number(run_id)}")
+        return with_texts(value, lambda text: _RUN.sub(lambda run: f"$run{self._number(run[0])}", text))
 
     def known(self, value: Any) -> Any:
         """The same, for what an agent writes: ids that no tool has named stay."""
-        return _mapped(value, _RUN, lambda run_id: f"$run{self._number(run_id)}" if run_id in self.ids else run_id)
+
+        def known(run: re.Match[str]) -> str:
+            return f"$run{self._number(run[0])}" if run[0] in self.ids else run[0]
+
+        return with_texts(value, lambda text: _RUN.sub(known, text))
 
     def filled(self, value: Any) -> Any:
         """A value in which ids stand again where their numbers are."""
         ids = {f"$run{number}": name for number, name in enumerate(self.ids, 1)}
-        return _mapped(value, _NAMED, lambda text: ids.get(text, text))
+        return with_texts(value, lambda text: _NAMED.sub(lambda name: ids.get(name[0], name[0]), text))
 
     def _number(self, run_id: str) -> int:
         if run_id not in self.ids:
@@ -310,9 +304,10 @@ class Names:
         return self.ids.index(run_id) + 1
 
 
-def _mapped(value: Any, pattern: re.Pattern[str], change: Any) -> Any:
+def with_texts(value: Any, change: Callable[[str], str]) -> Any:
+    """A text, or lists and mappings of texts, with each text changed."""
     if isinstance(value, str):
-        return pattern.sub(lambda match: change(match[0]), value)
+        return change(value)
     if isinstance(value, dict):
-        return {key: _mapped(one, pattern, change) for key, one in value.items()}
-    return [_mapped(one, pattern, change) for one in value] if isinstance(value, list) else value
+        return {with_texts(key, change): with_texts(one, change) for key, one in value.items()}
+    return [with_texts(one, change) for one in value] if isinstance(value, (list, tuple)) else value

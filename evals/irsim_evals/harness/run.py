@@ -16,18 +16,17 @@ from typing import Any, Literal
 
 from irsim.diagnostics.errors import ArgumentError, IrsimError
 from irsim_evals.cases.store import Instance
-from irsim_evals.grader.outcome import name_of
 from irsim_evals.harness.arms import MODEL_ARMS
 from irsim_evals.harness.prices import Price, set_price
 from irsim_evals.harness.recording import (
     Attempt,
     Header,
     Recording,
-    check_task,
     find_recording,
     grade_recording,
+    matched,
     write_recording,
-)
+)  # fmt: skip
 from irsim_evals.results import Trial, cases_hash
 
 __all__ = ["MESSAGE_LIMIT", "RunError", "run_arm"]
@@ -101,9 +100,8 @@ def run_arm(
     if recording is not None:
         if replay_mode == "grade":
             return grade_recording(recording, instances)
-        _check_replay(recording, instances)
         model, base_url, price = recording.header.model, None, None
-        epochs = max(len(recording.find(one.case.id, one.name)) for one in instances)
+        epochs = max(len(attempts) for _, attempts in matched(recording, instances))
         token_limit = cost_limit = time_limit = message_limit = None
     _require_harness()
     if model is None:
@@ -125,16 +123,6 @@ def _check(arm: str, instances: Sequence[Instance], epochs: int) -> None:
         raise ArgumentError("there is no case to answer", "choose some; irsim-evals cases lists them")
     if epochs < 1:
         raise ArgumentError("there must be at least one attempt at each case", "give 1 or more")
-
-
-def _check_replay(recording: Recording, instances: Sequence[Instance]) -> None:
-    for instance in instances:
-        attempts = recording.find(instance.case.id, instance.name)
-        if not attempts:
-            name = name_of(instance.case.id, instance.name)
-            raise ArgumentError(f"the recording has no attempt at {name}", "choose cases that it has")
-        for attempt in attempts:
-            check_task(attempt, instance)
 
 
 def _require_harness() -> None:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import copy
 import math
+from functools import partial
+from operator import add, mul
 from typing import Any
 
-from irsim_evals.proof.operators import Change, Data, each_entry, entries, operator, scale, shift, with_entry
+from irsim_evals.proof.operators import Change, Data, component, each_entry, entries, operator, scale, with_entry
 
 
 def _is_pose(value: Any) -> bool:
@@ -19,30 +21,30 @@ def layout_shifted(data: Data) -> Change:
     fixed = [entry for section, _, entry in entries(data) if section == "obstacle" and "kinematics" not in entry]
     if len(fixed) < 2 or not all(_is_pose(entry.get("state")) for entry in fixed):
         return
-    for component, by in ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)):
+    for axis, by in ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)):
         made = copy.deepcopy(data)
         for section, _, entry in entries(made):
             if section == "obstacle" and "kinematics" not in entry:
-                entry["state"][component] += by
-        yield f"all obstacles {'xy'[component]} {by:+g} m", made
+                entry["state"][axis] += by
+        yield f"all obstacles {'xy'[axis]} {by:+g} m", made
 
 
 @operator
 def moved_along(data: Data) -> Change:
     """Start and goal of one robot moved together, so that its way stays as long as it was."""
     for section, number, _ in entries(data):
-        for component, by in ((0, 0.7), (1, 0.7), (0, -0.7), (1, -0.7)):
+        for axis, by in ((0, 0.7), (1, 0.7), (0, -0.7), (1, -0.7)):
 
-            def change(entry: Data, component: int = component, by: float = by) -> Any:
+            def change(entry: Data, axis: int = axis, by: float = by) -> Any:
                 if not (_is_pose(entry.get("state")) and _is_pose(entry.get("goal"))):
                     return False
-                entry["state"][component] += by
-                entry["goal"][component] += by
+                entry["state"][axis] += by
+                entry["goal"][axis] += by
                 return True
 
             made = with_entry(data, section, number, change)
             if made is not None:
-                yield f"{section}[{number}]: start and goal {'xy'[component]} {by:+g} m", made
+                yield f"{section}[{number}]: start and goal {'xy'[axis]} {by:+g} m", made
 
 
 @operator
@@ -137,20 +139,13 @@ def transposed(data: Data) -> Change:
 def moved(data: Data) -> Change:
     """A start or a goal a metre away."""
     for key in ("state", "goal"):
-        for component, by in ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)):
-            yield from each_entry(data, shift(key, component, by), f"{key}[{component}] {by:+g} m")
+        for number, by in ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)):
+            yield from each_entry(data, component(key, number, partial(add, by)), f"{key}[{number}] {by:+g} m")
 
 
 @operator
 def degrees_for_radians(data: Data) -> Change:
     """Angles in degrees."""
-
-    def heading(entry: Data) -> Any:
-        value = entry.get("state")
-        if not isinstance(value, list) or len(value) < 3 or not isinstance(value[2], (int, float)) or not value[2]:
-            return False
-        value[2] = math.degrees(value[2])
-        return True
 
     def opening(entry: Data) -> Any:
         sensors = [s for s in entry.get("sensors") or [] if isinstance(s, dict) and "angle_range" in s]
@@ -158,15 +153,15 @@ def degrees_for_radians(data: Data) -> Change:
             sensor["angle_range"] = math.degrees(sensor["angle_range"])
         return bool(sensors)
 
-    yield from each_entry(data, heading, "heading in degrees")
+    yield from each_entry(data, component("state", 2, math.degrees), "heading in degrees")
     yield from each_entry(data, opening, "opening angle in degrees")
 
 
 @operator
 def turned(data: Data) -> Change:
     """A heading a quarter turn off."""
-    yield from each_entry(data, shift("state", 2, math.pi / 2), "a quarter turn to the left")
-    yield from each_entry(data, shift("state", 2, math.pi), "half a turn")
+    yield from each_entry(data, component("state", 2, partial(add, math.pi / 2)), "a quarter turn to the left")
+    yield from each_entry(data, component("state", 2, partial(add, math.pi)), "half a turn")
 
 
 @operator
@@ -182,33 +177,17 @@ def unit_unconverted(data: Data) -> Change:
     """Centimetres for metres, km/h for m/s."""
     for key in ("radius", "length", "width"):
         yield from each_entry(data, scale(key, 100.0, inside="shape"), f"shape.{key} in centimetres")
-
-    def speed(entry: Data) -> Any:
-        if not isinstance(entry.get("vel_max"), list) or not isinstance(entry["vel_max"][0], (int, float)):
-            return False
-        entry["vel_max"][0] *= 3.6
-        return True
-
-    yield from each_entry(data, speed, "speed in km/h")
+    yield from each_entry(data, component("vel_max", 0, partial(mul, 3.6)), "speed in km/h")
 
 
 @operator
 def limits_changed(data: Data) -> Change:
     """Half or twice a limit."""
     for key in ("vel_max", "vel_min"):
-        for component in range(3):
+        for number in range(3):
             for factor in (0.5, 2.0):
-
-                def change(entry: Data, key: str = key, component: int = component, factor: float = factor) -> Any:
-                    value = entry.get(key)
-                    if not isinstance(value, list) or len(value) <= component or not value[component]:
-                        return False
-                    if not isinstance(value[component], (int, float)):
-                        return False
-                    value[component] *= factor
-                    return True
-
-                yield from each_entry(data, change, f"{key}[{component}] x {factor:g}")
+                change = component(key, number, partial(mul, factor))
+                yield from each_entry(data, change, f"{key}[{number}] x {factor:g}")
 
 
 @operator

@@ -12,8 +12,8 @@ import yaml
 from irsim_evals.grader.scene import Scene
 
 __all__ = [
-    "OPERATORS", "REWRITES", "Change", "Data", "Mutant", "dump", "each_entry", "entries", "items_of", "operator",
-    "plain", "rewrite", "scale", "shift", "with_entry",
+    "OPERATORS", "REWRITES", "Change", "Data", "Mutant", "component", "dump", "each_entry", "entries", "items_of",
+    "operator", "plain", "rewrite", "scale", "with_entry",
 ]  # fmt: skip
 
 Data = dict[str, Any]
@@ -96,12 +96,14 @@ def scale(key: str, factor: float, *, inside: str | None = None) -> Callable[[Da
     return change
 
 
-def shift(key: str, component: int, by: float) -> Callable[[Data], Any]:
+def component(key: str, number: int, new: Callable[[float], float]) -> Callable[[Data], Any]:
+    """A change of one number of a list."""
+
     def change(entry: Data) -> Any:
         value = entry.get(key)
-        if not isinstance(value, list) or len(value) <= component or not isinstance(value[component], (int, float)):
+        if not isinstance(value, list) or len(value) <= number or not isinstance(value[number], (int, float)):
             return False
-        value[component] = value[component] + by
+        value[number] = new(value[number])
         return True
 
     return change

@@ -16,7 +16,6 @@ from irsim_evals.report.comparison import Comparison
 from irsim_evals.report.content import Content
 from irsim_evals.report.summary import ArmSummary, Table
 from irsim_evals.results import Trial
-from irsim_evals.statistics import Interval
 
 __all__ = ["aggregates", "as_benchmark", "comparison_data", "plain"]
 
@@ -52,7 +51,7 @@ def aggregates(content: Content) -> dict[str, Any]:
         "comparisons": [comparison_data(one) for one in content.comparisons],
         "proof": None
         if content.proof is None
-        else [{"what": name, "wrong": wrong, **_interval(share)} for name, wrong, share in content.proof.totals()],
+        else [{"what": name, "wrong": wrong, **share._asdict()} for name, wrong, share in content.proof.totals()],
     }
 
 
@@ -69,7 +68,7 @@ def comparison_data(one: Comparison) -> dict[str, Any]:
     data = {
         "first": one.first, "second": one.second, "pairs": one.pairs, "passed": list(one.passed),
         "fixed": changes(one.fixed), "broken": changes(one.broken), "missing": one.missing, "new": one.new,
-        "p": one.p, "difference": _interval(one.difference), "smallest_difference": one.smallest,
+        "p": one.p, "difference": one.difference._asdict(), "smallest_difference": one.smallest,
         "means_something": one.means_something, "sentence": one.sentence,
     }  # fmt: skip
     result: dict[str, Any] = plain(data)
@@ -85,18 +84,14 @@ def plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _interval(interval: Interval) -> dict[str, float]:
-    return {"estimate": interval.estimate, "low": interval.low, "high": interval.high}
-
-
 def _arm(arm: ArmSummary) -> dict[str, Any]:
     return {
         "models": arm.models,
         "cases": arm.cases,
         "trials": arm.trials.total,
         "passed": arm.trials.passed,
-        "strict": _interval(arm.strict),
-        "rate": _interval(arm.rate),
+        "strict": arm.strict._asdict(),
+        "rate": arm.rate._asdict(),
         "funnel": {stage: cell.passed for stage, cell in arm.funnel.items()},
         "pass_hat": {str(k): value for k, value in arm.pass_hat.items()},
         "cost_known": arm.cost.known,

@@ -192,7 +192,7 @@ def _grid(heads: Sequence[str], rows: Iterable[Sequence[str | Cell]]) -> str:
         for row in rows
     )
     top = f'<th scope="col">{heads[0]}</th>' + "".join(f'<th scope="col" class="number">{h}</th>' for h in heads[1:])
-    return f'<div class="wide" tabindex="0"><table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'
+    return _wide(top, body)
 
 
 def _share(cell: Cell) -> str:
@@ -211,5 +211,8 @@ def _plain(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
         )
 
     body = "".join(f"<tr>{''.join(cell(text, k) for k, text in enumerate(row))}</tr>" for row in rows)
-    top = "".join(f'<th scope="col">{head}</th>' for head in heads)
+    return _wide("".join(f'<th scope="col">{head}</th>' for head in heads), body)
+
+
+def _wide(top: str, body: str) -> str:
     return f'<div class="wide" tabindex="0"><table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'

@@ -193,8 +193,3 @@ async def test_the_office_has_a_dozen_tools_that_work() -> None:
             result = await client.call_tool(name, arguments)
             assert isinstance(result.content[0], TextContent)
             assert expected in result.content[0].text
-
-
-@pytest.fixture
-def anyio_backend() -> str:
-    return "asyncio"

@@ -44,11 +44,7 @@ class Files(AnswerPredicate):
 
     def observe(self, material: Material) -> Observation:
         """Look into the folder."""
-        names = [
-            name
-            for name in material.texts
-            if fnmatch.fnmatch(name, self.pattern) and material.given.get(name) != material.texts[name]
-        ]
+        names = _new_files(material, self.pattern)
         wrong = []
         for name in names:
             wrong += [f"{name} lacks /{p}/" for p in self.contain if not re.search(p, material.texts[name])]
@@ -59,6 +55,15 @@ class Files(AnswerPredicate):
             f"{self.pattern}: {self.number.words()}",
             "; ".join([f"{len(names)}: {', '.join(names[:6])}", *wrong[:3]]),
         )
+
+
+def _new_files(material: Material, pattern: str) -> list[str]:
+    """Names of the files that fit a pattern and were not given like this."""
+    return [
+        name
+        for name, text in material.texts.items()
+        if fnmatch.fnmatch(name, pattern) and material.given.get(name) != text
+    ]
 
 
 @register("data")
@@ -222,11 +227,7 @@ class Program(AnswerPredicate):
 
     def observe(self, material: Material) -> Observation:
         """Run them."""
-        names = [
-            name
-            for name in material.texts
-            if fnmatch.fnmatch(name, self.pattern) and material.given.get(name) != material.texts[name]
-        ]
+        names = _new_files(material, self.pattern)
         expected = f"{self.pattern}: {self.number.words()}" + "".join(f", prints /{p}/" for p in self.prints)
         if not matches(self.number, len(names), "count"):
             return Observation(False, expected, f"{len(names)}: {', '.join(names[:6])}")
