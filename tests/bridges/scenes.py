@@ -8,15 +8,28 @@ from typing import Any
 
 import numpy as np
 
+import irsim
+from irsim.api import read_scenario
 from irsim.bridges.state import Motion, WorldState
 from irsim.common.outline import BodyPart, Circle, Line, Polygon
+from irsim.runs import Run, open_run
 from irsim.simulation.scene import Grid, Lidar, SceneDescription, SceneObject
 
-__all__ = ["gallery", "motion_of", "state_of"]
+__all__ = ["environment", "gallery", "motion_of", "recorded", "state_of"]
 
 _U = np.array([[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]], dtype=float)
 _FENCE = np.array([[-3.0, 0.0], [3.0, 0.0], [4.0, -1.0]])
 _CAR = np.array([[-0.8, -0.9], [3.8, -0.9], [3.8, 0.9], [-0.8, 0.9]])
+
+
+def environment(text: str, seed: int | None = None) -> irsim.Env:
+    """The environment of a scenario, without drawing."""
+    return irsim.Env(read_scenario(text=text, strict=True)[0], headless=True, log_level="ERROR", seed=seed)
+
+
+def recorded(text: str, steps: int | None = None, seed: int = 1) -> Run:
+    """A run of a scenario, recorded below the current directory."""
+    return open_run(str(irsim.run(text=text, seed=seed, steps=steps, record=True).run_id))
 
 
 def agent(index: int, name: str, drive: str | None, parts: tuple[BodyPart, ...], **more: Any) -> SceneObject:

@@ -6,6 +6,7 @@ import math
 import shlex
 import time
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,11 @@ import pytest
 import irsim
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.connect import connect
+from irsim.bridges.options import check_files
 from irsim.bridges.state import Feedback, Motion, WorldState
 from irsim.scenario.limits import Limits
-from irsim.scenario.yaml.document import load_text
 from tests.bridges.peer import Peer
+from tests.bridges.scenes import environment
 
 SCENE = """
 world: {{width: 10, height: 10, step_time: 0.1{world}}}
@@ -32,10 +34,7 @@ obstacle:
 
 
 def make(drive: str = "diff", world: str = "", more: str = "") -> Any:
-    from irsim.api import read_scenario
-
-    scenario, _ = read_scenario(text=SCENE.format(drive=drive, world=world) + more, strict=True)
-    return irsim.Env(scenario, headless=True, log_level="ERROR")
+    return environment(SCENE.format(drive=drive, world=world) + more)
 
 
 class Recording(Bridge):
@@ -86,8 +85,7 @@ def test_a_bridge_that_only_looks_changes_nothing() -> None:
 
 
 def test_the_scene_has_all_that_a_simulator_needs() -> None:
-    bridge = Recording()
-    with connect(make(), [bridge]):
+    with connect(make(), [bridge := Recording()]):
         pass
     robot, wall, walker = bridge.scene.agents
     assert (robot.role, robot.drive, robot.moves, robot.pose, robot.goals) == (
@@ -104,19 +102,14 @@ def test_the_scene_has_all_that_a_simulator_needs() -> None:
 @pytest.mark.parametrize(
     ("behavior", "points"),
     [
-        ("dash", [[1, 5], [5, 8], [9, 5]]),
-        ("orca", [[1, 5], [5, 8], [9, 5]]),
-        ("follow", None),
+        ("dash", [[1, 5], [5, 8], [9, 5]]), ("orca", [[1, 5], [5, 8], [9, 5]]), ("follow", None),
         (None, [[1, 5], [9, 5]]),
     ],
-)
+)  # fmt: skip
 def test_every_robot_has_a_path_to_its_goals(behavior: str | None, points: list[Any] | None) -> None:
-    from irsim.api import read_scenario
-
     way = "goal: [9, 5]" if behavior is None else f"waypoints: [[5, 8], [9, 5]], behavior: {{name: {behavior}}}"
     text = f"robot:\n  - {{kinematics: {{name: diff}}, state: [1, 5, 0], {way}}}\n"
-    env = irsim.Env(read_scenario(text=text, strict=True)[0], headless=True, log_level="ERROR")
-    bridge = Recording()
+    env, bridge = environment(text), Recording()
     with connect(env, [bridge]):
         assert (bridge.start.paths["robot_0"].tolist() if bridge.start.paths else None) == points
         env.step()
@@ -304,35 +297,19 @@ def test_no_program_is_there() -> None:
 
 
 def test_keys_are_checked() -> None:
-    document = load_text(SCENE.format(drive="diff", world="") + "bridges: [{name: json_lines, agents: [robot_0]}]\n")
-    report = irsim.validate(text=document.text)
-    assert [(finding.code, finding.path) for finding in report.findings if finding.severity == "error"] == [
-        ("invalid-value", "bridges[0]")
-    ]
+    text = SCENE.format(drive="diff", world="") + "bridges: [{name: json_lines, agents: [robot_0]}]\n"
+    errors = [finding for finding in irsim.validate(text=text).findings if finding.severity == "error"]
+    assert [(finding.code, finding.path) for finding in errors] == [("invalid-value", "bridges[0]")]
 
 
 def test_run_opens_the_bridges_of_a_scenario_and_others() -> None:
     text = SCENE.format(drive="diff", world="")
     with Peer(lambda message: None) as one, Peer(lambda message: None) as two:
-        result = irsim.run(
-            text=text + lines(one.address), seed=0, steps=4, bridges=[{"name": "json_lines", "address": two.address}]
-        )
+        others = [{"name": "json_lines", "address": two.address}]
+        result = irsim.run(text=text + lines(one.address), seed=0, steps=4, bridges=others)
     assert one.kinds() == two.kinds() == ["scene", *["state"] * 4, "end"]
     words = shlex.split(result.reproduce.partition("#")[0])
     assert words[words.index("--bridge") + 1] == f"{{name: json_lines, address: '{two.address}'}}"
-
-
-def test_a_program_that_leaves_ends_the_run_with_the_reason() -> None:
-    def answer(message: dict[str, Any]) -> Any:
-        return b"" if message["kind"] == "state" and message["step"] == 3 else {}
-
-    with Peer(answer) as peer:
-        text = SCENE.format(drive="diff", world="") + lines(peer.address, ", answers: true, timeout: 0.5")
-        result = irsim.run(text=text, seed=0)
-    assert result.steps == 3
-    assert result.lost is not None
-    assert "did not answer within 0.5 s" in result.lost
-    assert "the program of a bridge was lost" in result.summary
 
 
 @pytest.mark.parametrize(
@@ -358,10 +335,6 @@ def test_bridges_can_be_forbidden() -> None:
 
 @pytest.mark.parametrize("folder", ["../bag", "/tmp/bag", ".git/bag"])
 def test_bridges_of_a_server_write_only_into_its_folder(folder: str, tmp_path: Path) -> None:
-    from types import SimpleNamespace
-
-    from irsim.bridges.options import check_files
-
     one = SimpleNamespace(name="rosbag", files=("folder",), folder=folder)
     with pytest.raises(BridgeError, match="outside of the folder"):
         check_files([one], tmp_path)

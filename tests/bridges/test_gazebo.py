@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 import shlex
-import shutil
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -21,19 +21,15 @@ from irsim.bridges.mujoco.mjcf import choose_agents, write_mjcf
 from irsim.bridges.sdf import SdfWorld, prism
 from irsim.cli.app import app
 from irsim.components.bridges.mujoco import Mujoco
-from irsim.runs import Run, RunError, open_run
-from irsim.simulation.scene import Grid
-from tests.bridges.scenes import gallery
+from irsim.runs import Run, RunError
+from irsim.simulation.scene import Grid, SceneDescription
+from tests.bridges.scenes import gallery, recorded
 
 TRAFFIC = """\
 world: {width: 12, height: 8, collision_mode: unobstructed, boundary: walls}
 robot:
-  - name: rover
-    kinematics: {name: diff}
-    state: [1, 1, 0]
-    goal: [5, 1, 0]
-    behavior: {name: dash}
-    sensors: [{name: lidar2d, number: 5, range_max: 3}]
+  - {name: rover, kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 1, 0], behavior: {name: dash},
+     sensors: [{name: lidar2d, number: 5, range_max: 3}]}
 obstacle:
   - {name: walker, kinematics: {name: omni}, state: [6, 6, 0], goal: [9, 2, 0], behavior: {name: dash}}
   - {name: waiting, kinematics: {name: omni}, state: [2, 6, 0]}
@@ -42,9 +38,8 @@ obstacle:
 
 
 @pytest.fixture
-def traffic(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    monkeypatch.chdir(tmp_path)
-    return open_run(str(irsim.run(text=TRAFFIC, seed=3, steps=25, record=True).run_id))
+def traffic() -> Run:
+    return recorded(TRAFFIC, 25, seed=3)
 
 
 def test_a_run_becomes_a_world_with_actors_on_the_recorded_paths(traffic: Run) -> None:
@@ -82,8 +77,7 @@ def test_every_mesh_of_a_world_is_a_file_and_every_file_is_a_closed_prism(traffi
         assert {(b, a) for a, b in edges} == set(edges)  # each edge has one face on either side
         a, b, c = (points[faces[:, k]] for k in range(3))
         area += float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)  # the volume, as the height is 1 m
-    outline = [[0, 0], [2, 0], [2, 2], [1, 0.5], [0, 2]]
-    assert area == pytest.approx(shapely.Polygon(outline).area)
+    assert area == pytest.approx(shapely.Polygon([[0, 0], [2, 0], [2, 2], [1, 0.5], [0, 2]]).area)
 
 
 def test_a_run_becomes_a_model_of_mujoco(traffic: Run) -> None:
@@ -102,12 +96,9 @@ def test_a_folder_that_exists_is_not_touched(traffic: Run) -> None:
     assert done.exit_code == 2
     assert "exists" in done.output
     assert not any(Path("town").iterdir())
-    shutil.rmtree("town")
 
 
 def test_names_of_a_world_are_unique_and_legal() -> None:
-    from dataclasses import replace
-
     scene = gallery()
     odd = ("a::b", "a b", "a/b", "__root__", "world", "ground", "???", "map", "ü")
     scene = replace(scene, agents=tuple(replace(one, name=n) for one, n in zip(scene.agents, odd, strict=True)))
@@ -125,10 +116,9 @@ def test_a_prism_stands_between_its_heights() -> None:
     assert text.count("\nf ") == 2 + 6
 
 
-def test_what_the_page_says_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_page_says_works() -> None:
     page = Path(__file__).resolve().parents[2] / "skills/irsim-runner/bridges/gazebo.md"
     [block] = re.findall(r"```bash\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
-    monkeypatch.chdir(tmp_path)
     Path("hall.yaml").write_text(TRAFFIC, encoding="utf-8")
     for command in block.splitlines():
         done = CliRunner().invoke(app, shlex.split(command)[1:])
@@ -137,18 +127,15 @@ def test_what_the_page_says_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.parametrize("to", ["mjcf", "sdf"])
-def test_a_world_without_anything_that_moves_is_a_scene_as_well(
-    to: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_a_world_without_anything_that_moves_is_a_scene_as_well(to: str) -> None:
     crate = "obstacle: [{name: crate, shape: {name: circle, radius: 0.5}, state: [4, 4]}]"
     for text, models in (("", 0), (crate, 1)):
-        run = irsim.run(text=f"world: {{width: 9, height: 9}}\n{text}", seed=1, steps=2, record=True)
-        result = irsim.export_run(str(run.run_id), to=to, out=f"{to}{models}.{'xml' if to == 'mjcf' else 'd'}")
+        run = recorded(f"world: {{width: 9, height: 9}}\n{text}", 2)
+        result = irsim.export_run(run, to=to, out=f"{to}{models}.{'xml' if to == 'mjcf' else 'd'}")
         file = Path(result.file)
         assert (file if file.is_file() else file / "world.sdf").read_text().count('name="crate"') == models
     with pytest.raises(RunError, match="has no objects"):
-        irsim.export_run(str(irsim.run(text="world: {width: 9}", steps=1, record=True).run_id), to="csv", objects="all")
+        irsim.export_run(recorded("world: {width: 9}", 1), to="csv", objects="all")
 
 
 def test_maps_of_many_parts_become_a_world_in_seconds() -> None:
@@ -161,10 +148,13 @@ def test_maps_of_many_parts_become_a_world_in_seconds() -> None:
     assert names[:28_800] == [f"collision_{number}" for number in range(28_800)]
 
 
+def mujoco_model(scene: SceneDescription, agents: frozenset[str] | None = None, **options: Any) -> ET.Element:
+    return ET.fromstring(write_mjcf(scene, choose_agents(scene, None) if agents is None else agents, Mujoco(**options)))
+
+
 @pytest.fixture(scope="module")
 def model() -> ET.Element:
-    scene = gallery()
-    return ET.fromstring(write_mjcf(scene, choose_agents(scene, None), Mujoco()))
+    return mujoco_model(gallery())
 
 
 def body(model: ET.Element, name: str) -> ET.Element:
@@ -188,8 +178,7 @@ def test_each_drive_has_its_joints_and_actuators(model: ET.Element) -> None:
     rover, slider, car = body(model, "rover"), body(model, "slider"), body(model, "car")
     assert rover.find("freejoint") is not None
     assert [wheel.get("name") for wheel in rover.findall("body")] == ["rover/left", "rover/right"]
-    casters = [geom for geom in rover.findall("geom") if geom.get("class") == "caster"]
-    assert len(casters) == 2
+    assert [geom.get("class") for geom in rover.findall("geom")].count("caster") == 2
     assert [joint.get("type") for joint in slider.findall("joint")] == ["slide", "slide"]
     assert [joint.get("type") for joint in body(model, "turner").findall("joint")] == ["slide", "slide", "hinge"]
     steered = [part.get("name") for part in car.findall("body")]
@@ -200,55 +189,42 @@ def test_each_drive_has_its_joints_and_actuators(model: ET.Element) -> None:
 
 
 def test_casters_have_no_friction_and_wheels_that_of_the_option(model: ET.Element) -> None:
-    caster = model.find("default/default[@class='caster']/geom")
-    wheel = model.find("default/default[@class='wheel']/geom")
+    kinds = {one.get("class"): one.find("geom") for one in model.findall("default/default")}
+    caster, wheel = kinds["caster"], kinds["wheel"]
     assert caster is not None
     assert wheel is not None
-    assert (caster.get("condim"), caster.get("priority")) == ("1", "1")
-    assert wheel.get("priority") == "1"
-    scene = gallery()
-    icy = ET.fromstring(write_mjcf(scene, choose_agents(scene, None), Mujoco(friction=0.1)))
+    assert (caster.get("condim"), caster.get("priority"), wheel.get("priority")) == ("1", "1", "1")
+    icy = mujoco_model(gallery(), friction=0.1)
     grips = {geom.get("friction") for geom in icy.iter("geom") if geom.get("class") == "wheel"}
     assert grips == {"0.1 0.005 0.0001"}
 
 
-def test_concave_polygons_become_prisms_and_lines_are_thin_for_lidars(model: ET.Element) -> None:
-    assert [geom.get("type") for geom in body(model, "block").findall("geom")] == ["mesh"] * 3
+def test_what_stands_in_the_world_has_its_geometry(model: ET.Element) -> None:
+    assert len(body(model, "irsim/map").findall("geom")) == 2
+    assert len(body(model, "irsim/walls").findall("geom")) == 4
+    assert [geom.get("type") for geom in body(model, "block").findall("geom")] == ["mesh"] * 3, "convex parts"
     fence = body(model, "fence").findall("geom")
     assert [geom.get("group") for geom in fence] == ["1", "1", "4", "4"]
-    assert float((fence[2].get("size") or "").split()[1]) < 1e-4
+    assert float((fence[2].get("size") or "").split()[1]) < 1e-4, "thin for lidars"
+    [zone] = body(model, "zone").findall("geom")
+    contacts = (zone.get("contype"), zone.get("conaffinity"), zone.get("group"))
+    assert contacts == ("0", "0", "1"), "what is only drawn touches nothing and is not seen"
 
 
 def test_what_irsim_moves_is_a_mocap_body_and_the_rest_is_fixed(model: ET.Element) -> None:
     mocap = {one.get("name") for one in model.iter("body") if one.get("mocap") == "true"}
     assert mocap == {"person"}
-    scene = gallery()
-    watched = ET.fromstring(write_mjcf(scene, frozenset(), Mujoco()))
+    watched = mujoco_model(gallery(), frozenset())
     mocap = {one.get("name") for one in watched.iter("body") if one.get("mocap") == "true"}
     assert mocap == {"person", "rover", "slider", "turner", "car", "box"}
 
 
-def test_what_is_only_drawn_touches_nothing_and_is_not_seen(model: ET.Element) -> None:
-    [zone] = body(model, "zone").findall("geom")
-    assert (zone.get("contype"), zone.get("conaffinity"), zone.get("group")) == ("0", "0", "1")
-
-
-def test_map_and_walls_are_boxes(model: ET.Element) -> None:
-    assert len(body(model, "irsim/map").findall("geom")) == 2
-    assert len(body(model, "irsim/walls").findall("geom")) == 4
-
-
 def test_names_are_written_as_they_are_and_numbers_as_numbers() -> None:
-    scene = gallery()
-    odd = tuple(
-        replace(one, name=name)
-        for one, name in zip(scene.agents, ("world", 'a<b"&', "ü", "rover/left", "a\nb\x00"), strict=False)
-    )
-    scene = replace(scene, agents=(*odd, *scene.agents[5:]))
-    model = ET.fromstring(write_mjcf(scene, choose_agents(scene, None), Mujoco()))
-    assert {"irsim/object_0", 'a<b"&', "ü", "irsim/object_3", "irsim/object_4"} <= {
-        one.get("name") for one in model.iter("body")
-    }
+    scene, odd = gallery(), ("world", 'a<b"&', "ü", "rover/left", "a\nb\x00")
+    named = [replace(one, name=name) for one, name in zip(scene.agents, odd, strict=False)]
+    model = mujoco_model(replace(scene, agents=(*named, *scene.agents[5:])))
+    names = {one.get("name") for one in model.iter("body")}
+    assert {"irsim/object_0", 'a<b"&', "ü", "irsim/object_3", "irsim/object_4"} <= names
     for geom in model.iter("geom"):
         for key in ("pos", "size", "euler"):
             assert np.isfinite([float(word) for word in (geom.get(key) or "0").split()]).all()

@@ -5,20 +5,23 @@ from __future__ import annotations
 import json
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import yaml
+from typer.testing import CliRunner
 
 import irsim
 from irsim.api.read_input import read_scenario
 from irsim.benchmarks.stored import measure_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.bridges.base import BridgeError
-from irsim.bridges.pedestrians.importing import Episodes, import_pedestrians
+from irsim.bridges.pedestrians.importing import Episodes, ImportedPedestrians, import_pedestrians
 from irsim.bridges.pedestrians.rows import read_recording
 from irsim.bridges.pedestrians.scenario import Layout
 from irsim.bridges.pedestrians.tracks import Window
+from irsim.cli.bridge import bridge_app
 from irsim.common.files import TargetError
 from irsim.diagnostics.errors import ArgumentError
 from irsim.env import Env
@@ -29,34 +32,31 @@ pytestmark = pytest.mark.one_python
 FILES = {"obsmat.txt": crowds.obsmat, "biwi.txt": crowds.trajnet, "commas.csv": lambda: crowds.trajnet(", ")}
 
 
-@pytest.fixture
-def convert(tmp_path):
-    def run(text: str, name: str = "crowd.txt", **options):
-        source = tmp_path / name
-        source.write_text(text)
-        out = tmp_path / "scene.yaml"
-        return out, import_pedestrians(source, out, **options)
-
-    return run
+def convert(text: str, name: str = "crowd.txt", **options: Any) -> tuple[Path, ImportedPedestrians]:
+    Path(name).write_text(text)
+    return Path("scene.yaml"), import_pedestrians(name, "scene.yaml", **options)
 
 
 def replayed(scene: Path) -> dict[str, dict[int, tuple[float, float]]]:
     """Name -> step -> place of the obstacles, as simulated, while they are in the world."""
     places: dict[str, dict[int, tuple[float, float]]] = {}
     env = irsim.make(str(scene), headless=True, log_level="ERROR")
-    try:
-        for step in range(100):
-            for item in env.obstacle_list:
-                x, y = item.state[:2, 0].tolist()
-                if x == x:
-                    places.setdefault(item.name, {})[step] = (x, y)
-            env.step()
-    finally:
-        env.end(ending_time=0.0)
+    for step in range(100):
+        for item in env.obstacle_list:
+            x, y = item.state[:2, 0].tolist()
+            if x == x:
+                places.setdefault(item.name, {})[step] = (x, y)
+        env.step()
     return places
 
 
-def check_places(scene: Path) -> None:
+@pytest.mark.parametrize("smooth", ["linear", "cubic"])
+@pytest.mark.parametrize("name", FILES)
+def test_places_at_recorded_times_are_exact(name: str, smooth: str) -> None:
+    scene, imported = convert(FILES[name](), name, layout=Layout(name, interpolation=smooth))
+    assert imported.format == ("obsmat" if name == "obsmat.txt" else "trajnet")
+    assert (imported.pedestrians, imported.fps, imported.duration) == (3, 15.0, pytest.approx(7.6))
+    assert [item.message for item in irsim.validate(str(scene)).findings if item.severity == "error"] == []
     obstacles = replayed(scene)
     assert set(obstacles) == {f"ped_{who}" for who in crowds.walks()}
     for who, way in crowds.walks().items():
@@ -66,23 +66,13 @@ def check_places(scene: Path) -> None:
         np.testing.assert_allclose([places[4 * row] for row, _, _ in way], recorded, atol=1e-9)
 
 
-@pytest.mark.parametrize("smooth", ["linear", "cubic"])
-@pytest.mark.parametrize("name", FILES)
-def test_places_at_recorded_times_are_exact(convert, name: str, smooth: str) -> None:
-    scene, imported = convert(FILES[name](), name, layout=Layout(name, interpolation=smooth))
-    assert imported.format == ("obsmat" if name == "obsmat.txt" else "trajnet")
-    assert (imported.pedestrians, imported.fps, imported.duration) == (3, 15.0, pytest.approx(7.6))
-    assert [item.message for item in irsim.validate(str(scene)).findings if item.severity == "error"] == []
-    check_places(scene)
-
-
 @pytest.mark.parametrize("mapped", ["scale", "homography", "corner"])
-def test_splines_in_pixels(convert, tmp_path: Path, mapped: str) -> None:
+def test_splines_in_pixels(mapped: str) -> None:
     matrix = np.diag([0.02, 0.02, 1.0])
     if mapped == "corner":  # counts from the upper left corner of a picture of 720 x 576, y downwards
         matrix = matrix @ np.array([[1, 0, -360], [0, -1, 288], [0, 0, 1.0]])
-    np.savetxt(tmp_path / "H.txt", 3.0 * matrix)
-    options = {"scale": 0.02} if mapped == "scale" else {"homography": tmp_path / "H.txt"}
+    np.savetxt("H.txt", 3.0 * matrix)
+    options: dict[str, Any] = {"scale": 0.02} if mapped == "scale" else {"homography": "H.txt"}
     if mapped == "corner":
         options["image_size"] = (720, 576)
     scene, imported = convert(crowds.vsp(), "crowd.vsp", **options)
@@ -93,22 +83,21 @@ def test_splines_in_pixels(convert, tmp_path: Path, mapped: str) -> None:
             assert places[f"ped_{number}"][4 * row] == pytest.approx((x, y), abs=1e-9)
 
 
-def test_a_run_with_a_robot(convert) -> None:
+def test_a_run_with_a_robot() -> None:
     scene, _ = convert(crowds.trajnet(), layout=Layout("x", start=(-4, 3), goal=(5, 3)))
-    result = irsim.run(str(scene))
-    assert result.robots[0].name == "robot"
+    assert irsim.run(str(scene)).robots[0].name == "robot"
     assert not irsim.validate(str(scene)).findings
 
 
 @pytest.mark.parametrize("way", [0.4, 0.0])
-def test_a_robot_does_not_start_in_a_person(convert, way: float) -> None:
-    lines = [f"{10 * row} 1 {way * row:g} 0" for row in range(10)]
-    scene, _ = convert("\n".join(lines))
-    run = irsim.run(str(scene), seed=1, steps=20)
-    assert run.outcome != "collision", "it started beside the one who stands or walks where it would have started"
+def test_a_robot_does_not_start_in_a_person(way: float) -> None:
+    scene, _ = convert("\n".join(f"{10 * row} 1 {way * row:g} 0" for row in range(10)))
+    assert irsim.run(str(scene), seed=1, steps=20).outcome != "collision", (
+        "it started beside the one who stands or walks where it would have started"
+    )
 
 
-def test_a_table_may_begin_with_the_names_of_its_columns(convert) -> None:
+def test_a_table_may_begin_with_the_names_of_its_columns() -> None:
     text = crowds.trajnet(", ")
     plain = convert(text)[0].read_text()
     for header in ("frame,id,x,y", "frame_id, ped_id, x, y", "Frame, TrackID, X, Y"):
@@ -117,13 +106,13 @@ def test_a_table_may_begin_with_the_names_of_its_columns(convert) -> None:
         convert(f"id,frame,x,y\n{text}", overwrite=True)
 
 
-def test_a_long_time_without_rows_is_told(convert) -> None:
+def test_a_long_time_without_rows_is_told() -> None:
     rows = [f"{frame} {who} {frame / 10} {who}" for frame in (0, 10, 20, 400, 410) for who in (1, 2)]
     assert any("has no row for 15.2 s" in note for note in convert("\n".join(rows))[1].notes)
     assert not any("no row" in note for note in convert(crowds.trajnet(), overwrite=True)[1].notes)
 
 
-def test_windows_of_time_and_space(convert) -> None:
+def test_windows_of_time_and_space() -> None:
     scene, imported = convert(crowds.trajnet(), window=Window(start=4.0, end=6.0), layout=Layout("x", robot=False))
     assert imported.duration == pytest.approx(2.0)
     places = replayed(scene)
@@ -133,7 +122,7 @@ def test_windows_of_time_and_space(convert) -> None:
     assert max(x for x, _ in replayed(scene)["ped_1"].values()) <= 2.9
 
 
-def test_who_comes_back_into_the_area_is_another_obstacle(convert) -> None:
+def test_who_comes_back_into_the_area_is_another_obstacle() -> None:
     rows = [f"{10 * k} 5 {x} 0" for k, x in enumerate([0, 1, 5, 5, 1, 0, 5, 0])]
     scene, imported = convert("\n".join(rows), window=Window(box=(-1, -1, 2, 1)))
     assert imported.pedestrians == 2
@@ -141,7 +130,7 @@ def test_who_comes_back_into_the_area_is_another_obstacle(convert) -> None:
     assert set(replayed(scene)) == {"ped_5", "ped_5_2"}
 
 
-def test_frame_rates(convert) -> None:
+def test_frame_rates() -> None:
     _, slow = convert("0 1 0 0\n10 1 1 0\n20 1 2 0\n40 1 3 0\n")
     assert slow.fps == pytest.approx(25.0)
     assert "--fps" in " ".join(slow.notes)
@@ -177,16 +166,15 @@ def test_frame_rates(convert) -> None:
         ("", "a.vsp", "ends before the number of splines"),
     ],
 )
-def test_bad_files_are_refused_and_nothing_is_written(tmp_path: Path, text: str, name: str, expected: str) -> None:
-    (tmp_path / name).write_text(text)
+def test_bad_files_are_refused_and_nothing_is_written(text: str, name: str, expected: str) -> None:
     with pytest.raises(BridgeError, match=expected) as caught:
-        import_pedestrians(tmp_path / name, tmp_path / "out.yaml", scale=1.0)
+        convert(text, name, scale=1.0)
     assert caught.value.code == "bridge-file"
-    assert sorted(path.name for path in tmp_path.iterdir()) == [name]
+    assert [str(path) for path in Path().iterdir()] == [name]
 
 
-def test_endless_files_are_refused_at_once(tmp_path: Path, monkeypatch) -> None:
-    huge = tmp_path / "huge.txt"
+def test_endless_files_are_refused_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    huge = Path("huge.txt")
     with open(huge, "wb") as file:
         file.truncate(20_000_000_000)  # sparse: 1e9 lines of 20 characters
     since = time.perf_counter()
@@ -195,35 +183,33 @@ def test_endless_files_are_refused_at_once(tmp_path: Path, monkeypatch) -> None:
     assert time.perf_counter() - since < 1
     huge.unlink()
     monkeypatch.setattr("irsim.bridges.pedestrians.rows._MAX_LINES", 1000)
-    (tmp_path / "many.txt").write_text("\n" * 2000)
+    Path("many.txt").write_text("\n" * 2000)
     with pytest.raises(BridgeError, match="line 1001"):
-        read_recording(tmp_path / "many.txt")
+        read_recording(Path("many.txt"))
     monkeypatch.setattr("irsim.bridges.pedestrians.rows._MAX_ROWS", 10)
-    (tmp_path / "rows.txt").write_text("".join(f"{k} 1 0 0\n" for k in range(20)))
+    Path("rows.txt").write_text("".join(f"{k} 1 0 0\n" for k in range(20)))
     with pytest.raises(BridgeError, match="row 11"):
-        read_recording(tmp_path / "rows.txt")
-    for path in (tmp_path, tmp_path / "none.txt", Path("/dev/zero")):
+        read_recording(Path("rows.txt"))
+    for path in (Path(), Path("none.txt"), Path("/dev/zero")):
         with pytest.raises(BridgeError, match=r"not a file|cannot be read"):
             read_recording(path)
 
 
-def test_more_rows_than_a_scenario_holds(convert) -> None:
+def test_more_rows_than_a_scenario_holds() -> None:
     lines = [f"{frame} {who} {who * 0.001} {frame * 0.001}" for who in range(200) for frame in range(2000)]
     with pytest.raises(BridgeError, match="400000 rows"):
         convert("\n".join(lines))
 
 
-def test_options_that_do_not_fit(convert, tmp_path: Path) -> None:
+def test_options_that_do_not_fit() -> None:
     with pytest.raises(ArgumentError, match="pixels"):
         convert(crowds.vsp(), "crowd.vsp")
     with pytest.raises(ArgumentError, match="fps"):
         convert(crowds.trajnet(), fps=-3.0)
-    (tmp_path / "H.txt").write_text("1 2 3\n4 5 6\n")
-    with pytest.raises(BridgeError, match="not a homography"):
-        convert(crowds.vsp(), "crowd.vsp", homography=tmp_path / "H.txt")
-    (tmp_path / "H.txt").write_text("1 0 0\n0 1 0\n0 1 0\n")
-    with pytest.raises(BridgeError, match="not a homography"):
-        convert(crowds.vsp(), "crowd.vsp", homography=tmp_path / "H.txt")
+    for matrix in ("1 2 3\n4 5 6\n", "1 0 0\n0 1 0\n0 1 0\n"):
+        Path("H.txt").write_text(matrix)
+        with pytest.raises(BridgeError, match="not a homography"):
+            convert(crowds.vsp(), "crowd.vsp", homography="H.txt")
     scene, _ = convert(crowds.trajnet())
     before = scene.read_text()
     with pytest.raises(TargetError, match="exists"):
@@ -238,11 +224,11 @@ def square(tmp_path_factory) -> Path:
     return path
 
 
-def test_a_suite_of_windows(square: Path, tmp_path: Path) -> None:
-    imported = import_pedestrians(square, suite=tmp_path / "my crowd.yaml", episodes=Episodes(length=20))
+def test_a_suite_of_windows(square: Path) -> None:
+    imported = import_pedestrians(square, suite="my crowd.yaml", episodes=Episodes(length=20))
     assert (imported.file, imported.length, imported.notes[1:]) == (None, 20, [])
     assert imported.windows == pytest.approx([0, 20, 40, 60, 80, 100])
-    plan = suite_plan(str(tmp_path / "my crowd.yaml"), policies=["orca", "sfm"], seeds=3)
+    plan = suite_plan("my crowd.yaml", policies=["orca", "sfm"], seeds=3)
     result = measure_plan(plan, workers=1)
     assert result.scenarios == [f"from-{start}s" for start in (0, 20, 40, 60, 80, 100)]
     assert (plan.name, len(result.episodes)) == ("my_crowd", 6 * 2 * 3)
@@ -252,10 +238,10 @@ def test_a_suite_of_windows(square: Path, tmp_path: Path) -> None:
     assert again.episodes == result.episodes
 
 
-def test_windows_have_the_people_of_their_time(square: Path, tmp_path: Path) -> None:
+def test_windows_have_the_people_of_their_time(square: Path) -> None:
     window = Window(10.0, 110.0)
-    imported = import_pedestrians(square, suite=tmp_path / "s.yaml", window=window, episodes=Episodes(length=25))
-    scenarios = yaml.safe_load((tmp_path / "s.yaml").read_text())["scenarios"]
+    imported = import_pedestrians(square, suite="s.yaml", window=window, episodes=Episodes(length=25))
+    scenarios = yaml.safe_load(Path("s.yaml").read_text())["scenarios"]
     recorded = np.loadtxt(square)
     assert len(scenarios) == 4
     for scenario, start in zip(scenarios, imported.windows, strict=True):
@@ -270,9 +256,9 @@ def test_windows_have_the_people_of_their_time(square: Path, tmp_path: Path) -> 
             np.testing.assert_allclose(behavior["poses"], mine[inside, 2:])
 
 
-def test_seeds_draw_free_starts_and_goals_far_apart(square: Path, tmp_path: Path) -> None:
-    import_pedestrians(square, suite=tmp_path / "s.yaml", episodes=Episodes(length=40))
-    scenario, _ = read_scenario(tmp_path / "s.yaml" / "from-40s", strict=True)
+def test_seeds_draw_free_starts_and_goals_far_apart(square: Path) -> None:
+    import_pedestrians(square, suite="s.yaml", episodes=Episodes(length=40))
+    scenario, _ = read_scenario(Path("s.yaml/from-40s"), strict=True)
     ways = []
     for seed in range(20):
         env = Env(scenario, seed=seed, headless=True, log_level="ERROR")
@@ -289,11 +275,11 @@ def test_seeds_draw_free_starts_and_goals_far_apart(square: Path, tmp_path: Path
     assert len(set(ways)) == 20, "each seed draws another way"
 
 
-def test_a_seed_chooses_the_windows(square: Path, tmp_path: Path) -> None:
+def test_a_seed_chooses_the_windows(square: Path) -> None:
     def windows(seed: int, count: int = 3) -> tuple[list[float], str]:
         episodes = Episodes(count, 10.0, seed)
-        imported = import_pedestrians(square, suite=tmp_path / "s.yaml", episodes=episodes, overwrite=True)
-        return imported.windows, (tmp_path / "s.yaml").read_text()
+        imported = import_pedestrians(square, suite="s.yaml", episodes=episodes, overwrite=True)
+        return imported.windows, Path("s.yaml").read_text()
 
     starts, text = windows(0)
     assert len(starts) == 3
@@ -303,45 +289,40 @@ def test_a_seed_chooses_the_windows(square: Path, tmp_path: Path) -> None:
     assert len(windows(0, 100)[0]) == 13
 
 
-def test_a_recording_that_is_shorter_than_a_window(square: Path, tmp_path: Path) -> None:
+def test_a_recording_that_is_shorter_than_a_window(square: Path) -> None:
     window = Window(0.0, 10.0)
-    imported = import_pedestrians(square, suite=tmp_path / "s.yaml", window=window, episodes=Episodes(length=60))
+    imported = import_pedestrians(square, suite="s.yaml", window=window, episodes=Episodes(length=60))
     assert imported.windows == [0.0]
     assert "ends before the only window" in imported.notes[0]
-    assert len(measure_plan(suite_plan(str(tmp_path / "s.yaml"), seeds=2), workers=1).episodes) == 3 * 2
+    assert len(measure_plan(suite_plan("s.yaml", seeds=2), workers=1).episodes) == 3 * 2
 
 
-def test_options_of_suites_that_do_not_fit(square: Path, tmp_path: Path) -> None:
+def test_options_of_suites_that_do_not_fit(square: Path) -> None:
     for episodes, expected in ((Episodes(0), "windows"), (Episodes(201), "at most 200"), (Episodes(1, -1.0), "length")):
         with pytest.raises(ArgumentError, match=expected):
-            import_pedestrians(square, suite=tmp_path / "s.yaml", episodes=episodes)
-    for targets in ({}, {"out": tmp_path / "s.yaml", "suite": tmp_path / "s.yaml"}):
+            import_pedestrians(square, suite="s.yaml", episodes=episodes)
+    for targets in ({}, {"out": "s.yaml", "suite": "s.yaml"}):
         with pytest.raises(ArgumentError, match="a scenario or a suite"):
             import_pedestrians(square, **targets)
-    (tmp_path / "old.yaml").write_text("mine")
+    Path("old.yaml").write_text("mine")
     with pytest.raises(TargetError, match="exists"):
-        import_pedestrians(square, tmp_path / "new.yaml", suite=tmp_path / "old.yaml")
-    assert [path.name for path in tmp_path.iterdir()] == ["old.yaml"], "neither file is written"
+        import_pedestrians(square, "new.yaml", suite="old.yaml")
+    assert [path.name for path in Path().iterdir()] == ["old.yaml"], "neither file is written"
     for layout, expected in ((Layout("x", behavior="rov"), "did you mean rvo"), (Layout("x", margin=-1.0), "margin")):
         with pytest.raises(ArgumentError, match=expected):
-            import_pedestrians(square, tmp_path / "s.yaml", layout=layout)
+            import_pedestrians(square, "s.yaml", layout=layout)
     with pytest.raises(BridgeError, match="no pedestrian"):
-        import_pedestrians(square, suite=tmp_path / "s.yaml", window=Window(box=(100, 100, 101, 101)))
+        import_pedestrians(square, suite="s.yaml", window=Window(box=(100, 100, 101, 101)))
 
 
-def test_the_command(tmp_path: Path) -> None:
-    from typer.testing import CliRunner
-
-    from irsim.cli.bridge import bridge_app
-
-    (tmp_path / "obsmat.txt").write_text(crowds.obsmat())
-    out = tmp_path / "scene.yaml"
-    arguments = ["import-pedestrians", str(tmp_path / "obsmat.txt"), "-o", str(out), "--to", "5", "--json",
-                 "--robot-start=-4,3", "--robot-goal=5,3", "--smooth"]  # fmt: skip
+def test_the_command() -> None:
+    Path("obsmat.txt").write_text(crowds.obsmat())
+    arguments = ["import-pedestrians", "obsmat.txt", "-o", "scene.yaml", "--to", "5", "--json", "--robot-start=-4,3",
+                 "--robot-goal=5,3", "--smooth"]  # fmt: skip
     done = CliRunner().invoke(bridge_app, arguments)
     assert done.exit_code == 0, done.output
     answer = json.loads(done.stdout)
     assert (answer["format"], answer["pedestrians"]) == ("obsmat", 3)
-    assert "interpolation: cubic" in out.read_text()
+    assert "interpolation: cubic" in Path("scene.yaml").read_text()
     refused = CliRunner().invoke(bridge_app, [*arguments, "--force", "--crop", "1,2,3"])
     assert refused.exit_code == 2

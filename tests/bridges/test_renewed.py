@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.api import read_scenario
 from irsim.bridges.base import Bridge, BridgeError
 from irsim.bridges.connect import connect
 from irsim.bridges.state import WorldState
 from tests.bridges.peer import Peer
+from tests.bridges.scenes import environment
 
 RANDOM = """
 world: {width: 10, height: 10, step_time: 0.1}
@@ -44,8 +44,7 @@ class Renewed(Bridge):
 
 
 def make(more: str = "") -> Any:
-    scenario, _ = read_scenario(text=RANDOM + more, strict=True)
-    return irsim.Env(scenario, headless=True, log_level="ERROR", seed=3)
+    return environment(RANDOM + more, seed=3)
 
 
 def corners(scene: Any) -> list[Any]:
@@ -63,28 +62,24 @@ def test_a_drawn_scene_is_told_before_its_first_state() -> None:
     first, second = bridge.scenes
     assert corners(first) != corners(second)
     assert [agent.pose for agent in second.agents[1:]] != [agent.pose for agent in first.agents[1:]]
-    with connect(make_next(), [fresh := Renewed()]):
+    again = make()
+    again.reset(random=True)
+    with connect(again, [fresh := Renewed()]):
         pass
     assert corners(fresh.scenes[0]) == corners(second), "the scene is what a new connection would be told"
 
 
-def make_next() -> Any:
-    env = make()
-    env.reset(random=True)
-    return env
-
-
 def test_a_reset_to_the_same_scene_tells_only_the_state() -> None:
-    env, bridge = make(), Renewed()
-    with connect(env, [bridge]):
+    env = make()
+    with connect(env, [bridge := Renewed()]):
         env.step()
         env.reset()
     assert bridge.told == ["step 1", "step 0"]
 
 
 def test_a_scene_that_is_drawn_before_the_first_step_is_told() -> None:
-    env, bridge = make(), Renewed()
-    with connect(env, [bridge]):
+    env = make()
+    with connect(env, [bridge := Renewed()]):
         env.reset(random=True)
     assert bridge.told == ["scene", "step 0"]
 

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-import irsim
-from irsim.api import read_scenario
 from irsim.bridges.base import BridgeError
 from irsim.bridges.json_lines.messages import feedback_of, motion_as_json, scene_as_json, state_as_json
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.bridges.state import Motion, world_state
 from irsim.common.outline import Circle, Line, Polygon
 from irsim.objects.describe import agent_rows, describe_scene
-from irsim.runs import open_run
 from irsim.simulation.scene import SceneDescription
+from tests.bridges.scenes import environment, recorded
 
 SCENE = """
 world: {width: 12, height: 8, offset: [-2, 1], boundary: walls, collision_mode: unobstructed,
@@ -35,8 +32,7 @@ obstacle:
 
 
 def simulation() -> Any:
-    scenario, _ = read_scenario(text=SCENE, strict=True)
-    return irsim.Env(scenario, seed=3, headless=True, log_level="ERROR").simulation
+    return environment(SCENE, seed=3).simulation
 
 
 @pytest.fixture(scope="module")
@@ -66,8 +62,7 @@ def test_polygons_of_a_scene_run_counterclockwise() -> None:
     corners = [[0, 0], [1, 2], [2, 0]]
     for given in (corners, corners[::-1]):
         text = f"obstacle: {{shape: {{name: polygon, vertices: {given}}}, state: [5, 5, 0]}}"
-        made = irsim.Env(read_scenario(text=text, strict=True)[0], seed=0, headless=True, log_level="ERROR")
-        [polygon] = describe_scene(made.simulation).agents[0].parts
+        [polygon] = describe_scene(environment(text, seed=0).simulation).agents[0].parts
         assert sorted(polygon.corners.tolist()) == sorted(corners)  # type: ignore[union-attr]
         x, y = polygon.corners.T  # type: ignore[union-attr]
         assert x @ np.roll(y, -1) - y @ np.roll(x, -1) == pytest.approx(4)
@@ -112,31 +107,21 @@ def test_feedback_is_read_from_json() -> None:
 @pytest.mark.parametrize(
     "data",
     [
-        [],
-        {"poses": {"a": [1, 2]}},
-        {"poses": {"a": [1, 2, float("inf")]}},
-        {"goals": 3},
-        {"jump": {}},
+        [], {"poses": {"a": [1, 2]}}, {"poses": {"a": [1, 2, float("inf")]}}, {"goals": 3}, {"jump": {}},
         {"ranges": {"a": ["x"]}},
     ],
-)
+)  # fmt: skip
 def test_wrong_feedback(data: Any) -> None:
     with pytest.raises(BridgeError, match="bridge-failed"):
         feedback_of(data)
 
 
-def test_a_recorded_run_is_the_live_one(tmp_path: Path) -> None:
-    file = tmp_path / "scene.yaml"
-    file.write_text(SCENE)
-    irsim.run(file, seed=3, steps=20, record=tmp_path / "run")
-    run = open_run(tmp_path / "run")
-    live = simulation()
-    plain = scene_as_json(describe_scene(live))
-    recorded = scene_as_json(recorded_scene(run))
-    for one in (plain, recorded):
-        one.pop("about")
-        one.pop("name")
-    assert json.dumps(recorded) == json.dumps(plain)
+def test_a_recorded_run_is_the_live_one() -> None:
+    run, live = recorded(SCENE, 20, seed=3), simulation()
+    plain, again = (
+        scene_as_json(scene) | {"about": "", "name": ""} for scene in (describe_scene(live), recorded_scene(run))
+    )
+    assert json.dumps(again) == json.dumps(plain)
     rows = agent_rows(live)
     for state in recorded_states(run):
         assert np.array_equal(state.pose, world_state(live, rows).pose)

@@ -21,19 +21,13 @@ robot:
 """
 BRIDGES = "bridges: [{name: json_lines}, {name: mujoco}, {name: json_lines, address: '127.0.0.1:9100'}]\n"
 TASK = """
-task: mine
-version: 1
-title: One robot
-file: scene.yaml
-observation: [{name: goal}]
-reward: [{name: arrival}]
+{task: mine, version: 1, title: One robot, file: scene.yaml, observation: [{name: goal}], reward: [{name: arrival}]}
 """
 SAID = "simulates without the bridges of the scenario (json_lines, mujoco)"
 
 
 @pytest.fixture(autouse=True)
-def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
+def scene() -> Path:
     Path("plain.yaml").write_text(SCENE)
     Path("scene.yaml").write_text(SCENE + BRIDGES)
     return Path("scene.yaml")

@@ -8,25 +8,28 @@ from typing import Any
 
 import pytest
 
+from tests.bridges.conftest import workspace  # noqa: F401  # fixture
+
 REQUIRED = os.environ.get("IRSIM_INTEROP") == "required"
 
 
-@pytest.hookimpl(hookwrapper=True)
-def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
-    outcome: Any = yield
-    report = outcome.get_result()
+def _fail_if_skipped(report: Any) -> None:
     if REQUIRED and report.skipped and not hasattr(report, "wasxfail"):
         report.outcome = "failed"
         report.longrepr = f"skipped, although its peer is required: {report.longrepr}"
 
 
 @pytest.hookimpl(hookwrapper=True)
-def pytest_make_collect_report(collector: pytest.Collector) -> Iterator[None]:
+def pytest_runtest_makereport() -> Iterator[None]:
     outcome: Any = yield
-    report = outcome.get_result()
-    if REQUIRED and report.skipped:  # a whole file, whose library is missing
-        report.outcome = "failed"
-        report.longrepr = f"skipped, although its peer is required: {report.longrepr}"
+    _fail_if_skipped(outcome.get_result())
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_make_collect_report() -> Iterator[None]:
+    """A whole file is skipped where its library is missing."""
+    outcome: Any = yield
+    _fail_if_skipped(outcome.get_result())
 
 
 @pytest.fixture(autouse=True)

@@ -1,7 +1,9 @@
-"""Meshes as others write them: all formats give the same map, large ones in time, and hostile ones are refused."""
+"""Meshes as others write them: all formats give one map, large ones in time, hostile ones are refused; the page."""
 
 from __future__ import annotations
 
+import re
+import shlex
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -10,13 +12,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from typer.testing import CliRunner
 
 from irsim import api
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, read_sidecar
+from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.read import read
-from tests.bridges.maps.flat import box, flat, house, write_glb, write_obj, y_up
+from tests.bridges.maps.flat import box, flat, house, storey, write_glb, write_obj, y_up
+from tests.bridges.maps.navmesh_files import TWO_ROOMS, mesh_set, tile
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("meshes")]
 trimesh = pytest.importorskip("trimesh")
@@ -224,3 +229,29 @@ def test_a_mesh_in_millimeters(tmp_path) -> None:
     assert (millimeters.columns, millimeters.origin) == (meters.columns, meters.origin)
     points = read_sidecar(tmp_path / "mm.yaml").to_scene(np.array([[2.0, 1.0, 0.0]]), height=0.5)
     np.testing.assert_allclose(points, [[2000.0, 500.0, -1000.0]], atol=1e-6)
+
+
+PAGE = Path(__file__).resolve().parents[2] / "skills" / "irsim-runner" / "bridges" / "maps.md"
+
+
+def test_the_commands_and_the_program_of_the_page(tmp_path) -> None:
+    write_glb(tmp_path / "flat.glb", flat())
+    write_glb(tmp_path / "house.glb", house())
+    z_up = storey()
+    lying = np.stack([z_up[..., 0], -z_up[..., 2], z_up[..., 1]], axis=-1)
+    write_glb(tmp_path / "scene.glb", lying)  # which the writer turns back: z is up in the file
+    assert np.ptp(y_up(lying)[..., 2]) < 3.5
+    (tmp_path / "scene.navmesh").write_bytes(mesh_set(tile(TWO_ROOMS), version=2))
+    text = PAGE.read_text(encoding="utf-8")
+    commands, [program] = (re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL) for kind in ("bash", "python"))
+    for line in "\n".join(commands).splitlines():
+        words = shlex.split(line, comments=True)
+        if words[:1] == ["irsim"]:
+            done = CliRunner().invoke(app, words[1:])
+            assert done.exit_code == 0, (line, done.output)
+    assert (tmp_path / "bed.yaml").is_file()
+    seen: dict[str, np.ndarray] = {}
+    exec(program, seen)
+    assert seen["points"] == pytest.approx(np.array([[1, 1.2, -2], [1.5, 1.2, -2]]), abs=0.01)
+    assert seen["back"] == pytest.approx(np.array([[1, 2, 1.2], [1.5, 2, 1.2]]), abs=1e-6)
+    assert seen["matrices"].shape == (2, 4, 4)

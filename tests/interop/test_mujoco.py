@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes.util
 import json
 import os
+import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -11,14 +14,22 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image, ImageSequence
+from shapely import MultiPoint
+from typer.testing import CliRunner
 
 import irsim
+from irsim.bridges import solids
 from irsim.bridges.base import BridgeError
-from irsim.bridges.mujoco.bridge import MujocoBridge, make
+from irsim.bridges.doctor import examine
+from irsim.bridges.mujoco.bridge import make
 from irsim.bridges.mujoco.contacts import MujocoReport
+from irsim.bridges.mujoco.mjcf import choose_agents, write_mjcf
 from irsim.bridges.options import read_bridges
+from irsim.cli.app import app
 from irsim.components.bridges.mujoco import Mujoco
-from tests.bridges.scenes import gallery, motion_of, state_of
+from irsim.objects.describe import describe_scene
+from tests.bridges.scenes import environment, gallery, motion_of, state_of
 
 pytest.importorskip("mujoco")
 pytestmark = pytest.mark.interop
@@ -27,27 +38,15 @@ TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 SQUARE = """
 world: {width: 12, height: 8, step_time: 0.1, boundary: walls}
 robot:
-  - name: rover
-    kinematics: {name: diff}
-    shape: {name: circle, radius: 0.2}
-    state: [1, 4, 0]
-    goal: [11, 4, 0]
-    vel_max: [1, 1.5]
-    vel_min: [0, -1.5]
-    behavior: {name: rvo}
-    sensors: [{name: lidar2d, number: 181, angle_range: 6.28, range_max: 8, offset: [0.05, -0.02, 0.4]}]
+  - {name: rover, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 4, 0], goal: [11, 4, 0],
+     vel_max: [1, 1.5], vel_min: [0, -1.5], behavior: {name: rvo},
+     sensors: [{name: lidar2d, number: 181, angle_range: 6.28, range_max: 8, offset: [0.05, -0.02, 0.4]}]}
 obstacle:
   - {shape: {name: polygon, vertices: [[0, 0], [2, 0], [2, 1.5], [1, 0.4], [0, 1.5]]}, state: [4, 0.5, 0]}
   - {shape: {name: linestring, vertices: [[0, 0], [1, 0.5], [2, 0]]}, state: [7, 7, 0]}
-  - number: 4
-    kinematics: {name: omni}
-    shape: {name: circle, radius: 0.2}
-    distribution: {name: manual}
-    state: [[6, 2, 0], [6, 6, 0], [9, 4.5, 0], [8, 2.5, 0]]
-    goal: [[6, 6, 0], [6, 2, 0], [2, 4.5, 0], [3, 5.5, 0]]
-    vel_max: [0.6, 0.6]
-    vel_min: [-0.6, -0.6]
-    behavior: {name: rvo}
+  - {number: 4, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, distribution: {name: manual},
+     state: [[6, 2, 0], [6, 6, 0], [9, 4.5, 0], [8, 2.5, 0]], goal: [[6, 6, 0], [6, 2, 0], [2, 4.5, 0], [3, 5.5, 0]],
+     vel_max: [0.6, 0.6], vel_min: [-0.6, -0.6], behavior: {name: rvo}}
 """
 POCKET = """
 world: {{width: 12, height: 8, step_time: 0.1}}
@@ -67,14 +66,16 @@ SHAPES = {
 }
 
 
+def pocket(goal: float, drive: str = "diff", shape: str = "circle") -> str:
+    """A robot drives into a pocket, which ends at x = 7, or through its end."""
+    return POCKET.format(drive=drive, shape=SHAPES[shape], goal=goal)
+
+
 def drive_through(
     text: str, steps: int = 400, seed: int = 1, **options: Any
 ) -> tuple[np.ndarray[Any, Any], MujocoReport, list[np.ndarray[Any, Any]]]:
     """Poses (T, N, 3), the report, and the scans of the first lidar, of an episode with the bridge."""
-    from irsim.api import read_scenario
-
-    scenario, _ = read_scenario(text=text, strict=True)
-    env = irsim.Env(scenario, headless=True, log_level="ERROR", seed=seed)
+    env = environment(text, seed)
     bridge = make(Mujoco(**options))
     poses, scans = [env.simulation.pose.copy()], []
     try:
@@ -115,14 +116,13 @@ def test_the_same_seed_gives_the_same_trace_and_another_seed_another_one() -> No
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("drive", ["diff", "omni", "omni_angular", "acker"])
 def test_every_drive_with_every_shape_reaches_the_end_of_a_pocket_without_contact(drive: str, shape: str) -> None:
-    text = POCKET.format(drive=drive, shape=SHAPES[shape], goal=5.5)
-    poses, report, _ = drive_through(text, 150)
+    poses, report, _ = drive_through(pocket(5.5, drive, shape), 150)
     assert np.hypot(*(poses[-1, 0, :2] - (5.5, 4))) < 0.3
     assert (report.contacts, report.ghost_contacts) == (0, 0)
 
 
 def test_a_contact_that_is_there_is_found_and_is_no_ghost() -> None:
-    poses, report, _ = drive_through(POCKET.format(drive="diff", shape=SHAPES["circle"], goal=9.5), 80)
+    poses, report, _ = drive_through(pocket(9.5), 80)
     assert report.contacts == 1
     assert report.ghost_contacts == 0
     [contact] = report.first_contacts
@@ -131,21 +131,17 @@ def test_a_contact_that_is_there_is_found_and_is_no_ghost() -> None:
 
 
 def test_a_ghost_contact_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    from shapely import MultiPoint
-
-    from irsim.bridges import solids
-
     def hull(corners: Any) -> list[Any]:
         return [np.array(MultiPoint(corners).convex_hull.exterior.coords)[:-1][::-1]]
 
     monkeypatch.setattr(solids, "convex_pieces", hull)
-    _, report, _ = drive_through(POCKET.format(drive="diff", shape=SHAPES["circle"], goal=5.5), 80)
+    _, report, _ = drive_through(pocket(5.5), 80)
     assert report.ghost_contacts > 0
     assert report.first_contacts[0]["gap"] > 0.1
 
 
 def test_slip_slows_a_robot_down_and_latency_delays_it() -> None:
-    text = POCKET.format(drive="diff", shape=SHAPES["circle"], goal=5.5)
+    text = pocket(5.5)
     plain, *_ = drive_through(text, 20)
     slipping, *_ = drive_through(text, 20, slip=0.5)
     late, *_ = drive_through(text, 20, latency=0.5)
@@ -222,10 +218,7 @@ def test_objects_that_are_not_in_the_world_touch_nothing_and_come_back() -> None
 
 
 def test_another_episode_starts_at_rest_and_without_old_commands() -> None:
-    from irsim.api import read_scenario
-
-    scenario, _ = read_scenario(text=POCKET.format(drive="diff", shape=SHAPES["circle"], goal=5.5), strict=True)
-    env = irsim.Env(scenario, headless=True, log_level="ERROR", seed=1)
+    env = environment(pocket(5.5), seed=1)
     runs = []
     with irsim.connect(env, [make(Mujoco(latency=0.3))]):
         for _ in range(2):
@@ -253,57 +246,46 @@ robot:
 
 
 @pytest.mark.parametrize("library", ["egl", "osmesa"])
-def test_a_video_is_drawn_without_a_window(tmp_path: Path, library: str) -> None:
-    if library == "egl" and not _has("EGL"):
+def test_a_video_is_drawn_without_a_window(library: str) -> None:
+    if library == "egl" and ctypes.util.find_library("EGL") is None:
         pytest.skip("there is no libEGL")
-    scenario = tmp_path / "scene.yaml"
-    scenario.write_text(SQUARE, encoding="utf-8")
+    Path("scene.yaml").write_text(SQUARE, encoding="utf-8")
     option = "{name: mujoco, video: film.gif, camera: top, size: [160, 120], report: found.json}"
-    command = [sys.executable, "-m", "irsim", "run", str(scenario), "--steps", "6", "--bridge", option, "--json"]
-    environment = {**os.environ, "MUJOCO_GL": library}
-    done = subprocess.run(
-        command, cwd=tmp_path, capture_output=True, text=True, env=environment, timeout=120, check=False
-    )
+    command = [sys.executable, "-m", "irsim", "run", "scene.yaml", "--steps", "6", "--bridge", option, "--json"]
+    variables = {**os.environ, "MUJOCO_GL": library}
+    done = subprocess.run(command, capture_output=True, text=True, env=variables, timeout=120, check=False)
     assert done.returncode in (0, 1), done.stderr
     told = json.loads(done.stdout)  # nothing else is on standard output
     assert told["steps"] == 6
     assert any("mujoco: 0 contacts" in note for note in told["notes"])
-    from PIL import Image
-
-    with Image.open(tmp_path / "film.gif") as film:
+    with Image.open("film.gif") as film:
         assert film.size == (160, 120)
-        assert film.n_frames == 7
-        frames = [np.asarray(frame_of(film, k), dtype=float) for k in (0, 6)]
+        frames = [np.asarray(frame.convert("L"), dtype=float) for frame in ImageSequence.Iterator(film)]
+    assert len(frames) == 7
     assert frames[0].std() > 20
-    assert np.abs(frames[0] - frames[1]).max() > 50  # the robot has moved
-    assert json.loads((tmp_path / "found.json").read_text())["steps"] == 6
-    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
+    assert np.abs(frames[0] - frames[6]).max() > 50  # the robot has moved
+    assert json.loads(Path("found.json").read_text())["steps"] == 6
+    assert not Path("MUJOCO_LOG.TXT").exists()
 
 
-def frame_of(film: Any, number: int) -> Any:
-    film.seek(number)
-    return film.convert("L")
-
-
-def test_errors_say_what_to_write(tmp_path: Path) -> None:
+def test_errors_say_what_to_write() -> None:
     scene, start = gallery(), state_of(gallery())
-    attempts: list[tuple[dict[str, Any], str]] = [
-        ({"agents": ["rovr"]}, "no object 'rovr'"),
-        ({"camera": "botom"}, "no camera 'botom'"),
-        ({"video": str(tmp_path / "film.txt")}, "files of videos are"),
-    ]
-    for options, message in attempts:
+    for key, value, message in (
+        ("agents", ["rovr"], "no object 'rovr'"),
+        ("camera", "botom", "no camera 'botom'"),
+        ("video", "film.txt", "files of videos are"),
+    ):
+        options: dict[str, Any] = {key: value}
         bridge = make(Mujoco(**options))
         with pytest.raises(BridgeError, match=message):
             bridge.open(scene, start)
         bridge.close()
     with pytest.raises(BridgeError, match=r"'x.sh' is not a valid value of 'report'.* Fix: .*report\.json"):
         read_bridges(["{name: mujoco, report: x.sh}"])
-    assert not list(tmp_path.iterdir())
+    assert not list(Path().iterdir())
 
 
-def test_physics_that_become_unstable_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_physics_that_become_unstable_are_an_error() -> None:
     scene, start = gallery(), state_of(gallery())
     bridge = make(Mujoco())
     bridge.open(scene, start)
@@ -313,12 +295,10 @@ def test_physics_that_become_unstable_are_an_error(tmp_path: Path, monkeypatch: 
         bridge.exchange(motion_of(scene, start))
     bridge.close()
     bridge.close()
-    assert not list(tmp_path.iterdir())  # MuJoCo would write a log
+    assert not list(Path().iterdir())  # MuJoCo would write a log
 
 
 def test_the_doctor_lets_a_ball_fall() -> None:
-    from irsim.bridges.doctor import examine
-
     [health] = examine(["mujoco"])
     assert (health.part, health.state) == ("mujoco", "ready")
     assert "fell 0.05" in health.text
@@ -326,9 +306,6 @@ def test_the_doctor_lets_a_ball_fall() -> None:
 
 def test_every_template_is_a_model_that_mujoco_simulates() -> None:
     import mujoco
-
-    from irsim.bridges.mujoco.mjcf import choose_agents, write_mjcf
-    from irsim.objects.describe import describe_scene
 
     loaded = 0
     for path in sorted(TEMPLATES.glob("*/scenario.yaml")):
@@ -346,31 +323,9 @@ def test_every_template_is_a_model_that_mujoco_simulates() -> None:
     assert loaded >= 40
 
 
-def _has(library: str) -> bool:
-    import ctypes.util
-
-    return ctypes.util.find_library(library) is not None
-
-
-def test_bridge_is_what_the_registry_makes() -> None:
-    from irsim.bridges.connect import open_bridges
-
-    [bridge] = open_bridges([Mujoco(latency=0.1)])
-    assert isinstance(bridge, MujocoBridge)
-    assert bridge.options.latency == 0.1
-
-
-def test_what_the_page_says_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    import re
-    import shlex
-
-    from typer.testing import CliRunner
-
-    from irsim.cli.app import app
-
+def test_what_the_page_says_works() -> None:
     page = (TEMPLATES.parent / "skills/irsim-runner/bridges/mujoco.md").read_text(encoding="utf-8")
     blocks = {lang: re.findall(rf"```{lang}\n(.*?)```", page, re.DOTALL) for lang in ("bash", "yaml", "python")}
-    monkeypatch.chdir(tmp_path)
     Path("hall.yaml").write_text(SQUARE, encoding="utf-8")
     commands = [line for block in blocks["bash"] for line in block.splitlines() if line.startswith("irsim")]
     assert len(commands) == 3

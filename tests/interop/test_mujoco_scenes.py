@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from PIL import Image
+from PIL import Image, ImageSequence
 
 import irsim
-from irsim.api import read_scenario
 from irsim.bridges.mujoco.bridge import make
 from irsim.components.bridges.mujoco import Mujoco
+from tests.bridges.scenes import environment
 
 pytest.importorskip("mujoco")
 pytestmark = pytest.mark.interop
@@ -33,22 +33,15 @@ obstacle:
 """
 
 
-def environment() -> Any:
-    scenario, _ = read_scenario(text=ROOM, strict=True)
-    return irsim.Env(scenario, headless=True, log_level="ERROR", seed=5)
-
-
 def geometry(bridge: Any) -> list[tuple[float, ...]]:
     """Places and sizes of all solids, and their corners."""
     model = bridge.physics.model
-    return [
-        *[tuple(row) for row in np.round(np.hstack([model.geom_pos, model.geom_size]), 9).tolist()],
-        *[tuple(row) for row in np.round(model.mesh_vert, 9).tolist()],
-    ]
+    rows = [*np.hstack([model.geom_pos, model.geom_size]), *model.mesh_vert]
+    return [tuple(np.round(row, 9).tolist()) for row in rows]
 
 
 def test_the_lidars_of_both_agree_in_each_new_scene() -> None:
-    env, bridge = environment(), make(Mujoco(lidar="compare"))
+    env, bridge = environment(ROOM, seed=5), make(Mujoco(lidar="compare"))
     seen = []
     with irsim.connect(env, [bridge]):
         for _ in range(3):
@@ -66,7 +59,7 @@ def test_the_lidars_of_both_agree_in_each_new_scene() -> None:
 
 
 def test_the_model_of_the_same_scene_stays() -> None:
-    env, bridge = environment(), make(Mujoco())
+    env, bridge = environment(ROOM, seed=5), make(Mujoco())
     with irsim.connect(env, [bridge]):
         physics = bridge.physics
         env.step()
@@ -80,7 +73,7 @@ def test_the_model_of_the_same_scene_stays() -> None:
 def test_a_run_in_a_new_scene_is_that_of_a_new_connection() -> None:
     runs = []
     for connected_before in (True, False):
-        env = environment()
+        env = environment(ROOM, seed=5)
         if not connected_before:
             env.reset(random=True)
         with irsim.connect(env, [make(Mujoco())]):
@@ -100,8 +93,7 @@ def test_a_changed_body_is_that_of_mujoco_too() -> None:
         text = ROOM[: ROOM.index("obstacle:")] + (
             "obstacle:\n  - {name: column, shape: {name: circle, radius: 0.3}, state: [5, 4, 0]}\n"
         )
-        scenario, _ = read_scenario(text=text, strict=True)
-        env = irsim.Env(scenario, headless=True, log_level="ERROR", seed=5)
+        env = environment(text, seed=5)
         with irsim.connect(env, [bridge := make(Mujoco())]):
             env.step()
             if radius > 0.3:
@@ -116,16 +108,15 @@ def test_a_changed_body_is_that_of_mujoco_too() -> None:
     assert reached[1] == pytest.approx(3.8, abs=0.05)
 
 
-def test_a_film_goes_on(tmp_path: Path) -> None:
+def test_a_film_goes_on() -> None:
     """In a process of its own, because MuJoCo chooses how it draws when it is imported."""
     program = """
 import sys
-from pathlib import Path
 import irsim
 from irsim.bridges.mujoco.bridge import make
 from irsim.components.bridges.mujoco import Mujoco
-from tests.interop.test_mujoco_scenes import environment
-env = environment()
+from tests.bridges.scenes import environment
+env = environment(sys.argv[1], seed=5)
 with irsim.connect(env, [make(Mujoco(video="run.gif", size=[160, 120], camera="top"))]):
     for _ in range(2):
         for _ in range(5):
@@ -133,11 +124,8 @@ with irsim.connect(env, [make(Mujoco(video="run.gif", size=[160, 120], camera="t
         env.reset(random=True)
 """
     variables = {**os.environ, "MUJOCO_GL": "osmesa", "PYTHONPATH": str(Path(__file__).resolve().parents[2])}
-    subprocess.run([sys.executable, "-c", program], cwd=tmp_path, env=variables, check=True, timeout=120)
-    with Image.open(tmp_path / "run.gif") as film:
-        assert film.n_frames == 13
-        film.seek(2)
-        first = np.asarray(film.convert("RGB")).astype(int)
-        film.seek(8)
-        second = np.asarray(film.convert("RGB")).astype(int)
-    assert (np.abs(first - second).max(axis=2) > 60).mean() > 0.005, "the obstacles of the new scene are seen"
+    subprocess.run([sys.executable, "-c", program, ROOM], env=variables, check=True, timeout=120)
+    with Image.open("run.gif") as film:
+        frames = [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(film)]
+    assert len(frames) == 13
+    assert (np.abs(frames[2] - frames[8]).max(axis=2) > 60).mean() > 0.005, "the obstacles of the new scene are seen"

@@ -103,12 +103,3 @@ def test_both_storeys_of_a_house(recast, tmp_path) -> None:
         ours.values = eroded(ours.values, RADIUS / ours.grid.resolution)
         theirs = read_map(file, height=height)
         assert iou(free_on(ours, ours.grid), free_on(theirs, ours.grid)) > 0.93
-
-
-def test_a_detour_file_that_ends_anywhere_is_refused(recast, tmp_path) -> None:
-    content = build(recast, tmp_path, flat(), 2).read_bytes()
-    cut = tmp_path / "cut.navmesh"
-    for length in [*range(700), *range(700, len(content) - 1, 37), len(content) - 1]:
-        cut.write_bytes(content[:length])
-        with pytest.raises(ValueError, match="bridge-file"):
-            read_map(cut)

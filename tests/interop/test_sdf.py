@@ -12,6 +12,7 @@ import pytest
 import irsim
 from irsim.bridges.sdf import SdfWorld
 from irsim.objects.describe import describe_scene
+from tests.bridges.scenes import recorded
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("sdf")]
 
@@ -54,11 +55,9 @@ def numbers_of(line: str) -> dict[str, int]:
     return {word: int(number) for word, number in zip(words[::2], words[1::2], strict=True)}
 
 
-def test_a_recorded_run_has_no_errors(parser: Parser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    irsim.run(text=RUN, seed=1, steps=20, record=True)
-    irsim.export_run("last", "town", to="sdf")
-    done = parser(tmp_path / "town" / "world.sdf")
+def test_a_recorded_run_has_no_errors(parser: Parser) -> None:
+    irsim.export_run(recorded(RUN, 20), "town", to="sdf")
+    done = parser(Path("town/world.sdf"))
     assert done.stderr == ""
     counts = numbers_of(done.stdout)
     assert counts["errors"] == counts["empty"] == 0
@@ -87,22 +86,15 @@ def test_templates_are_worlds_without_errors(parser: Parser, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("good", "bad"),
     [
-        ("</world>", ""),
-        ('<model name="rover">', "<model>"),
-        ("<horizontal>", "<sideways>"),
-        ("<trajectory", "<path"),
+        ("</world>", ""), ('<model name="rover">', "<model>"), ("<horizontal>", "<sideways>"), ("<trajectory", "<path"),
         ("<mass>", "<mass>-"),
     ],
-)
-def test_a_broken_file_is_rejected(
-    parser: Parser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, good: str, bad: str
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    irsim.run(text=RUN, seed=1, steps=3, record=True)
-    irsim.export_run("last", "town", to="sdf")
+)  # fmt: skip
+def test_a_broken_file_is_rejected(parser: Parser, good: str, bad: str) -> None:
+    irsim.export_run(recorded(RUN, 3), "town", to="sdf")
     text = Path("town/world.sdf").read_text(encoding="utf-8")
     assert good in text
     Path("town/broken.sdf").write_text(text.replace(good, bad), encoding="utf-8")
-    done = parser(tmp_path / "town" / "broken.sdf")
+    done = parser(Path("town/broken.sdf"))
     assert done.returncode == 1
     assert done.stderr != ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import shlex
 import sys
 from pathlib import Path
@@ -10,9 +11,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from irsim.bridges.recorded import recorded_scene, recorded_states
+from irsim.cli.app import app
+from irsim.common.data_files import skills_directory
 from tests.interop.usd_run import TEXT, record
+from tests.skills.conftest import fences
 
 pytestmark = pytest.mark.interop
 pxr = pytest.importorskip("pxr")
@@ -22,6 +27,8 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics, UsdValidation  # noqa: E402
 from irsim.bridges.export.export import export_run  # noqa: E402
 from irsim.bridges.usd.files import SUFFIXES, export_scene, make_stage  # noqa: E402
 from irsim.bridges.usd.follow import Follower  # noqa: E402
+
+PERSON = '#usda 1.0\n(\n defaultPrim = "P"\n)\ndef Sphere "P" {\n double radius = 9\n}\n'
 
 
 @pytest.fixture(scope="module")
@@ -46,9 +53,8 @@ def test_a_run_validates_and_reads_back(run, tmp_path: Path, suffix: str) -> Non
     assert stage.GetDefaultPrim().GetPath() == "/World"
     assert (UsdGeom.GetStageUpAxis(stage), UsdGeom.GetStageMetersPerUnit(stage)) == ("Z", 1.0)
     assert (stage.GetTimeCodesPerSecond(), stage.GetEndTimeCode()) == (10.0, run.last_step)
-    prims = {
-        prim.GetCustomDataByKey("irsim:id"): prim for prim in stage.Traverse() if prim.HasCustomDataKey("irsim:id")
-    }
+    ours = [prim for prim in stage.Traverse() if prim.HasCustomDataKey("irsim:id")]
+    prims = {prim.GetCustomDataByKey("irsim:id"): prim for prim in ours}
     scene = recorded_scene(run)
     assert {prim.GetCustomDataByKey("irsim:name") for prim in prims.values()} == set(scene.names)
     assert str(prims[0].GetPath()) == "/World/Robots/robot_1"
@@ -113,9 +119,7 @@ def test_bodies_are_where_they_are_simulated_and_collide(run) -> None:
 def test_a_character_takes_the_place_of_a_body(run, tmp_path: Path) -> None:
     """The page says how: reference an asset at ``body`` in a layer over the exported one."""
     export_run(run, tmp_path / "run.usda")
-    (tmp_path / "person.usda").write_text(
-        '#usda 1.0\n(\n defaultPrim = "P"\n)\ndef Sphere "P" {\n double radius = 9\n}\n'
-    )
+    (tmp_path / "person.usda").write_text(PERSON)
     stage = Usd.Stage.CreateNew(str(tmp_path / "mine.usda"))
     stage.SetTimeCodesPerSecond(10)  # else OpenUSD stretches the time of the layer below
     stage.GetRootLayer().subLayerPaths = ["./run.usda"]
@@ -175,24 +179,21 @@ def test_prims_follow_states_to_exact_places(run) -> None:
 def test_prims_follow_messages_of_ros(run) -> None:
     stage = make_stage(recorded_scene(run))
     follower = Follower(stage)
-    message = SimpleNamespace(
-        transforms=[
-            transform("robot_1/base_link", 99.0, 0.0, 0.0, parent="odom"),
-            transform("robot_1/laser", 3.0, 3.0, 0.0),
-            transform("/walker/base_link", 7.25, -1.5, 3.0),
-            transform("missing/base_link", 0.0, 0.0, 0.0),
-        ]
-    )
-    follower.transforms(message, parent="world")
+    heard = [
+        transform("robot_1/base_link", 99.0, 0.0, 0.0, parent="odom"),
+        transform("robot_1/laser", 3.0, 3.0, 0.0),
+        transform("/walker/base_link", 7.25, -1.5, 3.0),
+        transform("missing/base_link", 0.0, 0.0, 0.0),
+    ]
+    follower.transforms(SimpleNamespace(transforms=heard), parent="world")
     assert place_of(stage, "/World/Pedestrians/walker") == pytest.approx((7.25, -1.5, 0, 3.0))
     assert place_of(stage, "/World/Robots/robot_1")[:2] == (1, 4)
     assert follower.unknown == {"missing"}
     follower.transforms(SimpleNamespace(transforms=[transform("walker/base_link", 7.25, -1.5, -3.0)]))
     turned = stage.GetPrimAtPath("/World/Pedestrians/walker").GetAttribute("xformOp:rotateZ").Get()
     assert turned == pytest.approx(math.degrees(math.tau - 3.0)), "the shorter way round"
-    pose = SimpleNamespace(
-        position=SimpleNamespace(x=1.0, y=2.0), orientation=transform("", 0, 0, 0.5).transform.rotation
-    )
+    turn = transform("", 0, 0, 0.5).transform.rotation
+    pose = SimpleNamespace(position=SimpleNamespace(x=1.0, y=2.0), orientation=turn)
     follower.pose_array(SimpleNamespace(poses=[pose]), ["spinner"])
     assert place_of(stage, "/World/Robots/spinner") == pytest.approx((1, 2, 0, 0.5))
 
@@ -255,20 +256,11 @@ def test_follow_stands_alone() -> None:
     import irsim.bridges.usd
 
     text = Path(irsim.bridges.usd.__path__[0], "follow.py").read_text()
-    imports = [
-        line.split()[1].split(".")[0] for line in text.splitlines() if line.lstrip().startswith(("import", "from"))
-    ]
+    imports = re.findall(r"^\s*(?:import|from) (\w+)", text, re.MULTILINE)
     assert set(imports) <= {"__future__", "collections", "math", "re", "typing", "pxr"}
 
 
-def test_commands_of_the_page(tmp_path: Path, monkeypatch) -> None:
-    from typer.testing import CliRunner
-
-    from irsim.cli.app import app
-    from irsim.common.data_files import skills_directory
-    from tests.skills.conftest import fences
-
-    monkeypatch.chdir(tmp_path)
+def test_commands_of_the_page(tmp_path: Path) -> None:
     (tmp_path / "scene.yaml").write_text(TEXT)
     page = (skills_directory() / "irsim-runner" / "bridges" / "usd.md").read_text(encoding="utf-8")
     for command in (line for block in fences(page, "bash") for line in block.splitlines()):
@@ -278,7 +270,7 @@ def test_commands_of_the_page(tmp_path: Path, monkeypatch) -> None:
     assert {path.name for path in tmp_path.glob("*.usd?")} == {"run.usdc", "start.usda"}
     [layer] = fences(page, "usda")
     (tmp_path / "mine.usda").write_text(layer.replace("person.usd@", "person.usda@"))
-    (tmp_path / "person.usda").write_text('#usda 1.0\n(\n defaultPrim = "P"\n)\ndef Sphere "P" {}\n')
+    (tmp_path / "person.usda").write_text(PERSON)
     stage = Usd.Stage.Open(str(tmp_path / "mine.usda"))
     person = stage.GetPrimAtPath("/World/Pedestrians/walker/body/person")
     place = UsdGeom.XformCache(12).GetLocalToWorldTransform(person).ExtractTranslation()

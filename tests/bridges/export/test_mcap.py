@@ -11,14 +11,16 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.runs import Run, open_run
+from irsim.runs import Run
 from tests.bridges.export.conftest import HALL
+from tests.bridges.scenes import recorded
 
 pytestmark = pytest.mark.records
+Bag = dict[str, list[tuple[float, Any]]]
+"""Time [s] and message of each topic."""
 
 
-def decoded(file: str) -> dict[str, list[tuple[float, Any]]]:
-    """Time [s] and message of each topic."""
+def decoded(file: str) -> Bag:
     from mcap.reader import make_reader
     from mcap_ros2.decoder import DecoderFactory
 
@@ -35,12 +37,12 @@ def yaw(quaternion: Any) -> float:
 
 
 @pytest.fixture
-def bag(hall: Run) -> dict[str, list[tuple[float, Any]]]:
+def bag(hall: Run) -> Bag:
     irsim.export_run(hall, "run.mcap")
     return decoded("run.mcap")
 
 
-def test_topics_are_those_of_a_robot(hall: Run, bag: dict[str, list[tuple[float, Any]]]) -> None:
+def test_topics_are_those_of_a_robot(hall: Run, bag: Bag) -> None:
     robots = {f"/rover_{n}/{topic}" for n in (1, 2) for topic in ("odom", "scan", "scan_1", "goal")}
     assert set(bag) == robots | {"/clock", "/tf", "/tf_static", "/obstacles", "/rosout", "/markers"}
     for topic in ("/clock", "/tf", "/obstacles", "/rover_1/odom", "/rover_2/scan_1"):
@@ -48,7 +50,7 @@ def test_topics_are_those_of_a_robot(hall: Run, bag: dict[str, list[tuple[float,
     assert all(len(bag[topic]) == 1 for topic in ("/tf_static", "/markers", "/rover_1/goal"))
 
 
-def test_poses_are_those_of_the_record_everywhere(hall: Run, bag: dict[str, list[tuple[float, Any]]]) -> None:
+def test_poses_are_those_of_the_record_everywhere(hall: Run, bag: Bag) -> None:
     trace = hall.trace()
     for row in (0, 1, 30, 60):
         x, y, theta = trace.pose[row, 0].tolist()
@@ -69,7 +71,7 @@ def test_poses_are_those_of_the_record_everywhere(hall: Run, bag: dict[str, list
         assert [walker.position.x, walker.position.y] == trace.pose[row, 2, :2].tolist()
 
 
-def test_twists_are_in_the_frame_of_the_body(hall: Run, bag: dict[str, list[tuple[float, Any]]]) -> None:
+def test_twists_are_in_the_frame_of_the_body(hall: Run, bag: Bag) -> None:
     control = hall.trace().control[:, 0]
     for row in (1, 10, 40):
         twist = bag["/rover_1/odom"][row][1].twist.twist
@@ -78,7 +80,7 @@ def test_twists_are_in_the_frame_of_the_body(hall: Run, bag: dict[str, list[tupl
         assert twist.angular.z == pytest.approx(control[row, 1], abs=1e-6)
 
 
-def test_scans_have_their_angles_and_infinite_misses(hall: Run, bag: dict[str, list[tuple[float, Any]]]) -> None:
+def test_scans_have_their_angles_and_infinite_misses(hall: Run, bag: Bag) -> None:
     kept = hall.trace().ranges["rover 1/0"]
     assert np.isinf(kept).any()
     assert np.isfinite(kept).any()
@@ -94,7 +96,7 @@ def test_scans_have_their_angles_and_infinite_misses(hall: Run, bag: dict[str, l
     assert (mount.transform.translation.x, yaw(mount.transform.rotation)) == pytest.approx((0.2, 0.1))
 
 
-def test_goals_and_events_come_when_they_change(hall: Run, bag: dict[str, list[tuple[float, Any]]]) -> None:
+def test_goals_and_events_come_when_they_change(hall: Run, bag: Bag) -> None:
     [(_, goal)] = bag["/rover_1/goal"]
     assert (goal.pose.position.x, goal.pose.position.y, goal.header.frame_id) == (5, 1, "world")
     logged = [(round(time, 6), log.name, log.msg.split()[0], log.level) for time, log in bag["/rosout"]]
@@ -103,7 +105,7 @@ def test_goals_and_events_come_when_they_change(hall: Run, bag: dict[str, list[t
     assert any(kind == "arrival" for _, _, kind, _ in logged)
 
 
-def test_markers_have_the_shapes(bag: dict[str, list[tuple[float, Any]]]) -> None:
+def test_markers_have_the_shapes(bag: Bag) -> None:
     [(_, array)] = bag["/markers"]
     bodies = {marker.id: marker for marker in array.markers if marker.ns == "bodies"}
     names = [marker.text for marker in array.markers if marker.ns == "names"]
@@ -161,11 +163,10 @@ def test_messages_are_in_the_order_of_time(hall: Run, monkeypatch: pytest.Monkey
     assert len(decoded("run.mcap")["/rover_1/goal"]) == 1  # not again in each block
 
 
-def test_maps_are_occupancy_grids(workspace: object) -> None:
+def test_maps_are_occupancy_grids() -> None:
     text = "world: {width: 20, height: 10, offset: [-3, 2], obstacle_map: {name: perlin, resolution: 0.5, seed: 3}}\n"
     text += "robot: {kinematics: {name: diff}, state: [2, 4, 0], goal: [3, 4, 0], behavior: {name: dash}}\n"
-    run = open_run(str(irsim.run(text=text, seed=1, steps=3, record=True).run_id))
-    assert irsim.export_run(run, "run.mcap").notes == []
+    assert irsim.export_run(recorded(text, 3), "run.mcap").notes == []
     [(_, grid)] = decoded("run.mcap")["/map"]
     assert (grid.info.width, grid.info.height) == (40, 20)
     assert grid.info.resolution == pytest.approx(0.5)

@@ -19,6 +19,7 @@ from irsim.components.bridges._ros import TOPIC_KEYS, TOPIC_NAME
 from irsim.components.bridges.ros2 import Ros2
 from irsim.diagnostics.errors import ScenarioError
 from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
+from tests.bridges.scenes import environment
 
 
 def agent(index: int, name: str, role: str = "robot", lidars: int = 0) -> SceneObject:
@@ -87,11 +88,10 @@ PAGE = Path(__file__).parents[3] / "skills" / "irsim-runner" / "bridges" / "ros2
 WORLD = "world: {width: 5, height: 5}\nrobot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}}\n"
 
 
-def test_the_scenario_of_the_page_is_valid_and_all_topics_are_in_its_table(tmp_path: Path) -> None:
+def test_the_scenario_of_the_page_is_valid_and_all_topics_are_in_its_table() -> None:
     text = PAGE.read_text()
     [scenario] = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
-    (tmp_path / "lab.yaml").write_text(scenario)
-    report = irsim.validate(tmp_path / "lab.yaml")
+    report = irsim.validate(text=scenario)
     assert report.valid, report
     assert report.summary.startswith("valid: 1 robot")
     assert [key for key in TABLE if f"`{key}`" not in text] == []
@@ -119,10 +119,10 @@ def test_the_scenario_of_the_page_is_valid_and_all_topics_are_in_its_table(tmp_p
         ("{name: carla, follow: {me: 3}}", "no object is called 'me'"),
     ],
 )
-def test_wrong_options_are_named_with_their_line(bridge: str, words: str, tmp_path: Path) -> None:
-    (tmp_path / "a.yaml").write_text(f"{WORLD}bridges: [{bridge}]\n")
+def test_wrong_options_are_named_with_their_line(bridge: str, words: str) -> None:
+    Path("a.yaml").write_text(f"{WORLD}bridges: [{bridge}]\n")
     with pytest.raises(ScenarioError, match=words) as error:
-        irsim.make(tmp_path / "a.yaml", display=False)
+        irsim.make("a.yaml", display=False)
     assert [item.path[:2] for item in error.value.diagnostics if item.severity == "error"] == [("bridges", 0)]
     assert "3:" in str(error.value)
 
@@ -138,12 +138,9 @@ def test_the_keys_of_topics_are_those_of_the_table() -> None:
     ("bridge", "extra"),
     [("ros2, backend: dds", "ros2"), ("ros2, backend: zenoh", "zenoh"), ("rosbridge", "rosbridge"), ("rosbag", "bag")],
 )
-def test_a_missing_library_is_an_error_that_names_the_command(
-    bridge: str, extra: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_library_is_named(bridge: str, extra: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("irsim.common.extras.find_spec", lambda name: None)
-    (tmp_path / "a.yaml").write_text(f"{WORLD}bridges: [{{name: {bridge}}}]\n")
-    env = irsim.make(tmp_path / "a.yaml", display=False)
+    env = environment(f"{WORLD}bridges: [{{name: {bridge}}}]\n")
     with pytest.raises(ExtraError, match=re.escape(f"pip install 'irsim-mcp[{extra}]'")):
         irsim.connect(env)
 
@@ -151,19 +148,14 @@ def test_a_missing_library_is_an_error_that_names_the_command(
 @pytest.mark.parametrize(
     ("name", "value", "stays"),
     [
-        ("ROS_LOCALHOST_ONLY", "1", True),
-        ("ROS_LOCALHOST_ONLY", "0", False),
-        ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", True),
-        ("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET", False),
+        ("ROS_LOCALHOST_ONLY", "1", True), ("ROS_LOCALHOST_ONLY", "0", False),
+        ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", True), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET", False),
     ],
-)
-def test_variables_of_ros_keep_a_node_on_this_computer(
-    name: str, value: str, stays: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+)  # fmt: skip
+def test_variables_of_ros_keep_a_node_here(name: str, value: str, stays: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     loopbacks = []
-    monkeypatch.setattr(
-        "irsim.bridges.ros.backends.dds.DdsBackend", lambda *_, loopback, **__: loopbacks.append(loopback)
-    )
+    backend = "irsim.bridges.ros.backends.dds.DdsBackend"
+    monkeypatch.setattr(backend, lambda *_, loopback, **__: loopbacks.append(loopback))
     for variable in ("ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE"):
         monkeypatch.delenv(variable, raising=False)
     monkeypatch.setenv(name, value)

@@ -87,6 +87,9 @@ class StandIn:
         self.process.wait()
 
 
+StartTown = Callable[..., StandIn]
+
+
 def free_ports() -> int:
     """A port that is free together with the next one."""
     for _ in range(100):
@@ -102,7 +105,7 @@ def free_ports() -> int:
 
 
 @pytest.fixture
-def stand_in(tmp_path: Path) -> Iterator[Callable[..., StandIn]]:
+def stand_in(tmp_path: Path) -> Iterator[StartTown]:
     """Starts stand-ins with facts of their town; they are ended with the test."""
     pytest.importorskip("carla")
     pytest.importorskip("msgpack")

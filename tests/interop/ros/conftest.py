@@ -31,20 +31,11 @@ KINDS = [
 SCENE = """\
 world: {width: 10, height: 5, step_time: 0.05, obstacle_map: {name: perlin, resolution: 0.5, seed: 4}}
 robot:
-  - name: robot_0
-    kinematics: {name: diff}
-    shape: {name: circle, radius: 0.2}
-    state: [1, 1, 0.3]
-    goal: [9, 4, 0]
-    vel_max: [1, 2]
-    sensors: [{name: lidar2d, number: 90, range_max: 3}]
+  - {name: robot_0, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 1, 0.3], goal: [9, 4, 0],
+     vel_max: [1, 2], sensors: [{name: lidar2d, number: 90, range_max: 3}]}
 obstacle:
-  - name: walker
-    kinematics: {name: omni}
-    shape: {name: circle, radius: 0.2}
-    state: [6, 1, 0]
-    goal: [6, 4, 0]
-    behavior: {name: dash}
+  - {name: walker, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, state: [6, 1, 0], goal: [6, 4, 0],
+     behavior: {name: dash}}
 """
 
 
@@ -78,6 +69,10 @@ class Peer:
         self._reader.join(5)
         assert self.process.stdout is not None
         self.process.stdout.close()
+
+
+Start = Callable[..., Peer]
+MakeEnv = Callable[[str], Any]
 
 
 def until(holds: Callable[[], object], seconds: float, why: str) -> None:
@@ -121,7 +116,7 @@ def _build(folder: Path) -> None:
 
 
 @pytest.fixture
-def start(tmp_path: Path) -> Iterator[Callable[..., Peer]]:
+def start() -> Iterator[Start]:
     """Starts peers, and ends them after the test."""
     peers: list[Peer] = []
 
@@ -172,12 +167,11 @@ PYTHON = sys.executable
 
 
 @pytest.fixture
-def make_env(tmp_path: Path) -> Callable[[str], Any]:
+def make_env() -> MakeEnv:
     """Makes the environment of a scenario's text."""
 
     def make(text: str) -> Any:
-        path = tmp_path / "scene.yaml"
-        path.write_text(text)
-        return irsim.make(path, display=False, log_level="ERROR")
+        Path("scene.yaml").write_text(text)
+        return irsim.make("scene.yaml", display=False, log_level="ERROR")
 
     return make

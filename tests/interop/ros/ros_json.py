@@ -1,12 +1,11 @@
 """Messages of ROS 1 and the JSON of the rosbridge protocol, by the classes that ROS generates from its definitions.
 
-A field is named and typed as ``__slots__`` and ``_slot_types`` of its class say. ``uint8[]`` and ``char[]`` are base64,
-times and durations have ``secs`` and ``nsecs``, and what JSON has no number for is null.
+A field is named and typed as ``__slots__`` and ``_slot_types`` of its class say. Times and durations have ``secs`` and
+``nsecs``, and what JSON has no number for is null; none of our messages has bytes, which would be base64.
 """
 
 from __future__ import annotations
 
-import base64
 import math
 from io import BytesIO
 from typing import Any
@@ -17,7 +16,6 @@ import roslib.message
 __all__ = ["UnfitError", "as_json", "message_class", "message_of"]
 
 FLOATS = ("float32", "float64")
-BYTES = ("uint8", "char")
 TIMES = {"time": genpy.Time, "duration": genpy.Duration}
 FILLED_IN = ("seq",)
 """Fields that ROS 1 fills in itself when a message is published."""
@@ -73,12 +71,9 @@ def _message(value: Any, made: Any) -> Any:
 def _field(value: Any, kind: str) -> Any:
     if kind.endswith("]"):
         element, _, length = kind[:-1].rpartition("[")
-        if element in BYTES and isinstance(value, str):
-            return base64.b64decode(value, validate=True)
         if not isinstance(value, list) or (length and len(value) != int(length)):
             raise UnfitError(f"{kind} got {value!r:.60}")
-        values = [_field(one, element) for one in value]
-        return bytes(values) if element in BYTES else values
+        return [_field(one, element) for one in value]
     if kind in TIMES:
         if not isinstance(value, dict) or set(value) != {"secs", "nsecs"}:
             raise UnfitError(f"{kind} has secs and nsecs, got {value!r:.60}")
@@ -92,10 +87,7 @@ def _field(value: Any, kind: str) -> Any:
 
 def _plain(value: Any, kind: str) -> Any:
     if kind.endswith("]"):
-        element = kind[:-1].rpartition("[")[0]
-        if element in BYTES:
-            return base64.b64encode(bytes(value)).decode()
-        return [_plain(one, element) for one in value]
+        return [_plain(one, kind[:-1].rpartition("[")[0]) for one in value]
     if kind in TIMES:
         return {"secs": value.secs, "nsecs": value.nsecs}
     if kind in FLOATS:

@@ -2,7 +2,7 @@
 
 Publications of clients become messages of rospy, which go to a real master and real subscribers; publications of other
 nodes go to the clients that have subscribed. Operations: advertise, unadvertise, publish, subscribe, unsubscribe,
-call_service, set_level. As the protocol has it, what is wrong is told to the client with the operation status. Lines of
+set_level. As the protocol has it, what is wrong is told to the client with the operation status. Lines of
 output: `ready PORT`, `client NUMBER`, `gone NUMBER`, `advertise TOPIC TYPE`, `publish TOPIC`, `error TEXT`.
 """
 
@@ -20,7 +20,6 @@ from autobahn.asyncio.websocket import WebSocketServerFactory, WebSocketServerPr
 sys.path.append("/usr/lib/python3/dist-packages")
 sys.path.append(__file__.rpartition("/")[0])
 import rospy
-import rosservice
 from ros_json import as_json, message_class, message_of
 
 PORT = int(sys.argv[1])
@@ -46,7 +45,6 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
             "publish": self.publish,
             "subscribe": self.subscribe,
             "unsubscribe": self.unsubscribe,
-            "call_service": self.call_service,
             "set_level": lambda said: None,
         }
         say("client", self.number)
@@ -95,13 +93,6 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
 
     def unsubscribe(self, said: dict[str, Any]) -> None:
         self.subscribers.pop(said["topic"]).unregister()
-
-    def call_service(self, said: dict[str, Any]) -> None:
-        name = said["service"]
-        service = rosservice.get_service_class_by_name(name)
-        request = message_of(said.get("args", {}), service._request_class)
-        values = as_json(rospy.ServiceProxy(name, service)(request))
-        self.send({"op": "service_response", "id": said.get("id"), "service": name, "values": values, "result": True})
 
     def send(self, content: dict[str, Any]) -> None:
         if self.state == self.STATE_OPEN:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import shlex
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -14,21 +15,20 @@ from typer.testing import CliRunner
 
 import irsim
 from irsim.bridges.base import BridgeError
+from irsim.bridges.ros.backends.bag import BagFolder
 from irsim.bridges.ros.bags.importing import BagOptions, import_bag
+from irsim.bridges.ros.messages import Messages
 from irsim.cli.app import app
 from irsim.runs import open_run
+from tests.bridges.scenes import recorded
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("ros_others")]
 ROOM = """\
 world: {width: 12, height: 8, step_time: 0.1}
 robot:
-  - name: rover
-    kinematics: {name: diff}
-    shape: {name: circle, radius: 0.2}
-    state: [1, 1, 0.5]
-    goal: [10, 6, 0]
-    behavior: {name: dash}
-    sensors: [{name: lidar2d, number: 180, range_max: 6, angle_range: 4, offset: [0.1, 0, 0.2]}]
+  - {name: rover, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 1, 0.5], goal: [10, 6, 0],
+     behavior: {name: dash},
+     sensors: [{name: lidar2d, number: 180, range_max: 6, angle_range: 4, offset: [0.1, 0, 0.2]}]}
 obstacle:
   - {name: box, shape: {name: rectangle, length: 1, width: 2}, state: [7, 2, 0.3]}
   - {name: post, shape: {name: circle, radius: 0.4}, state: [3, 5, 0.3]}
@@ -36,11 +36,19 @@ obstacle:
 
 
 @pytest.fixture
-def bag(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    run = open_run(str(irsim.run(text=ROOM, seed=1, record=True).run_id))
-    irsim.export_run(run, "lab-rosbag2", to="rosbag2")
-    return tmp_path / "lab-rosbag2"
+def bag() -> Path:
+    irsim.export_run(recorded(ROOM), "lab-rosbag2", to="rosbag2")
+    return Path("lab-rosbag2")
+
+
+def write_odometry(poses: Iterable[tuple[float, float, float]], speed: float, start: int, period: int) -> None:
+    """The bag ``b`` with the odometry of a robot; times in nanoseconds."""
+    messages = Messages()
+    with BagFolder(Path("b"), messages, "mcap", "b") as bag:
+        topic = bag.topic("/odom", "nav_msgs/msg/Odometry")
+        for number, pose in enumerate(poses):
+            stamp = start + period * number
+            bag.add(topic, stamp, messages.odometry(stamp, "odom", "base_link", pose, (speed, 0.0, 0.0)))
 
 
 def test_the_robot_drives_as_recorded_in_what_its_scans_saw(bag: Path) -> None:
@@ -48,8 +56,7 @@ def test_the_robot_drives_as_recorded_in_what_its_scans_saw(bag: Path) -> None:
     assert done.exit_code == 0, done.output
     answer = json.loads(done.stdout)
     assert answer["notes"] == []  # the mount of the lidar came from /tf_static
-    [recorded] = [one for one in Path(".irsim/runs").iterdir() if one.is_dir()]
-    before = open_run(str(recorded)).trace()
+    [before] = [open_run(str(one)).trace() for one in Path(".irsim/runs").iterdir() if one.is_dir()]
     again = open_run(str(irsim.run("again.yaml", seed=1, record=True).run_id)).trace()
     count = min(len(again.pose), len(before.pose))
     assert np.hypot(*(again.pose[:count, 0, :2] - before.pose[:count, 0, :2]).T).max() < 0.01
@@ -62,11 +69,10 @@ def test_the_robot_drives_as_recorded_in_what_its_scans_saw(bag: Path) -> None:
     assert set(np.unique(grey)) == {0, 205, 254}  # solid, unknown, free
 
 
-def test_scans_of_another_robot_make_no_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_scans_of_another_robot_make_no_map() -> None:
     second = "  - {name: blind, kinematics: {name: diff}, state: [1, 7, 0], goal: [9, 7, 0], behavior: {name: dash}}\n"
-    irsim.run(text=ROOM.replace("obstacle:", second + "obstacle:"), seed=1, steps=20,
-              bridges=["{name: rosbag, folder: two}"])  # fmt: skip
+    text = ROOM.replace("obstacle:", second + "obstacle:")
+    irsim.run(text=text, seed=1, steps=20, bridges=["{name: rosbag, folder: two}"])
     alone = import_bag("two", "blind.yaml", BagOptions(odom="/blind/odom"))
     assert (alone.map, alone.scans) == (None, 0)
     assert "no scans of this robot" in alone.notes[0]
@@ -76,8 +82,7 @@ def test_scans_of_another_robot_make_no_map(tmp_path: Path, monkeypatch: pytest.
 
 def test_windows_and_options(bag: Path) -> None:
     imported = import_bag(bag, "part.yaml", BagOptions(start=2.0, end=4.0, resolution=0.1, mount=(0.0, 0.0, 0.0)))
-    assert imported.duration == pytest.approx(2.0)
-    assert imported.poses == 21
+    assert (imported.duration, imported.poses) == (pytest.approx(2.0), 21)
     assert irsim.validate("part.yaml").valid
     with pytest.raises(BridgeError, match="the window of time has 0 poses"):
         import_bag(bag, "none.yaml", BagOptions(start=100.0))
@@ -103,26 +108,16 @@ def test_what_is_no_bag_is_an_error_with_nothing_written(bag: Path, damage: str)
     assert not Path("none.png").exists()
 
 
-def test_odometry_that_is_not_finite_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from irsim.bridges.ros.backends.bag import BagFolder
-    from irsim.bridges.ros.messages import Messages
-
-    monkeypatch.chdir(tmp_path)
-    messages = Messages()
-    with BagFolder(tmp_path / "b", messages, "mcap", "b") as bag:
-        topic = bag.topic("/odom", "nav_msgs/msg/Odometry")
-        for step in range(30):
-            x = math.nan if step == 7 else 0.1 * step
-            stamp = 100_000_000 * (step + 1)
-            bag.add(topic, stamp, messages.odometry(stamp, "odom", "base_link", (x, 0.0, 0.0), (1.0, 0.0, 0.0)))
+def test_odometry_that_is_not_finite_is_left_out() -> None:
+    poses = [(math.nan if step == 7 else 0.1 * step, 0.0, 0.0) for step in range(30)]
+    write_odometry(poses, 1.0, 100_000_000, 100_000_000)
     imported = import_bag("b", "s.yaml")
     assert imported.poses == 29
     assert imported.notes == ["1 messages were not usable and left out", "the bag has no scans, so there is no map"]
     assert irsim.run("s.yaml").outcome == "success"
 
 
-def test_the_commands_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_the_commands_of_the_page() -> None:
     Path("hall.yaml").write_text(ROOM)
     page = Path(__file__).parents[3] / "skills" / "irsim-runner" / "bridges" / "ros2.md"
     block = page.read_text().split("## Bags")[1].split("```bash\n")[1].split("```")[0]
@@ -141,33 +136,23 @@ def test_the_doctor_is_content() -> None:
     }, done.stdout  # fmt: skip
 
 
-def test_a_robot_that_comes_back_drives_its_whole_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from irsim.bridges.ros.backends.bag import BagFolder
-    from irsim.bridges.ros.messages import Messages
-
-    monkeypatch.chdir(tmp_path)
-    messages = Messages()
-    with BagFolder(tmp_path / "b", messages, "sqlite3", "b") as bag:
-        topic = bag.topic("/odom", "nav_msgs/msg/Odometry")
-        for step in range(121):
-            turn, stamp = 2 * math.pi * step / 120, 50_000_000 * step + 7_000_000
-            pose = (math.cos(turn), math.sin(turn), 0.0)
-            bag.add(topic, stamp, messages.odometry(stamp, "odom", "base_link", pose, (0.0, 0.0, 0.0)))
+def test_a_robot_that_comes_back_drives_its_whole_way() -> None:
+    turns = [math.tau * step / 120 for step in range(121)]
+    write_odometry([(math.cos(turn), math.sin(turn), 0.0) for turn in turns], 0.0, 7_000_000, 50_000_000)
     import_bag("b", "s.yaml")
     result = irsim.run("s.yaml")
     assert result.outcome == "success"
     assert result.robots[0].path_length == pytest.approx(2 * math.pi, rel=0.01)
 
 
-def test_a_bag_of_ros_1(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bag_of_ros_1() -> None:
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores, get_typestore
 
-    monkeypatch.chdir(tmp_path)
     store = get_typestore(Stores.ROS1_NOETIC)
     types = {name.split("/")[-1]: made for name, made in store.types.items() if name.startswith(("geometry_", "std_"))}
     kind = "nav_msgs/msg/Odometry"
-    with Writer(tmp_path / "drive.bag") as bag:
+    with Writer(Path("drive.bag")) as bag:
         topic = bag.add_connection("/odom", kind, typestore=store)
         for step in range(20):
             stamp = store.types["builtin_interfaces/msg/Time"](1, 50_000_000 * step)

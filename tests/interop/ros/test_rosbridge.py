@@ -6,13 +6,12 @@ import json
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import irsim
 from irsim.bridges.base import BridgeLostError
-from tests.interop.ros.conftest import HERE, PYTHON, SCENE, Peer, free_port, until
+from tests.interop.ros.conftest import HERE, PYTHON, SCENE, MakeEnv, Peer, Start, free_port, until
 
 pytestmark = [
     pytest.mark.interop,
@@ -20,25 +19,31 @@ pytestmark = [
     # roslibpy leaves a socket to the collector of garbage if the server is gone
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
 ]
-
-
+StandIn = Callable[..., tuple[int, Peer]]
 REAL = """\
 world: {width: 10, height: 6, step_time: 0.05}
 robot:
-  - name: robot_0
-    kinematics: {name: diff}
-    shape: {name: circle, radius: 0.2}
-    state: [1, 2, 0]
-    goal: [9, 2, 0]
-    behavior: {name: dash}
+  - {name: robot_0, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 2, 0], goal: [9, 2, 0],
+     behavior: {name: dash}}
 """
 
 
+@pytest.fixture
+def stand_in(start: Start) -> StandIn:
+    """Starts a stand-in for a release of ROS; its port, and its process."""
+
+    def starting(ros: int, *how: str) -> tuple[int, Peer]:
+        port = free_port()
+        server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), str(ros), *how)
+        until(lambda: server.on("ready"), 30, "the stand-in does not start")
+        return port, server
+
+    return starting
+
+
 @pytest.mark.parametrize("ros", [1, 2])
-def test_both_ways_over_one_port(start: Callable[..., Peer], make_env: Callable[[str], Any], ros: int) -> None:
-    port = free_port()
-    server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), str(ros))
-    until(lambda: server.on("ready"), 30, "the stand-in does not start")
+def test_both_ways_over_one_port(stand_in: StandIn, make_env: MakeEnv, ros: int) -> None:
+    port, server = stand_in(ros)
     env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, ros: {ros}, clock: wall}}]\n")
     with irsim.connect(env) as connection:
         for _ in range(600):
@@ -59,15 +64,11 @@ def test_both_ways_over_one_port(start: Callable[..., Peer], make_env: Callable[
 
 
 @pytest.mark.parametrize("ros", [1, 2])
-def test_a_real_robot_behind_the_server_stops_when_we_are_killed(
-    start: Callable[..., Peer], tmp_path: Path, ros: int
-) -> None:
-    port = free_port()
-    server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), str(ros), "robot")
-    until(lambda: server.on("ready"), 30, "the stand-in does not start")
-    scene = tmp_path / "real.yaml"
-    scene.write_text(f"{REAL}bridges: [{{name: rosbridge, port: {port}, ros: {ros}, mode: real, dry_run: false}}]\n")
-    driver = start(PYTHON, str(HERE / "real_driver.py"), str(scene), "600")
+def test_a_real_robot_behind_the_server_stops_when_we_are_killed(stand_in: StandIn, start: Start, ros: int) -> None:
+    port, server = stand_in(ros, "robot")
+    bridge = f"bridges: [{{name: rosbridge, port: {port}, ros: {ros}, mode: real, dry_run: false}}]\n"
+    Path("real.yaml").write_text(REAL + bridge)
+    driver = start(PYTHON, str(HERE / "real_driver.py"), "real.yaml", "600")
 
     def speeds() -> list[float]:
         said = [json.loads(one.split(" ", 1)[1]) for one in server.on("/robot_0/cmd_vel")]
@@ -80,10 +81,8 @@ def test_a_real_robot_behind_the_server_stops_when_we_are_killed(
     assert time.monotonic() - began < 0.9  # command_timeout, and time for busy processes
 
 
-def test_a_server_that_dies_ends_the_run(start: Callable[..., Peer], make_env: Callable[[str], Any]) -> None:
-    port = free_port()
-    server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), "2", "silent")
-    until(lambda: server.on("ready"), 30, "the stand-in does not start")
+def test_a_server_that_dies_ends_the_run(stand_in: StandIn, make_env: MakeEnv) -> None:
+    port, server = stand_in(2, "silent")
     env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, timeout: 1, clock: wall}}]\n")
 
     def step_until_lost() -> None:
@@ -97,10 +96,8 @@ def test_a_server_that_dies_ends_the_run(start: Callable[..., Peer], make_env: C
         step_until_lost()
 
 
-def test_a_connection_that_breaks_is_made_again(start: Callable[..., Peer], make_env: Callable[[str], Any]) -> None:
-    port = free_port()
-    server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), "2", "drop")
-    until(lambda: server.on("ready"), 30, "the stand-in does not start")
+def test_a_connection_that_breaks_is_made_again(stand_in: StandIn, make_env: MakeEnv) -> None:
+    port, server = stand_in(2, "drop")
     env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, timeout: 20, clock: wall}}]\n")
     steps = 0
     with irsim.connect(env):
@@ -116,7 +113,7 @@ def test_a_connection_that_breaks_is_made_again(start: Callable[..., Peer], make
     assert 20 < len(server.on("/robot_0/odom")) < steps - 10  # nothing that is old by then is sent
 
 
-def test_without_a_server_the_error_says_so(make_env: Callable[[str], Any]) -> None:
+def test_without_a_server_the_error_says_so(make_env: MakeEnv) -> None:
     env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {free_port()}, timeout: 1}}]\n")
     with pytest.raises(BridgeLostError, match="no rosbridge server answers"):
         irsim.connect(env)

@@ -6,7 +6,6 @@ of our JSON the messages that ROS generates from its own definitions, and rospy 
 
 from __future__ import annotations
 
-import base64
 import gc
 import os
 import signal
@@ -20,7 +19,7 @@ import pytest
 
 import irsim
 from irsim.bridges.base import BridgeLostError
-from tests.interop.ros.conftest import HERE, PYTHON, SCENE, Peer, free_port, until
+from tests.interop.ros.conftest import HERE, PYTHON, SCENE, MakeEnv, Peer, Start, free_port, until
 
 pytestmark = [
     pytest.mark.interop,
@@ -30,26 +29,12 @@ pytestmark = [
 ]
 START_S = 60
 """For the start of some processes on a busy computer."""
-WAIT_FOR_PICTURE = """\
-import sys
-sys.path.append("/usr/lib/python3/dist-packages")
-import rospy
-from sensor_msgs.msg import CompressedImage
-rospy.init_node("viewer")
-got = rospy.wait_for_message("/picture", CompressedImage, 30)
-stamp = got.header.stamp
-print(got.format, got.header.frame_id, f"{stamp.secs}.{stamp.nsecs:09d}", len(got.data), sum(got.data))
-"""
 REAL = """\
 world: {{width: 10, height: 6, step_time: 0.05}}
 robot:
-  - name: robot_0
-    kinematics: {{name: diff}}
-    shape: {{name: circle, radius: 0.2}}
-    state: [1, 2, 0]
-    goal: [{goal}, 2.5, 0]
-    behavior: {{name: dash}}
-{sensors}bridges:
+  - {{name: robot_0, kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.2}}, state: [1, 2, 0],
+     goal: [{goal}, 2.5, 0], behavior: {{name: dash}}, sensors: [{sensors}]}}
+bridges:
   - {{name: rosbridge, port: {port}, ros: 1, mode: real, dry_run: false, timeout: {timeout}, lost_timeout: 60}}
 """
 
@@ -62,7 +47,7 @@ class Server:
         port: Its port.
     """
 
-    def __init__(self, start: Callable[..., Peer], port: int | None = None) -> None:
+    def __init__(self, start: Start, port: int | None = None) -> None:
         self.port = free_port() if port is None else port
         self.peer = start(PYTHON, str(HERE / "rosbridge_on_rospy.py"), str(self.port))
         until(lambda: self.peer.on("ready"), START_S, "the server does not start")
@@ -80,7 +65,7 @@ def _collected() -> Iterator[None]:
 
 
 @pytest.fixture
-def server(master: str, start: Callable[..., Peer]) -> Server:
+def server(master: str, start: Start) -> Server:
     return Server(start)
 
 
@@ -94,14 +79,13 @@ def places(robot: Peer) -> list[tuple[float, ...]]:
     return [tuple(map(float, line.split())) for line in robot.on("place")]
 
 
-def scene_file(folder: Path, port: int, goal: float, sensors: str = "", timeout: int = 2) -> str:
-    path = folder / "real.yaml"
-    path.write_text(REAL.format(port=port, goal=goal, sensors=sensors, timeout=timeout))
-    return str(path)
+def scene_file(port: int, goal: float, sensors: str = "", timeout: int = 2) -> str:
+    Path("real.yaml").write_text(REAL.format(port=port, goal=goal, sensors=sensors, timeout=timeout))
+    return "real.yaml"
 
 
 def test_nodes_of_rospy_see_what_we_publish_and_we_what_they_do(
-    server: Server, start: Callable[..., Peer], make_env: Callable[[str], Any]
+    server: Server, start: Start, make_env: MakeEnv
 ) -> None:
     listener = start(PYTHON, str(HERE / "rospy_peer.py"), "100", "numbered")
     echo = start("/usr/bin/rostopic", "echo", "-p", "/robot_0/odom/pose/pose/position")
@@ -139,18 +123,18 @@ def test_nodes_of_rospy_see_what_we_publish_and_we_what_they_do(
     assert "[sensor_msgs/LaserScan] 1 publisher" not in left.stdout
 
 
-def test_a_robot_of_rospy_drives_to_its_goal(server: Server, start: Callable[..., Peer], tmp_path: Path) -> None:
-    sensors = "    sensors: [{name: lidar2d, number: 3, range_max: 5, angle_range: 2}]\n"
+def test_a_robot_of_rospy_drives_to_its_goal(server: Server, start: Start) -> None:
+    sensors = "{name: lidar2d, number: 3, range_max: 5, angle_range: 2}"
     robot = start(PYTHON, str(HERE / "rospy_robot.py"), "scan")
-    scene = scene_file(tmp_path, server.port, 2.5, sensors)
+    scene = scene_file(server.port, 2.5, sensors)
     until(lambda: places(robot), START_S, "the robot does not start")
-    result = irsim.run(scene, record=tmp_path / "record")
+    result = irsim.run(scene, record="record")
     assert (result.outcome, result.lost) == ("success", None)
     x, y, _ = places(robot)[-1]
     assert (x, y) == pytest.approx((1.5, 0.5), abs=0.25)  # from (1, 2), where its odometry begins
     assert 0.4 < max(commands(robot)) <= 0.5
     until(lambda: commands(robot)[-1] == 0, 5, "not stopped at the end")
-    recorded = irsim.runs.open_run(tmp_path / "record")
+    recorded = irsim.runs.open_run("record")
     assert recorded.result is not None
     assert recorded.result.outcome == "success"
     assert server.published("/robot_0/cmd_vel") >= 20
@@ -158,11 +142,9 @@ def test_a_robot_of_rospy_drives_to_its_goal(server: Server, start: Callable[...
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
-def test_a_robot_of_rospy_stops_when_we_are_killed(
-    server: Server, start: Callable[..., Peer], tmp_path: Path, number: int
-) -> None:
+def test_a_robot_of_rospy_stops_when_we_are_killed(server: Server, start: Start, number: int) -> None:
     robot = start(PYTHON, str(HERE / "rospy_robot.py"))
-    driver = start(PYTHON, str(HERE / "real_driver.py"), scene_file(tmp_path, server.port, 9), "600")
+    driver = start(PYTHON, str(HERE / "real_driver.py"), scene_file(server.port, 9), "600")
     until(lambda: max(commands(robot), default=0) > 0.3, START_S, "not driven")
     os.kill(driver.process.pid, number)
     began = time.monotonic()
@@ -175,9 +157,7 @@ def test_a_robot_of_rospy_stops_when_we_are_killed(
     assert places(robot)[-1] == stood
 
 
-def test_a_server_that_dies_ends_the_run_and_leaves_ros_alone(
-    server: Server, start: Callable[..., Peer], make_env: Callable[[str], Any]
-) -> None:
+def test_a_server_that_dies_ends_the_run_and_leaves_ros_alone(server: Server, start: Start, make_env: MakeEnv) -> None:
     listener = start(PYTHON, str(HERE / "rospy_peer.py"), "100")
     env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {server.port}, ros: 1, timeout: 1, clock: wall}}]\n")
 
@@ -204,9 +184,7 @@ def test_a_server_that_dies_ends_the_run_and_leaves_ros_alone(
     pytest.fail("a new server at another port does not reach the same node")
 
 
-def test_a_server_that_comes_back_in_time_is_found_again(
-    server: Server, start: Callable[..., Peer], make_env: Callable[[str], Any]
-) -> None:
+def test_a_server_that_comes_back_in_time_is_found_again(server: Server, start: Start, make_env: MakeEnv) -> None:
     listener = start(PYTHON, str(HERE / "rospy_peer.py"), "200")
     env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {server.port}, ros: 1, timeout: 40, clock: wall}}]\n")
 
@@ -233,10 +211,10 @@ def test_a_server_that_comes_back_in_time_is_found_again(
     assert not [note for note in notes if "the server says" in note]
 
 
-def test_a_driven_robot_loses_its_server(server: Server, start: Callable[..., Peer], tmp_path: Path) -> None:
+def test_a_driven_robot_loses_its_server(server: Server, start: Start) -> None:
     """The robot needs a timeout of its own then; the run says what happened and fails."""
     robot = start(PYTHON, str(HERE / "rospy_robot.py"))
-    command = [PYTHON, "-m", "irsim", "run", scene_file(tmp_path, server.port, 9)]
+    command = [PYTHON, "-m", "irsim", "run", scene_file(server.port, 9)]
     run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         until(lambda: max(commands(robot), default=0) > 0.3, START_S, "not driven")
@@ -250,11 +228,9 @@ def test_a_driven_robot_loses_its_server(server: Server, start: Callable[..., Pe
     assert "the program of a bridge was lost" in " ".join(printed.split())
 
 
-def test_a_robot_gets_no_old_commands_when_its_server_comes_back(
-    server: Server, start: Callable[..., Peer], tmp_path: Path
-) -> None:
+def test_a_robot_gets_no_old_commands_when_its_server_comes_back(server: Server, start: Start) -> None:
     robot = start(PYTHON, str(HERE / "rospy_robot.py"))
-    driver = start(PYTHON, str(HERE / "real_driver.py"), scene_file(tmp_path, server.port, 9, timeout=60), "2000")
+    driver = start(PYTHON, str(HERE / "real_driver.py"), scene_file(server.port, 9, timeout=60), "2000")
     until(lambda: max(commands(robot), default=0) > 0.45, START_S, "not driven")
     server.peer.process.kill()
     server.peer.process.wait()
@@ -267,13 +243,12 @@ def test_a_robot_gets_no_old_commands_when_its_server_comes_back(
     assert again.peer.on("error") == []
 
 
-def test_what_is_wrong_is_told_by_the_server(server: Server, make_env: Callable[[str], Any], capsys: Any) -> None:
+def test_what_is_wrong_is_told_by_the_server(server: Server, make_env: MakeEnv, capsys: Any) -> None:
     """The server cannot publish one of our topics; the others go on, and the run says so."""
     env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {server.port}, ros: 1, clock: wall}}]\n")
     with irsim.connect(env) as connection:
-        connection.bridges[0].backend._client.send_on_ready(
-            {"op": "advertise", "topic": "/x", "type": "no_pkg/Nothing"}
-        )
+        wrong = {"op": "advertise", "topic": "/x", "type": "no_pkg/Nothing"}
+        connection.bridges[0].backend._client.send_on_ready(wrong)
         until(lambda: server.peer.on("error"), 10, "the server says nothing")
         for _ in range(20):
             env.step()
@@ -281,35 +256,3 @@ def test_what_is_wrong_is_told_by_the_server(server: Server, make_env: Callable[
     assert any("the server says" in note and "no_pkg/Nothing" in note for note in notes)
     assert "Traceback" not in capsys.readouterr().err
     assert server.published("/robot_0/odom") >= 20
-
-
-def test_bytes_are_base64_and_services_answer(server: Server, start: Callable[..., Peer]) -> None:
-    """The server itself, with a client that is not ours."""
-    import roslibpy
-
-    client = roslibpy.Ros(host="127.0.0.1", port=server.port, transport="asyncio")
-    client.run(timeout=10)
-    try:
-        picture = roslibpy.Topic(client, "/picture", "sensor_msgs/CompressedImage", latch=True)
-        heard: list[Any] = []
-        picture.subscribe(heard.append)
-        data = base64.b64encode(bytes(range(256))).decode()
-        header = {"stamp": {"secs": 5, "nsecs": 7}, "frame_id": "camera"}
-        picture.publish({"header": header, "format": "png", "data": data})
-        until(lambda: heard, 10, "the picture does not come back")
-        assert (heard[0]["data"], heard[0]["format"]) == (data, "png")
-        assert heard[0]["header"]["stamp"] == {"secs": 5, "nsecs": 7}
-        node = [PYTHON, "-c", WAIT_FOR_PICTURE]  # it gets the latched one
-        shown = subprocess.run(node, capture_output=True, text=True, check=True, timeout=START_S).stdout
-        assert shown.split() == ["png", "camera", "5.000000007", "256", str(sum(range(256)))]
-        picture.publish({"header": header, "format": 3, "data": data})
-        until(lambda: server.peer.on("error"), 10, "a wrong type is not noticed")
-        assert "format" in server.peer.on("error")[0]
-        loggers = roslibpy.Service(client, "/rosout/get_loggers", "roscpp/GetLoggers")
-        answer = loggers.call(roslibpy.ServiceRequest(), timeout=10)
-        assert any(one["name"] == "ros" for one in answer["loggers"])
-    finally:
-        client.close()
-        until(lambda: server.peer.on("gone"), 10, "the client does not leave")
-        time.sleep(0.2)  # for the client to close its side
-        client.terminate()

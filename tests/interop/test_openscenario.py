@@ -12,20 +12,15 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.runs import Run, open_run
+from irsim.runs import Run
+from tests.bridges.scenes import recorded
 
 pytestmark = pytest.mark.interop
 SCENE = """
 world: {width: 20, height: 20, step_time: 0.1, collision_mode: unobstructed}
 robot:
-  - name: car & <co> "1"
-    kinematics: {name: acker}
-    shape: {name: rectangle, length: 3, width: 1.5, wheelbase: 2}
-    state: [3, 3, 2.9]
-    goal: [4, 15]
-    vel_max: [3, 0.6]
-    vel_min: [-3, -0.6]
-    behavior: {name: dash}
+  - {name: car & <co> "1", kinematics: {name: acker}, shape: {name: rectangle, length: 3, width: 1.5, wheelbase: 2},
+     state: [3, 3, 2.9], goal: [4, 15], vel_max: [3, 0.6], vel_min: [-3, -0.6], behavior: {name: dash}}
 obstacle:
   - {name: walker, kinematics: {name: omni}, shape: {name: circle, radius: 0.25}, state: [10, 5, 0], goal: [16, 5],
      behavior: {name: dash}}
@@ -34,9 +29,8 @@ obstacle:
 
 
 @pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    monkeypatch.chdir(tmp_path)
-    return open_run(str(irsim.run(text=SCENE, seed=1, steps=50, record=True).run_id))
+def run() -> Run:
+    return recorded(SCENE, 50)
 
 
 def _schema(number: str) -> Any:

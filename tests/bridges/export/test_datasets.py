@@ -1,7 +1,8 @@
-"""Datasets as minari loads them."""
+"""Datasets as minari loads them, and Parquet files as pandas, DuckDB and pyarrow read them."""
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,96 @@ import pytest
 
 import irsim
 from irsim.common.files import TargetError
-from irsim.runs import Run, RunError, open_run
+from irsim.runs import Run, RunError
 from tests.bridges.export.conftest import HALL
+from tests.bridges.scenes import recorded
+
+pytestmark = pytest.mark.records
+
+
+def test_pandas_reads_what_was_recorded(hall: Run) -> None:
+    import pandas
+
+    irsim.export_run(hall, "run.parquet")
+    frame, trace = pandas.read_parquet("run.parquet"), hall.trace()
+    assert len(frame) == 3 * 61
+    for column, name in enumerate(("rover 1", "rover 2", "walker")):
+        rows = frame[frame.name == name]
+        np.testing.assert_array_equal(rows[["x", "y", "theta"]], trace.pose[:, column])
+        np.testing.assert_array_equal(rows[["goal_x", "goal_y", "goal_theta"]], trace.goal[:, column])
+        np.testing.assert_array_equal(rows.step, trace.step)
+        np.testing.assert_array_equal(rows.arrived, trace.arrived[:, column])
+        np.testing.assert_array_equal(rows.control_0[1:], trace.control[1:, column, 0])
+        assert math.isnan(rows.speed.iloc[0])
+        if name != "walker":
+            np.testing.assert_array_equal(np.stack(rows.ranges_1), trace.ranges[f"{name}/1"])
+        else:
+            assert rows.ranges_1.isna().all()
+    assert frame.speed.max() == pytest.approx(1, abs=1e-6)
+
+
+def test_duckdb_answers_questions(hall: Run) -> None:
+    import duckdb
+
+    other = recorded(HALL, 10, seed=4)
+    irsim.export_run([hall, other], "runs.parquet", objects="all")
+    trace = hall.trace()
+    counts = duckdb.sql("select run, name, count(*) from 'runs.parquet' group by all").fetchall()
+    assert {(run, rows) for run, _, rows in counts} == {(hall.id, 61), (other.id, 11)}
+    assert len(counts) == 2 * 5
+    [(nearest,)] = duckdb.sql(f"""
+        select min(list_min(ranges_0)) from 'runs.parquet' where name = 'rover 1' and run = '{hall.id}'
+    """).fetchall()
+    assert nearest == float(trace.ranges["rover 1/0"].min()) < 3
+    [(arrived,)] = duckdb.sql(f"""
+        select min(time) from 'runs.parquet' where arrived and name = 'rover 1' and run = '{hall.id}'
+    """).fetchall()
+    assert arrived == next(event.time for event in hall.events if event.kind == "arrival")
+
+
+def test_units_and_scenario_are_in_the_file(hall: Run) -> None:
+    from pyarrow import parquet
+
+    irsim.export_run(hall, "run.parquet")
+    schema = parquet.read_schema("run.parquet")
+    units = {field.name: field.metadata[b"unit"].decode() for field in schema}
+    assert (units["x"], units["theta"], units["vx"], units["yaw_rate"], units["time"]) == (
+        "m", "rad", "m/s", "rad/s", "s",
+    )  # fmt: skip
+    assert units["control_0"] == "m/s"
+    assert units["control_1"] == "rad/s (diff), m/s (omni)"
+    assert units["ranges_0"] == "m"
+    assert schema.metadata[b"irsim"].decode() == irsim.__version__
+    [run] = json.loads(schema.metadata[b"irsim.runs"])
+    assert (run["id"], run["seed"], run["step_time"], run["irsim"]) == (hall.id, 3, 0.1, irsim.__version__)
+    assert run["scenario_text"] == HALL
+    assert [item["name"] for item in run["objects"]] == ["rover 1", "rover 2", "walker", "crate", "hook"]
+    assert [(lidar["object"], lidar["beams"]) for lidar in run["lidars"]][:2] == [("rover 1", 5), ("rover 1", 3)]
+
+
+def test_row_groups_are_small_and_change_nothing(hall: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    from pyarrow import parquet
+
+    irsim.export_run(hall, "whole.parquet")
+    monkeypatch.setattr("irsim.bridges.export.episode._BLOCK_NUMBERS", 640)
+    irsim.export_run(hall, "parts.parquet")
+    assert parquet.ParquetFile("whole.parquet").num_row_groups == 1
+    assert parquet.ParquetFile("parts.parquet").num_row_groups > 5
+    whole, parts = parquet.read_table("whole.parquet"), parquet.read_table("parts.parquet")
+    assert whole.to_pylist() == parts.to_pylist()
+
+
+def test_scans_end_where_the_record_has_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    import pandas
+
+    monkeypatch.setattr("irsim.runs.recorder._MAX_SCANS_BYTES", 4 * 16 * 20)
+    run = recorded(HALL, 60, seed=3)
+    result = irsim.export_run(run, "run.parquet")
+    frame = pandas.read_parquet("run.parquet")
+    rover = frame[frame.name == "rover 1"]
+    assert rover.ranges_0.notna().tolist() == [step < 20 for step in range(61)]
+    assert result.notes == ["scans recorded until step 19 of 60 (too large)"]
+
 
 pytestmark = pytest.mark.records
 
@@ -98,11 +187,11 @@ def test_size_of_blocks_changes_nothing(hall: Run, minari: Any, monkeypatch: pyt
     assert counts[0] == counts[1]
 
 
-def test_contacts_are_punished_and_end_the_episode_if_they_stop_the_robot(workspace: Path, minari: Any) -> None:
+def test_contacts_are_punished_and_end_the_episode_if_they_stop_the_robot(minari: Any) -> None:
     crash = HALL.replace("goal: [5, 1, 0]", "goal: [5, 6, 0]")
     for mode, ends in (("stop", True), ("unobstructed", False)):
         text = crash.replace("unobstructed", mode).replace("state: [4, 4, 0.3]", "state: [3, 3.5, 0.3]")
-        run = open_run(str(irsim.run(text=text, seed=3, steps=60, record=True).run_id))
+        run = recorded(text, 60, seed=3)
         begun = [e.step for e in run.events if e.kind == "collision" and "rover 1" in (e.object, e.partner)]
         assert begun
         irsim.export_run(run, f"{mode}-v0", to="minari", objects=["rover 1"])
@@ -113,7 +202,7 @@ def test_contacts_are_punished_and_end_the_episode_if_they_stop_the_robot(worksp
             assert episode.terminations[-1]
 
 
-def test_arrivals_of_a_wanderer_do_not_end_its_episode(workspace: Path, minari: Any) -> None:
+def test_arrivals_of_a_wanderer_do_not_end_its_episode(minari: Any) -> None:
     text = """\
 world: {width: 6, height: 6}
 robot:
@@ -124,7 +213,7 @@ robot:
     behavior: {name: dash, wander: true, range_low: [2, 2, -3.14], range_high: [4, 4, 3.14]}
   - {name: far, shape: {name: circle, radius: 0.2}, kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 1, 0]}
 """
-    run = open_run(str(irsim.run(text=text, seed=1, steps=400, record=True).run_id))
+    run = recorded(text, 400)
     arrivals = [event.step for event in run.events if event.kind == "arrival"]
     assert len(arrivals) > 2
     irsim.export_run(run, "nomad-v0", to="minari", objects=["nomad"])
@@ -135,7 +224,7 @@ robot:
 
 
 def test_several_runs_are_one_dataset_with_their_seeds(hall: Run, minari: Any) -> None:
-    other = open_run(str(irsim.run(text=HALL, seed=9, steps=20, record=True).run_id))
+    other = recorded(HALL, 20, seed=9)
     irsim.export_run([hall, other], "both-v3", to="minari")
     dataset = minari.load_dataset("both-v3")
     facts = list(dataset.storage.get_episode_metadata(range(4)))
@@ -153,7 +242,7 @@ def test_what_is_no_dataset_is_refused_and_leaves_nothing(hall: Run, minari: Any
     ):
         with pytest.raises(RunError, match=message):
             irsim.export_run(hall, name, to="minari", objects=objects)
-    mixed = open_run(str(irsim.run(text=HALL.replace("diff", "omni", 1), seed=3, steps=5, record=True).run_id))
+    mixed = recorded(HALL.replace("diff", "omni", 1), 5, seed=3)
     with pytest.raises(RunError, match="'rover 1' and 'rover 2' have different controls or lidars"):
         irsim.export_run(mixed, "mixed-v0", to="minari")
     assert [path.name for path in Path().iterdir()] == [".irsim"]

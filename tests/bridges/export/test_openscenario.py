@@ -12,7 +12,8 @@ from PIL import Image
 
 import irsim
 from irsim.bridges.export.formats import openscenario
-from irsim.runs import Run, RunError, open_run
+from irsim.runs import Run, RunError
+from tests.bridges.scenes import recorded
 
 SCENE = """
 world: {width: 20, height: 20, step_time: 0.1}
@@ -27,9 +28,8 @@ obstacle:
 
 
 @pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    monkeypatch.chdir(tmp_path)
-    return open_run(str(irsim.run(text=SCENE, seed=1, steps=20, record=True).run_id))
+def run() -> Run:
+    return recorded(SCENE, 20)
 
 
 def _vertices(root: Any, name: str) -> Any:
@@ -84,11 +84,9 @@ def test_characters_that_xml_has_none_for(run: Run) -> None:
     assert openscenario._text(-0.25) == "-0.25"
 
 
-def test_a_map_is_no_entity(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_a_map_is_no_entity() -> None:
     Image.fromarray(np.array([[0, 255], [255, 255]], dtype=np.uint8)).save("map.png")
     text = SCENE.replace("step_time: 0.1", "step_time: 0.1, obstacle_map: {name: image, path: map.png}")
-    run = open_run(str(irsim.run(text=text, seed=1, steps=2, record=True).run_id))
-    result = irsim.export_run(run, to="openscenario", objects="all")
+    result = irsim.export_run(recorded(text, 2), to="openscenario", objects="all")
     assert len(list(ET.parse(result.file).getroot().iter("ScenarioObject"))) == 3
     assert "the map was left out: OpenSCENARIO has no grids" in result.notes

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import shapely
 
-import irsim
 from irsim.bridges.export.export import export_run
 from irsim.diagnostics.errors import ArgumentError
-from irsim.runs import Run, open_run
+from irsim.runs import Run
+from tests.bridges.scenes import recorded
 
 SCENE = """
 world: {width: 20, height: 20, step_time: 0.1}
@@ -29,9 +29,8 @@ obstacle:
 
 
 @pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    monkeypatch.chdir(tmp_path)
-    return open_run(str(irsim.run(text=SCENE, seed=1, steps=90, record=True).run_id))
+def run() -> Run:
+    return recorded(SCENE, 90)
 
 
 def lines_of(run: Run, **options) -> list[str]:
@@ -69,15 +68,14 @@ def test_notes_and_options(run: Run) -> None:
 
 
 @pytest.mark.parametrize("tolerance", [0.02, 0.3])
-def test_the_ways_are_those_of_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tolerance: float) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_the_ways_are_those_of_the_run(tolerance: float) -> None:
     scene = """
     world: {width: 20, height: 20}
     robot: {kinematics: {name: omni}, state: [3, 10, 0], goal: [17, 10.5], behavior: {name: dash}}
     obstacle:
       - {number: 4, kinematics: {name: omni}, distribution: {name: circle_crossing, radius: 6}, behavior: {name: rvo}}
     """
-    run = open_run(str(irsim.run(text=scene, seed=3, steps=150, record=True).run_id))
+    run = recorded(scene, 150, seed=3)
     lines = lines_of(run, options={"tolerance": tolerance})
     trace = run.trace()
     for name in ("obstacle_1", "obstacle_2", "obstacle_3", "obstacle_4"):
@@ -86,8 +84,8 @@ def test_the_ways_are_those_of_the_run(tmp_path: Path, monkeypatch: pytest.Monke
         points = np.array([[float(value) for value in start]])
         for way in ways:
             points = np.concatenate([points, np.array(way, float).reshape(-1, 3)[:, :2]])
-        recorded = trace.pose[:, run.names.index(name), :2]
+        driven = trace.pose[:, run.names.index(name), :2]
         path = shapely.LineString(points)
-        assert max(path.distance(shapely.Point(place)) for place in recorded) <= 2 * tolerance + 1e-3
-        assert math.dist(points[-1], recorded[-1]) <= tolerance + 1e-3
-        assert len(points) < len(recorded) / 3
+        assert max(path.distance(shapely.Point(place)) for place in driven) <= 2 * tolerance + 1e-3
+        assert math.dist(points[-1], driven[-1]) <= tolerance + 1e-3
+        assert len(points) < len(driven) / 3

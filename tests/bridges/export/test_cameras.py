@@ -16,6 +16,7 @@ from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
 from irsim.runs import Run, open_run
 from irsim.runs.files import RunError
+from tests.bridges.scenes import recorded
 
 HALL = """\
 world: {width: 12, height: 8, collision_mode: unobstructed}
@@ -28,8 +29,7 @@ obstacle:
 
 
 @pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
-    monkeypatch.chdir(tmp_path)
+def run() -> Run:
     Path("hall.yaml").write_text(HALL, encoding="utf-8")
     return open_run(str(irsim.run("hall.yaml", seed=1, steps=20, record=True).run_id))
 
@@ -128,10 +128,7 @@ def test_wrong_options_are_refused_and_nothing_is_written(run: Run) -> None:
 
 def test_cameras_are_left_out_while_their_object_is_not_in_the_world(run: Run) -> None:
     passer = "{name: replay, times: [1, 2], poses: [[5, 5], [4, 5]]}"
-    Path("passer.yaml").write_text(
-        HALL + f"  - {{name: passer, kinematics: {{name: omni}}, behavior: {passer}}}\n", encoding="utf-8"
-    )
-    record = str(irsim.run("passer.yaml", seed=1, steps=30, record=True).run_id)
+    record = recorded(HALL + f"  - {{name: passer, kinematics: {{name: omni}}, behavior: {passer}}}\n", 30)
     irsim.export_run(record, "passer.jsonl", to="poses", objects=["passer"])
     assert [line["frame"] for line in lines("passer.jsonl")] == list(range(10, 21))
     with pytest.raises(RunError, match="none of the chosen objects is in the world"):
