@@ -22,7 +22,7 @@ import numpy as np
 from irsim.bridges.carla.client import NEWEST_PYTHON
 from irsim.bridges.carla.places import Places
 from irsim.bridges.ros.backends.bag import BagFolder
-from irsim.bridges.ros.backends.opening import make_messages, open_backend
+from irsim.bridges.ros.backends.opening import Node, make_messages, open_backend
 from irsim.bridges.ros.backends.rospy_node import find_rospy
 from irsim.bridges.ros.incoming import Inbox, decode, read_twist
 from irsim.bridges.ros.messages import Messages
@@ -199,9 +199,10 @@ def _two_nodes(first: Ros2, second: Ros2) -> str:
         TimeoutError: It did not come.
     """
     messages, inbox, heard = make_messages(first), Inbox(), replace(_TWIST, outgoing=False)
+    one, other = Node("irsim_doctor", [_TWIST], Inbox(), messages), Node("irsim_doctor_too", [heard], inbox, messages)
     with ExitStack() as nodes:
-        sender = nodes.enter_context(closing(open_backend(first, "irsim_doctor", [_TWIST], Inbox(), messages)))
-        receiver = nodes.enter_context(closing(open_backend(second, "irsim_doctor_too", [heard], inbox, messages)))
+        sender = nodes.enter_context(closing(open_backend(first, one)))
+        receiver = nodes.enter_context(closing(open_backend(second, other)))
         began = time.monotonic()
         while time.monotonic() - began < _WAIT_S:
             sender.publish(_TWIST, messages.twist(0.5, 0.0, 1.0))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
+import shapely
 
 from irsim.common.arrays import Floats
 from irsim.common.outline import BodyPart, Circle, Line, Outline, Polygon
@@ -47,8 +48,6 @@ def is_convex(corners: Floats) -> bool:
 
 def triangles(corners: Floats) -> Floats:
     """(K, 3, 2) counterclockwise triangles that fill a simple polygon (N, 2), with its corners only."""
-    import shapely
-
     region = shapely.Polygon(corners)
     if not region.is_valid:
         region = region.buffer(0)

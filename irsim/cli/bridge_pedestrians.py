@@ -13,9 +13,8 @@ from rich.text import Text
 
 from irsim.bridges.pedestrians.importing import Episodes
 from irsim.bridges.pedestrians.importing import import_pedestrians as convert
-from irsim.bridges.pedestrians.rows import FORMATS
 from irsim.bridges.pedestrians.scenario import Layout
-from irsim.bridges.pedestrians.tracks import Window
+from irsim.bridges.pedestrians.tracks import FORMATS, Window
 from irsim.cli.options import Json
 from irsim.cli.output import console
 from irsim.diagnostics.errors import InputError

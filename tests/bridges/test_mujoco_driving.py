@@ -7,9 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from irsim.bridges.mujoco.driving import Driver, steering_of
 from irsim.bridges.mujoco.rays import LidarComparison
-from irsim.bridges.mujoco.robots import rig_of
+from irsim.bridges.mujoco.robots import Driver, rig_of, steering_of
 from irsim.components.bridges.mujoco import Mujoco
 from tests.bridges.scenes import gallery, motion_of, state_of
 

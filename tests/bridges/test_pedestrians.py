@@ -18,9 +18,8 @@ from irsim.benchmarks.stored import measure_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.bridges.base import BridgeError
 from irsim.bridges.pedestrians.importing import Episodes, ImportedPedestrians, import_pedestrians
-from irsim.bridges.pedestrians.rows import read_recording
 from irsim.bridges.pedestrians.scenario import Layout
-from irsim.bridges.pedestrians.tracks import Window
+from irsim.bridges.pedestrians.tracks import Window, read_recording
 from irsim.cli.bridge import bridge_app
 from irsim.common.files import TargetError
 from irsim.diagnostics.errors import ArgumentError
@@ -182,11 +181,11 @@ def test_endless_files_are_refused_at_once(monkeypatch: pytest.MonkeyPatch) -> N
         read_recording(huge)
     assert time.perf_counter() - since < 1
     huge.unlink()
-    monkeypatch.setattr("irsim.bridges.pedestrians.rows._MAX_LINES", 1000)
+    monkeypatch.setattr("irsim.bridges.pedestrians.tracks._MAX_LINES", 1000)
     Path("many.txt").write_text("\n" * 2000)
     with pytest.raises(BridgeError, match="line 1001"):
         read_recording(Path("many.txt"))
-    monkeypatch.setattr("irsim.bridges.pedestrians.rows._MAX_ROWS", 10)
+    monkeypatch.setattr("irsim.bridges.pedestrians.tracks._MAX_ROWS", 10)
     Path("rows.txt").write_text("".join(f"{k} 1 0 0\n" for k in range(20)))
     with pytest.raises(BridgeError, match="row 11"):
         read_recording(Path("rows.txt"))

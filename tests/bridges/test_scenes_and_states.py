@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.json_lines.messages import feedback_of, motion_as_json, scene_as_json, state_as_json
+from irsim.bridges.json_lines.bridge import feedback_of, motion_as_json, scene_as_json, state_as_json
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.bridges.state import Motion, world_state
 from irsim.common.outline import Circle, Line, Polygon

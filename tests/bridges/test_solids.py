@@ -19,8 +19,7 @@ from irsim.bridges.export.export import export_run
 from irsim.bridges.export.registry import find_format
 from irsim.bridges.solids import BoundingBox, Box, box_of, convex_pieces, is_convex, merged_cells, solids_of, triangles
 from irsim.bridges.usd.files import export_scene
-from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
-from irsim.bridges.usd.stage import prim_names
+from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid, prim_names
 from irsim.common.extras import ExtraError
 from irsim.common.files import TargetError
 from irsim.common.outline import Circle, Line, Polygon

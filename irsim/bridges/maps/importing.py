@@ -70,8 +70,7 @@ def import_map(
         ros_target = _target(ros_map, "ros_map", bounds)
     kind, result, source = read_occupancy(file, chosen, bounds)
     unknown = chosen.unknown or kind.unknown
-    values = eroded(result.values, chosen.radius / result.grid.resolution)
-    filled = np.where(values < 0, 100.0 if unknown == "occupied" else 0.0, values)
+    values, filled = _cells(result, chosen, unknown)
     trip = suggest_trip(result, filled)
     if robot and trip is None:
         raise BridgeError("bridge-file", "the map has no room for a robot", "leave out the robot, or try less --radius")
@@ -116,9 +115,14 @@ def list_levels(file: str | Path, *, limits: ImportLimits | None = None, **optio
     chosen = _options(options)
     kind, result, _ = read_occupancy(file, chosen, limits or ImportLimits())
     unknown = chosen.unknown or kind.unknown
-    values = eroded(result.values, chosen.radius / result.grid.resolution)
-    filled = np.where(values < 0, 100.0 if unknown == "occupied" else 0.0, values)
+    values, filled = _cells(result, chosen, unknown)
     return _result(kind, result, values, filled, unknown, suggest_trip(result, filled), [])
+
+
+def _cells(result: Occupancy, options: ImportOptions, unknown: str) -> tuple[Floats, Floats]:
+    """(nx, ny) occupancies after the radius is taken away, -1 where unknown; the same with unknown cells filled in."""
+    values = eroded(result.values, options.radius / result.grid.resolution)
+    return values, np.where(values < 0, 100.0 if unknown == "occupied" else 0.0, values)
 
 
 def read_occupancy(

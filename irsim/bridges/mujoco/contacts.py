@@ -8,18 +8,18 @@ import sys
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import shapely
+from shapely.affinity import affine_transform
+from shapely.geometry.base import BaseGeometry
 
 from irsim.bridges.mujoco.mjcf import MAP_BODY, body_name
 from irsim.bridges.mujoco.physics import Physics
 from irsim.bridges.solids import merged_cells
 from irsim.common.files import write_atomically
 from irsim.common.outline import BodyPart, Circle, Line
-
-if TYPE_CHECKING:
-    from shapely.geometry.base import BaseGeometry
 
 __all__ = ["Contact", "Contacts", "MujocoReport", "log_report", "write_report"]
 
@@ -115,14 +115,10 @@ class Contacts:
 
     def _gap(self, pair: tuple[int, int], data: Any) -> float:
         """Distance of the footprints of two objects as irsim has them, at their poses in MuJoCo [m]."""
-        import shapely
-
         one, other = (self._placed(row, data) for row in pair)
         return float(shapely.distance(one, other).min())
 
     def _placed(self, row: int, data: Any) -> Any:
-        from shapely.affinity import affine_transform
-
         if row >= len(self._scene.agents):
             return self._map if row == len(self._scene.agents) else self._walls
         agent = self._scene.agents[row]
@@ -134,22 +130,16 @@ class Contacts:
 
     @cached_property
     def _map(self) -> Any:
-        import shapely
-
         assert self._scene.grid is not None
         return shapely.box(*merged_cells(self._scene.grid).T)
 
     @cached_property
     def _walls(self) -> Any:
-        import shapely
-
         return shapely.box(*self._scene.low, *self._scene.high).exterior
 
 
 def _footprint(parts: tuple[BodyPart, ...]) -> BaseGeometry:
     """The footprint as a shape of shapely, body frame."""
-    import shapely
-
     shapes: list[BaseGeometry] = []
     for part in parts:
         if isinstance(part, Circle):

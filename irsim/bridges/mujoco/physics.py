@@ -10,9 +10,8 @@ import numpy as np
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import quaternion_of, rotation_of
-from irsim.bridges.mujoco.driving import Driver
 from irsim.bridges.mujoco.mjcf import PARKED, body_name, is_mocap, rigs_of, write_mjcf
-from irsim.bridges.mujoco.robots import PLANAR, TURNING
+from irsim.bridges.mujoco.robots import PLANAR, TURNING, Driver
 from irsim.bridges.state import Motion
 from irsim.common.angles import wrap
 from irsim.common.arrays import Floats

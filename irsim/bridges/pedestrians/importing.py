@@ -14,7 +14,6 @@ import numpy as np
 
 from irsim.benchmarks.suite import MAX_SCENARIOS
 from irsim.bridges.base import BridgeError
-from irsim.bridges.pedestrians.rows import FormatName, Recording, read_homography, read_recording
 from irsim.bridges.pedestrians.scenario import (
     ROBOT_RADIUS,
     Layout,
@@ -28,7 +27,17 @@ from irsim.bridges.pedestrians.scenario import (
     scenario_text,
     world_lines,
 )
-from irsim.bridges.pedestrians.tracks import Track, Window, frame_rate, make_tracks, pixels_to_metres
+from irsim.bridges.pedestrians.tracks import (
+    FormatName,
+    Recording,
+    Track,
+    Window,
+    frame_rate,
+    make_tracks,
+    pixels_to_metres,
+    read_homography,
+    read_recording,
+)
 from irsim.common.arrays import Floats
 from irsim.common.files import check_new, write_new
 from irsim.common.text import clean

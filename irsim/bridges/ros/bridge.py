@@ -9,10 +9,8 @@ from typing import Any
 
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.ros.backends.bag import BagBackend
-from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.backends.opening import AnyOptions, make_messages, open_backend
-from irsim.bridges.ros.guard import ZERO, Velocity
-from irsim.bridges.ros.guarded import Guard
+from irsim.bridges.ros.backends.opening import AnyOptions, Backend, Node, make_messages, open_backend
+from irsim.bridges.ros.guard import ZERO, Guard, Velocity
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.outgoing import Outgoing
 from irsim.bridges.ros.real import RealRobots
@@ -74,8 +72,8 @@ class RosBridge(Bridge):
         self._spelled = {name: spelled for name, spelled in names if name != spelled and scene.agent(name) in robots}
         messages = make_messages(options)
         self.topics = self._topics(scene, robots)
-        node = options.node if isinstance(options, RosOptions) else "irsim"
-        self.backend = open_backend(options, node, self.topics, self._inbox, messages)
+        name = options.node if isinstance(options, RosOptions) else "irsim"
+        self.backend = open_backend(options, Node(name, self.topics, self._inbox, messages))
         self._messages = messages
         self._outgoing = Outgoing(messages, scene, self.topics, options.frame, self._mode)
         if isinstance(options, RosOptions):

@@ -1,9 +1,9 @@
-"""The process between irsim and real robots: it sends zero commands when irsim hangs, fails, or is killed.
+"""Commands to real robots: a process that sends zero commands when irsim hangs, fails, or is killed, and its handle.
 
-``python -m irsim.bridges.ros.guard`` is started by :class:`irsim.bridges.ros.guarded.Guard`. It has a node of its own,
-which alone publishes commands, at a fixed rate and within the limits. It reads lines of JSON from its standard input:
-first what to publish and how, then commands. Commands that are too old count as zero, and when the input ends, because
-irsim has ended in whatever way, it sends zeros for a while and ends, too.
+``python -m irsim.bridges.ros.guard`` is started by :class:`Guard`. It has a node of its own, which alone publishes
+commands, at a fixed rate and within the limits. It reads lines of JSON from its standard input: first what to publish
+and how, then commands. Commands that are too old count as zero, and when the input ends, because irsim has ended in
+whatever way, it sends zeros for a while and ends, too.
 """
 
 from __future__ import annotations
@@ -11,26 +11,27 @@ from __future__ import annotations
 import json
 import math
 import os
+import selectors
 import signal
 import sys
 import threading
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, TextIO
 
-from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.backends.opening import make_messages, open_backend
+from irsim.bridges.base import BridgeError, BridgeLostError
+from irsim.bridges.ros.backends.opening import Backend, Node, make_messages, open_backend
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import Qos, Topic
+from irsim.common.child import Child
 from irsim.components.bridges._ros import RosOptions
 from irsim.diagnostics.errors import CodedError
 from irsim.options.registry import BRIDGES
 
-__all__ = ["LIFE", "READY", "ZERO", "Limits", "Velocity", "limited", "limits_of", "main"]
+__all__ = ["LIFE", "READY", "ZERO", "Guard", "Limits", "Velocity", "limited", "limits_of", "main"]
 
 Velocity = tuple[float, float, float]
 """Forward and leftward speed [m/s], yaw rate [rad/s], body frame."""
@@ -134,7 +135,7 @@ def main(stream: TextIO = sys.stdin) -> int:
     topics = [Topic(**{**item, "qos": Qos(**item["qos"])}) for item in first["topics"]]
     try:
         messages = make_messages(options)
-        backend = open_backend(options, f"{options.node}_guard", topics, Inbox(), messages)
+        backend = open_backend(options, Node(f"{options.node}_guard", topics, Inbox(), messages))
     except CodedError as error:
         print(json.dumps({"code": error.code, "message": error.message, "fix": error.fix}), flush=True)
         return 1
@@ -184,6 +185,94 @@ def _show_life() -> None:
 
 def _interrupted(number: int, frame: Any) -> None:
     raise KeyboardInterrupt
+
+
+_START_S = 30.0
+"""Time for which the start of the process may take; ROS takes some seconds to import on small computers."""
+_STOP_S = 5.0
+_SILENT_S = 1.0
+"""Time for which the process may be silent in addition to the timeout of commands."""
+_READ_BYTES = 65536
+
+
+class Guard:
+    """The process that publishes commands, see :mod:`irsim.bridges.ros.guard`.
+
+    Args:
+        options: Options of the bridge.
+        topics: Topics of commands, one for each robot.
+
+    Raises:
+        BridgeError: The process cannot connect.
+    """
+
+    def __init__(self, options: RosOptions, topics: Sequence[Topic]) -> None:
+        self._child = Child([sys.executable, "-m", "irsim.bridges.ros.guard"])  # Ctrl-C reaches irsim only
+        self._process, self._input, self._output = self._child.process, self._child.input, self._child.output
+        try:
+            first = {"options": options.model_dump(mode="json"), "topics": [asdict(topic) for topic in topics]}
+            self._write(first)
+            self._wait_until_ready()
+            os.set_blocking(self._input.fileno(), False)
+            os.set_blocking(self._output.fileno(), False)
+            self._alive, self._silence = time.monotonic(), options.command_timeout + _SILENT_S
+        except BaseException:
+            self.stop()
+            raise
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
+    def send(self, commands: Mapping[str, Velocity]) -> None:
+        """Hand over commands; robots that are left out get zero.
+
+        Raises:
+            BridgeLostError: The process has ended or hangs.
+        """
+        if self._process.poll() is not None:
+            raise BridgeLostError("the process that sends commands to the robots has ended")
+        with suppress(BlockingIOError):
+            if os.read(self._output.fileno(), _READ_BYTES):
+                self._alive = time.monotonic()
+        if time.monotonic() - self._alive > self._silence:
+            self._process.kill()
+            raise BridgeLostError("the process that sends commands to the robots hangs")
+        try:
+            self._write(commands)
+        except OSError:
+            raise BridgeLostError("the process that sends commands to the robots does not read them") from None
+
+    def stop(self) -> None:
+        """Let the process send zero commands and end."""
+        self._child.end(_STOP_S)
+
+    def _write(self, content: object) -> None:
+        line = json.dumps(content).encode() + b"\n"
+        if self._input.write(line) != len(line):
+            raise OSError("the pipe is full")
+
+    def _wait_until_ready(self) -> None:
+        line, until = b"", time.monotonic() + _START_S
+        with selectors.DefaultSelector() as waiting:
+            waiting.register(self._output, selectors.EVENT_READ)
+            while not line.endswith(b"\n"):
+                left = until - time.monotonic()
+                if left <= 0 or not waiting.select(left):
+                    raise BridgeLostError(f"the process that sends commands did not start within {_START_S:g} s")
+                part = os.read(self._output.fileno(), 4096)
+                if not part:
+                    raise BridgeLostError("the process that sends commands ended at its start")
+                line += part
+        # libraries may print something before
+        last = line.decode(errors="replace").strip().splitlines()[-1]
+        if last != READY:
+            try:
+                error = json.loads(last)
+                raise BridgeError(error["code"], error["message"], error["fix"])
+            except (ValueError, KeyError, TypeError):
+                raise BridgeLostError(f"the process that sends commands said {last[:200]!r}") from None
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import shapely
 
 from irsim.bridges.ros.messages import Messages
 from irsim.common.arrays import Floats
@@ -149,8 +150,6 @@ def part_marker(
 
 def triangles(rings: list[Floats]) -> Floats:
     """(3 K, 2) corners of K triangles that fill a region, whose outlines run counter-clockwise and holes clockwise."""
-    import shapely
-
     areas = [shapely.Polygon(ring) for ring in rings]
     outlines = [area for area in areas if area.exterior.is_ccw]
     holes = [area for area in areas if not area.exterior.is_ccw]

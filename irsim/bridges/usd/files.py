@@ -2,106 +2,25 @@
 
 from __future__ import annotations
 
-import math
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from irsim.bridges.base import BridgeError
 from irsim.bridges.state import WorldState, world_state
-from irsim.bridges.usd.stage import Heights, Mover, author_scene, new_stage
-from irsim.common.angles import wrap
 from irsim.common.extras import require
 from irsim.common.files import check_new, check_suffix, replacing
+from irsim.env import Env
+from irsim.objects.describe import agent_rows, describe_scene
+from irsim.scenario.limits import Limits
+from irsim.scenario.open import open_scenario
 from irsim.simulation.scene import SceneDescription
 
 if TYPE_CHECKING:
-    from irsim.scenario.limits import Limits
+    from irsim.bridges.usd.stage import Heights
 
-__all__ = ["SUFFIXES", "animate", "export_scene", "make_stage", "save_stage"]
-
-
-class _Track:
-    """Samples of one prim: one for each step, as interpolation would round; a value that never changes has one."""
-
-    def __init__(self, layer: Any, mover: Mover, height: float = 0.0) -> None:
-        self._layer, self._height = layer, height
-        self._translate = f"{mover.path}.xformOp:translate"
-        self._rotate = f"{mover.path}.xformOp:rotateZ"
-        self._visibility = f"{mover.path}.visibility"
-        self._yaw: float | None = None
-        self._present: bool | None = None
-        self._same: dict[str, tuple[Any, list[float]]] = {}
-        self._changed: set[str] = set()
-
-    def add(self, step: float, pose: Sequence[float]) -> None:
-        """Add where the object is after a step; NaN while it is not in the world."""
-        x, y, yaw = pose
-        present = math.isfinite(x)
-        if present != self._present:
-            self._present = present
-            self._layer.SetTimeSample(self._visibility, step, "inherited" if present else "invisible")
-        if not present:
-            return
-        before = self._yaw
-        self._yaw = yaw if before is None else before + float(wrap(yaw - before))
-        self._sample(self._translate, step, (x, y))
-        self._sample(self._rotate, step, self._yaw)
-
-    def _sample(self, path: str, step: float, value: Any) -> None:
-        if path not in self._changed:
-            first, steps = self._same.setdefault(path, (value, []))
-            if value == first:
-                steps.append(step)
-                if len(steps) > 1:
-                    return
-            else:
-                self._changed.add(path)
-                for earlier in self._same.pop(path)[1][1:]:
-                    self._write(path, earlier, first)
-        self._write(path, step, value)
-
-    def _write(self, path: str, step: float, value: Any) -> None:
-        from pxr import Gf
-
-        is_place = path is self._translate
-        written = Gf.Vec3d(*value, self._height) if is_place else math.degrees(value)
-        self._layer.SetTimeSample(path, step, written)
-
-
-def animate(stage: Any, movers: Iterable[Mover], states: Iterable[WorldState]) -> int:
-    """Write time samples; one time code is one step.
-
-    Args:
-        stage: A stage with the prims of the movers.
-        movers: The objects.
-        states: States in the order of their steps.
-
-    Returns:
-        The number of states.
-    """
-    from pxr import Sdf, UsdGeom
-
-    movers, layer = list(movers), stage.GetRootLayer()
-    for mover in movers:
-        UsdGeom.Imageable(stage.GetPrimAtPath(mover.path)).CreateVisibilityAttr()
-    tracks = [_Track(layer, mover) for mover in movers]
-    first = last = None
-    count = 0
-    with Sdf.ChangeBlock():
-        for state in states:
-            first = state.step if first is None else first
-            last, count = state.step, count + 1
-            poses = np.asarray(state.pose).tolist()
-            for mover, track in zip(movers, tracks, strict=True):
-                track.add(float(state.step), poses[mover.index])
-    if first is not None and last is not None:
-        stage.SetStartTimeCode(first)
-        stage.SetEndTimeCode(last)
-    return count
+__all__ = ["SUFFIXES", "export_scene", "make_stage", "save_stage"]
 
 
 SUFFIXES = (".usda", ".usdc", ".usdz")
@@ -126,7 +45,8 @@ def make_stage(
     Raises:
         ExtraError: OpenUSD is not installed.
     """
-    require("usd", "pxr")
+    from irsim.bridges.usd.stage import animate, author_scene, new_stage
+
     stage = new_stage(scene)
     movers = author_scene(stage, scene, heights)
     if moving is not None:
@@ -187,10 +107,6 @@ def export_scene(
         ScenarioError: The scenario has errors.
         TargetError: The file has another suffix, or exists.
     """
-    from irsim.env import Env
-    from irsim.objects.describe import agent_rows, describe_scene
-    from irsim.scenario.open import open_scenario
-
     target = Path(out)
     require("usd", "pxr")
     check_suffix(target, SUFFIXES)

@@ -1,23 +1,34 @@
-"""Closed solids of footprints, walls and maps, as arrays; nothing of OpenUSD is needed here."""
+"""Closed solids of footprints, walls and maps, as arrays, and names of prims; nothing of OpenUSD is needed here."""
 
 from __future__ import annotations
 
 import itertools
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
 
 from irsim.bridges.solids import merged_cells
 from irsim.common.arrays import Floats
 from irsim.common.outline import Circle, Line, Polygon
 from irsim.simulation.scene import Grid
 
-if TYPE_CHECKING:
-    from shapely.geometry.base import BaseGeometry
-
-__all__ = ["WALL_THICKNESS", "Solid", "arrow", "disc_solid", "grid_solid", "line_solid", "plane", "polygon_solid"]
+__all__ = [
+    "WALL_THICKNESS",
+    "Solid",
+    "arrow",
+    "disc_solid",
+    "grid_solid",
+    "line_solid",
+    "plane",
+    "polygon_solid",
+    "prim_names",
+]
 
 WALL_THICKNESS = 0.05
 """Thickness of solids of lines, which are infinitely thin in the plane [m]."""
@@ -56,8 +67,6 @@ class Solid:
 
 def polygon_solid(polygon: Polygon, height: float) -> Solid | None:
     """The prism of a polygon, from the ground up; None if it has no area."""
-    import shapely
-
     region: BaseGeometry = shapely.Polygon(polygon.corners)
     if not region.is_valid:
         region = shapely.make_valid(region)
@@ -130,8 +139,6 @@ def _boxes(quads: Floats, height: float) -> Solid:
 
 def _prism(region: BaseGeometry, height: float) -> Solid | None:
     """A region of the plane, extruded upwards; triangles at both ends and quadrilaterals at the sides."""
-    import shapely
-
     areas = [shapely.orient_polygons(part) for part in shapely.get_parts(region) if part.geom_type == "Polygon"]
     areas = [area for area in areas if area.area > 0]
     if not areas:
@@ -184,3 +191,21 @@ def _doubled(corners: Floats, height: float) -> Floats:
 
 def _is_convex(area: Any) -> bool:
     return bool(area.convex_hull.area - area.area <= _CONVEX * area.area)
+
+
+_LONGEST = 100
+
+
+def prim_names(names: Iterable[str]) -> list[str]:
+    """A valid name for each name, all different: ``robot 1`` becomes ``robot_1``, a second one ``robot_1_2``."""
+    taken: set[str] = set()
+    result = []
+    for name in names:
+        plain = re.sub(r"[^A-Za-z0-9_]", "_", name)[:_LONGEST] or "object"
+        plain = f"_{plain}" if plain[0].isdigit() else plain
+        chosen, number = plain, 2
+        while chosen.lower() in taken:
+            chosen, number = f"{plain}_{number}", number + 1
+        taken.add(chosen.lower())
+        result.append(chosen)
+    return result

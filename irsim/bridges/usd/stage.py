@@ -9,40 +9,37 @@ A prim of an object has its index and name as custom data ``irsim:id`` and ``irs
 as cylinders, convex solids as their hulls, others as a convex decomposition, and the map with its triangles.
 """
 
+# ruff: noqa: E402  # the library is asked for first
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from irsim.bridges.usd.solids import Solid, arrow, disc_solid, grid_solid, line_solid, plane, polygon_solid
+from irsim.bridges.state import WorldState
+from irsim.bridges.usd.solids import (
+    Solid,
+    arrow,
+    disc_solid,
+    grid_solid,
+    line_solid,
+    plane,
+    polygon_solid,
+    prim_names,
+)
+from irsim.common.angles import wrap
 from irsim.common.arrays import Floats
+from irsim.common.extras import require
 from irsim.common.outline import Circle, Line
 from irsim.simulation.scene import SceneDescription, SceneObject
 
-__all__ = ["Heights", "Mover", "author_scene", "new_stage", "paint", "prim_names"]
+require("usd", "pxr")
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdPhysics, UsdShade, Vt
 
-_LONGEST = 100
-
-
-def prim_names(names: Iterable[str]) -> list[str]:
-    """A valid name for each name, all different: ``robot 1`` becomes ``robot_1``, a second one ``robot_1_2``."""
-    taken: set[str] = set()
-    result = []
-    for name in names:
-        plain = re.sub(r"[^A-Za-z0-9_]", "_", name)[:_LONGEST] or "object"
-        plain = f"_{plain}" if plain[0].isdigit() else plain
-        chosen, number = plain, 2
-        while chosen.lower() in taken:
-            chosen, number = f"{plain}_{number}", number + 1
-        taken.add(chosen.lower())
-        result.append(chosen)
-    return result
-
+__all__ = ["Heights", "Mover", "animate", "author_scene", "new_stage", "paint"]
 
 _ROUGHNESS = 0.6
 
@@ -55,8 +52,6 @@ def paint(stage: Any, prim: Any, color: tuple[float, float, float]) -> None:
         prim: A mesh or another solid.
         color: Red, green, blue, from 0 to 1, as on a screen (sRGB).
     """
-    from pxr import Gf, Sdf, UsdGeom, UsdShade, Vt
-
     linear = Gf.Vec3f(*(_linear(min(1.0, max(0.0, part))) for part in color))
     UsdGeom.Gprim(prim).CreateDisplayColorAttr(Vt.Vec3fArray([linear]))
     name = "color_" + "".join(f"{round(255 * min(1.0, max(0.0, part))):02x}" for part in color)
@@ -118,8 +113,6 @@ class Mover:
 
 def new_stage(scene: SceneDescription) -> Any:
     """An empty stage in memory with units, axes and clock: one time code is one step."""
-    from pxr import Gf, Usd, UsdGeom, UsdPhysics
-
     stage = Usd.Stage.CreateInMemory()
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
@@ -146,8 +139,6 @@ def author_scene(stage: Any, scene: SceneDescription, heights: Heights | None = 
         scene: The scene.
         heights: Heights of solids.
     """
-    from pxr import UsdGeom
-
     heights = heights or Heights()
     _mesh(stage, "/World/Ground", _ground(scene), _GROUND_COLOR, solid=True, approximation="none")
     solid = None if scene.grid is None else grid_solid(scene.grid, heights.obstacle)
@@ -178,8 +169,6 @@ def _ground(scene: SceneDescription) -> Solid:
 
 def _author_agent(stage: Any, path: str, agent: SceneObject, height: float, *, rigid: bool) -> None:
     """Write one object at its start: its place, and its body as a child."""
-    from pxr import Gf, UsdGeom, UsdPhysics
-
     placed = UsdGeom.Xform.Define(stage, path)
     prim = placed.GetPrim()
     prim.SetCustomDataByKey("irsim:id", agent.index)
@@ -206,8 +195,6 @@ def _author_agent(stage: Any, path: str, agent: SceneObject, height: float, *, r
 
 def _disc(stage: Any, path: str, circle: Circle, height: float, agent: SceneObject) -> None:
     """Write a disc: a mesh that is seen, and a hidden cylinder that collides, which is rounder than the mesh."""
-    from pxr import Gf, UsdGeom, UsdPhysics, Vt
-
     _mesh(stage, path, disc_solid(circle, height), agent.color, solid=False)
     if not agent.solid:
         return
@@ -226,8 +213,6 @@ def _mesh(
     stage: Any, path: str, shape: Solid, color: tuple[float, float, float], *, solid: bool, approximation: str = "none"
 ) -> None:
     """Write a mesh with flat faces; ``solid`` says whether it collides."""
-    from pxr import UsdGeom, UsdPhysics, Vt
-
     points = shape.points.astype(np.float32)
     drawn = UsdGeom.Mesh.Define(stage, path)
     drawn.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points))
@@ -244,8 +229,6 @@ def _mesh(
 
 
 def _author_lights(stage: Any) -> None:
-    from pxr import Gf, UsdGeom, UsdLux
-
     UsdGeom.Scope.Define(stage, "/World/Lights")
     sun = UsdLux.DistantLight.Define(stage, "/World/Lights/Sun")
     sun.CreateIntensityAttr(2500.0)
@@ -256,8 +239,6 @@ def _author_lights(stage: Any) -> None:
 
 def _author_cameras(stage: Any, scene: SceneDescription) -> None:
     """A camera that looks down at the whole world, and one that looks at it from the front."""
-    from pxr import UsdGeom
-
     UsdGeom.Scope.Define(stage, "/World/Cameras")
     low, high = np.array(scene.low), np.array(scene.high)
     middle, size = (low + high) / 2, float(max(1.0, *(high - low)))
@@ -268,8 +249,6 @@ def _author_cameras(stage: Any, scene: SceneDescription) -> None:
 
 
 def _camera(stage: Any, name: str, pose: Floats, size: float) -> None:
-    from pxr import Gf, UsdGeom
-
     camera = UsdGeom.Camera.Define(stage, f"/World/Cameras/{name}")
     camera.CreateFocalLengthAttr(24.0)
     camera.CreateHorizontalApertureAttr(36.0)
@@ -286,3 +265,79 @@ def _looking(at: Floats, target: Floats, up: Floats) -> Floats:
     pose = np.eye(4)
     pose[:3, 0], pose[:3, 1], pose[:3, 2], pose[:3, 3] = right, np.cross(back, right), back, at
     return pose
+
+
+class _Track:
+    """Samples of one prim: one for each step, as interpolation would round; a value that never changes has one."""
+
+    def __init__(self, layer: Any, mover: Mover, height: float = 0.0) -> None:
+        self._layer, self._height = layer, height
+        self._translate = f"{mover.path}.xformOp:translate"
+        self._rotate = f"{mover.path}.xformOp:rotateZ"
+        self._visibility = f"{mover.path}.visibility"
+        self._yaw: float | None = None
+        self._present: bool | None = None
+        self._same: dict[str, tuple[Any, list[float]]] = {}
+        self._changed: set[str] = set()
+
+    def add(self, step: float, pose: Sequence[float]) -> None:
+        """Add where the object is after a step; NaN while it is not in the world."""
+        x, y, yaw = pose
+        present = math.isfinite(x)
+        if present != self._present:
+            self._present = present
+            self._layer.SetTimeSample(self._visibility, step, "inherited" if present else "invisible")
+        if not present:
+            return
+        before = self._yaw
+        self._yaw = yaw if before is None else before + float(wrap(yaw - before))
+        self._sample(self._translate, step, (x, y))
+        self._sample(self._rotate, step, self._yaw)
+
+    def _sample(self, path: str, step: float, value: Any) -> None:
+        if path not in self._changed:
+            first, steps = self._same.setdefault(path, (value, []))
+            if value == first:
+                steps.append(step)
+                if len(steps) > 1:
+                    return
+            else:
+                self._changed.add(path)
+                for earlier in self._same.pop(path)[1][1:]:
+                    self._write(path, earlier, first)
+        self._write(path, step, value)
+
+    def _write(self, path: str, step: float, value: Any) -> None:
+        is_place = path is self._translate
+        written = Gf.Vec3d(*value, self._height) if is_place else math.degrees(value)
+        self._layer.SetTimeSample(path, step, written)
+
+
+def animate(stage: Any, movers: Iterable[Mover], states: Iterable[WorldState]) -> int:
+    """Write time samples; one time code is one step.
+
+    Args:
+        stage: A stage with the prims of the movers.
+        movers: The objects.
+        states: States in the order of their steps.
+
+    Returns:
+        The number of states.
+    """
+    movers, layer = list(movers), stage.GetRootLayer()
+    for mover in movers:
+        UsdGeom.Imageable(stage.GetPrimAtPath(mover.path)).CreateVisibilityAttr()
+    tracks = [_Track(layer, mover) for mover in movers]
+    first = last = None
+    count = 0
+    with Sdf.ChangeBlock():
+        for state in states:
+            first = state.step if first is None else first
+            last, count = state.step, count + 1
+            poses = np.asarray(state.pose).tolist()
+            for mover, track in zip(movers, tracks, strict=True):
+                track.add(float(state.step), poses[mover.index])
+    if first is not None and last is not None:
+        stage.SetStartTimeCode(first)
+        stage.SetEndTimeCode(last)
+    return count

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.backends.opening import open_backend
+from irsim.bridges.ros.backends.opening import Node, open_backend
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.topics import LATCHED, STATE, Topic
 from irsim.components.bridges.ros2 import Ros2
@@ -91,7 +91,7 @@ MESSAGES: Any = N(cdr=lambda message, kind: f"{kind}:{message}".encode())
 
 def test_serialized_messages_cross_both_ways(graph: Graph) -> None:
     inbox = Inbox()
-    backend = open_backend(Ros2(domain=7), "lab", [ODOM, COMMAND], inbox, MESSAGES)  # auto finds rclpy
+    backend = open_backend(Ros2(domain=7), Node("lab", [ODOM, COMMAND], inbox, MESSAGES))  # auto finds rclpy
     assert type(backend).__name__ == "RclpyBackend"
     assert graph.domain == 7
     assert (graph.qos["/r/odom"].durability, graph.qos["/r/odom"].depth) == (1, 1)
@@ -107,7 +107,7 @@ def test_serialized_messages_cross_both_ways(graph: Graph) -> None:
 
 
 def test_a_flood_does_not_hold_up_a_step(graph: Graph) -> None:
-    backend = open_backend(Ros2(), "lab", [ODOM, COMMAND], Inbox(), MESSAGES)
+    backend = open_backend(Ros2(), Node("lab", [ODOM, COMMAND], Inbox(), MESSAGES))
     graph.waiting = [("/r/cmd_vel", b"")] * 5000
     backend.poll()
     assert len(graph.waiting) == 4800
@@ -117,10 +117,10 @@ def test_a_flood_does_not_hold_up_a_step(graph: Graph) -> None:
 def test_a_missing_package_is_named_with_its_debian_package(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "nav_msgs.msg", ModuleType("nav_msgs.msg"))
     with pytest.raises(BridgeError, match=r"no messages nav_msgs/msg/Odometry.*ros-\$ROS_DISTRO-nav-msgs"):
-        open_backend(Ros2(), "lab", [ODOM], Inbox(), MESSAGES)
+        open_backend(Ros2(), Node("lab", [ODOM], Inbox(), MESSAGES))
     assert graph.open == 0
 
 
 def test_without_rclpy_the_error_says_what_to_source() -> None:
     with pytest.raises(BridgeError, match=r"setup.bash, or write backend: dds"):
-        open_backend(Ros2(backend="rclpy"), "lab", [], Inbox(), MESSAGES)
+        open_backend(Ros2(backend="rclpy"), Node("lab", [], Inbox(), MESSAGES))

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import irsim
 from irsim.bridges.base import BridgeError
 from irsim.bridges.options import read_bridge
-from irsim.bridges.ros.backends.opening import open_backend
+from irsim.bridges.ros.backends.opening import Node, open_backend
 from irsim.bridges.ros.bridge import RosBridge
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.topics import TABLE, Qos, ros_names, scene_topics
@@ -154,10 +156,10 @@ def test_a_missing_library_is_named(bridge: str, extra: str, monkeypatch: pytest
 )  # fmt: skip
 def test_variables_of_ros_keep_a_node_here(name: str, value: str, stays: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     loopbacks = []
-    backend = "irsim.bridges.ros.backends.dds.DdsBackend"
-    monkeypatch.setattr(backend, lambda *_, loopback, **__: loopbacks.append(loopback))
+    backend = SimpleNamespace(DdsBackend=lambda node, domain, loopback: loopbacks.append(loopback))
+    monkeypatch.setitem(sys.modules, "irsim.bridges.ros.backends.dds", backend)
     for variable in ("ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE"):
         monkeypatch.delenv(variable, raising=False)
     monkeypatch.setenv(name, value)
-    open_backend(Ros2(backend="dds", domain=3), "node", [], Inbox(), None)  # type: ignore[arg-type]
+    open_backend(Ros2(backend="dds", domain=3), Node("node", [], Inbox(), None))  # type: ignore[arg-type]
     assert loopbacks == [stays]

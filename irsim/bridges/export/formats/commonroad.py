@@ -16,13 +16,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 
 from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.common.arrays import Floats
-from irsim.common.outline import BodyPart, Circle, Line
-from irsim.simulation.scene import SceneDescription, SceneObject
+from irsim.common.outline import Circle, Line
+from irsim.simulation.scene import SceneObject
 
 __all__ = ["FORMAT"]
 
@@ -70,10 +71,6 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
         file_format=FileFormat.XML,
     )
     writer.write_to_file(str(target), OverwriteExistingFile.ALWAYS)
-    return _notes(scene)
-
-
-def _notes(scene: SceneDescription) -> list[str]:
     return [] if scene.grid is None else ["the map was left out: CommonRoad has no grids"]
 
 
@@ -91,24 +88,17 @@ def _tracks(episode: Episode, moving: Sequence[SceneObject]) -> tuple[list[int],
     return steps, [table[:, number] for number in range(len(moving))]
 
 
-def _shape(part: BodyPart) -> Any:
-    """A shape of CommonRoad, and the place of its middle, body frame."""
+def _parts(agent: SceneObject) -> Iterator[tuple[Any, Floats]]:
+    """Shapes of an agent, and the places of their middles, body frame; lines are a rectangle for each leg."""
     from commonroad.geometry.obstacle_shapes.circle_obstacle_shape import CircleObstacleShape
     from commonroad.geometry.obstacle_shapes.polygon_obstacle_shape import PolygonObstacleShape
 
-    if isinstance(part, Circle):
-        return CircleObstacleShape(radius=part.radius), np.array(part.center)
-    assert not isinstance(part, Line)
-    return PolygonObstacleShape(vertices=part.corners), np.zeros(2)
-
-
-def _parts(agent: SceneObject) -> Iterator[tuple[Any, Floats]]:
-    """Shapes of an agent, lines as a rectangle for each leg."""
-    from commonroad.geometry.obstacle_shapes.polygon_obstacle_shape import PolygonObstacleShape
-
     for part in agent.parts:
+        if isinstance(part, Circle):
+            yield CircleObstacleShape(radius=part.radius), np.array(part.center)
+            continue
         if not isinstance(part, Line):
-            yield _shape(part)
+            yield PolygonObstacleShape(vertices=part.corners), np.zeros(2)
             continue
         for a, b in itertools.pairwise(part.path):
             length = math.dist(a, b)
@@ -169,7 +159,6 @@ def _state(step: int, row: Floats, *, initial: bool) -> Any:
 
 def _problem(agent: SceneObject, last_step: int, number: int) -> Any:
     """From the start of a robot to a circle around its last goal, within the time of the run."""
-    import shapely
     from commonroad.common.util import Interval
     from commonroad.geometry.occupancy.circle_occupancy import CircleOccupancy
     from commonroad.planning.goal import GoalRegion

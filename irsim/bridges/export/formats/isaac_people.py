@@ -20,7 +20,7 @@ from pydantic import Field
 
 from irsim.bridges.export.episode import Episode
 from irsim.bridges.export.registry import Format
-from irsim.bridges.usd.stage import prim_names
+from irsim.bridges.usd.solids import prim_names
 from irsim.common.arrays import Floats
 from irsim.options.base import Options
 from irsim.options.units import Meters, Seconds

@@ -1,5 +1,6 @@
 """The process that reads a stage of OpenUSD: JSON as a request and as an answer, triangles to a file."""
 
+# ruff: noqa: E402  # the library is asked for first
 from __future__ import annotations
 
 import itertools
@@ -15,6 +16,10 @@ import numpy as np
 
 from irsim.common.arrays import Floats
 from irsim.common.child import limit
+from irsim.common.extras import require
+
+require("usd", "pxr")
+from pxr import Sdf, Usd, UsdGeom
 
 __all__ = ["Collector", "Refused", "main"]
 
@@ -41,8 +46,6 @@ class Collector:
     """
 
     def __init__(self, most: int) -> None:
-        from pxr import Usd, UsdGeom
-
         self.left_out: set[str] = set()
         self._room = self._most = most
         self._time = Usd.TimeCode.EarliestTime()
@@ -50,8 +53,6 @@ class Collector:
 
     def stage(self, stage: Any) -> Floats:
         """(T, 3, 3) corners of the triangles of a stage, frame and unit of the stage."""
-        from pxr import Usd
-
         prims = Usd.PrimRange.Stage(stage, Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate))
         return _joined([self._one(prim, self._world, 0) for prim in self._drawn(prims)])
 
@@ -60,8 +61,6 @@ class Collector:
 
     def _drawn(self, prims: Any) -> Iterator[Any]:
         """Prims that are drawn, but for those below an instancer, which are only its prototypes."""
-        from pxr import UsdGeom
-
         prims = iter(prims)
         for prim in prims:
             image = UsdGeom.Imageable(prim)
@@ -79,8 +78,6 @@ class Collector:
 
     def _one(self, prim: Any, place: Any, depth: int) -> Floats:
         """Triangles of one prim; ``place`` gives its transform."""
-        from pxr import UsdGeom
-
         if prim.IsA(UsdGeom.PointInstancer):
             corners = self._instances(UsdGeom.PointInstancer(prim), depth)
         else:
@@ -128,8 +125,6 @@ class Collector:
 
     def _prototype(self, root: Any, depth: int) -> Floats:
         """Triangles of a prototype, frame of its own prim."""
-        from pxr import Usd
-
         if depth > _MAX_DEPTH:
             raise Refused(f"its instancers are nested more than {_MAX_DEPTH} deep", "flatten the stage")
         if not root:
@@ -157,8 +152,6 @@ def _placed(corners: Floats, transform: Any) -> Floats:
 
 def _corners(prim: Any, time: Any, most: int) -> Floats | None:
     """(T, 3, 3) triangles of a prim in its own frame; None for prims that are not readable surfaces."""
-    from pxr import UsdGeom
-
     if prim.IsA(UsdGeom.Mesh):
         return _mesh(UsdGeom.Mesh(prim), str(prim.GetPath()), time, most)
     if prim.IsA(UsdGeom.Cube):
@@ -223,8 +216,6 @@ def _turned(profile: list[tuple[float, float]], axis: str) -> Floats:
 
 
 def _mesh(mesh: Any, name: str, time: Any, most: int) -> Floats:
-    from pxr import UsdGeom
-
     values = [attr.Get(time) for attr in (mesh.GetPointsAttr(), mesh.GetFaceVertexCountsAttr())]
     index = mesh.GetFaceVertexIndicesAttr().Get(time)
     if index is None or any(value is None for value in values):
@@ -268,10 +259,7 @@ def main() -> None:
 
 
 def _read(request: dict[str, Any]) -> dict[str, Any]:
-    from pxr import Usd, UsdGeom
-
     path = Path(request["file"])
-
     missing = _check_layers(path)
     stage = Usd.Stage.Open(str(path))
     if stage is None:
@@ -298,8 +286,6 @@ def _read(request: dict[str, Any]) -> dict[str, Any]:
 
 def _check_layers(path: Path) -> list[str]:
     """Check that all layers of the stage lie in or below the folder of the file, and return the missing ones."""
-    from pxr import Sdf
-
     root = path.resolve().parent
     waiting, met = [str(path)], set[str]()
     missing = []

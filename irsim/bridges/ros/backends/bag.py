@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.incoming import Inbox
+from irsim.bridges.ros.backends.opening import Backend, Node
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import LATCHED, STATE, Qos, Topic
 from irsim.common.extras import require
@@ -95,24 +94,19 @@ class BagBackend(Backend):
     """Records what would be published; the folder gets its name when it is complete.
 
     Args:
-        node: Unused name of a node.
-        topics: Topics of the scene; incoming ones are left out.
-        inbox: Stays empty.
-        messages: Makes messages, and their CDR.
+        node: The node, whose incoming topics are left out.
         folder: The folder, which must not exist.
         storage: How messages are stored.
     """
 
-    def __init__(
-        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, folder: Path, storage: Storage
-    ) -> None:
-        super().__init__(node, [topic for topic in topics if topic.outgoing], inbox, messages)
+    def __init__(self, node: Node, *, folder: Path, storage: Storage) -> None:
+        super().__init__(replace(node, topics=[topic for topic in node.topics if topic.outgoing]))
         if folder.exists():
             raise BridgeError("file-exists", f"'{folder}' exists", "name another folder, or remove it")
         self._target = folder
         self.peer = f"the bag {folder}"
         self._temporary = folder.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
-        self._bag: BagFolder | None = BagFolder(self._temporary, messages, storage, folder.name)
+        self._bag: BagFolder | None = BagFolder(self._temporary, node.messages, storage, folder.name)
         self._added = {topic: self._bag.topic_of(topic.name, topic.kind, topic.qos) for topic in self.topics}
         self.stamp = 0
         """Time of the messages that are published next [ns]."""

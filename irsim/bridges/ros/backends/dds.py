@@ -4,33 +4,38 @@ These make a participant a node: topics are named ``rt/...`` and types ``...::dd
 has the hash of the type; and the latched topic ``ros_discovery_info`` says which endpoints belong to which node.
 """
 
+# ruff: noqa: E402  # the library is asked for first
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cache
 from typing import Any
 
+import numpy as np
+
 from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.incoming import Inbox
-from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.backends.opening import Backend, Node
 from irsim.bridges.ros.topics import LATCHED, Qos, Topic
 from irsim.common.extras import require
+
+require("ros2", "cyclonedds", "rosbags")
+from cyclonedds.core import DDSException
+from cyclonedds.domain import Domain, DomainParticipant
+from cyclonedds.idl import make_idl_struct, types
+from cyclonedds.pub import DataWriter
+from cyclonedds.qos import Policy
+from cyclonedds.qos import Qos as DdsQos
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic as DdsTopic
 
 __all__ = ["CdrSample", "DdsBackend", "dds_type", "dds_type_name", "struct_type"]
 
 
-@cache
-def _base() -> dict[str, Any]:
-    """Name of a primitive type of messages -> type of DDS."""
-    from cyclonedds.idl import types
-
-    return {
-        "bool": bool, "byte": types.byte, "char": types.uint8, "uint8": types.uint8, "int8": types.int8,
-        "uint16": types.uint16, "int16": types.int16, "uint32": types.uint32, "int32": types.int32,
-        "uint64": types.uint64, "int64": types.int64, "float32": types.float32, "float64": types.float64,
-        "octet": types.byte, "string": str,
-    }  # fmt: skip
+_BASE: dict[str, Any] = {
+    "bool": bool, "byte": types.byte, "char": types.uint8, "uint8": types.uint8, "int8": types.int8,
+    "uint16": types.uint16, "int16": types.int16, "uint32": types.uint32, "int32": types.int32,
+    "uint64": types.uint64, "int64": types.int64, "float32": types.float32, "float64": types.float64,
+    "octet": types.byte, "string": str,
+}  # fmt: skip
+"""Name of a primitive type of messages -> type of DDS."""
 
 
 class CdrSample:
@@ -68,8 +73,6 @@ def struct_type(store: Any, kind: str, made: dict[str, Any] | None = None) -> An
         kind: Type of the message.
         made: Types that exist already.
     """
-    from cyclonedds.idl import make_idl_struct
-
     made = {} if made is None else made
     if kind not in made:
         _, fields = store.fielddefs[kind]
@@ -88,12 +91,10 @@ def dds_type(store: Any, kind: str) -> Any:
 
 def _member(store: Any, definition: Any, made: dict[str, Any]) -> Any:
     """Annotation of a member."""
-    from cyclonedds.idl import types
-
     form, detail = definition
     if form.name == "BASE":
         kind, bound = detail
-        return types.bounded_str[bound] if bound and kind == "string" else _base()[kind]
+        return types.bounded_str[bound] if bound and kind == "string" else _BASE[kind]
     if form.name == "NAME":
         return struct_type(store, detail, made)
     inner, length = detail
@@ -119,21 +120,13 @@ class DdsBackend(Backend):
     """A participant of DDS that shows itself as a node of ROS 2.
 
     Args:
-        node: Name of the node.
-        topics: Topics to publish and to subscribe to.
-        inbox: Where messages from outside are put.
-        messages: Makes messages, and their CDR.
+        node: The node.
         domain: Number of the domain (``ROS_DOMAIN_ID``).
         loopback: Whether to stay on this computer.
     """
 
-    def __init__(
-        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, domain: int, loopback: bool
-    ) -> None:
-        require("ros2", "cyclonedds", "rosbags")
-        super().__init__(node, topics, inbox, messages)
-        from cyclonedds.core import DDSException
-
+    def __init__(self, node: Node, *, domain: int, loopback: bool) -> None:
+        super().__init__(node)
         self.peer = f"ROS 2 over DDS, domain {domain}"
         self._writers: dict[Topic, Any] = {}
         self._readers: dict[Topic, Any] = {}
@@ -146,12 +139,6 @@ class DdsBackend(Backend):
             raise BridgeError("bridge-failed", what, "check the network and the variable CYCLONEDDS_URI") from None
 
     def _open(self, domain: int, loopback: bool) -> None:
-        from cyclonedds.domain import Domain, DomainParticipant
-        from cyclonedds.pub import DataWriter
-        from cyclonedds.qos import Policy
-        from cyclonedds.qos import Qos as DdsQos
-        from cyclonedds.sub import DataReader
-
         if loopback and not _domain_is_open(domain):
             self._own(Domain(domain, LOOPBACK))
         self.participant = self._own(DomainParticipant(domain, qos=DdsQos(Policy.Userdata(data=b"enclave=/;"))))
@@ -189,10 +176,6 @@ class DdsBackend(Backend):
         return entity
 
     def _topic(self, name: str, kind: str, made: dict[str, Any]) -> Any:
-        from cyclonedds.topic import Topic as DdsTopic
-
-        from irsim.bridges.ros.backends.dds import dds_type
-
         if kind not in made:
             made[kind] = dds_type(self.messages.store, kind)
         return self._own(DdsTopic(self.participant, name, made[kind]))
@@ -212,17 +195,12 @@ class DdsBackend(Backend):
 
     def _gid(self, entity: Any) -> Any:
         """Identifier of an endpoint: 16 bytes, in Humble followed by 8 zeros."""
-        import numpy as np
-
         size = self.messages.gid_size
         content = entity.guid.bytes.ljust(size, b"\0")
         return self.messages("rmw_dds_common", "Gid")(np.frombuffer(content, dtype=np.uint8))
 
 
 def _policies(qos: Qos, type_hash: str) -> Any:
-    from cyclonedds.qos import Policy
-    from cyclonedds.qos import Qos as DdsQos
-
     reliable = Policy.Reliability.Reliable(max_blocking_time=_BLOCKED_NS)
     return DdsQos(
         reliable if qos.reliable else Policy.Reliability.BestEffort,
@@ -235,9 +213,6 @@ def _policies(qos: Qos, type_hash: str) -> Any:
 
 def _domain_is_open(domain: int) -> bool:
     """Whether this process has participants in a domain already, which then keeps its configuration."""
-    from cyclonedds.core import DDSException
-    from cyclonedds.domain import Domain
-
     listing = Domain.__new__(Domain)
     listing._id = domain
     try:

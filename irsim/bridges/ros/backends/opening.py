@@ -1,15 +1,16 @@
-"""From options to a backend."""
+"""The interface of backends, and from options to a backend."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.backends.base import Backend
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import Topic
@@ -18,11 +19,64 @@ from irsim.components.bridges.ros2 import Ros2
 from irsim.components.bridges.rosbag import Rosbag
 from irsim.components.bridges.rosbridge import Rosbridge
 
-__all__ = ["AnyOptions", "make_messages", "open_backend"]
+__all__ = ["AnyOptions", "Backend", "Node", "make_messages", "message_class", "open_backend"]
 
 AnyOptions: TypeAlias = Ros2 | Ros1 | Rosbridge | Rosbag
 _MAX_DOMAIN = 101
 """Highest number of a domain whose ports are free on all systems."""
+
+
+@dataclass(frozen=True)
+class Node:
+    """A node that a backend shows to other programs.
+
+    Attributes:
+        name: Its name.
+        topics: Topics to publish and to subscribe to.
+        inbox: Where messages from outside are put.
+        messages: Makes messages, and their CDR.
+    """
+
+    name: str
+    topics: Sequence[Topic]
+    inbox: Inbox
+    messages: Messages
+
+
+class Backend:
+    """A node that publishes and subscribes to topics.
+
+    Attributes:
+        peer: The program that it is connected to, in a few words.
+    """
+
+    peer = "ROS"
+
+    def __init__(self, node: Node) -> None:
+        self.node, self.topics, self.inbox, self.messages = node.name, tuple(node.topics), node.inbox, node.messages
+
+    @property
+    def ready(self) -> bool:
+        """Whether what is published now goes out; not while a connection is made anew."""
+        return True
+
+    def publish(self, topic: Topic, message: Any) -> None:
+        """Send a message.
+
+        Raises:
+            BridgeLostError: The connection is gone.
+        """
+        raise NotImplementedError
+
+    def poll(self) -> None:
+        """Put into the inbox what has come, if no thread of the library does so.
+
+        Raises:
+            BridgeLostError: The connection is gone.
+        """
+
+    def close(self) -> None:
+        """Disconnect; a second call does nothing."""
 
 
 def make_messages(options: AnyOptions) -> Messages:
@@ -32,15 +86,12 @@ def make_messages(options: AnyOptions) -> Messages:
     return Messages(extra="rosbridge" if isinstance(options, Rosbridge) else "bag")
 
 
-def open_backend(options: AnyOptions, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages) -> Backend:
+def open_backend(options: AnyOptions, node: Node) -> Backend:
     """Connect a node.
 
     Args:
         options: Options of the bridge.
-        node: Name of the node.
-        topics: Topics to publish and to subscribe to.
-        inbox: Where messages from outside are put.
-        messages: Makes messages.
+        node: The node.
 
     Raises:
         BridgeError: The other side cannot be reached.
@@ -49,20 +100,19 @@ def open_backend(options: AnyOptions, node: str, topics: Sequence[Topic], inbox:
     if isinstance(options, Rosbag):
         from irsim.bridges.ros.backends.bag import BagBackend
 
-        return BagBackend(node, topics, inbox, messages, folder=Path(options.folder), storage=options.storage)
+        return BagBackend(node, folder=Path(options.folder), storage=options.storage)
     if isinstance(options, Rosbridge):
         from irsim.bridges.ros.backends.rosbridge import RosbridgeBackend
 
-        where = {"host": options.host, "port": options.port}
-        return RosbridgeBackend(node, topics, inbox, messages, **where, ros=options.ros, timeout=options.timeout)  # type: ignore[arg-type]
+        return RosbridgeBackend(node, options)
     if isinstance(options, Ros1):
         from irsim.bridges.ros.backends.rospy_node import RospyBackend
 
-        return RospyBackend(node, topics, inbox, messages, master=options.master)
-    return _ros2(options, node, topics, inbox, messages)
+        return RospyBackend(node, master=options.master)
+    return _ros2(options, node)
 
 
-def _ros2(options: Ros2, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages) -> Backend:
+def _ros2(options: Ros2, node: Node) -> Backend:
     backend = options.backend
     if backend == "auto":
         backend = "rclpy" if find_spec("rclpy") is not None else "dds"
@@ -72,19 +122,31 @@ def _ros2(options: Ros2, node: str, topics: Sequence[Topic], inbox: Inbox, messa
             raise BridgeError("bridge-failed", "rclpy cannot be imported", fix)
         from irsim.bridges.ros.backends.rclpy_node import RclpyBackend
 
-        return RclpyBackend(node, topics, inbox, messages, domain=options.domain)
+        return RclpyBackend(node, domain=options.domain)
     domain = _environment_domain() if options.domain is None else options.domain
     if backend == "zenoh":
         from irsim.bridges.ros.backends.zenoh import ZenohBackend
 
-        return ZenohBackend(
-            node, topics, inbox, messages, domain=domain, address=options.address, router=options.router,
-            timeout=options.timeout,
-        )  # fmt: skip
+        return ZenohBackend(node, options, domain=domain)
     from irsim.bridges.ros.backends.dds import DdsBackend
 
-    loopback = options.loopback or _stays_here()
-    return DdsBackend(node, topics, inbox, messages, domain=domain, loopback=loopback)
+    return DdsBackend(node, domain=domain, loopback=options.loopback or _stays_here())
+
+
+def message_class(kind: str, package: str) -> Any:
+    """The class of a message in the ROS installation, such as ``nav_msgs/msg/Path``.
+
+    Raises:
+        BridgeError: The installation lacks it; the message names the package of Debian, ``package``, that has it.
+    """
+    space, _, name = kind.rpartition("/")
+    try:
+        return getattr(import_module(space.replace("/", ".")), name)
+    except (ImportError, AttributeError):
+        named = package.format(space.partition("/")[0].replace("_", "-"))
+        raise BridgeError(
+            "bridge-failed", f"the ROS installation has no messages {kind}", f"apt install {named}"
+        ) from None
 
 
 def _stays_here() -> bool:

@@ -5,15 +5,11 @@ Messages cross in serialized form, so that the classes of ROS are needed for the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from importlib import import_module
 from typing import Any
 
-from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.incoming import Inbox
-from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.backends.opening import Backend, Node, message_class
 from irsim.bridges.ros.topics import Qos, Topic
 
 __all__ = ["RclpyBackend"]
@@ -26,24 +22,19 @@ class RclpyBackend(Backend):
     """A node of rclpy.
 
     Args:
-        node: Name of the node.
-        topics: Topics to publish and to subscribe to.
-        inbox: Where messages from outside are put.
-        messages: Makes messages, and their CDR.
+        node: The node.
         domain: Number of the domain; None takes ``ROS_DOMAIN_ID``.
     """
 
-    def __init__(
-        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, domain: int | None
-    ) -> None:
-        super().__init__(node, topics, inbox, messages)
+    def __init__(self, node: Node, *, domain: int | None) -> None:
+        super().__init__(node)
         self._rclpy = import_module("rclpy")
         self._context = import_module("rclpy.context").Context()
         self._rclpy.init(args=None, context=self._context, domain_id=domain)
         self.peer = "ROS 2 with rclpy"
         self._node: Any = None
         try:
-            self._node = self._rclpy.create_node(node, context=self._context)
+            self._node = self._rclpy.create_node(node.name, context=self._context)
             self._executor = import_module("rclpy.executors").SingleThreadedExecutor(context=self._context)
             self._executor.add_node(self._node)
             self._publishers: dict[Topic, Any] = {}
@@ -73,21 +64,12 @@ class RclpyBackend(Backend):
             self._rclpy.shutdown(context=self._context)
 
     def _add(self, topic: Topic) -> Any:
-        kind, qos = _message_class(topic.kind), _profile(topic.qos)
+        kind, qos = message_class(topic.kind, "ros-$ROS_DISTRO-{}"), _profile(topic.qos)
         if topic.outgoing:
             self._publishers[topic] = self._node.create_publisher(kind, topic.name, qos)
             return None
         put = partial(self.inbox.put, topic)
         return self._node.create_subscription(kind, topic.name, put, qos, raw=True)
-
-
-def _message_class(kind: str) -> Any:
-    package, space, name = kind.split("/")
-    try:
-        return getattr(import_module(f"{package}.{space}"), name)
-    except (ImportError, AttributeError):
-        what = f"the ROS installation has no messages {kind}"
-        raise BridgeError("bridge-failed", what, f"apt install ros-$ROS_DISTRO-{package.replace('_', '-')}") from None
 
 
 def _profile(qos: Qos) -> Any:

@@ -1,20 +1,24 @@
 """``rosbridge``: a client of rosbridge_server, which reaches ROS 1 and ROS 2 over one TCP port with JSON."""
 
+# ruff: noqa: E402  # the library is asked for first
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
 from irsim.bridges.base import BridgeLostError
-from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.incoming import Inbox
-from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.backends.opening import Backend, Node
 from irsim.bridges.ros.topics import Topic
 from irsim.common.extras import require
+from irsim.components.bridges.rosbridge import Rosbridge
+
+require("rosbridge", "roslibpy", "rosbags")
+import roslibpy
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 __all__ = ["RosbridgeBackend", "namespaces", "plain"]
 
@@ -30,27 +34,17 @@ class RosbridgeBackend(Backend):
     """A connection to rosbridge_server.
 
     Args:
-        node: Name of the node, which the server does not show.
-        topics: Topics to publish and to subscribe to.
-        inbox: Where messages from outside are put.
-        messages: Makes messages.
-        host: Name or address of the server.
-        port: Its port.
-        ros: Version of ROS behind the server.
-        timeout: Time for which to wait for the server, also if the connection breaks [s].
+        node: The node, whose name the server does not show.
+        options: Where the server is, the version of ROS behind it, and how long to wait for it, also if the connection
+            breaks.
     """
 
-    def __init__(
-        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, host: str, port: int,
-        ros: int, timeout: float,
-    ) -> None:  # fmt: skip
-        require("rosbridge", "roslibpy", "rosbags")
-        super().__init__(node, topics, inbox, messages)
-        import roslibpy
-
+    def __init__(self, node: Node, options: Rosbridge) -> None:
+        super().__init__(node)
+        host, port, ros, timeout = options.host, options.port, options.ros, options.timeout
         self._address, self._timeout, self._ros_version = f"{host}:{port}", timeout, ros
         self.peer = f"the rosbridge server at {self._address} (ROS {ros})"
-        self._store = messages.store if ros == 2 else _definitions_of_ros1()
+        self._store = self.messages.store if ros == 2 else _definitions_of_ros1()
         self._gone: float | None = None
         self._connected, self._again = False, 0.0
         self._latched: dict[Topic, Any] = {}
@@ -152,8 +146,6 @@ class RosbridgeBackend(Backend):
 
 def _definitions_of_ros1() -> Any:
     """Type store with the definitions of Noetic."""
-    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-
     store = get_typestore(Stores.ROS1_NOETIC)
     kind = "tf2_msgs/msg/TFMessage"  # which rosbags leaves out
     store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", kind))

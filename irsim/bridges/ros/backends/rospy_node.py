@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
@@ -11,15 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from irsim.bridges.base import BridgeError, BridgeLostError
-from irsim.bridges.ros.backends.base import Backend
-from irsim.bridges.ros.incoming import Inbox
-from irsim.bridges.ros.messages import Messages
+from irsim.bridges.ros.backends.opening import Backend, Node, message_class
 from irsim.bridges.ros.topics import Topic
 
 __all__ = ["RospyBackend", "find_rospy"]
 
 _DEBIAN = Path("/usr/lib/python3/dist-packages")
 """Where packages of Debian and Ubuntu install rospy for the Python of the system."""
+_APT = "python3-{}"
 _QUEUE = 10
 
 
@@ -34,25 +34,20 @@ class RospyBackend(Backend):
     """A node of rospy; a process can have one name of a node only, which later bridges share.
 
     Args:
-        node: Name of the node.
-        topics: Topics to publish and to subscribe to.
-        inbox: Where messages from outside are put.
-        messages: Makes messages.
+        node: The node.
         master: Address of the master; None takes ``ROS_MASTER_URI``.
     """
 
-    def __init__(
-        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, master: str | None
-    ) -> None:
+    def __init__(self, node: Node, *, master: str | None) -> None:
         if not find_rospy():
             what = "rospy cannot be imported"
             fix = "source the setup.bash of ROS 1, or on Debian 12: apt install ros-base python3-rospy python3-nav-msgs"
             raise BridgeError("bridge-failed", what, fix)
-        super().__init__(node, topics, inbox, messages)
+        super().__init__(node)
         self._rospy: Any = import_module("rospy")
         rosgraph: Any = import_module("rosgraph")
         address = master or rosgraph.get_master_uri()
-        if not rosgraph.Master(f"/{node}", master_uri=address).is_online():
+        if not rosgraph.Master(f"/{self.node}", master_uri=address).is_online():
             raise BridgeLostError(
                 f"no ROS master answers at {address}", "start roscore, or set master: http://HOST:11311"
             )
@@ -61,12 +56,10 @@ class RospyBackend(Backend):
         self._subscribers: list[Any] = []
         if not self._rospy.core.is_initialized():
             if master is not None:
-                import os
-
                 os.environ["ROS_MASTER_URI"] = master
-            self._rospy.init_node(node, anonymous=True, disable_signals=True, disable_rosout=True)
+            self._rospy.init_node(self.node, anonymous=True, disable_signals=True, disable_rosout=True)
         for topic in self.topics:
-            kind = _message_class(topic.kind)
+            kind = message_class(topic.kind, _APT)
             if topic.outgoing:
                 latch = topic.qos.latched
                 self._publishers[topic] = self._rospy.Publisher(topic.name, kind, queue_size=_QUEUE, latch=latch)
@@ -86,15 +79,6 @@ class RospyBackend(Backend):
         self._publishers, self._subscribers = {}, []
 
 
-def _message_class(kind: str) -> Any:
-    package, _, name = kind.split("/")
-    try:
-        return getattr(import_module(f"{package}.msg"), name)
-    except (ImportError, AttributeError):
-        what = f"the ROS installation has no messages {package}/{name}"
-        raise BridgeError("bridge-failed", what, f"apt install python3-{package.replace('_', '-')}") from None
-
-
 def _filled(target: Any, source: Any) -> Any:
     """A message of ROS 1 with the values of one of ROS 2; what only one of them has, stays as it is."""
     if hasattr(target, "secs"):
@@ -105,7 +89,7 @@ def _filled(target: Any, source: Any) -> Any:
             continue
         value = getattr(source, name)
         if isinstance(value, list):
-            inner = _message_class(kind.partition("[")[0].replace("/", "/msg/"))
+            inner = message_class(kind.partition("[")[0].replace("/", "/msg/"), _APT)
             setattr(target, name, [_filled(inner(), one) for one in value])
         elif hasattr(value, "__dataclass_fields__"):
             setattr(target, name, _filled(getattr(target, name), value))

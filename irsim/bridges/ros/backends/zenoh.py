@@ -4,22 +4,25 @@ Data goes to the key ``<domain>/<topic>/<type>/RIHS01_<hash>``, with an attachme
 tokens below ``@ros2_lv`` show the node and its endpoints to other nodes. DDS and Zenoh nodes do not see each other.
 """
 
+# ruff: noqa: E402  # the library is asked for first
 from __future__ import annotations
 
 import json
 import os
 import struct
 import time
-from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
 from irsim.bridges.base import BridgeError, BridgeLostError
-from irsim.bridges.ros.backends.base import Backend
+from irsim.bridges.ros.backends.opening import Backend, Node
 from irsim.bridges.ros.incoming import Inbox
-from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import Qos, Topic
 from irsim.common.extras import require
+from irsim.components.bridges.ros2 import Ros2
+
+require("zenoh", "zenoh", "rosbags")
+import zenoh
 
 __all__ = ["ZenohBackend"]
 
@@ -30,28 +33,19 @@ class ZenohBackend(Backend):
     """A session of Zenoh that shows itself as a node of ROS 2.
 
     Args:
-        node: Name of the node.
-        topics: Topics to publish and to subscribe to.
-        inbox: Where messages from outside are put.
-        messages: Makes messages, and their CDR.
+        node: The node.
+        options: Address of the router, and whether to be the router there, so that no ``rmw_zenohd`` is needed.
         domain: Number of the domain (``ROS_DOMAIN_ID``).
-        address: Address of the router, ``host:port``.
-        router: Whether to be the router at that address, so that no ``rmw_zenohd`` is needed.
-        timeout: Time for which to wait for the router [s].
     """
 
-    def __init__(
-        self, node: str, topics: Sequence[Topic], inbox: Inbox, messages: Messages, *, domain: int, address: str,
-        router: bool, timeout: float,
-    ) -> None:  # fmt: skip
-        require("zenoh", "zenoh", "rosbags")
-        super().__init__(node, topics, inbox, messages)
-        self.peer = f"ROS 2 over Zenoh, domain {domain}, router {address}"
+    def __init__(self, node: Node, options: Ros2, *, domain: int) -> None:
+        super().__init__(node)
+        self.peer = f"ROS 2 over Zenoh, domain {domain}, router {options.address}"
         self._domain, self._numbers = domain, dict.fromkeys(self.topics, 0)
         self._publishers: dict[Topic, Any] = {}
         self._kept: list[Any] = []
         self._gids = {topic: os.urandom(_GID_BYTES) for topic in self.topics}
-        self._session = _open(address, router, timeout)
+        self._session = _open(options.address, options.router, options.timeout)
         try:
             self._declare()
         except BaseException:
@@ -94,8 +88,6 @@ class ZenohBackend(Backend):
             self._kept.append(alive.declare_token(f"{head}/{number}/{token}/{kind}/{_encoded(topic.qos)}"))
 
     def _publisher(self, key: str, qos: Qos) -> Any:
-        import zenoh
-
         drop = zenoh.CongestionControl.BLOCK if qos.reliable else zenoh.CongestionControl.DROP
         if not qos.latched:
             return self._session.declare_publisher(key, congestion_control=drop)
@@ -105,8 +97,6 @@ class ZenohBackend(Backend):
         )  # fmt: skip
 
     def _subscriber(self, key: str, topic: Topic) -> Any:
-        import zenoh
-
         put = partial(_received, self.inbox, topic)
         if not topic.qos.latched:
             return self._session.declare_subscriber(key, put)
@@ -120,20 +110,21 @@ def _received(inbox: Inbox, topic: Topic, sample: Any) -> None:
 
 def _open(address: str, router: bool, timeout: float) -> Any:
     """A session of a router or of a client of one."""
-    import zenoh
-
     endpoint = json.dumps([f"tcp/{address}"])
     config = zenoh.Config()
-    config.insert_json5("scouting/multicast/enabled", "false")
-    config.insert_json5("mode", '"router"' if router else '"client"')
+    settings = {"scouting/multicast/enabled": "false", "timestamping/enabled": "true"}
+    settings["mode"] = '"router"' if router else '"client"'
     if router:
-        config.insert_json5("listen/endpoints", endpoint)
-        config.insert_json5("timestamping/enabled", "true")
+        settings["listen/endpoints"] = endpoint
     else:
-        config.insert_json5("connect/endpoints", endpoint)
-        config.insert_json5("connect/timeout_ms", str(round(timeout * 1000)))
-        config.insert_json5("connect/exit_on_failure", "true")
-    config.insert_json5("timestamping/enabled", "true")
+        milliseconds = str(round(timeout * 1000))
+        settings |= {
+            "connect/endpoints": endpoint,
+            "connect/timeout_ms": milliseconds,
+            "connect/exit_on_failure": "true",
+        }
+    for key, value in settings.items():
+        config.insert_json5(key, value)
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
