@@ -22,7 +22,8 @@ import numpy as np
 from irsim.bridges.carla.client import NEWEST_PYTHON
 from irsim.bridges.carla.places import Places
 from irsim.bridges.ros.backends.bag import BagFolder
-from irsim.bridges.ros.backends.opening import Node, make_messages, open_backend
+from irsim.bridges.ros.backends.base import Node
+from irsim.bridges.ros.backends.opening import make_messages, open_backend
 from irsim.bridges.ros.backends.rospy_node import find_rospy
 from irsim.bridges.ros.incoming import Inbox, decode, read_twist
 from irsim.bridges.ros.messages import Messages

@@ -17,12 +17,7 @@ def _until_reset(lines: Iterator[bytes]) -> Iterator[bytes]:
 
 
 class Peer:
-    """Listens on a free port of the loopback.
-
-    Args:
-        answer: Called with each message; what it returns is sent back as a line, None is silence, bytes are sent as
-            they are.
-    """
+    """Listens on a free port; answers each message with what a function returns: bytes as they are, None is silence."""
 
     def __init__(self, answer: Callable[[dict[str, Any]], Any]) -> None:
         self.received: list[dict[str, Any]] = []

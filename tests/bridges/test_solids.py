@@ -90,19 +90,6 @@ def test_a_line_has_its_thickness_on_both_sides_and_a_room_outside() -> None:
         assert not solid.intersects(shapely.box(1e-6, 1e-6, 4 - 1e-6, 3 - 1e-6))
 
 
-@settings(max_examples=examples(60), deadline=None)
-@given(st.integers(1, 12), st.integers(1, 12), st.integers(0, 2**32 - 1), st.floats(0, 1))
-def test_merged_cells_cover_exactly_what_is_solid(nx: int, ny: int, seed: int, share: float) -> None:
-    occupied = np.random.default_rng(seed).random((nx, ny)) < share
-    boxes = merged_cells(Grid(occupied, (0.5, 0.25), (-1.0, 2.0)))
-    covered = np.zeros((nx, ny), dtype=int)
-    for x0, y0, x1, y1 in boxes:
-        columns = slice(round((x0 + 1) / 0.5), round((x1 + 1) / 0.5))
-        rows = slice(round((y0 - 2) / 0.25), round((y1 - 2) / 0.25))
-        covered[columns, rows] += 1
-    assert (covered == occupied).all()
-
-
 def test_a_large_hall_needs_few_boxes() -> None:
     occupied = np.zeros((1000, 800), dtype=bool)
     occupied[:10] = occupied[-10:] = True

@@ -248,6 +248,7 @@ class Episode:
     def facts(self) -> dict[str, Any]:
         """Facts of the run, as JSON types: everything that reproduces it, its objects and its lidars."""
         meta, result = self.run.meta, self.run.result
+        pairs = zip(self.run.resolved["objects"], self.run.resolved["radius"], strict=True)
         named = ("id", "scenario", "seed", "step_time", "horizon", "options", "irsim", "python", "numpy", "created")
         return {
             **{key: meta.get(key) for key in named},
@@ -257,7 +258,7 @@ class Episode:
             "last_step": self.last_step,
             "notes": self.run.notes,
             "scenario_text": self.run.scenario_text,
-            "objects": [_object_facts(item, radius) for item, radius in _with_radius(self.run)],
+            "objects": [_object_facts(item, radius) for item, radius in pairs],
             "lidars": [
                 {
                     "object": self.actors[lidar.actor].name,
@@ -324,10 +325,6 @@ def _has_beams(options: dict[str, Any]) -> bool:
     """Whether a sensor is one of the core that measures ranges."""
     feature = SENSORS.get(str(options["name"]))
     return feature is not None and feature.kernel is not None
-
-
-def _with_radius(run: Run) -> Iterator[tuple[dict[str, Any], float]]:
-    return zip(run.resolved["objects"], run.resolved["radius"], strict=True)
 
 
 def _object_facts(item: dict[str, Any], radius: float) -> dict[str, Any]:

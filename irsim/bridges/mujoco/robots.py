@@ -84,11 +84,8 @@ class Rig:
 
 def default_agents(scene: SceneDescription) -> frozenset[str]:
     """Names of the robots that MuJoCo can move, and of the obstacles that can be pushed."""
-    return frozenset(agent.name for agent in scene.agents if can_move(agent) and _by_default(agent))
-
-
-def _by_default(agent: SceneObject) -> bool:
-    return (agent.role == "robot" and agent.moves) or not _has_drive(agent)
+    chosen = [a for a in scene.agents if (a.role == "robot" and a.moves) or not _has_drive(a)]
+    return frozenset(agent.name for agent in chosen if can_move(agent))
 
 
 def can_move(agent: SceneObject) -> bool:

@@ -1,4 +1,4 @@
-"""Data sets of pedestrians: rows of frame, person and place, read line by line and within limits, and tracks of them."""
+"""Data sets of pedestrians: rows of frame, person and place, read line by line and within limits, and their tracks."""
 
 from __future__ import annotations
 

@@ -9,7 +9,8 @@ from typing import Any
 
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.ros.backends.bag import BagBackend
-from irsim.bridges.ros.backends.opening import AnyOptions, Backend, Node, make_messages, open_backend
+from irsim.bridges.ros.backends.base import Backend, Node
+from irsim.bridges.ros.backends.opening import AnyOptions, make_messages, open_backend
 from irsim.bridges.ros.guard import ZERO, Guard, Velocity
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.outgoing import Outgoing

@@ -22,7 +22,8 @@ from dataclasses import asdict, dataclass
 from typing import Any, TextIO
 
 from irsim.bridges.base import BridgeError, BridgeLostError
-from irsim.bridges.ros.backends.opening import Backend, Node, make_messages, open_backend
+from irsim.bridges.ros.backends.base import Backend, Node
+from irsim.bridges.ros.backends.opening import make_messages, open_backend
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import Qos, Topic

@@ -15,7 +15,7 @@ from irsim.graphics.scene.bodies import geometry_of
 from irsim.graphics.scene.scene import Region
 from irsim.simulation.scene import SceneDescription, SceneObject
 
-__all__ = ["CYLINDER", "LINE_STRIP", "TRIANGLES", "body_markers", "label_marker", "make_marker", "triangles"]
+__all__ = ["body_markers"]
 
 CYLINDER, LINE_STRIP, _TEXT, TRIANGLES = 3, 4, 9, 11
 """Types of ``visualization_msgs/Marker``."""
@@ -103,20 +103,6 @@ def make_marker(
     )
 
 
-def circle_marker(
-    messages: Messages, number: int, center: tuple[float, float], radius: float, looks: tuple[RGB, float],
-    frame: str, pose: Any,
-) -> Any:  # fmt: skip
-    """A flat cylinder, whose center is given in the frame of the body."""
-    cosine, sine = np.cos(pose[2]), np.sin(pose[2])
-    x, y = center
-    placed = (pose[0] + cosine * x - sine * y, pose[1] + sine * x + cosine * y, pose[2])
-    marker = make_marker(messages, "bodies", number, CYLINDER, *looks, frame, placed)
-    marker.scale.x = marker.scale.y = 2 * radius
-    marker.scale.z = HEIGHT_M
-    return marker
-
-
 def triangles_marker(
     messages: Messages, number: int, rings: list[Floats], looks: tuple[RGB, float], frame: str, pose: Any
 ) -> Any:
@@ -127,25 +113,23 @@ def triangles_marker(
     return marker
 
 
-def line_marker(
-    messages: Messages, number: int, points: Floats, looks: tuple[RGB, float], frame: str, pose: Any
-) -> Any:
-    """A polyline."""
-    marker = make_marker(messages, "bodies", number, LINE_STRIP, *looks, frame, pose)
-    marker.scale.x = LINE_WIDTH_M
-    marker.points = messages.points(points)
-    return marker
-
-
 def part_marker(
     messages: Messages, number: int, part: BodyPart, looks: tuple[RGB, float], frame: str, pose: Any
 ) -> Any:
-    """The marker of a part of a body."""
-    if isinstance(part, Circle):
-        return circle_marker(messages, number, part.center, part.radius, looks, frame, pose)
+    """The marker of a part of a body: a flat cylinder, triangles, or a polyline."""
     if isinstance(part, Polygon):
         return triangles_marker(messages, number, [part.corners], looks, frame, pose)
-    return line_marker(messages, number, part.path, looks, frame, pose)
+    if isinstance(part, Circle):
+        cosine, sine = np.cos(pose[2]), np.sin(pose[2])
+        x, y = part.center  # in the frame of the body
+        placed = (pose[0] + cosine * x - sine * y, pose[1] + sine * x + cosine * y, pose[2])
+        marker = make_marker(messages, "bodies", number, CYLINDER, *looks, frame, placed)
+        marker.scale.x = marker.scale.y = 2 * part.radius
+        marker.scale.z = HEIGHT_M
+        return marker
+    marker = make_marker(messages, "bodies", number, LINE_STRIP, *looks, frame, pose)
+    marker.scale.x, marker.points = LINE_WIDTH_M, messages.points(part.path)
+    return marker
 
 
 def triangles(rings: list[Floats]) -> Floats:

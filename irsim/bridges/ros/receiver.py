@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.bridges.ros.backends.opening import Backend
+from irsim.bridges.ros.backends.base import Backend
 from irsim.bridges.ros.guard import ZERO, Velocity
 from irsim.bridges.ros.incoming import (
     Arrival,

@@ -72,13 +72,7 @@ class Actor:
 
 
 class Server:
-    """The state of a server: settings, actors, and the log of its calls.
-
-    Attributes:
-        fail: Name of a call that fails -> text of the error.
-        room: How many actors there is room for.
-        done: Its calls, in order.
-    """
+    """Settings and actors of a server, which calls fail (name -> text), how many actors fit, and its calls in order."""
 
     def __init__(self) -> None:
         self.settings = {"synchronous_mode": False, "fixed_delta_seconds": None, "no_rendering_mode": False}

@@ -46,8 +46,7 @@ def test_a_furnished_flat() -> None:
     inside = 8 * 6 - (0.12 * 5.1 + 1.6 * 0.9 + 1.6 * 2.0 + 1.2 * 0.5 + 0.6 * 0.7)
     assert area(result) == pytest.approx(inside, rel=0.04)
     assert result.height == pytest.approx(0.0, abs=0.01)
-    assert [round(height, 1) for height, _, _ in result.levels] == [0.0, 2.8]
-    assert [roof for _, _, roof in result.levels] == [False, True]
+    assert [(round(height, 1), roof) for height, _, roof in result.levels] == [(0.0, False), (2.8, True)]
 
 
 def test_headroom_and_climb_decide() -> None:

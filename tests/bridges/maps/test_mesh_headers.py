@@ -74,10 +74,8 @@ def test_what_a_description_promises(tmp_path, path, value, said) -> None:
 
 
 def test_copies_count(tmp_path) -> None:
-    def change(content) -> None:
-        content["nodes"] = [{"mesh": 0}] * 50
-
-    refused(write_glb(tmp_path / "box.glb", BOX, change=change), "600 triangles", ImportLimits(triangles=500))
+    file = write_glb(tmp_path / "box.glb", BOX, change=lambda content: content.update(nodes=[{"mesh": 0}] * 50))
+    refused(file, "600 triangles", ImportLimits(triangles=500))
 
 
 def test_a_file_that_ends_anywhere_is_refused(tmp_path) -> None:
@@ -130,12 +128,6 @@ def test_a_gltf_may_have_files_beside_it_only(tmp_path) -> None:
     refused(file, "not JSON")
 
 
-def ply(folder: Path, header: str, body: bytes = b"") -> Path:
-    file = folder / "scan.ply"
-    file.write_bytes(f"ply\n{header}end_header\n".encode() + body)
-    return file
-
-
 VERTEX = "property float x\nproperty float y\nproperty float z\n"
 FACE = "property list uchar int vertex_indices\n"
 
@@ -144,7 +136,7 @@ FACE = "property list uchar int vertex_indices\n"
     ("header", "said"),
     [
         (
-            f"format binary_little_endian 1.0\nelement vertex 1000000000\n{VERTEX}element face 9\n{FACE}",
+            f"format binary_little_endian 1.0\nelement vertex {10**9}\n{VERTEX}element face 9\n{FACE}",
             "promises at least",
         ),
         (f"format ascii 1.0\nelement vertex 3\n{VERTEX}element face 4000000000\n{FACE}", "promises at least"),
@@ -157,11 +149,13 @@ FACE = "property list uchar int vertex_indices\n"
     ],
 )
 def test_ply_headers(tmp_path, header, said) -> None:
+    file = tmp_path / "scan.ply"
+    file.write_bytes(f"ply\n{header}end_header\n".encode() + bytes(300))
     with pytest.raises(BridgeError, match=said):
-        mesh.check_ply(ply(tmp_path, header, bytes(300)))
-    (tmp_path / "scan.ply").write_bytes(b"ply\nformat ascii 1.0\n")
+        mesh.check_ply(file)
+    file.write_bytes(b"ply\nformat ascii 1.0\n")
     with pytest.raises(BridgeError, match="no end"):
-        mesh.check_ply(tmp_path / "scan.ply")
+        mesh.check_ply(file)
 
 
 def test_stl_headers(tmp_path) -> None:

@@ -88,6 +88,7 @@ def test_counts_that_the_file_cannot_have(key, count) -> None:
 
 
 def test_other_wrong_contents() -> None:
+    assert read_tiles(Path("x.navmesh"), mesh_set(version=2)) == []
     good = mesh_set(tile(TWO_ROOMS))
     nan = struct.pack("<f", float("nan"))
     for content, said in [
@@ -99,12 +100,8 @@ def test_other_wrong_contents() -> None:
         (good[:48] + b"DNAV" + good[52:], "Detour's version"),
         (good[:148] + nan + good[152:], "not numbers"),
         (good[:108] + nan + good[112:], "agent"),
-        (mesh_set(version=2) + b"", None),
         (mesh_set(tile(TWO_ROOMS), version=2, settings=4000), "no tile begins"),
     ]:
-        if said is None:
-            assert read_tiles(Path("x.navmesh"), content) == []
-            continue
         with pytest.raises(BridgeError, match=said):
             read_tiles(Path("x.navmesh"), content)
 
@@ -132,10 +129,8 @@ def test_every_touched_cell_is_found(corners) -> None:
     i, j = (x.ravel() for x in np.meshgrid(np.arange(-5, 12), np.arange(-5, 12)))
     boxes = shapely.box(i, j, i + 1, j + 1)
     touched = cells(flat, at_centers=False)
-    inside = set(
-        zip(*(x[shapely.area(shapely.intersection(boxes, shape)) > 1e-9].tolist() for x in (i, j)), strict=True)
-    )
-    touching = set(zip(*(x[shapely.dwithin(boxes, shape, 1e-9)].tolist() for x in (i, j)), strict=True))
+    shared, near = shapely.area(shapely.intersection(boxes, shape)) > 1e-9, shapely.dwithin(boxes, shape, 1e-9)
+    inside, touching = ({*zip(i[of].tolist(), j[of].tolist(), strict=True)} for of in (shared, near))
     assert inside <= touched <= touching
 
 
@@ -183,14 +178,13 @@ def test_floors_have_the_heights_of_their_planes() -> None:
 
 def test_a_wall_over_a_door_leaves_the_door_open() -> None:
     """A long triangle of a wall reaches from the floor beside the door to the lintel above it."""
-    wall = np.array(
-        [[[0.52, 0, 0], [0.52, 0, 2.5], [0.52, 5, 2.5]], [[0.52, 5, 2.1], [0.52, 0, 0], [0.52, 5, 2.5]]], float
-    )
+    corners = [[[0, 0], [0, 2.5], [5, 2.5]], [[5, 2.1], [0, 0], [5, 2.5]]]
+    wall = np.insert(np.array(corners, float), 0, 0.52, axis=-1)
     ground = np.array([[[0, 0, 0], [1, 0, 0], [1, 5, 0]], [[0, 0, 0], [1, 5, 0], [0, 5, 0]]], float)
     grid = Grid(-0.1, -0.1, 0.1, 13, 53)
     spans = spans_of(np.concatenate([wall, ground]), grid, 0.7, 0.2)
-    floors = walkable_of(spans, 1.5, 0.2)
-    _, y = grid.centers(floors.column[np.isclose(grid.centers(floors.column)[:, 0], 0.55)]).T
+    x, y = grid.centers(walkable_of(spans, 1.5, 0.2).column).T
+    y = y[np.isclose(x, 0.55)]
     below = 2.1 / 5 * y  # the lower edge of the wall
     assert (below[y > 0] >= 1.45).all()
     assert y.max() > 4.9

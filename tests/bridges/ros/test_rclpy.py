@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.backends.opening import Node, open_backend
+from irsim.bridges.ros.backends.base import Node
+from irsim.bridges.ros.backends.opening import open_backend
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.topics import LATCHED, STATE, Topic
 from irsim.components.bridges.ros2 import Ros2

@@ -12,7 +12,8 @@ import pytest
 import irsim
 from irsim.bridges.base import BridgeError
 from irsim.bridges.options import read_bridge
-from irsim.bridges.ros.backends.opening import Node, open_backend
+from irsim.bridges.ros.backends.base import Node
+from irsim.bridges.ros.backends.opening import open_backend
 from irsim.bridges.ros.bridge import RosBridge
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.topics import TABLE, Qos, ros_names, scene_topics

@@ -35,15 +35,7 @@ obstacle:
 
 @dataclass(frozen=True)
 class Site:
-    """A scene, its map and a run.
-
-    Attributes:
-        folder: Folder of all files.
-        room: The room that the scene shows.
-        scene: File of splats.
-        scenario: Scenario with its map and a robot.
-        run: A recorded run.
-    """
+    """A room of splats, its file, the scenario with its map and a robot, and a recorded run."""
 
     folder: Path
     room: Room

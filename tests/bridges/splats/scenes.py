@@ -55,13 +55,7 @@ def write_ply(
 
 @dataclass(frozen=True)
 class Room:
-    """A room of splats.
-
-    Attributes:
-        columns: Columns of the file, frame of the scene.
-        boxes: Lower left and upper right corners x, y of what stands in the room, frame of irsim.
-        size: Width and height of the room.
-    """
+    """Columns of a file, corners x, y of what stands in the room (frame of irsim), and the size of the room."""
 
     columns: NDArray[np.float64]
     boxes: tuple[tuple[float, float, float, float], ...]
@@ -84,15 +78,7 @@ _FACES = {0: (_TURN, 0.0, _TURN, 0.0), 1: (_TURN, _TURN, 0.0, 0.0), 2: (1.0, 0.0
 def room(
     seed: int = 1, *, spacing: float = 0.05, floaters: float = 0.05, axes: Any = None, shift: Any = (0, 0, 0)
 ) -> Room:
-    """Walls, a table, a pillar, a box, a floor and a ceiling of flat splats, and fog of faint ones anywhere.
-
-    Args:
-        seed: Seed of the noise.
-        spacing: Distance of splats [m].
-        floaters: Share of faint splats.
-        axes: (3, 3) the axes of irsim in the frame of the scene, as columns.
-        shift: Where the origin of irsim is in the scene.
-    """
+    """Walls, furniture, floor and ceiling of flat splats, and a share of faint ones; ``axes`` belong to irsim."""
     rng = np.random.default_rng(seed)
     width, height, wall, top = 8.0, 6.0, 0.2, 2.4
     offset = np.array([0.013, 0.021])  # no wall is at the border of cells

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.splats.reading import read_splats
-from tests.bridges.splats.scenes import FIELDS, SH_0, table, write_ply
+from tests.bridges.splats.scenes import FIELDS, table, write_ply
 
 ROWS = table([
     [1, 2, 3, 0.2, 0.4, 0.6, 0.9, 0.1, 0.2, 0.3, 1, 0, 0, 0],
@@ -160,7 +160,3 @@ def test_damaged_files_are_read_or_refused(
         splats = read_splats(path, harmonics=True)
         for values in (splats.center, splats.scale, splats.rotation, splats.opacity, splats.color):
             assert np.isfinite(values).all()
-
-
-def test_colors_are_those_of_the_first_harmonic() -> None:
-    assert pytest.approx(0.5 / math.sqrt(math.pi)) == SH_0

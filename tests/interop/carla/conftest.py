@@ -19,12 +19,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 class StandIn:
-    """A stand-in that listens.
-
-    Args:
-        facts: Of its town, as ``standin/server.py`` reads them.
-        folder: Where its files go.
-    """
+    """A stand-in that listens, whose town has the facts that ``standin/server.py`` reads."""
 
     def __init__(self, facts: dict[str, Any], folder: Path) -> None:
         for _ in range(3):  # another process may take the port first

@@ -111,13 +111,7 @@ def in_yard(town: StandIn, more: str, kind: dict[str, str]) -> irsim.Env:
 
 
 class Drive:
-    """A run of the car in the yard.
-
-    Attributes:
-        pose: (T, 3) of the car.
-        own: (T, 181) what irsim measures where the car is.
-        seen: (T, 181) what its policy got.
-    """
+    """A run of the car in the yard: its poses, what irsim measures where it is, and what its policy got."""
 
     def __init__(self, town: StandIn, steps: int, more: str, kind: dict[str, str]) -> None:
         env = in_yard(town, more, kind)

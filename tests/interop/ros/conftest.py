@@ -40,11 +40,7 @@ obstacle:
 
 
 class Peer:
-    """A process of another program, whose lines are read while it runs.
-
-    Attributes:
-        lines: The lines that it has printed.
-    """
+    """A process of another program, whose lines are read while it runs."""
 
     def __init__(self, *command: str, **options: Any) -> None:
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True, **options)

@@ -34,11 +34,7 @@ def message_class(kind: str) -> Any:
 
 
 def message_of(value: Any, made: Any) -> Any:
-    """The message of a JSON object and a class, checked by ROS itself and serialized once.
-
-    Raises:
-        UnfitError: A field is missing or unknown, or a value does not fit its type.
-    """
+    """The message of a JSON object and a class, checked by ROS itself and serialized once."""
     message = _message(value, made)
     try:
         message._check_types()

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import irsim
-from irsim.bridges.ros.backends.opening import Backend
+from irsim.bridges.ros.backends.base import Backend
 from irsim.bridges.ros.messages import Messages
 from tests.interop.ros.conftest import HERE, PYTHON, SCENE, MakeEnv, Peer, Start, until
 

@@ -40,12 +40,7 @@ bridges:
 
 
 class Server:
-    """The server, and what it says.
-
-    Attributes:
-        peer: Its process.
-        port: Its port.
-    """
+    """The server, which runs at a port, and what it says."""
 
     def __init__(self, start: Start, port: int | None = None) -> None:
         self.port = free_port() if port is None else port

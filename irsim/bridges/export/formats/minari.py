@@ -71,6 +71,7 @@ class _Learner:
 
 def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
     """Write all episodes, block by block; episodes of one run are written side by side."""
+    from minari.data_collector.episode_buffer import EpisodeBuffer
     from minari.dataset.minari_storage import MinariStorage
 
     if not _NAME.fullmatch(name):
@@ -96,7 +97,7 @@ def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
                     if learner.number < 0:
                         learner.number, number = number, number + 1
                         buffer["seed"] = int(episode.run.meta["seed"])
-                    buffers.append(_episode_buffer(learner.number, buffer))
+                    buffers.append(EpisodeBuffer(id=learner.number, **buffer))
             if buffers:
                 storage.update_episodes(buffers)
     written = sorted((learner for learner in learners if learner.number >= 0), key=lambda learner: learner.number)
@@ -215,12 +216,6 @@ def _observations(learner: _Learner, block: Block, rows: slice) -> dict[str, NDA
         scans = [np.minimum(trace.ranges[key][rows], np.float32(longest)) for key, longest in learner.scans]
         observations["scan"] = np.concatenate(scans, axis=1)
     return observations
-
-
-def _episode_buffer(number: int, content: dict[str, Any]) -> Any:
-    from minari.data_collector.episode_buffer import EpisodeBuffer
-
-    return EpisodeBuffer(id=number, **content)
 
 
 def _episode_metadata(learner: _Learner) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.backends.opening import Backend, Node
+from irsim.bridges.ros.backends.base import Backend, Node
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.topics import LATCHED, STATE, Qos, Topic
 from irsim.common.extras import require

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.backends.opening import Backend, Node
+from irsim.bridges.ros.backends.base import Backend, Node
 from irsim.bridges.ros.topics import LATCHED, Qos, Topic
 from irsim.common.extras import require
 

@@ -1,82 +1,25 @@
-"""The interface of backends, and from options to a backend."""
+"""From options to a backend."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from irsim.bridges.base import BridgeError
-from irsim.bridges.ros.incoming import Inbox
+from irsim.bridges.ros.backends.base import Backend, Node
 from irsim.bridges.ros.messages import Messages
-from irsim.bridges.ros.topics import Topic
 from irsim.components.bridges.ros1 import Ros1
 from irsim.components.bridges.ros2 import Ros2
 from irsim.components.bridges.rosbag import Rosbag
 from irsim.components.bridges.rosbridge import Rosbridge
 
-__all__ = ["AnyOptions", "Backend", "Node", "make_messages", "message_class", "open_backend"]
+__all__ = ["AnyOptions", "make_messages", "open_backend"]
 
 AnyOptions: TypeAlias = Ros2 | Ros1 | Rosbridge | Rosbag
 _MAX_DOMAIN = 101
 """Highest number of a domain whose ports are free on all systems."""
-
-
-@dataclass(frozen=True)
-class Node:
-    """A node that a backend shows to other programs.
-
-    Attributes:
-        name: Its name.
-        topics: Topics to publish and to subscribe to.
-        inbox: Where messages from outside are put.
-        messages: Makes messages, and their CDR.
-    """
-
-    name: str
-    topics: Sequence[Topic]
-    inbox: Inbox
-    messages: Messages
-
-
-class Backend:
-    """A node that publishes and subscribes to topics.
-
-    Attributes:
-        peer: The program that it is connected to, in a few words.
-    """
-
-    peer = "ROS"
-
-    def __init__(self, node: Node) -> None:
-        self.node, self.topics, self.inbox, self.messages = node.name, tuple(node.topics), node.inbox, node.messages
-
-    @property
-    def ready(self) -> bool:
-        """Whether what is published now goes out; not while a connection is made anew."""
-        return True
-
-    def publish(self, topic: Topic, message: Any) -> None:
-        """Send a message.
-
-        Raises:
-            BridgeLostError: The connection is gone.
-        """
-        raise NotImplementedError
-
-    def poll(self) -> None:
-        """Put into the inbox what has come, if no thread of the library does so.
-
-        Raises:
-            BridgeLostError: The connection is gone.
-        """
-
-    def close(self) -> None:
-        """Disconnect; a second call does nothing."""
 
 
 def make_messages(options: AnyOptions) -> Messages:
@@ -131,22 +74,6 @@ def _ros2(options: Ros2, node: Node) -> Backend:
     from irsim.bridges.ros.backends.dds import DdsBackend
 
     return DdsBackend(node, domain=domain, loopback=options.loopback or _stays_here())
-
-
-def message_class(kind: str, package: str) -> Any:
-    """The class of a message in the ROS installation, such as ``nav_msgs/msg/Path``.
-
-    Raises:
-        BridgeError: The installation lacks it; the message names the package of Debian, ``package``, that has it.
-    """
-    space, _, name = kind.rpartition("/")
-    try:
-        return getattr(import_module(space.replace("/", ".")), name)
-    except (ImportError, AttributeError):
-        named = package.format(space.partition("/")[0].replace("_", "-"))
-        raise BridgeError(
-            "bridge-failed", f"the ROS installation has no messages {kind}", f"apt install {named}"
-        ) from None
 
 
 def _stays_here() -> bool:

@@ -9,7 +9,7 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
-from irsim.bridges.ros.backends.opening import Backend, Node, message_class
+from irsim.bridges.ros.backends.base import Backend, Node, message_class
 from irsim.bridges.ros.topics import Qos, Topic
 
 __all__ = ["RclpyBackend"]

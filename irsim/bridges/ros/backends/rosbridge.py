@@ -11,7 +11,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from irsim.bridges.base import BridgeLostError
-from irsim.bridges.ros.backends.opening import Backend, Node
+from irsim.bridges.ros.backends.base import Backend, Node
 from irsim.bridges.ros.topics import Topic
 from irsim.common.extras import require
 from irsim.components.bridges.rosbridge import Rosbridge

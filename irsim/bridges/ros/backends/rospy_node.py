@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.bridges.base import BridgeError, BridgeLostError
-from irsim.bridges.ros.backends.opening import Backend, Node, message_class
+from irsim.bridges.ros.backends.base import Backend, Node, message_class
 from irsim.bridges.ros.topics import Topic
 
 __all__ = ["RospyBackend", "find_rospy"]

@@ -15,7 +15,7 @@ from functools import partial
 from typing import Any
 
 from irsim.bridges.base import BridgeError, BridgeLostError
-from irsim.bridges.ros.backends.opening import Backend, Node
+from irsim.bridges.ros.backends.base import Backend, Node
 from irsim.bridges.ros.incoming import Inbox
 from irsim.bridges.ros.topics import Qos, Topic
 from irsim.common.extras import require

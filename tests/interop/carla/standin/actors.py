@@ -12,37 +12,20 @@ WHEELBASE = 2.0
 
 @dataclass
 class Actor:
-    """A walker, a vehicle or a sensor.
-
-    Attributes:
-        id: Its number.
-        description: Number, name and attributes of its blueprint, as the client sent them.
-        location: x, y, z [m]; y is to the right.
-        yaw: [deg], clockwise seen from above.
-        size: Length, width, height [m].
-        tag: Semantic tag.
-        parent: The actor that a sensor is attached to.
-        mount: x, y, z [m], yaw [deg] of a sensor on its parent.
-        stream: Id of the stream of a sensor, 0 for other actors.
-        velocity: x, y [m/s], world.
-        turn_rate: [deg/s].
-        control: Its last control: ``("walker", x, y, speed)``, ``("ackermann", steer, speed)`` or
-            ``("velocity", x, y)``.
-        spin: Turn rate that was asked for [deg/s].
-    """
+    """A walker, a vehicle or a sensor; angles in degrees, lengths in metres."""
 
     id: int
-    description: list[Any]
+    description: list[Any]  # number, name and attributes of its blueprint, as the client sent them
     location: list[float]
     yaw: float
-    size: tuple[float, float, float]
+    size: tuple[float, float, float]  # length, width, height
     tag: int
     parent: int | None = None
-    mount: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    mount: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)  # x, y, z, yaw of a sensor on its parent
     stream: int = 0
     velocity: tuple[float, float] = (0.0, 0.0)
     turn_rate: float = 0.0
-    control: tuple[Any, ...] = ()
+    control: tuple[Any, ...] = ()  # ("walker", x, y, speed), ("ackermann", steer, speed) or ("velocity", x, y)
     spin: float = 0.0
     physics: bool = True
     attributes: dict[str, str] = field(init=False)
@@ -56,12 +39,7 @@ class Actor:
         return str(self.description[1]).split(".")[0]
 
     def move(self, dt: float, drift: float) -> None:
-        """Advance by a tick.
-
-        Args:
-            dt: [s].
-            drift: Share by which walkers fall short of the speed that they were told, as animated walks do.
-        """
+        """Advance by a tick; walkers fall short of their speed by the share ``drift``, as animated walks do."""
         self.turn_rate = 0.0
         if not self.control:
             self.velocity = 0.0, 0.0

@@ -42,13 +42,7 @@ def blueprints() -> list[Any]:
 
 
 class Server:
-    """Answers calls of the official client.
-
-    Args:
-        facts: Of the town, and ``version``, ``die_after`` (ticks), ``hang_after`` (ticks), ``road`` (OpenDRIVE).
-        port: Port of the calls; streams use the next one.
-        log: File of events, one JSON object a line.
-    """
+    """Answers calls of the official client at a port, sends streams at the next one, logs events as lines of JSON."""
 
     def __init__(self, facts: Mapping[str, Any], port: int, log: TextIO | None) -> None:
         self.facts, self.port, self.log = facts, port, log

@@ -26,12 +26,7 @@ NEAR = 0.5
 
 
 class Town:
-    """All that there is.
-
-    Args:
-        facts: ``walls`` (polylines [[x, y], ...]), ``ground`` [m], ``drift``, ``full`` (how many actors fit),
-            ``fixed`` (period of a tick [s] of a server that is not synchronous).
-    """
+    """All that there is: walls, ground, drift, room for actors, and the ticks of a server that is not synchronous."""
 
     def __init__(self, facts: Mapping[str, Any]) -> None:
         walls = [np.array(points, dtype=np.float64) for points in facts.get("walls", ())]
@@ -52,11 +47,7 @@ class Town:
         return float(period[1]) if period[0] else 0.05
 
     def spawn(self, description: list[Any], pose: list[Any], parent: int | None = None) -> Actor:
-        """Make an actor.
-
-        Raises:
-            ValueError: There is no room.
-        """
+        """Make an actor; an error where there is no room."""
         location, (_, yaw, _) = list(map(float, pose[0])), map(float, pose[1])
         kind = str(description[1]).split(".")[0]
         if parent is None:
