@@ -163,12 +163,12 @@ def test_a_server_sets_limits(scene) -> None:
             import_map(file, out, ros_map=ros, limits=inside)
         assert caught.value.code == "path-outside-workspace"
     for limit, said in (
-        ("bytes", "at most 3 are read"),
-        ("cells", "--resolution"),
-        ("triangles", "at most 3 are read"),
+        (ImportLimits(bytes=100), "at most 100 are read"),
+        (ImportLimits(cells=500), "--resolution"),
+        (ImportLimits(triangles=3), "at most 3 are read"),
     ):
         with pytest.raises(BridgeError, match=said):
-            import_map(scene, "a.yaml", limits=ImportLimits(**{limit: 3}))
+            import_map(scene, "a.yaml", limits=limit)
     Path("map.yaml").write_text("{image: ../x.pgm, resolution: 1, origin: [0, 0, 0]}")
     with pytest.raises(BridgeError) as wrong:
         import_map("map.yaml", "b.yaml", limits=inside)
@@ -317,7 +317,7 @@ def test_a_picture_that_is_missing_is_a_key_of_the_map() -> None:
 
 
 def test_roads_that_declare_entities_are_refused_in_one_sentence() -> None:
-    road = "road.xodr"
+    road = Path("road.xodr")
     road.write_text('<!DOCTYPE r [<!ENTITY a "b">]><OpenDRIVE/>')
     with pytest.raises(BridgeError) as caught:
         import_map(road, "a.yaml")

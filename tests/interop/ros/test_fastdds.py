@@ -18,6 +18,7 @@ from irsim.bridges.ros.messages import Messages
 from tests.interop.ros.conftest import HERE, PYTHON, SCENE, MakeEnv, Peer, Start, until
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("fastdds")]
+Published = dict[str, set[str]]
 TOPICS = {
     "/robot_0/odom": "nav_msgs/msg/Odometry",
     "/robot_0/pose": "geometry_msgs/msg/PoseStamped",
@@ -30,17 +31,23 @@ TOPICS = {
 }
 
 
-def bridge(domain: int, **more: Any) -> str:
-    options = {"name": "ros2", "backend": "dds", "loopback": "true", "domain": domain, **more}
-    return f"bridges: [{{{', '.join(f'{key}: {value}' for key, value in options.items())}}}]\n"
+@pytest.fixture
+def scene(domain: int) -> str:
+    return f"{SCENE}bridges: [{{name: ros2, backend: dds, loopback: true, domain: {domain}}}]\n"
 
 
 @pytest.fixture
-def published(monkeypatch: pytest.MonkeyPatch) -> dict[str, set[str]]:
+def start_dds(fastdds_program: str, start: Start, domain: int) -> Start:
+    """Starts a peer on Fast DDS in the domain of the test."""
+    return lambda *words: start(fastdds_program, str(domain), *words)
+
+
+@pytest.fixture
+def published(monkeypatch: pytest.MonkeyPatch) -> Published:
     """CDR of all that we publish, by topic."""
     from irsim.bridges.ros.backends.dds import DdsBackend
 
-    samples: dict[str, set[str]] = {}
+    samples: Published = {}
     publish = DdsBackend.publish
 
     def recorded(self: Backend, topic: Any, message: Any) -> None:
@@ -51,22 +58,14 @@ def published(monkeypatch: pytest.MonkeyPatch) -> dict[str, set[str]]:
     return samples
 
 
-def test_both_ways_and_the_same_bytes(
-    fastdds_program: str,
-    start: Start,
-    domain: int,
-    published: dict[str, set[str]],
-    make_env: MakeEnv,
-) -> None:
-    peer = start(fastdds_program, str(domain), "30", "0.4", "0.5")
-    env = make_env(SCENE + bridge(domain))
+def test_both_ways_and_the_same_bytes(start_dds: Start, published: Published, make_env: MakeEnv, scene: str) -> None:
+    peer, env = start_dds("30", "0.4", "0.5"), make_env(scene)
     with irsim.connect(env):
         for _ in range(400):
             env.step()
             if len(peer.on("/robot_0/scan")) >= 60 and float(env.robot.state[0, 0]) > 1.3:
                 break
-        velocity = env.robot.velocity[:2, 0].tolist()
-        goal = env.robot.goal[:2, 0].tolist()
+        velocity, goal = env.robot.velocity[:2, 0].tolist(), env.robot.goal[:2, 0].tolist()
     assert velocity == pytest.approx([0.4, 0.5])  # the robot has no behavior: it follows the peer
     assert goal == [3, 2]
     for topic in TOPICS:
@@ -86,18 +85,12 @@ def _trimmed(text: str) -> str:
     return text[8:].rstrip("0")
 
 
-def test_who_comes_late_gets_the_map(
-    fastdds_program: str,
-    start: Start,
-    domain: int,
-    published: dict[str, set[str]],
-    make_env: MakeEnv,
-) -> None:
-    env = make_env(SCENE + bridge(domain))
+def test_who_comes_late_gets_the_map(start_dds: Start, make_env: MakeEnv, scene: str) -> None:
+    env = make_env(scene)
     with irsim.connect(env):
         for _ in range(20):
             env.step()
-        peer = start(fastdds_program, str(domain), "20", "0", "0", "silent")
+        peer = start_dds("20", "0", "0", "silent")
         until(lambda: peer.on("/map") and peer.on("/irsim/markers"), 10, "no map")
         for _ in range(10):
             env.step()
@@ -141,9 +134,9 @@ Drive = Callable[..., tuple[Robot, Peer]]
 
 
 @pytest.fixture
-def drive(fastdds_program: str, start: Start, domain: int) -> Drive:
+def drive(start_dds: Start, start: Start, domain: int) -> Drive:
     def driving(*how: str, odometry_s: float = 1000.0, dry: str = "false") -> tuple[Robot, Peer]:
-        robot = Robot(start(fastdds_program, str(domain), "200", str(odometry_s), "0", "odom"))
+        robot = Robot(start_dds("200", str(odometry_s), "0", "odom"))
         Path("real.yaml").write_text(REAL.format(domain=domain, dry=dry))
         return robot, start(PYTHON, str(HERE / "real_driver.py"), "real.yaml", "600", *how)
 
