@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from irsim.api.film_strip import draw_strip, moments_of
+from irsim.api.run_scenario import run
 from irsim.benchmarks.episode import Job, environment_of
 from irsim.benchmarks.plan import Plan, PlannedScenario
 from irsim.benchmarks.policies import job_keys, label_of
@@ -21,6 +23,7 @@ from irsim.benchmarks.stored import PLAN
 from irsim.common.files import write_atomically
 from irsim.diagnostics.errors import ScenarioError
 from irsim.runs.files import RunError
+from irsim.runs.replay.export import replay
 from irsim.scenario.limits import DEFAULT_LIMITS
 
 if TYPE_CHECKING:
@@ -80,8 +83,6 @@ def write_report(result: BenchmarkResult, folder: Path) -> Report:
 
 def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: BenchmarkResult, folder: Path) -> Shown:
     """An episode as a picture, and its replay."""
-    from irsim.api.film_strip import draw_strip, moments_of
-
     document = scenario.document()
     policy = next(policy for policy in plan.opened() if label_of(policy) == one.behavior)
     job = Job(
@@ -102,9 +103,6 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
 
 def _replay(scenario: PlannedScenario, one: EpisodeRow, plan: Plan, policy: Policy, target: Path) -> bool:
     """Run an episode again, and write its replay; False if a map cannot be copied."""
-    from irsim.api.run_scenario import run
-    from irsim.runs.replay.export import replay
-
     target.parent.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as place:
         try:

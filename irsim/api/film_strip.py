@@ -6,18 +6,14 @@ from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 from irsim.api.overlays import Overlay, additions, plot_keys, requested_plans
-from irsim.diagnostics.errors import InputError
+from irsim.diagnostics.errors import InputError, PolicyLostError
+from irsim.episodes.episode import Progress, advance
+from irsim.results.picture import MAX_MOMENTS, MIN_MOMENTS
 
 if TYPE_CHECKING:
     from irsim.env import Env
-    from irsim.episodes.episode import Progress
 
-__all__ = ["MAX_MOMENTS", "MIN_MOMENTS", "StripError", "draw_strip", "moments_of"]
-
-MIN_MOMENTS = 2
-"""Least number of moments of one picture."""
-MAX_MOMENTS = 12
-"""Greatest number of moments of one picture."""
+__all__ = ["StripError", "draw_strip", "moments_of"]
 
 
 class StripError(InputError):
@@ -62,9 +58,7 @@ def draw_strip(
     Raises:
         PolicyLostError: The policy is lost.
     """
-    from irsim.diagnostics.errors import PolicyLostError
-    from irsim.episodes.episode import advance
-    from irsim.rendering.strip import Strip
+    from irsim.rendering.strip import Strip  # loads Matplotlib
 
     sheet = Strip(len(moments), size, region=region, overrides=plot_keys(overlays))
     for moment in moments:

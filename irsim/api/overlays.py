@@ -5,17 +5,21 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
+from irsim.common.outline import Polygon
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.diagnostics.errors import InputError
+from irsim.episodes.planned_routes import planned_routes
+from irsim.episodes.scene_summary import called
+from irsim.results.picture import RobotPlan
 
 if TYPE_CHECKING:
     from irsim.common.arrays import Floats
-    from irsim.common.outline import Polygon
     from irsim.env import Env
     from irsim.rendering.planned_paths import PlannedPath
     from irsim.rendering.snapshot import Extra
-    from irsim.results.picture import RobotPlan
 
 __all__ = [
     "OVERLAYS",
@@ -101,7 +105,6 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
 
 def footprint_of(env: Env, ways: list[PlannedPath]) -> tuple[Polygon, Floats] | None:
     """Body of the smallest robot and its poses along its path, for `clearance`; None if it is round or has no path."""
-    from irsim.common.outline import Polygon
     from irsim.rendering.clearance_map import smallest_robot
     from irsim.rendering.planned_paths import plan_paths, poses_along
 
@@ -113,8 +116,6 @@ def footprint_of(env: Env, ways: list[PlannedPath]) -> tuple[Polygon, Floats] | 
     line = next((way.points for way in plans if way.robot == view.id and len(way.points) > 1), None)
     if line is None:
         return None
-    import numpy as np  # here, so that --help does not load it
-
     length = float(np.hypot(*np.diff(line, axis=0).T).sum())
     poses = poses_along(view, line, max(length / _MAX_POSES, _POSE_STEP_M))
     return Polygon(np.asarray(view.original_geometry.exterior.coords)[:-1, :2]), poses
@@ -122,9 +123,6 @@ def footprint_of(env: Env, ways: list[PlannedPath]) -> tuple[Polygon, Floats] | 
 
 def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
     """The planned paths as results."""
-    from irsim.episodes.scene_summary import called
-    from irsim.results.picture import RobotPlan
-
     labels = {view.id: view.label for view in env.robot_list}
     return [
         RobotPlan(
@@ -144,7 +142,6 @@ def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
 
 def _routes(env: Env) -> dict[int, list[Floats | None]]:
     """Routes of robots with the behavior ``follow`` to their remaining goals, by id."""
-    from irsim.episodes.planned_routes import planned_routes
     from irsim.rendering.planned_paths import remaining_goals
 
     following = {record.id for record in env.scenario.objects if getattr(record.behavior, "name", "") == "follow"}

@@ -33,7 +33,6 @@ from irsim.simulation.outcome import explored_share, robot_outcomes
 from irsim.simulation.random_streams import fresh_seed
 
 if TYPE_CHECKING:
-    from irsim.env import Env
     from irsim.objects.view import ObjectView
     from irsim.policies.policy import Policy
 

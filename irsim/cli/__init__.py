@@ -5,13 +5,13 @@ Each command only reads its options, calls a function of another package that do
 
 from __future__ import annotations
 
+from irsim.common.installed import ConflictError, refuse_conflicts
+
 __all__ = ["main"]
 
 
 def main() -> None:
     """Run the command line and exit: 0 finished, 1 could not finish, 2 invalid input, 130 interrupted."""
-    from irsim.common.installed import ConflictError, refuse_conflicts
-
     try:
         refuse_conflicts()  # irsim/__init__.py calls it too, but an installed ir-sim may have replaced that file
     except ConflictError as error:

@@ -14,6 +14,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from irsim.cli.guard import handle_errors
 from irsim.cli.sentences import SENTENCES
+from irsim.common.installed import version
 
 __all__ = ["COMMANDS", "app", "loaded"]
 
@@ -98,8 +99,6 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from irsim.common.installed import version
-
         typer.echo(f"irsim {version()}")
         raise typer.Exit
 

@@ -314,7 +314,6 @@ def _labels(files: list[str]) -> dict[str, str]:
 
 
 def _print_csv(result: BenchmarkResult) -> None:
-
     first = ("scenario", "behavior", "seed", "outcome", "steps", "sim_time", "time_limit", "unreachable")
     names, facts = _policies(result), {fact.name: fact for fact in getattr(result, "facts", ())}
     varied = list(dict.fromkeys(key for fact in facts.values() for key in fact.values))

@@ -105,7 +105,6 @@ def import_bag(
 
 
 def _mount(text: str | None) -> tuple[float, float, float] | None:
-
     if text is None:
         return None
     try:

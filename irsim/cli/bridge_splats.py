@@ -92,7 +92,6 @@ def page(
 
 
 def _show(result: dict[str, Any], facts: str, json_output: bool) -> None:
-
     if json_output:
         typer.echo(json.dumps(result, indent=2))
         return

@@ -16,7 +16,7 @@ from irsim.lookup.answer import facts
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
-    from irsim.lookup import Answer, Key, TopicError
+    from irsim.lookup import Key, TopicError
 
 __all__ = ["describe"]
 
@@ -87,7 +87,6 @@ def _show(answer: Answer, out: Console) -> None:
 
 
 def _table(keys: list[Key]) -> RenderableType:
-
     table = Table(box=None, pad_edge=False, show_header=False, padding=(0, 2, 0, 2))
     table.add_column(style="bold cyan", no_wrap=True)
     table.add_column()

@@ -82,7 +82,6 @@ def _within(path: str, allowed: str) -> bool:
 
 
 def _show(difference: ScenarioDiff, extra: list[str]) -> None:
-
     out = console()
 
     def line(kind: str, where: str, before: Any, after: Any) -> None:

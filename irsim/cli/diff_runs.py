@@ -44,7 +44,6 @@ def diff_runs(
 
 
 def _show(difference: RunsDiff) -> None:
-
     out = console()
     for change in difference.setup:
         out.print(f"{change.key}: {clean(change.before, 100)} -> {clean(change.after, 100)}", soft_wrap=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from irsim.api import import_modules
 from irsim.bundled.templates.fill import parse_path
@@ -18,12 +17,6 @@ from irsim.results.validation import ValidationReport
 from irsim.scenario.limits import Limits
 from irsim.scenario.locate import locate
 from irsim.scenario.yaml.document import load_path
-
-if TYPE_CHECKING:
-    from irsim.diagnostics.diagnostic import Diagnostic
-    from irsim.results.findings import Finding
-    from irsim.results.validation import ValidationReport
-    from irsim.scenario.limits import Limits
 
 __all__ = ["UserImportError", "import_user_modules", "limits_for", "not_found", "print_diagnostics", "print_findings"]
 
@@ -112,7 +105,6 @@ def not_found(file: str, message: str) -> ValidationReport:
 
 
 def _text_of(file: str) -> str | None:
-
     if not Path(file).is_file():
         from irsim.benchmarks.suite_plan import suite_scene  # which few commands need
 

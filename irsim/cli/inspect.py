@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from csv import writer as csv_writer
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -144,16 +145,14 @@ def _list_runs() -> None:
 
 
 def _print_csv(table: RunTable) -> None:
-    import csv
 
-    writer = csv.writer(sys.stdout, lineterminator="\n")
+    writer = csv_writer(sys.stdout, lineterminator="\n")
     writer.writerow(table.columns)
     for row in table.rows:
         writer.writerow([clean(cell, MAX_CSV_TEXT_LENGTH) if isinstance(cell, str) else cell for cell in row])
 
 
 def _show(table: RunTable, out: object) -> None:
-
     assert isinstance(out, Console)
     ended = table.status if table.outcome is None else ending(table.outcome, table.lost)
     out.print(f"{table.run_id}: {ended}: {clean(table.summary, 400)}")
@@ -186,7 +185,6 @@ def _show(table: RunTable, out: object) -> None:
 
 
 def _cell(value: object) -> str:
-
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):

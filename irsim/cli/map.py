@@ -69,7 +69,6 @@ def export(
 
 
 def _show(written: MapFiles, json_output: bool) -> None:
-
     if json_output:
         typer.echo(json.dumps(written.as_dict(), indent=2))
         return
@@ -219,7 +218,6 @@ def import_(
 
 
 def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...]:
-
     try:
         numbers = tuple(float(part) for part in text.split(","))
     except ValueError:
@@ -230,7 +228,6 @@ def _numbers(text: str, what: str, count: int, example: str) -> tuple[float, ...
 
 
 def _show_import(result: MapImportResult, out: Path | None, robot: bool) -> None:
-
     shown = console()
 
     def line(*parts: Any) -> None:

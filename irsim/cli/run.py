@@ -173,7 +173,6 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
 
 
 def _mention_missing_screen() -> None:
-
     from irsim.graphics.figure.window import has_screen  # loads Matplotlib
 
     if not has_screen():
@@ -181,7 +180,6 @@ def _mention_missing_screen() -> None:
 
 
 def _table(result: RunResult) -> object:
-
     table = Table(box=None, pad_edge=False, header_style="dim")
     for heading in ("robot", "outcome"):
         table.add_column(heading)

@@ -112,7 +112,6 @@ def install(
 
 
 def _show(done: list[Installed], *, dry_run: bool) -> None:
-
     out = console()
     if dry_run:
         out.print("nothing is written:")

@@ -8,7 +8,12 @@ from typing import Annotated, Any
 
 import typer
 
+from irsim.cli.findings import print_findings
 from irsim.cli.guard import INVALID
+from irsim.cli.output import console
+from irsim.learning.training.run_folder import RunFolder
+from irsim.learning.training.settings import read_settings
+from irsim.validation.file_reports import task_report
 
 __all__ = ["SARL_SETTINGS", "SETTINGS", "train"]
 
@@ -76,12 +81,6 @@ def train(
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the training in the folder.")] = False,
 ) -> None:
     """Train a policy for a task; needs the extra `learn`. Success is measured on seeds that are not trained on."""
-    from irsim.cli.findings import print_findings
-    from irsim.cli.output import console
-    from irsim.learning.training.run_folder import RunFolder
-    from irsim.learning.training.settings import read_settings
-    from irsim.validation.file_reports import task_report
-
     if (task is None) != resume:
         what = "a task file is missing" if task is None else "a resumed training has its own task"
         typer.echo(f"{what}: give TASK, or --resume with -o FOLDER", err=True)

@@ -155,7 +155,6 @@ def _check_file(
 
 
 def _show(report: ValidationReport, file: str, text: str | None, *, stderr: bool) -> None:
-
     out = console(stderr=stderr)
     for item in report.fixes:
         line = "" if item.line is None else f"line {item.line}: "
@@ -170,7 +169,6 @@ def _show(report: ValidationReport, file: str, text: str | None, *, stderr: bool
 
 
 def _show_table(file: str, text: str | None, seed: int | None, limits: Limits | None, *, stderr: bool) -> None:
-
     scenario, _ = api.read_scenario(None if file == "-" else file, text=text, strict=False, limits=limits)
     chosen = seed if seed is not None else scenario.world.seed or 0
     for line in scene_lines(scene_table(scenario, chosen).model_dump(), {}, chosen):

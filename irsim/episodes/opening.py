@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from irsim.common.text import listed
 from irsim.diagnostics.diagnostic import Diagnostic, format_path
@@ -13,9 +13,6 @@ from irsim.diagnostics.errors import PlacementError
 from irsim.results.benchmark import CROWDED
 from irsim.results.findings import Finding
 from irsim.scenario.resolve.resolved import ResolvedScenario
-
-if TYPE_CHECKING:
-    from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = [
     "MAX_TRIES",

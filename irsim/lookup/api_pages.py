@@ -11,13 +11,23 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from irsim.bridges.export.registry import format_names
 from irsim.common import data_files as resources
 from irsim.common.field_docs import field_docs
 from irsim.common.lazy import PUBLIC_HOMES
+from irsim.compat.objects.view import ScriptObject
+from irsim.env import Env
+from irsim.env.batch import Batch
 from irsim.lookup.answer import plain_table
 from irsim.lookup.pages import components
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
+from irsim.objects.behavior import ObjectBehavior
+from irsim.objects.body import Body
+from irsim.objects.drawing.drawing import Drawing
+from irsim.objects.surroundings import Surroundings
+from irsim.objects.view import ObjectView
 from irsim.options.registry import REGISTRIES
+from irsim.results import benchmark
 
 __all__ = ["PACKS", "make_page"]
 
@@ -42,16 +52,6 @@ def make_page(title: str, *parts: str) -> str:
 
 def runner() -> Pages:
     """Return the pages of the skill ``irsim-runner``."""
-    from irsim.bridges.export.registry import format_names
-    from irsim.compat.objects.view import ScriptObject
-    from irsim.env import Env
-    from irsim.env.batch import Batch
-    from irsim.objects.behavior import ObjectBehavior
-    from irsim.objects.body import Body
-    from irsim.objects.drawing.drawing import Drawing
-    from irsim.objects.surroundings import Surroundings
-    from irsim.objects.view import ObjectView
-
     parts = {"body": Body, "drawing": Drawing, "behavior": ObjectBehavior, "surroundings": Surroundings}
 
     functions = (
@@ -96,8 +96,6 @@ def runner() -> Pages:
 
 def comparisons() -> Pages:
     """Return the pages of the skill ``irsim-benchmark``."""
-    from irsim.results import benchmark
-
     canonical = [metric for metric in METRICS if metric.canonical]
     extra = [metric for metric in METRICS if not metric.canonical]
     heads = ("key", "unit", "meaning, per robot", "over robots", "better")

@@ -10,6 +10,8 @@ from irsim.results.base import Result
 from irsim.results.findings import Finding
 
 __all__ = [
+    "MAX_MOMENTS",
+    "MIN_MOMENTS",
     "LidarHits",
     "MovingPose",
     "RenderResult",
@@ -21,6 +23,11 @@ __all__ = [
     "SnapshotResult",
     "view_message",
 ]
+
+MIN_MOMENTS = 2
+"""Least number of moments of a film strip."""
+MAX_MOMENTS = 12
+"""Greatest number of moments of a film strip."""
 
 
 class RenderResult(Result):

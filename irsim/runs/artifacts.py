@@ -14,6 +14,7 @@ from irsim.common.text import clean
 from irsim.runs.files import RunError, text_of
 from irsim.runs.inspection import inspect_run
 from irsim.runs.reading import Run
+from irsim.runs.replay.data import pack_run
 from irsim.runs.store import ARTIFACTS, FILES
 from irsim.scenario.limits import Limits
 
@@ -75,8 +76,6 @@ def artifact(
 
 
 def _replay(run: Run, offset: int, most: int, limits: Limits | None) -> str:
-    from irsim.runs.replay.data import pack_run
-
     text = base64.b64encode(pack_run(run, limits=limits).data).decode()
     head = json.dumps({"run_id": run.id, "offset": offset, "total": len(text)})
     return f'{head[:-1]}, "data": "{text[offset : offset + most - len(head) - 20]}"}}'

@@ -19,6 +19,7 @@ from pydantic_core import to_json
 
 import irsim._core as core
 from irsim.common.files import Buffer
+from irsim.common.installed import version
 from irsim.runs.chunks import PieceWriter, pack_chunk
 from irsim.runs.files import Claim, RunError, claim, create_file, replace_file
 from irsim.runs.plain_scenario import plain_scenario
@@ -368,8 +369,6 @@ def _text_of(simulation: Simulation) -> str:
 
 
 def _versions() -> dict[str, str]:
-    from irsim.common.installed import version
-
     return {
         "irsim": version(),
         "python": platform.python_version(),

@@ -13,6 +13,7 @@ from irsim.env import Env
 from irsim.episodes.episode import Progress, advance
 from irsim.runs.files import RunError, plain_file, unreadable
 from irsim.runs.reading import Run
+from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.perturbation import perturbed, read_perturbations
@@ -46,8 +47,6 @@ def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
     document.maps = _maps(run)
     strict, behavior = bool(options.get("strict")) and not options.get("imports"), options.get("behavior")
     if isinstance(behavior, str):
-        from irsim.scenario.behavior_override import parse_behavior, with_behavior
-
         scenario = with_behavior(document, parse_behavior(behavior), strict=strict)
     else:
         scenario = or_raise(read(document, strict=strict, limits=limits))[0]

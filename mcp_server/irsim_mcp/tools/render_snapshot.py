@@ -10,10 +10,9 @@ from mcp.server.mcpserver import Context
 from mcp.types import ImageContent, TextContent
 from pydantic import Field
 
-from irsim.api.film_strip import MAX_MOMENTS, MIN_MOMENTS
 from irsim.common.text import clean, metres
 from irsim.results.concise import is_command
-from irsim.results.picture import view_message
+from irsim.results.picture import MAX_MOMENTS, MIN_MOMENTS, view_message
 from irsim.validation.scene_text import scene_lines
 from irsim_mcp.answers import failure
 from irsim_mcp.limits import MAX_SEED, MAX_STEPS
