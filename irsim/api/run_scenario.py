@@ -19,12 +19,7 @@ from irsim.common.text import seconds
 from irsim.diagnostics.errors import InputError, PolicyLostError
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
-from irsim.episodes.opening import (
-    MAX_TRIES,
-    crowded_message,
-    findings_under_policy,
-    first_with_room,
-)
+from irsim.episodes.opening import MAX_TRIES, crowded_message, findings_under_policy, first_with_room
 from irsim.episodes.run_report import RunPlan, run_result
 from irsim.results.findings import Finding
 from irsim.results.run import RunResult

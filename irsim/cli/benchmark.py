@@ -119,8 +119,7 @@ def benchmark(
         ),
     ] = None,
     resume: Annotated[
-        bool,
-        typer.Option("--resume", help="Go on with the interrupted benchmark in -o, else with the last one here."),
+        bool, typer.Option("--resume", help="Go on with the interrupted benchmark in -o, else with the last one here.")
     ] = False,
     full: Annotated[bool, typer.Option("--full", help="Run all seeds of a suite.")] = False,
     protocols: Annotated[

@@ -71,12 +71,7 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
                 raise InputError("there is nothing to run", "give scenario files, a suite, or --resume")
             folder = wanted.folder or last_folder()
             result = resume_benchmark(
-                folder,
-                workers=wanted.workers,
-                cluster=wanted.cluster,
-                progress=report,
-                limits=limits,
-                finish=finish,
+                folder, workers=wanted.workers, cluster=wanted.cluster, progress=report, limits=limits, finish=finish
             )
         elif suites or wanted.folder is not None or wanted.resume:
             plan = _suite(suites[0], wanted) if suites else _plan(wanted)

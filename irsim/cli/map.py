@@ -123,9 +123,7 @@ def import_(
     level: Annotated[
         int | None,
         typer.Option(
-            min=0,
-            help="Number of the level, 0 is the lowest. Default: the largest but the roof.",
-            show_default=False,
+            min=0, help="Number of the level, 0 is the lowest. Default: the largest but the roof.", show_default=False
         ),
     ] = None,
     height: Annotated[

@@ -23,8 +23,7 @@ __all__ = ["new"]
 def new(
     name: Annotated[str, typer.Argument(help="Name of a template; `irsim templates` lists them.", show_default=False)],
     out: Annotated[
-        Path | None,
-        typer.Option("-o", "--out", metavar="FILE", help="File to write; - prints it. Default: NAME.yaml."),
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="File to write; - prints it. Default: NAME.yaml.")
     ] = None,
     settings: Annotated[
         list[str] | None,

@@ -57,10 +57,7 @@ def render(
     ] = None,
     overlays: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAME,NAME",
-            help=f"Draw only these besides the bodies (png): {', '.join(OVERLAYS)}.",
-        ),
+        typer.Option(metavar="NAME,NAME", help=f"Draw only these besides the bodies (png): {', '.join(OVERLAYS)}."),
     ] = None,
     json_output: Json = False,
     strict: Strict = False,
@@ -105,11 +102,7 @@ def render(
     if result.view is not None:
         left, right, low, top = result.extent
         whole = f"--region {left:g} {low:g} {right:g} {top:g} shows the world"
-        shown.print(
-            f"note: the picture {view_message(result.view)}: {whole}",
-            style="yellow",
-            soft_wrap=True,
-        )
+        shown.print(f"note: the picture {view_message(result.view)}: {whole}", style="yellow", soft_wrap=True)
     for line in scene_lines(result.table.model_dump(), result.labels, result.seed):
         shown.print(Text(line), soft_wrap=True)
     shown.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)

@@ -72,8 +72,7 @@ def run(
     record: Annotated[
         bool,
         typer.Option(
-            "--record",
-            help="Record the run in .irsim/runs for 24 hours, for `irsim inspect` and `irsim replay`.",
+            "--record", help="Record the run in .irsim/runs for 24 hours, for `irsim inspect` and `irsim replay`."
         ),
     ] = False,
     record_to: Annotated[

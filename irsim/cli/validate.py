@@ -53,8 +53,7 @@ def validate(
         ),
     ] = False,
     simulate: Annotated[
-        bool,
-        typer.Option("--simulate", help="Also simulate the scenario for about a second and report what happens."),
+        bool, typer.Option("--simulate", help="Also simulate the scenario for about a second and report what happens.")
     ] = False,
     table: Annotated[
         bool,
@@ -125,13 +124,7 @@ def _check_options(kinds: dict[str, str], **given: bool) -> None:
 
 
 def _check_file(
-    file: str,
-    text: str | None,
-    fix: bool,
-    simulate: bool,
-    seed: int | None,
-    strict: bool,
-    limits: Limits | None,
+    file: str, text: str | None, fix: bool, simulate: bool, seed: int | None, strict: bool, limits: Limits | None
 ) -> tuple[ValidationReport, str | None]:
     """Return the report on a scenario, a file or standard input, and its text; with ``fix``, on the repaired one."""
     path = None if file == "-" else file

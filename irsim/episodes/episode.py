@@ -20,15 +20,7 @@ if TYPE_CHECKING:
     from irsim.simulation.protocols import EpisodeRecorder
     from irsim.simulation.simulation import Simulation
 
-__all__ = [
-    "HORIZON_FACTOR",
-    "MIN_HORIZON",
-    "Progress",
-    "advance",
-    "default_time_limit",
-    "horizon_of",
-    "seed_of",
-]
+__all__ = ["HORIZON_FACTOR", "MIN_HORIZON", "Progress", "advance", "default_time_limit", "horizon_of", "seed_of"]
 
 Progress = Callable[[int, int], None]
 """Callback ``(steps_done, steps_total)``, called every few steps."""

@@ -152,10 +152,7 @@ def find_obstruction(
         return Obstruction(where, held=False, pushed=pushed)
     lacks = ", and a car cannot turn on the spot" if car else ""
     return Obstruction(
-        where,
-        held=False,
-        pushed=pushed,
-        advice=f"{name} plans no path{lacks}: use {follow_text(record)}",
+        where, held=False, pushed=pushed, advice=f"{name} plans no path{lacks}: use {follow_text(record)}"
     )
 
 

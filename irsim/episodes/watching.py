@@ -76,10 +76,7 @@ def zone_results(simulation: Simulation, events: Sequence[Event]) -> dict[str, Z
 
 
 def _zone_result(
-    zone: Zone,
-    first: dict[str, float],
-    of: Mapping[str, Mapping[str, Mapping[str, float]]],
-    robots: Collection[str],
+    zone: Zone, first: dict[str, float], of: Mapping[str, Mapping[str, Mapping[str, float]]], robots: Collection[str]
 ) -> ZoneResult:
     """The result of a zone.
 

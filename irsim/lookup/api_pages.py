@@ -153,7 +153,7 @@ def contributing() -> Pages:
             "Each feature is declared in one file. A header of the core computes it, or a Python function in the same "
             "file.",
             plain_table(("kind", "name", "declaration", "computation"), rows),
-        ),
+        )
     }
 
 

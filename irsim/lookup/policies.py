@@ -17,14 +17,7 @@ from irsim.policies.trained import trained_policies
 from irsim.scenario.behavior_override import behavior_text
 from irsim.scenario.perturbation import Perturbation
 
-__all__ = [
-    "convert_answer",
-    "policies_answer",
-    "policy_answer",
-    "suite_answer",
-    "suite_key_answer",
-    "suites_answer",
-]
+__all__ = ["convert_answer", "policies_answer", "policy_answer", "suite_answer", "suite_key_answer", "suites_answer"]
 
 
 def policy_answer(topic: str) -> Answer | None:

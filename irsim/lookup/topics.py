@@ -34,17 +34,7 @@ from irsim.lookup.policies import (
     suite_key_answer,
     suites_answer,
 )
-from irsim.lookup.schema_walk import (
-    COLOR,
-    Node,
-    component_name,
-    components,
-    definitions_of,
-    key,
-    mappings,
-    paths,
-    step,
-)
+from irsim.lookup.schema_walk import COLOR, Node, component_name, components, definitions_of, key, mappings, paths, step
 from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
 from irsim.lookup.small_examples import BETTER, example_of, small_example
 from irsim.lookup.synonyms import named

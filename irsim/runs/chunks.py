@@ -220,11 +220,7 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
 
 
 def _expand(
-    begins: Sequence[int],
-    values: NDArray[Any],
-    rows: int,
-    shape: tuple[int, ...],
-    chosen: list[int] | None = None,
+    begins: Sequence[int], values: NDArray[Any], rows: int, shape: tuple[int, ...], chosen: list[int] | None = None
 ) -> NDArray[Any]:
     """(T, …) array, one row per step, of values that each hold from their row on; only of the chosen objects."""
     _expect(values, (len(begins), *shape))

@@ -82,11 +82,7 @@ class _Pair:
 
 
 def diff_runs(
-    before: str | Path | Run,
-    after: str | Path | Run,
-    *,
-    tolerance: float = 0.0,
-    workspace: str | Path | None = None,
+    before: str | Path | Run, after: str | Path | Run, *, tolerance: float = 0.0, workspace: str | Path | None = None
 ) -> RunsDiff:
     """Compare two recorded runs step by step: states, controls, goals, flags, scans and events.
 

@@ -165,10 +165,7 @@ def strict(
         former_names: Former names of arguments that are still accepted → the present ones.
     """
     hints = ToolAnnotations(
-        read_only_hint=read_only,
-        destructive_hint=destructive,
-        idempotent_hint=idempotent,
-        open_world_hint=open_world,
+        read_only_hint=read_only, destructive_hint=destructive, idempotent_hint=idempotent, open_world_hint=open_world
     )
     tool = StrictTool.from_function(
         function,

@@ -33,6 +33,24 @@ THROUGH = "'runner' passed through 'board' between two steps at 2.31 s near (8.0
 CURE = "('runner' moved 0.3 m in that step; lower step_time, or set world.contacts: swept)"
 
 
+SWEPT = """\
+world: {width: 20, height: 10, step_time: 0.3, collision_mode: stop, contacts: swept, time_limit: 30}
+robot:
+  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.1}, state: [5.2, 5, 0], goal: [18, 5],
+     goal_threshold: 0.3, behavior: {name: dash}, vel_max: [1.5, 1.5], vel_min: [-3, -3]}
+obstacle: [{shape: {name: rectangle, length: 0.02, width: 10}, state: [10, 5, 0]}]
+"""
+"""A step is 0.45 m, the robot 0.2 m plus the wall 0.02 m: at the end of no step the two touch."""
+CONTACT = """\
+world: {width: 20, height: 10, step_time: %s, collision_mode: contact, time_limit: 30}
+robot:
+  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.1}, state: [5.13, 5, 0], goal: [18, 5],
+     behavior: {name: dash}, vel_max: [3, 3], vel_min: [-3, -3]}
+obstacle: [{shape: {name: rectangle, length: 0.02, width: 10}, state: [10, 5, 0]}]
+"""
+"""A step of 0.1 s is 0.3 m; the wall stands in the way."""
+
+
 def scene(limit: float = 30, post: str = "", board: str = "") -> str:
     return TUNNEL % (limit, post, board)
 
@@ -173,6 +191,7 @@ def test_the_command_shows_them_in_its_table_and_in_json(workspace: Path) -> Non
     shown = printed("run", "tunnel.yaml", "--record")
     assert "collisions between steps" in shown
     assert f"success: {THROUGH}" in shown
+    assert "jumps-through" in shown
     result = json.loads(CliRunner().invoke(app, ["run", "tunnel.yaml", "--json"]).stdout)
     assert (result["contacts_between_steps"], result["robots"][0]["passed_through"]) == (2, ["board"])
     assert "between steps" not in printed("run", "tunnel.yaml", "--policy", "orca")  # which is slower at the post
@@ -244,3 +263,25 @@ def test_a_dry_run_tells_them() -> None:
     assert dry_run is not None
     assert [event.kind for event in dry_run.contacts_between_steps] == ["contact_between_steps", "passed_through"]
     assert THROUGH in dry_run.summary
+
+
+def test_a_swept_contact_stops_a_robot_at_the_wall(workspace: Path) -> None:
+    (workspace / "tunnel.yaml").write_text(SWEPT)
+    shown = CliRunner().invoke(app, ["run", "tunnel.yaml", "--require-success"])
+    assert shown.exit_code == 1
+    assert "'robot_0' hit 'obstacle_1' at 3.13 s near (9.99, 5.00)" in " ".join(shown.stdout.split())
+    result = irsim.run("tunnel.yaml")
+    assert (result.outcome, result.contacts_between_steps) == ("collision", 0)
+    assert result.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)  # its radius before the face of the wall
+
+
+@pytest.mark.parametrize("step_time", [0.1, 0.5, 1])
+def test_nothing_passes_in_contact_mode(workspace: Path, step_time: float) -> None:
+    (workspace / "tunnel.yaml").write_text(CONTACT % step_time)
+    shown = printed("run", "tunnel.yaml")
+    assert "timeout: the robot did not arrive within 30 s" in shown
+    assert "stands still 8.11 m from its goal, and it pushes against 'obstacle_1'" in shown
+    result = irsim.run("tunnel.yaml")
+    assert (result.outcome, result.contacts_between_steps) == ("timeout", 0)
+    assert result.robots[0].pose[0] == pytest.approx(9.89, abs=1e-3)
+    assert "without touching" not in result.summary  # it leans on the wall

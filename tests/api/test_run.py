@@ -326,9 +326,6 @@ def test_no_behavior_is_left_out_for_robots_that_a_policy_drives(tmp_path: Path)
     assert told(irsim.run(text=UNDRIVEN, policy="dash").warnings) == ["obstacle"]
     file = tmp_path / "undriven.yaml"
     file.write_text(UNDRIVEN)
-    for policies, expected in (
-        (["dash", "orca"], ["obstacle"]),
-        (["dash", "as-written"], ["robot", "obstacle"]),
-    ):
+    for policies, expected in ((["dash", "orca"], ["obstacle"]), (["dash", "as-written"], ["robot", "obstacle"])):
         [warnings] = irsim.benchmark(file, policies=policies, seeds=1, workers=1).warnings.values()
         assert told(warnings) == expected

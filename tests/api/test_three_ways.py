@@ -120,9 +120,7 @@ def test_benchmark(workspace: Path, name: str) -> None:
     file = f"{name}/scenario.yaml"
     result = irsim.benchmark([file], ["as-written", "orca"], 2, steps=STEPS, strict=True)
     expected = bytes_of(result.model_dump_json())
-    told = shell(
-        *("benchmark", file, "--behaviors", "as-written,orca", "--seeds", 2, "--steps", STEPS, "--strict"),
-    )
+    told = shell(*("benchmark", file, "--behaviors", "as-written,orca", "--seeds", 2, "--steps", STEPS, "--strict"))
     assert told == expected
     jobs = Jobs(Workspace(workspace), ServerLimits())
     arguments = {"files": [file], "behaviors": ["as-written", "orca"], "seeds": 2, "steps": STEPS}

@@ -28,17 +28,9 @@ robot:
     behavior: {name: dash}
 """
 
-CRASH = """\
-world: {width: 8, height: 6}
-robot:
-  - kinematics: {name: diff}
-    shape: {name: circle, radius: 0.3}
-    state: [1, 3, 0]
-    goal: [7, 3, 0]
-    behavior: {name: dash}
-obstacle:
-  - {shape: {name: circle, radius: 0.5}, state: [4, 3, 0]}
-"""
+CRASH = ROOM.replace("goal: [4, 3, 0]", "goal: [7, 1, 0]") + (
+    "obstacle:\n  - {shape: {name: circle, radius: 0.5}, state: [4, 1, 0]}\n"
+)
 
 
 @pytest.fixture(autouse=True)
@@ -48,12 +40,13 @@ def _in_tmp_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def irsim() -> Run:
-    """``irsim("run", "room.yaml")`` inside this process: quick."""
+    """``irsim("run", "room.yaml")`` inside this process: quick; with ``code``, it must end with that code."""
     from irsim.cli.app import app
 
-    def call(*words: str, **options: Any) -> Result:
+    def call(*words: str, code: int | None = None, **options: Any) -> Result:
         result = CliRunner().invoke(app, [str(word) for word in words], **options)
         assert "Traceback" not in result.output
+        assert code in (None, result.exit_code), result.output
         return result
 
     return call

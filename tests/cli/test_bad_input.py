@@ -39,8 +39,7 @@ def bad(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[str, Path]:
 @pytest.mark.parametrize("verb", [["run"], ["validate"], ["render", "-o", "x.png"]])
 def test_one_clear_error(irsim: Run, bad: tuple[str, Path], verb: list[str], tmp_path: Path) -> None:
     code, path = bad
-    result = irsim(verb[0], path.name, *verb[1:])
-    assert result.exit_code == 2, result.output
+    result = irsim(verb[0], path.name, *verb[1:], code=2)
     assert code in result.output
     assert len(result.output) < 2000
     assert not (tmp_path / "x.png").exists()
@@ -74,18 +73,15 @@ def test_every_error_has_a_documented_code(irsim: Run, room: Path, words: list[s
 
 def test_a_missing_file_names_near_matches(irsim: Run, room: Path) -> None:
     for verb in (["run"], ["validate"], ["render", "-o", "x.png"]):
-        result = irsim(verb[0], "romm.yaml", *verb[1:])
-        assert result.exit_code == 2
+        result = irsim(verb[0], "romm.yaml", *verb[1:], code=2)
         assert "room.yaml" in result.output
 
 
 def test_errors_are_json_too(irsim: Run, room: Path) -> None:
-    missing = irsim("run", "romm.yaml", "--json")
-    assert missing.exit_code == 2
+    missing = irsim("run", "romm.yaml", "--json", code=2)
     assert json.loads(missing.stdout)["error"]["code"] == "file-not-found"
     room.write_text("robot: {behavior: {name: dahs}}\nwrold: {}\n", encoding="utf-8")
-    invalid = irsim("run", "room.yaml", "--strict", "--json")
-    assert invalid.exit_code == 2
+    invalid = irsim("run", "room.yaml", "--strict", "--json", code=2)
     assert {finding["code"] for finding in json.loads(invalid.stdout)["error"]["findings"]} >= {"unknown-key"}
 
 
@@ -104,12 +100,10 @@ def test_errors_are_json_too(irsim: Run, room: Path) -> None:
     ],
 )
 def test_wrong_usage_is_invalid_input(irsim: Run, room: Path, words: list[str]) -> None:
-    result = irsim(*words)
-    assert result.exit_code == 2, result.output
+    irsim(*words, code=2)
 
 
 def test_a_place_that_cannot_be_written_is_a_failure(irsim: Run, room: Path) -> None:
-    result = irsim("render", "room.yaml", "-o", "room.yaml/room.png")
-    assert result.exit_code == 1, result.output
+    result = irsim("render", "room.yaml", "-o", "room.yaml/room.png", code=1)
     assert "file-access" in result.stderr
     assert "room.yaml" in result.stderr

@@ -18,23 +18,20 @@ def test_doctor_lists_every_bridge(irsim: Run) -> None:
 
 
 def test_doctor_of_one_that_does_not_exist(irsim: Run) -> None:
-    done = irsim("bridge", "doctor", "telepathy")
-    assert done.exit_code == 2
+    done = irsim("bridge", "doctor", "telepathy", code=2)
     assert "'telepathy' is not a bridge" in done.stderr
     assert "json_lines" in done.stderr
 
 
 def test_a_key_that_there_is_none_of(irsim: Run, room: Path) -> None:
-    done = irsim("run", str(room), "--bridge", "{name: rosbridge, address: x, mode: reel}")
-    assert done.exit_code == 2
+    done = irsim("run", str(room), "--bridge", "{name: rosbridge, address: x, mode: reel}", code=2)
     assert "'address' is not a key of the bridge 'rosbridge'" in done.stderr
     assert "'reel' is not a valid value of 'mode' (allowed: sim, real)" in done.stderr
     assert "Input should be" not in done.stderr
 
 
 def test_a_value_that_is_not_allowed_as_data(irsim: Run, room: Path) -> None:
-    done = irsim("run", str(room), "--json", "--bridge", "{name: mujoco, slip: 7, video: 3}")
-    assert done.exit_code == 2
+    done = irsim("run", str(room), "--json", "--bridge", "{name: mujoco, slip: 7, video: 3}", code=2)
     answer = json.loads(done.stdout)["error"]
     assert answer["code"] == "out-of-range"
     first, second = answer["findings"]
@@ -53,14 +50,12 @@ def test_a_value_that_is_not_allowed_as_data(irsim: Run, room: Path) -> None:
     ],
 )
 def test_values_that_are_not_allowed(irsim: Run, room: Path, given: str, code: str, words: str) -> None:
-    done = irsim("run", str(room), "--bridge", given)
-    assert done.exit_code == 2
+    done = irsim("run", str(room), "--bridge", given, code=2)
     said = " ".join(done.stderr.split())
     assert said.startswith(f"error {code}: ")
     assert words in said
 
 
 def test_a_program_that_is_not_there(irsim: Run, room: Path) -> None:
-    done = irsim("run", str(room), "--bridge", "{name: json_lines, address: '127.0.0.1:1'}")
-    assert done.exit_code == 1
+    done = irsim("run", str(room), "--bridge", "{name: json_lines, address: '127.0.0.1:1'}", code=1)
     assert "no program listens at 127.0.0.1:1" in done.stderr

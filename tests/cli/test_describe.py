@@ -39,8 +39,7 @@ def test_a_path_gives_type_unit_default_and_meaning(irsim: Run) -> None:
     ["robot[0].vel_max", "obstacle.shape.circle.radius", "world.plot.viewpoint", "gui.keyboard", "world", "robot"],
 )
 def test_paths_of_all_kinds(irsim: Run, topic: str) -> None:
-    result = irsim("describe", topic)
-    assert result.exit_code == 0
+    irsim("describe", topic, code=0)
     assert lookup(topic).kind == "key"
 
 
@@ -142,8 +141,7 @@ def test_other_words_are_searched_for(irsim: Run) -> None:
     ],
 )
 def test_a_miss_names_what_is_near(irsim: Run, topic: str, near: str) -> None:
-    result = irsim("describe", *topic.split())
-    assert result.exit_code == 2
+    result = irsim("describe", *topic.split(), code=2)
     assert "unknown-topic" in result.stderr
     assert near in result.stderr
 

@@ -15,8 +15,7 @@ from tests.cli.conftest import Run, parsed
 
 
 def test_writes_a_file_that_runs(irsim: Run, tmp_path: Path) -> None:
-    result = irsim("new", "corridor-passing", "--set", "width=2.4")
-    assert result.exit_code == 0
+    result = irsim("new", "corridor-passing", "--set", "width=2.4", code=0)
     data = yaml.safe_load((tmp_path / "corridor-passing.yaml").read_text(encoding="utf-8"))
     walls = [obstacle["state"][1] for obstacle in data["obstacle"]]
     assert walls[0] - walls[1] - 0.3 == pytest.approx(2.4)
@@ -32,8 +31,7 @@ def test_the_first_line_leads_editors_to_the_schema(irsim: Run, tmp_path: Path) 
 
 def test_never_overwrites_unless_told_to(irsim: Run, tmp_path: Path) -> None:
     (tmp_path / "empty-room.yaml").write_text("mine", encoding="utf-8")
-    refused = irsim("new", "empty-room")
-    assert refused.exit_code == 2
+    refused = irsim("new", "empty-room", code=2)
     assert "--force" in refused.stderr
     assert (tmp_path / "empty-room.yaml").read_text(encoding="utf-8") == "mine"
     assert irsim("new", "empty-room", "--force").exit_code == 0
@@ -58,23 +56,20 @@ def test_prints_to_standard_output(irsim: Run, tmp_path: Path) -> None:
 def test_mistakes_are_explained_and_nothing_is_written(
     irsim: Run, tmp_path: Path, words: list[str], code: str, help_text: str
 ) -> None:
-    result = irsim("new", *words)
-    assert result.exit_code == 2
+    result = irsim("new", *words, code=2)
     assert code in result.stderr
     assert help_text in result.stderr
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_that_does_not_exist_is_made(irsim: Run, tmp_path: Path) -> None:
-    result = irsim("new", "empty-room", "-o", str(tmp_path / "no" / "such" / "place.yaml"))
-    assert result.exit_code == 0
+    irsim("new", "empty-room", "-o", str(tmp_path / "no" / "such" / "place.yaml"), code=0)
     assert (tmp_path / "no" / "such" / "place.yaml").exists()
 
 
 def test_a_place_that_cannot_exist_is_a_failure(irsim: Run, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("mine")
-    result = irsim("new", "empty-room", "-o", str(tmp_path / "file" / "place.yaml"))
-    assert result.exit_code == 1
+    result = irsim("new", "empty-room", "-o", str(tmp_path / "file" / "place.yaml"), code=1)
     assert "file-access" in result.stderr
 
 
@@ -105,8 +100,7 @@ def test_templates_are_found_by_the_words_of_users(irsim: Run, words: list[str],
 
 
 def test_a_contact_sheet_of_templates(irsim: Run, tmp_path: Path) -> None:
-    result = irsim("templates", "parking", "--sheet", str(tmp_path / "sheet.png"))
-    assert result.exit_code == 0
+    irsim("templates", "parking", "--sheet", str(tmp_path / "sheet.png"), code=0)
     with Image.open(tmp_path / "sheet.png") as sheet:
         assert sheet.width > 1000
         colors = sheet.convert("RGB").getcolors(1 << 20)

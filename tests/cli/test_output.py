@@ -19,8 +19,7 @@ class Terminal(io.StringIO):
 
 def test_names_cannot_play_tricks_on_the_terminal(irsim: Run, room: Path) -> None:
     room.write_text(ROOM.replace("- kin", '- name: "\\e[31mred\\a"\n    kin'), encoding="utf-8")
-    result = irsim("run", "room.yaml", "--steps", "3")
-    assert result.exit_code == 0
+    result = irsim("run", "room.yaml", "--steps", "3", code=0)
     assert "\x1b" not in result.output
     assert "\x07" not in result.output
     assert "red" in result.output

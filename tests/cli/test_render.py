@@ -14,8 +14,7 @@ from tests.cli.conftest import Run, parsed
 
 @pytest.mark.parametrize(("suffix", "kind"), [("png", "PNG"), ("gif", "GIF")])
 def test_draws_pictures_and_animations(irsim: Run, room: Path, suffix: str, kind: str) -> None:
-    result = irsim("render", "room.yaml", "-o", f"room.{suffix}", "--steps", "5", "--seed", "3")
-    assert result.exit_code == 0, result.output
+    result = irsim("render", "room.yaml", "-o", f"room.{suffix}", "--steps", "5", "--seed", "3", code=0)
     with Image.open(f"room.{suffix}") as picture:
         assert picture.format == kind
         assert getattr(picture, "n_frames", 1) == (6 if kind == "GIF" else 1)
@@ -42,8 +41,7 @@ def test_a_part_of_the_world(irsim: Run, room: Path, suffix: str) -> None:
 
 
 def test_no_part_of_any_world(irsim: Run, room: Path) -> None:
-    result = irsim("render", "room.yaml", "-o", "part.png", "--region", "1", "0", "1", "5")
-    assert result.exit_code == 2
+    result = irsim("render", "room.yaml", "-o", "part.png", "--region", "1", "0", "1", "5", code=2)
     assert "bad-argument" in result.output
     assert "x_min, y_min, x_max, y_max" in result.output
 
@@ -55,8 +53,7 @@ def test_films_need_no_display_and_no_ffmpeg_of_the_system(irsim: Run, room: Pat
 
 @pytest.mark.slow
 def test_demo_leaves_a_gif_and_says_where(irsim: Run, tmp_path: Path) -> None:
-    result = irsim("demo")
-    assert result.exit_code == 0, result.output
+    result = irsim("demo", code=0)
     assert "success" in result.stdout
     assert "irsim-demo.gif" in result.stdout
     assert "irsim demo --seed" in result.stdout
@@ -78,19 +75,16 @@ def test_overlays_are_those_of_the_tool(irsim: Run, room: Path, tmp_path: Path) 
     data = parsed(irsim("render", "room.yaml", "-o", "plan.png", "--overlays", "plan, goals", "--steps", "3", "--json"))
     assert "--overlays plan,goals" in data["reproduce"]
     assert (tmp_path / "plan.png").read_bytes() == snapshot("room.yaml", steps=3, overlays=["plan", "goals"]).png
-    bare = irsim("render", "room.yaml", "-o", "bare.png", "--overlays", "", "--seed", "0")
-    assert bare.exit_code == 0, bare.output
+    irsim("render", "room.yaml", "-o", "bare.png", "--overlays", "", "--seed", "0", code=0)
     assert (tmp_path / "bare.png").read_bytes() == snapshot("room.yaml", overlays=[], seed=0).png
 
 
 def test_an_unknown_overlay_names_the_nearest(irsim: Run, room: Path, tmp_path: Path) -> None:
-    refused = irsim("render", "room.yaml", "-o", "plan.png", "--overlays", "plann")
-    assert refused.exit_code == 2
+    refused = irsim("render", "room.yaml", "-o", "plan.png", "--overlays", "plann", code=2)
     assert "'plann' is not a valid overlay" in refused.output
     assert "write 'plan'" in refused.output
     assert not (tmp_path / "plan.png").exists()
-    as_pdf = irsim("render", "room.yaml", "-o", "plan.pdf", "--overlays", "plan")
-    assert as_pdf.exit_code == 2
+    as_pdf = irsim("render", "room.yaml", "-o", "plan.pdf", "--overlays", "plan", code=2)
     assert "unknown-format" in as_pdf.output
 
 
@@ -137,6 +131,5 @@ def test_a_picture_after_the_arrival_says_when_the_episode_ended(irsim: Run, tmp
 
 
 def test_a_suite_from_standard_input_is_told_to_come_as_a_file(irsim: Run, tmp_path: Path) -> None:
-    result = irsim("validate", "-", input="suite: mine\nversion: 1\n")
-    assert result.exit_code == 2
+    result = irsim("validate", "-", input="suite: mine\nversion: 1\n", code=2)
     assert "give the name of its file" in result.output

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -12,15 +13,13 @@ from tests.cli.conftest import ROOM, Run, parsed
 
 
 def test_says_what_a_valid_file_holds(irsim: Run, room: Path) -> None:
-    result = irsim("validate", "room.yaml")
-    assert result.exit_code == 0
+    result = irsim("validate", "room.yaml", code=0)
     assert "room.yaml: valid: 1 robot" in result.stdout
 
 
 def test_shows_every_problem_with_its_line(irsim: Run, room: Path) -> None:
     room.write_text(ROOM.replace("dash", "dahs").replace("radius: 0.3", "radius: -1"), encoding="utf-8")
-    result = irsim("validate", "room.yaml")
-    assert result.exit_code == 2
+    result = irsim("validate", "room.yaml", code=2)
     assert "room.yaml:4:" in result.stdout
     assert "room.yaml:7:" in result.stdout
     assert "behavior: {name: dahs}" in result.stdout
@@ -29,8 +28,7 @@ def test_shows_every_problem_with_its_line(irsim: Run, room: Path) -> None:
 
 def test_json_is_the_report_of_the_python_function(irsim: Run, room: Path) -> None:
     room.write_text(ROOM.replace("dash", "dahs"), encoding="utf-8")
-    result = irsim("validate", "room.yaml", "--json")
-    assert result.exit_code == 2
+    result = irsim("validate", "room.yaml", "--json", code=2)
     assert parsed(result) == package.validate("room.yaml").model_dump(mode="json")
 
 
@@ -41,8 +39,7 @@ def test_several_files_give_one_json_line_each(irsim: Run, room: Path, crash: Pa
 
 def test_one_bad_file_among_good_ones_decides_the_exit_code(irsim: Run, room: Path, crash: Path) -> None:
     crash.write_text("robto: {}\n", encoding="utf-8")
-    result = irsim("validate", "crash.yaml", "room.yaml")
-    assert result.exit_code == 2
+    result = irsim("validate", "crash.yaml", "room.yaml", code=2)
     assert "room.yaml: valid" in result.stdout
 
 
@@ -54,8 +51,7 @@ def test_reads_standard_input(irsim: Run) -> None:
 def test_lenient_only_warns_where_ir_sim_carries_on(irsim: Run, room: Path) -> None:
     room.write_text(ROOM.replace("height: 6", "heigth: 6"), encoding="utf-8")
     assert irsim("validate", "room.yaml").exit_code == 2
-    lenient = irsim("validate", "room.yaml", "--lenient")
-    assert lenient.exit_code == 0
+    lenient = irsim("validate", "room.yaml", "--lenient", code=0)
     assert "unknown-key" in lenient.stdout
 
 
@@ -67,8 +63,7 @@ def test_limits_can_be_raised(irsim: Run, room: Path) -> None:
 
 def test_fix_mends_the_file_in_place(irsim: Run, room: Path) -> None:
     room.write_text(ROOM.replace("behavior", "behaviour") + "# the end\n", encoding="utf-8")
-    result = irsim("validate", "room.yaml", "--fix")
-    assert result.exit_code == 0, result.stdout
+    result = irsim("validate", "room.yaml", "--fix", code=0)
     assert "renamed 'behaviour' to 'behavior'" in result.stdout
     assert room.read_text(encoding="utf-8") == ROOM + "# the end\n"
     assert "fixed" not in irsim("validate", "room.yaml", "--fix").stdout
@@ -90,8 +85,7 @@ def test_fix_of_standard_input_is_a_filter(irsim: Run, room: Path) -> None:
 @pytest.mark.parametrize("more", ["--json", "room.yaml"])
 def test_fix_of_standard_input_prints_nothing_else(irsim: Run, room: Path, more: str) -> None:
     before = room.read_text(encoding="utf-8")
-    result = irsim("validate", "-", "--fix", more, input=ROOM)
-    assert result.exit_code == 2
+    result = irsim("validate", "-", "--fix", more, input=ROOM, code=2)
     assert "--fix with - prints the repaired text" in " ".join(result.stderr.split())
     assert room.read_text(encoding="utf-8") == before
 
@@ -100,8 +94,7 @@ def test_fix_says_which_repair_would_lose_comments(irsim: Run, room: Path) -> No
     goal = next(line for line in ROOM.splitlines() if "goal:" in line)
     text = ROOM.replace(goal, "    goal:\n      x: 9  # by the door\n      y: 5")
     room.write_text(text, encoding="utf-8")
-    result = irsim("validate", "room.yaml", "--fix", "--json")
-    assert result.exit_code == 2
+    result = irsim("validate", "room.yaml", "--fix", "--json", code=2)
     assert room.read_text(encoding="utf-8") == text
     assert [finding["fix"] for finding in parsed(result)["findings"] if finding["severity"] == "error"] == [
         "write [9, 5] (by hand: --fix does not change it, because comments there would be lost)"
@@ -116,8 +109,7 @@ def test_fix_leaves_a_file_alone_that_it_cannot_mend(irsim: Run, room: Path) -> 
 
 
 def test_simulate_says_what_happens(irsim: Run, room: Path) -> None:
-    result = irsim("validate", "room.yaml", "--simulate")
-    assert result.exit_code == 0
+    result = irsim("validate", "room.yaml", "--simulate", code=0)
     assert "1 of 1 robots arrived" in result.stdout
     tried = parsed(irsim("validate", "room.yaml", "--simulate", "--json"))["dry_run"]
     assert tried == package.validate("room.yaml", simulate=True).model_dump(mode="json")["dry_run"]
@@ -125,8 +117,7 @@ def test_simulate_says_what_happens(irsim: Run, room: Path) -> None:
 
 def test_diff_lists_changes_and_refuses_those_not_asked_for(irsim: Run, room: Path) -> None:
     Path("other.yaml").write_text(ROOM.replace("dash", "rvo"), encoding="utf-8")
-    result = irsim("diff", "room.yaml", "other.yaml")
-    assert result.exit_code == 0
+    result = irsim("diff", "room.yaml", "other.yaml", code=0)
     assert "behavior.name" in result.stdout
     assert irsim("diff", "room.yaml", "other.yaml", "--only", "robot[0].behavior").exit_code == 0
     assert irsim("diff", "room.yaml", "other.yaml", "--only", "world").exit_code == 1
@@ -199,10 +190,21 @@ reward: [{name: progress, weight: 1}]
 
 def test_options_of_scenarios_leave_tasks_beside_them_alone(irsim: Run, room: Path) -> None:
     Path("task.yaml").write_text(TASK)
-    alone = irsim("validate", "task.yaml")
-    assert alone.exit_code == 0, alone.output
-    result = irsim("validate", "room.yaml", "task.yaml", "--simulate", "--table")
-    assert result.exit_code == 0, result.output
+    irsim("validate", "task.yaml", code=0)
+    result = irsim("validate", "room.yaml", "task.yaml", "--simulate", "--table", code=0)
     assert result.stdout.count("dry run") == 1
     assert "task.yaml: valid" in result.stdout
     assert irsim("validate", "task.yaml", "--simulate").exit_code == 2
+
+
+def test_drawn_places_are_printed_to_the_millimetre(irsim: Run) -> None:
+    text = """
+world: {width: 12, height: 12}
+robot: {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, behavior: {name: dash},
+  distribution: {name: random, range_low: [1, 1, -3]}}
+"""
+    Path("a.yaml").write_text(text)
+    Path("b.yaml").write_text(text.replace("[1, 1, -3]", "[1.5, 1, -3]"))
+    printed = irsim("diff", "a.yaml", "b.yaml").stdout
+    assert re.search(r"robot_0 pose  \[[\d., -]+\] -> \[", printed)
+    assert not re.search(r"\d\.\d{4}", printed)

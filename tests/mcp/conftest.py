@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import AsyncIterator
+import json
+import subprocess
+import sys
+import time
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
@@ -14,7 +18,7 @@ from mcp.types import CallToolResult, ImageContent, TextContent
 
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.server import IrsimServer, build_server
-from tests.warm import warm_mcp
+from tests.warm import SERVERS, warm_mcp
 
 ERAS = ("auto", "legacy")
 """Newest protocol, without a handshake, and the one before."""
@@ -33,6 +37,10 @@ robot:
 CRASH = ROOM.replace("goal: [4, 3, 0]", "goal: [7, 1, 0]") + (
     "obstacle:\n  - {name: crate, shape: {name: circle, radius: 0.5}, state: [4, 1, 0]}\n"
 )
+
+HANDSHAKE = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "0"}}
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
 LONG = """\
 world: {width: 100, height: 100}
@@ -157,3 +165,72 @@ def image_of(result: CallToolResult) -> ImageContent:
     image = result.content[1]
     assert isinstance(image, ImageContent)
     return image
+
+
+class Wire:
+    """A server process, line by line."""
+
+    def __init__(self, workspace: Path, *options: str, **how: Any) -> None:
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "irsim_mcp", "--workspace", str(workspace), *options],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, **how,
+        )  # fmt: skip
+        self.ready = False
+
+    def send(self, **message: Any) -> None:
+        assert self.process.stdin is not None
+        self.process.stdin.write(json.dumps({"jsonrpc": "2.0", **message}) + "\n")
+        self.process.stdin.flush()
+
+    def receive(self) -> dict[str, Any]:
+        assert self.process.stdout is not None
+        return dict(json.loads(self.process.stdout.readline()))
+
+    def call(self, tool: str, number: int = 2, more: dict[str, Any] | None = None, **arguments: Any) -> None:
+        """Ask for a call, after the handshake if it is the first one."""
+        if not self.ready:
+            self.send(id=1, method="initialize", params=HANDSHAKE)
+            assert self.receive()["id"] == 1
+            self.send(method="notifications/initialized")
+            self.ready = True
+        self.send(id=number, method="tools/call", params={"name": tool, "arguments": arguments, **(more or {})})
+
+    def start_long_run(self) -> list[int]:
+        """Begin a run that takes minutes and wait for its first progress; the ids of the worker processes."""
+        self.call("run_episode", more={"_meta": {"progressToken": "p"}}, scenario_yaml=LONG)
+        assert self.receive()["method"] == "notifications/progress"
+        return children_of(self.process.pid)
+
+    def close(self) -> None:
+        for stream in (self.process.stdin, self.process.stdout):
+            if stream is not None:
+                stream.close()
+        self.process.kill()
+        self.process.wait()
+
+
+@pytest.fixture
+def wire(workspace: Path) -> Iterator[Wire]:
+    wire = Wire(workspace)
+    yield wire
+    wire.close()
+
+
+def children_of(pid: int) -> list[int]:
+    folders = Path(f"/proc/{pid}/task").iterdir()
+    children = [int(child) for folder in folders for child in (folder / "children").read_text().split()]
+    return [child for child in children if child not in SERVERS]
+
+
+def runs(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def wait_until_gone(pids: list[int], seconds: float) -> None:
+    end = time.monotonic() + seconds
+    while any(map(runs, pids)) and time.monotonic() < end:
+        time.sleep(0.02)
+    assert [pid for pid in pids if runs(pid)] == []

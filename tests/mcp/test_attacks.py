@@ -57,6 +57,10 @@ SCENARIOS = {
     "picture above": (ROOM + "    description: ../secret.png\n", "path-outside-workspace"),
     "pipe as a picture": (ROOM + "    description: pipe.png\n", "path-outside-workspace"),
     "half a character": ("robot: {name: '\ud800'}\n", "not-text"),
+    "a key given twice": ("world: {width: 5}\nworld: {width: 6}\n", "duplicate-key"),
+    "not a number": ("world: {width: .nan}\n", "not-a-number"),
+    "infinite": ("world: {width: .inf}\n", "infinite-number"),
+    "infinite below zero": ("robot: [{kinematics: {name: diff}, state: [1, -.inf, 0]}]\n", "infinite-number"),
 }
 FILES = {
     "above": "../secret.yaml",

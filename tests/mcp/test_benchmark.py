@@ -132,10 +132,7 @@ async def test_limits(client: Caller, workspace: Path) -> None:
     for arguments, product in (
         ({"scenarios": [ROOM], "seeds": 101}, "1 scenarios x 1 policies x 101 seeds = 101 episodes"),
         ({"scenarios": [ROOM] * 21, "seeds": 1}, "21 scenarios x 1 policies x 1 seeds = 21 episodes"),
-        (
-            {"scenarios": [ROOM], "behaviors": list("abcdefghi")},
-            "1 scenarios x 9 policies x 10 seeds = 90 episodes",
-        ),
+        ({"scenarios": [ROOM], "behaviors": list("abcdefghi")}, "1 scenarios x 9 policies x 10 seeds = 90 episodes"),
         ({"scenarios": [ROOM] * 20, "behaviors": list("abc"), "seeds": 100}, "= 6,000 episodes"),
     ):
         told = await client.error("benchmark", **arguments)

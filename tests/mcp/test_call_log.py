@@ -15,8 +15,7 @@ import pytest
 from mcp.types import CallToolResult, TextContent
 
 from irsim_mcp.call_log import CallLog
-from tests.mcp.conftest import ROOM, Caller, as_process, image_of, text_of
-from tests.mcp.test_lifetime import HANDSHAKE
+from tests.mcp.conftest import ROOM, Caller, Wire, as_process, image_of, text_of
 from tests.warm import warm
 
 pytestmark = pytest.mark.one_python
@@ -82,26 +81,14 @@ async def test_calls_at_the_same_time_do_not_mix(workspace: Path, tmp_path: Path
 def test_a_killed_server_has_lost_nothing_and_the_next_one_goes_on(workspace: Path, tmp_path: Path) -> None:
     log = tmp_path / "calls.jsonl"
     log.write_text('{"call": 1, "tool": "lookup", "argum', encoding="utf-8")  # a line that was cut off
-    environment = {**os.environ, "IRSIM_MCP_TOKEN": SECRET}
     for _ in range(2):
-        process = subprocess.Popen(
-            [sys.executable, "-m", "irsim_mcp", "--workspace", str(workspace), "--log-calls", str(log)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment,
-        )  # fmt: skip
-        assert process.stdin is not None
-        assert process.stdout is not None
-        messages = [
-            {"id": 1, "method": "initialize", "params": HANDSHAKE},
-            {"method": "notifications/initialized"},
-            {"id": 2, "method": "tools/call", "params": {"name": "lookup", "arguments": {"topik": "dash"}}},  # refused
-        ]
-        process.stdin.write("".join(json.dumps({"jsonrpc": "2.0", **message}) + "\n" for message in messages))
-        process.stdin.flush()
-        answers = [json.loads(process.stdout.readline()) for _ in range(2)]
-        assert [answer["id"] for answer in answers] == [1, 2]
-        process.kill()
-        rest, said = process.communicate()
-        assert (rest, said) == ("", "")
+        wire = Wire(
+            workspace, "--log-calls", str(log), stderr=subprocess.PIPE, env={**os.environ, "IRSIM_MCP_TOKEN": SECRET}
+        )
+        wire.call("lookup", topik="dash")  # which is refused at once
+        assert wire.receive()["id"] == 2
+        wire.process.kill()
+        assert wire.process.communicate() == ("", "")
     torn, *lines = log.read_text(encoding="utf-8").splitlines()
     assert torn.endswith("argum")
     assert [json.loads(line)["tool"] for line in lines] == ["lookup", "lookup"]

@@ -17,8 +17,7 @@ from mcp.client.streamable_http import streamable_http_client
 
 from irsim_mcp.http import Address, HttpRefused, address, application, token_from
 from irsim_mcp.server import build_server
-from tests.mcp.conftest import ERAS, LONG, ROOM, Caller
-from tests.mcp.test_lifetime import children_of, linux, wait_until_gone
+from tests.mcp.conftest import ERAS, LONG, ROOM, Caller, children_of, linux, wait_until_gone
 from tests.warm import warm_mcp
 
 TOKEN = "a-token-that-is-long-enough"
@@ -201,10 +200,7 @@ def test_no_addresses(text: str) -> None:
 def test_a_port_in_use_is_told(local: str, empty: Path) -> None:
     port = local.removesuffix("/mcp").rpartition(":")[2]
     done = subprocess.run(
-        warm_mcp("--workspace", str(empty), "--http", port),
-        capture_output=True,
-        text=True,
-        check=False,
+        warm_mcp("--workspace", str(empty), "--http", port), capture_output=True, text=True, check=False
     )
     assert done.returncode == 2
     assert f"--http 127.0.0.1:{port}: " in done.stderr

@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import anyio
@@ -15,7 +13,7 @@ import pytest
 from mcp import Client
 
 import irsim
-from tests.mcp.conftest import CRASH, LONG, ROOM, Caller, as_process, connected, data_of, text_of
+from tests.mcp.conftest import CRASH, LONG, ROOM, Caller, Wire, as_process, connected, data_of, text_of, wait_until_gone
 from tests.mcp.test_benchmark import MANY, RANDOM
 from tests.warm import SERVERS
 
@@ -156,50 +154,24 @@ async def test_links_are_not_followed(client: Caller, workspace: Path, tmp_path:
     ],
 )
 async def test_a_server_that_ends_leaves_no_process_and_all_that_was_done(
-    workspace: Path, how: str, world: str
+    wire: Wire, workspace: Path, how: str, world: str
 ) -> None:
-    command = as_process(workspace)
-    server = subprocess.Popen([command.command, *command.args], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-    try:
-        asked = {"scenarios": [LONG], "seeds": 4, "wait_s": 0} if world == "long" else MANY
-        call = {"name": "benchmark", "arguments": asked}
-        hello = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "t", "version": "0"}}
-        for message in (
-            {"id": 1, "method": "initialize", "params": hello},
-            {"method": "notifications/initialized"},
-            {"id": 2, "method": "tools/call", "params": call},
-        ):
-            server.stdin.write(json.dumps({"jsonrpc": "2.0", **message}).encode() + b"\n")
-        server.stdin.flush()
-        answers = [json.loads(server.stdout.readline()) for _ in range(2)]
-        job = answers[1]["result"]["structuredContent"]["job_id"]
-        until = time.monotonic() + 10
-        while not descendants(server.pid) and time.monotonic() < until:
-            await anyio.sleep(0.1)
-        if world == "long":
-            await anyio.sleep(2.0)
-        else:
-            with anyio.fail_after(30):
-                while not kept_of(workspace, job):
-                    await anyio.sleep(0.05)
-        children = descendants(server.pid)
-        assert children
-        told = kept_of(workspace, job)
-        if how == "kill -9":
-            server.send_signal(signal.SIGKILL)
-        else:
-            server.stdin.close()
-        server.wait(10)
-        until = time.monotonic() + 5
-        while any(alive(child) for child in children) and time.monotonic() < until:
-            await anyio.sleep(0.1)
-        assert not [child for child in children if alive(child)]
-    finally:
-        server.kill()
-        server.wait()
-        server.stdout.close()
-        if not server.stdin.closed:
-            server.stdin.close()
+    wire.call("benchmark", **({"scenarios": [LONG], "seeds": 4, "wait_s": 0} if world == "long" else MANY))
+    job = wire.receive()["result"]["structuredContent"]["job_id"]
+    with anyio.fail_after(30):
+        while not descendants(wire.process.pid) or (world == "short" and not kept_of(workspace, job)):
+            await anyio.sleep(0.05)
+    if world == "long":
+        await anyio.sleep(2.0)
+    children, told = descendants(wire.process.pid), kept_of(workspace, job)
+    assert children
+    if how == "kill -9":
+        wire.process.kill()
+    else:
+        assert wire.process.stdin is not None
+        wire.process.stdin.close()
+    wire.process.wait(10)
+    await anyio.to_thread.run_sync(wait_until_gone, children, 5)
     async with Caller(as_process(workspace)) as client:
         ended = await client.data("get_job", job_id=job)
     assert ended["status"] == "interrupted"
@@ -243,15 +215,6 @@ def descendants(pid: int) -> list[int]:
     return processes
 
 
-def alive(pid: int) -> bool:
-    try:
-        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
 async def gone(pid: int) -> None:
-    until = time.monotonic() + 5
-    while descendants(pid) and time.monotonic() < until:
-        await anyio.sleep(0.1)
+    await anyio.to_thread.run_sync(wait_until_gone, descendants(pid), 5)
     assert not descendants(pid)

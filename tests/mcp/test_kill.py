@@ -16,8 +16,7 @@ import pytest
 import irsim
 from irsim.runs import list_runs, open_run
 from irsim.runs.store import prune, runs_folder
-from tests.mcp.conftest import ROOM
-from tests.mcp.test_lifetime import HANDSHAKE, Wire, children_of, wait_until_gone
+from tests.mcp.conftest import ROOM, Wire, children_of, wait_until_gone
 
 pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc"),
@@ -31,12 +30,8 @@ def one_life(workspace: Path, rng: random.Random) -> list[str]:
     """A server at work that is, or whose worker is, killed at a random moment; the runs it has told of."""
     wire, told = Wire(workspace), list[str]()
     try:
-        wire.send(id=0, method="initialize", params=HANDSHAKE)
-        wire.receive()
-        wire.send(method="notifications/initialized")
         for number in range(1, 4):
-            params = {"name": "run_episode", "arguments": {"scenario_yaml": CALM, "seed": number}}
-            wire.send(id=number, method="tools/call", params=params)
+            wire.call("run_episode", number, scenario_yaml=CALM, seed=number)
             if number > rng.randint(0, 2):
                 break
             told.append(wire.receive()["result"]["structuredContent"]["run_id"])
@@ -54,11 +49,7 @@ def one_life(workspace: Path, rng: random.Random) -> list[str]:
         wire.process.kill()
         wait_until_gone([*workers, wire.process.pid], 5)
     finally:
-        wire.process.kill()
-        wire.process.wait()
-        for stream in (wire.process.stdin, wire.process.stdout):
-            assert stream is not None
-            stream.close()
+        wire.close()
     return told
 
 

@@ -6,85 +6,30 @@ import json
 import os
 import re
 import signal
-import subprocess
-import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import anyio
 import pytest
 
-from tests.mcp.conftest import ERAS, LONG, ROOM, Caller, as_process, connected, error_of
-from tests.warm import SERVERS
+from tests.mcp.conftest import (
+    ERAS,
+    HANDSHAKE,
+    LONG,
+    ROOM,
+    Caller,
+    Wire,
+    as_process,
+    children_of,
+    connected,
+    error_of,
+    linux,
+    runs,
+    wait_until_gone,
+)
 
-HANDSHAKE = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "0"}}
 pytestmark = [pytest.mark.one_python, pytest.mark.usefixtures("ordinary_processes")]
-linux = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
-
-
-class Wire:
-    """A server process, line by line."""
-
-    def __init__(self, workspace: Path) -> None:
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "irsim_mcp", "--workspace", str(workspace)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-
-    def send(self, **message: Any) -> None:
-        assert self.process.stdin is not None
-        self.process.stdin.write(json.dumps({"jsonrpc": "2.0", **message}) + "\n")
-        self.process.stdin.flush()
-
-    def receive(self) -> dict[str, Any]:
-        assert self.process.stdout is not None
-        return dict(json.loads(self.process.stdout.readline()))
-
-    def start_long_run(self) -> list[int]:
-        """Begin a run that takes minutes and wait for its first progress; the ids of the worker processes."""
-        self.send(id=1, method="initialize", params=HANDSHAKE)
-        self.receive()
-        self.send(method="notifications/initialized")
-        arguments = {"scenario_yaml": LONG}
-        params = {"name": "run_episode", "arguments": arguments, "_meta": {"progressToken": "p"}}
-        self.send(id=2, method="tools/call", params=params)
-        assert self.receive()["method"] == "notifications/progress"
-        return children_of(self.process.pid)
-
-
-@pytest.fixture
-def wire(workspace: Path) -> Iterator[Wire]:
-    wire = Wire(workspace)
-    yield wire
-    for stream in (wire.process.stdin, wire.process.stdout):
-        if stream is not None:
-            stream.close()
-    wire.process.kill()
-    wire.process.wait()
-
-
-def children_of(pid: int) -> list[int]:
-    folders = Path(f"/proc/{pid}/task").iterdir()
-    children = [int(child) for folder in folders for child in (folder / "children").read_text().split()]
-    return [child for child in children if child not in SERVERS]
-
-
-def runs(pid: int) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
-def wait_until_gone(pids: list[int], seconds: float) -> None:
-    end = time.monotonic() + seconds
-    while any(map(runs, pids)) and time.monotonic() < end:
-        time.sleep(0.02)
-    assert [pid for pid in pids if runs(pid)] == []
 
 
 @linux

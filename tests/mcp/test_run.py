@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from irsim.cli.app import app
 from irsim.results.run import RunResult
+from tests.api.test_between_steps import CONTACT, SWEPT
 from tests.api.test_between_steps import scene as tunnel
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, Caller, connected, data_of, error_of, text_of
 
@@ -277,6 +278,15 @@ async def test_a_success_that_passed_a_wall_is_told_and_not_trusted(client: Call
     assert "robots touched something between steps in 1 of 1 episodes (seed 0)" in text_of(many).splitlines()[0]
     assert data_of(many)["rows"][0]["incidents"] == {"contacts_between_steps": 1}
     assert "passed through 'board' between two steps" in text_of(tried)
+
+
+async def test_a_wall_that_stops_the_robot_is_no_contact_between_steps(client: Caller) -> None:
+    swept = await client.call("run_episode", scenario_yaml=SWEPT)
+    pushed = await client.call("run_episode", scenario_yaml=CONTACT % 0.1)
+    assert text_of(swept).startswith("collision: the robot collided; 'robot_0' hit 'obstacle_1' at 3.13 s near (9.99")
+    assert "incidents" not in data_of(swept)
+    assert data_of(pushed)["outcome"] == "timeout"
+    assert "passed through" not in text_of(pushed)
 
 
 async def test_of_many_events_contacts_between_steps_are_listed(client: Caller, workspace: Path) -> None:

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+import irsim
+from irsim.runs import Run, open_run
+from irsim.runs.inspection import inspect_run
 
 ROOM = """\
 world: {width: 8, height: 6, time_limit: 20}
@@ -44,3 +49,14 @@ def crash(workspace: Path) -> Path:
     path = workspace / "crash.yaml"
     path.write_text(CRASH, encoding="utf-8")
     return path
+
+
+def recorded(scenario: Path | None = None, seed: int = 0, **options: Any) -> Run:
+    """The record of a new run."""
+    return open_run(str(irsim.run(scenario, seed=seed, record=True, **options).run_id))
+
+
+def first_row(run: Run | Path, **asked: Any) -> dict[str, Any]:
+    """The first row of a table of a run, by the names of its columns."""
+    table = inspect_run(run, **asked)
+    return dict(zip(table.columns, table.rows[0], strict=True))

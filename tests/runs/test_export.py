@@ -17,6 +17,7 @@ from irsim.cli.app import app
 from irsim.common.files import TargetError
 from irsim.runs import Run, RunError, open_run
 from irsim.simulation.trace import join_traces
+from tests.runs.conftest import recorded
 from tests.runs.test_trace import assert_same
 
 TRAFFIC = """\
@@ -38,7 +39,7 @@ obstacle:
 @pytest.fixture
 def traffic(workspace: Path) -> Run:
     """A run with two drives, two lidars, a moving and a static obstacle."""
-    return open_run(str(irsim.run(text=TRAFFIC, seed=3, steps=25, record=True).run_id))
+    return recorded(text=TRAFFIC, seed=3, steps=25)
 
 
 def table(path: Path) -> list[dict[str, str]]:

@@ -22,6 +22,7 @@ from irsim.runs.inspection import FIELDS, VIEWS, inspect_run
 from irsim.runs.recorder import Recorder
 from irsim.runs.resimulation import resimulate
 from irsim.runs.store import ARTIFACTS
+from tests.runs.conftest import first_row, recorded
 
 PAIR = """\
 world: {width: 10, height: 6, time_limit: 6}
@@ -40,13 +41,13 @@ obstacle:
 @pytest.fixture
 def pair(workspace: Path) -> Run:
     """Two robots that pass each other."""
-    return open_run(str(irsim.run(text=PAIR, seed=0, record=True).run_id))
+    return recorded(text=PAIR)
 
 
 @pytest.fixture
 def crashed(crash: Path) -> Run:
     """A robot that hits a crate."""
-    return open_run(str(irsim.run(crash, seed=0, record=True).run_id))
+    return recorded(crash)
 
 
 def test_rows_are_spread_over_the_run(pair: Run) -> None:
@@ -78,7 +79,7 @@ def test_rows_say_what_the_trace_says(pair: Run) -> None:
 
 
 def test_lidar_ranges_are_told(room: Path) -> None:
-    run = open_run(str(irsim.run(room, seed=0, record=True).run_id))
+    run = recorded(room)
     ranges = run.trace().ranges["rover/0"]
     table = inspect_run(run, every=1, fields=["nearest_hit"], limit=None)
     least = [float(row.min()) for row in ranges]
@@ -100,10 +101,9 @@ def test_pages_are_the_whole(pair: Run) -> None:
 
 
 def test_collisions_say_who_where_and_how_fast(crashed: Run) -> None:
-    table = inspect_run(crashed, view="collisions")
     assert crashed.result is not None
     hit = next(event for event in crashed.result.events if event.kind == "collision")
-    cells = dict(zip(table.columns, table.rows[0], strict=True))
+    cells = first_row(crashed, view="collisions")
     assert (cells["object"], cells["partner"], cells["step"]) == ("rover", "crate", hit.step)
     assert cells["speed"] == pytest.approx(1.0, abs=0.01)
     assert cells["partner_speed"] == 0.0
@@ -133,7 +133,7 @@ def test_closest_tells_each_at_its_own_moment(workspace: Path) -> None:
     )
     text = "world: {width: 10, height: 6, time_limit: 9}\nrobot: {kinematics: {name: omni}, vel_max: [1, 1], shape: "
     text += "{name: circle, radius: 0.2}, state: [1, 1, 0], goal: [9, 1, 0], behavior: {name: dash}}\n"
-    run = open_run(str(irsim.run(text=f"{text}obstacle:\n{posts}", seed=0, record=True).run_id))
+    run = recorded(text=f"{text}obstacle:\n{posts}")
     table = inspect_run(run, view="closest", limit=None)
     assert [row[2] for row in table.rows] == [f"post_{x}" for x in range(2, 7)]  # five of a kind
     for x, row in enumerate(table.rows, start=2):
@@ -159,44 +159,37 @@ def test_speeds_tell_reversing_and_turning(workspace: Path) -> None:
         recorder.write_if_due()
     recorder.close()
     env.end()
-    table = inspect_run(recorder.folder, view="speeds")
-    cells = dict(zip(table.columns, table.rows[0], strict=True))
+    cells = first_row(recorder.folder, view="speeds")
     assert (cells["max_speed"], cells["min_forward_speed"], cells["max_turn_rate"]) == (0.5, -0.25, 1.0)
-    forward = inspect_run(recorder.folder, view="speeds", to_step=5)
-    assert dict(zip(forward.columns, forward.rows[0], strict=True))["min_forward_speed"] == 0.5
+    assert first_row(recorder.folder, view="speeds", to_step=5)["min_forward_speed"] == 0.5
 
 
 def test_speeds(pair: Run) -> None:
     trace = pair.trace()
-    table = inspect_run(pair, view="speeds", robot="left")
-    cells = dict(zip(table.columns, table.rows[0], strict=True))
+    cells = first_row(pair, view="speeds", robot="left")
     way = float(np.linalg.norm(np.diff(trace.pose[:, 0, :2], axis=0), axis=1).sum())
     assert cells["path_length"] == pytest.approx(way, abs=1e-3)
     assert cells["max_speed"] == pytest.approx(1.0, abs=1e-3)
     assert cells["min_forward_speed"] is None  # an omnidirectional drive has no forwards
     assert cells["mean_speed"] == pytest.approx(way / trace.time[-1], abs=1e-3)
-    standing = inspect_run(pair, view="speeds", robot="walker")
-    cells = dict(zip(standing.columns, standing.rows[0], strict=True))
-    assert cells["path_length"] == 0.0
+    assert first_row(pair, view="speeds", robot="walker")["path_length"] == 0.0
 
 
 def test_speeds_are_those_until_it_arrived(workspace: Path) -> None:
     text = PAIR.replace("goal: [9, 3, 0]", "goal: [4, 3, 0]")  # left is there long before right
-    run = open_run(str(irsim.run(text=text, seed=0, record=True).run_id))
+    run = recorded(text=text)
     metrics = irsim.benchmark(text, seeds=[0], workers=1).episodes[0].metrics
-    told = [dict(zip(t.columns, t.rows[0], strict=True)) for t in [inspect_run(run, view="speeds", robot="left")]]
+    cells = first_row(run, view="speeds", robot="left")
     assert metrics["velocity_avg"] == pytest.approx(1.0)
-    assert told[0]["mean_speed"] == pytest.approx(1.0)
-    assert told[0]["path_length"] < 3.2
-    after = inspect_run(run, view="speeds", robot="left", from_step=50)
-    assert dict(zip(after.columns, after.rows[0], strict=True))["mean_speed"] == 0
+    assert cells["mean_speed"] == pytest.approx(1.0)
+    assert cells["path_length"] < 3.2
+    assert first_row(run, view="speeds", robot="left", from_step=50)["mean_speed"] == 0
 
 
 def test_a_long_stand_is_found(workspace: Path) -> None:
     text = PAIR.replace("behavior: {name: dash}}\n  - {name: right", "}\n  - {name: right")
-    run = open_run(str(irsim.run(text=text, seed=0, record=True).run_id))
-    table = inspect_run(run, view="speeds", robot="left")
-    cells = dict(zip(table.columns, table.rows[0], strict=True))
+    run = recorded(text=text)
+    cells = first_row(run, view="speeds", robot="left")
     assert (cells["stood"], cells["stood_from_step"]) == (6.0, 1)
 
 

@@ -17,6 +17,7 @@ from irsim.runs import RunError, list_runs, open_run
 from irsim.runs import recorder as recorder_module
 from irsim.runs.chunks import PieceWriter
 from irsim.runs.files import replace_file
+from tests.runs.conftest import recorded
 from tests.runs.test_trace import assert_same
 
 
@@ -32,7 +33,7 @@ def recorder_threads() -> list[threading.Thread]:
 
 
 def test_a_slow_disk_changes_nothing(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = open_run(str(irsim.run(room, seed=4, steps=40, record=True).run_id))
+    whole = recorded(room, seed=4, steps=40)
     monkeypatch.setattr("irsim.runs.recorder._PIECE_BYTES", 1)
     monkeypatch.setattr("irsim.episodes.episode._CHUNK_STEPS", 5)
 
@@ -41,7 +42,7 @@ def test_a_slow_disk_changes_nothing(room: Path, monkeypatch: pytest.MonkeyPatch
         replace_file(target, *parts)
 
     monkeypatch.setattr(recorder_module, "replace_file", slow)
-    run = open_run(str(irsim.run(room, seed=4, steps=40, record=True).run_id))
+    run = recorded(room, seed=4, steps=40)
     assert sum(name.startswith("trace-") for name in run.files()) > 5
     assert_same(run.trace(), whole.trace())
     assert run.events == whole.events
@@ -82,7 +83,7 @@ def test_a_failing_program_leaves_what_was_recorded(room: Path) -> None:
 
 
 def test_a_folder_of_ones_own_has_every_scan(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = open_run(str(irsim.run(room, seed=4, steps=30, record=True).run_id))
+    whole = recorded(room, seed=4, steps=30)
     monkeypatch.setattr("irsim.runs.recorder._MAX_SCANS_BYTES", 500)
     monkeypatch.setattr("irsim.runs.recorder._MAX_TRACE_BYTES", 500)
     monkeypatch.setattr("irsim.runs.recorder._MAX_SCAN_BYTES", 1)
@@ -97,7 +98,7 @@ def test_a_folder_of_ones_own_has_every_scan(room: Path, monkeypatch: pytest.Mon
 def test_pieces_of_many_objects_have_few_rows(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("irsim.runs.recorder._MAX_PIECE_NUMBERS", 2 * 3 * 10)
     monkeypatch.setattr("irsim.episodes.episode._CHUNK_STEPS", 5)
-    run = open_run(str(irsim.run(room, seed=4, steps=30, record=True).run_id))
+    run = recorded(room, seed=4, steps=30)
     lengths = [len(block) for block in map(run._piece, run._pieces("trace"))]
     assert max(lengths) <= 15
     assert sum(lengths) == 31
@@ -153,13 +154,13 @@ def test_runs_with_python_behaviors_have_every_row(room: Path) -> None:
         return [0.5, 0.3]
 
     room.write_text(room.read_text().replace("{name: dash}", "{name: test_pieces_turn}"))
-    trace = open_run(str(irsim.run(room, seed=0, steps=43, record=True).run_id)).trace()
+    trace = recorded(room, steps=43).trace()
     np.testing.assert_array_equal(trace.step, np.arange(44))
     np.testing.assert_allclose(trace.pose[:, 0, 2], 0.03 * np.arange(44), atol=1e-12)
 
 
 def test_a_piece_that_was_compressed_is_not_read(room: Path) -> None:
-    run = open_run(str(irsim.run(room, seed=4, steps=5, record=True).run_id))
+    run = recorded(room, seed=4, steps=5)
     [piece] = run.folder.glob("trace-*")
     with zipfile.ZipFile(piece) as archive:
         entries = {name: archive.read(name) for name in archive.namelist()}

@@ -21,6 +21,7 @@ import irsim
 from irsim.runs import RunError, list_runs, open_run
 from irsim.runs.files import claim, replace_file
 from irsim.runs.store import META, find_run, make_run_folder, mark_cancelled, prune, runs_folder, status_of, tidy
+from tests.runs.conftest import recorded
 
 pytestmark = pytest.mark.one_python
 
@@ -140,12 +141,12 @@ def test_nothing_is_written_or_read_through_links(
 def test_links_in_a_run_are_not_followed(workspace: Path, room: Path, tmp_path_factory: Any) -> None:
     secret = tmp_path_factory.mktemp("outside") / "secret"
     secret.write_text("secret")
-    run_id = str(irsim.run(room, seed=0, record=True).run_id)
-    folder = runs_folder(workspace) / run_id
+    run = recorded(room)
+    folder = run.folder
     (folder / "scenario.yaml").unlink()
     (folder / "scenario.yaml").symlink_to(secret)
     with pytest.raises(RunError, match="unreadable-run"):
-        _ = open_run(run_id).scenario_text
+        _ = open_run(run.id).scenario_text
     (runs_folder(workspace) / "linked-123456").symlink_to(folder, target_is_directory=True)
     with pytest.raises(RunError, match="unknown-run"):
         open_run("linked-123456", workspace)
@@ -153,19 +154,12 @@ def test_links_in_a_run_are_not_followed(workspace: Path, room: Path, tmp_path_f
 
 @pytest.mark.parametrize("name", ["run.json", "trace-0000.npz", "result.json", "resolved.json"])
 def test_changed_files_are_told(room: Path, name: str) -> None:
-    run_id = str(irsim.run(room, seed=0, record=True).run_id)
+    run_id = recorded(room).id
     path = runs_folder() / run_id / name
     content = path.read_bytes()
     rng = random.Random(name)
-    for damaged in (
-        b"",
-        b"[1, 2",
-        b"[7]",
-        b'{"a": 1}',
-        content[: len(content) // 2],
-        rng.randbytes(500),
-        b"\xff" + content,
-    ):
+    texts = (b"", b"[1, 2", b"[7]", b'{"a": 1}')
+    for damaged in (*texts, content[: len(content) // 2], rng.randbytes(500), b"\xff" + content):
         path.write_bytes(damaged)
         with pytest.raises(RunError, match="unreadable-run"):
             read_all(run_id)
@@ -180,7 +174,7 @@ def read_all(run_id: str) -> None:
 
 
 def test_pickles_and_packed_arrays_are_refused(room: Path) -> None:
-    run_id = str(irsim.run(room, seed=0, record=True).run_id)
+    run_id = recorded(room).id
     path = runs_folder() / run_id / "trace-0000.npz"
     with np.load(path) as file:
         arrays = dict(file)
@@ -216,7 +210,7 @@ def test_pickles_and_packed_arrays_are_refused(room: Path) -> None:
     ],
 )
 def test_pieces_that_tell_nonsense_are_refused(room: Path, change: dict[str, Any]) -> None:
-    run_id = str(irsim.run(room, seed=0, record=True).run_id)
+    run_id = recorded(room).id
     path = runs_folder() / run_id / "trace-0000.npz"
     with zipfile.ZipFile(path) as archive:
         content = {name: archive.read(name) for name in archive.namelist()}
@@ -232,7 +226,7 @@ def test_a_run_with_a_piece_missing_is_refused(room: Path, monkeypatch: pytest.M
     with monkeypatch.context() as small:
         small.setattr("irsim.runs.recorder._PIECE_BYTES", 1)
         small.setattr("irsim.episodes.episode._CHUNK_STEPS", 7)
-        run_id = str(irsim.run(room, seed=4, record=True).run_id)
+        run_id = recorded(room, seed=4).id
     read_all(run_id)
     folder = runs_folder() / run_id
     (folder / "trace-0002.npz").rename(folder / "kept")
@@ -267,7 +261,7 @@ def test_a_large_run_just_used_stays_and_older_ones_go(workspace: Path) -> None:
 
 
 def test_what_only_leads_to_a_run_is_none(room: Path) -> None:
-    run_id = str(irsim.run(room, seed=0, record=True).run_id)
+    run_id = recorded(room).id
     path = runs_folder() / run_id / META
     path.rename(room.parent / "elsewhere.json")
     path.symlink_to(room.parent / "elsewhere.json")
@@ -339,7 +333,7 @@ def first_run(workspace: Path) -> Any:
 
 
 def test_a_run_that_is_let_go_meanwhile_is_unknown(workspace: Path, room: Path) -> None:
-    run = open_run(str(irsim.run(room, seed=0, record=True).run_id))
+    run = recorded(room)
     assert prune(runs_folder(workspace), age=-1) == [run.id]
     with pytest.raises(RunError, match="has been deleted"):
         run.trace()

@@ -20,6 +20,7 @@ from irsim.runs.inspection import inspect_run
 from irsim.runs.resimulation import resimulate
 from irsim.scenario.open import read_scenario
 from irsim.simulation.events import Event
+from tests.runs.conftest import recorded
 
 ROOM = """\
 world:
@@ -66,7 +67,7 @@ def test_a_record_has_the_events_of_the_environment(live: Env, workspace: Path) 
 
 
 def test_views_of_a_run(workspace: Path) -> None:
-    run = open_run(str(irsim.run(text=ROOM, seed=0, record=True).run_id))
+    run = recorded(text=ROOM)
     zones = inspect_run(run, view="zones")
     assert zones.columns == ["zone", "object", "what", "step", "time", "to_step", "duration", "x", "y"]
     assert [row[:7] for row in zones.rows] == [
@@ -97,7 +98,7 @@ def test_the_command_prints_them(workspace: Path) -> None:
 
 
 def test_a_run_without_zones_has_empty_tables(room: Path) -> None:
-    run = open_run(str(irsim.run(room, seed=0, record=True).run_id))
+    run = recorded(room)
     assert inspect_run(run, view="zones").rows == inspect_run(run, view="sight").rows == []
 
 
