@@ -13,15 +13,17 @@ from __future__ import annotations
 
 from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
 from irsim.bridges.state import Feedback, Motion, WorldState
-from irsim.components.behaviors._options import BehaviorOptions
-from irsim.components.bridges._options import BridgeOptions
-from irsim.components.distributions._options import DistributionOptions
 from irsim.components.kinematics._handler import KinematicsHandler, register_kinematics
-from irsim.components.kinematics._options import KinematicsOptions
-from irsim.components.maps._options import MapOptions
-from irsim.components.planners._options import PlannerOptions
-from irsim.components.sensors._options import SensorOptions
-from irsim.components.shapes._options import ShapeOptions
+from irsim.components.options import (
+    BehaviorOptions,
+    BridgeOptions,
+    DistributionOptions,
+    KinematicsOptions,
+    MapOptions,
+    PlannerOptions,
+    SensorOptions,
+    ShapeOptions,
+)
 from irsim.objects.extensions.registration import (
     register_behavior,
     register_behavior_class,

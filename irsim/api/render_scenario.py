@@ -24,7 +24,7 @@ from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.runs.recorder import Recorder
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import import_modules
-from irsim.scenario.resolve.randomness import random_parts
+from irsim.scenario.resolve.resolved import random_parts
 from irsim.validation.scene_table import scene_table
 
 if TYPE_CHECKING:

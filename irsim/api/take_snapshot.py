@@ -25,8 +25,7 @@ from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.findings import Finding
 from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.resolve.randomness import random_parts
-from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
 from irsim.simulation.build import steps_until
 from irsim.simulation.events import first_collisions, first_events
 from irsim.simulation.outcome import explored_share, robot_outcomes

@@ -51,8 +51,7 @@ from irsim.scenario.perturbation import (
     perturbed_message,
     read_perturbations,
 )
-from irsim.scenario.resolve.randomness import random_parts
-from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
 __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "benchmark", "logged"]

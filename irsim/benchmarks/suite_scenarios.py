@@ -15,8 +15,7 @@ import yaml
 
 from irsim.benchmarks.suite import MAX_SCENARIOS, Protocol, Suite, SuiteError, SuiteScenario, label_of, suite_error
 from irsim.bundled.templates.fill import fill, parse_path
-from irsim.bundled.templates.metadata import TemplateError
-from irsim.bundled.templates.store import load
+from irsim.bundled.templates.store import TemplateError, load
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
 from irsim.scenario.messages.translate import located

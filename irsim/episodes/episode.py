@@ -12,8 +12,7 @@ from irsim.diagnostics.errors import OverLimitError
 from irsim.env import Env
 from irsim.results.run import HorizonSource
 from irsim.scenario.limits import Limits
-from irsim.scenario.resolve.randomness import random_parts
-from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.resolve.resolved import ResolvedScenario, random_parts
 from irsim.simulation.build import steps_until
 
 if TYPE_CHECKING:

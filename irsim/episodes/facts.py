@@ -13,7 +13,7 @@ from irsim.common.arrays import Floats
 from irsim.episodes.between_steps import BetweenSteps, find_between_steps
 from irsim.episodes.incidents import Incidents, find_incidents
 from irsim.episodes.obstructions import find_jammed
-from irsim.scenario.resolve.randomness import random_parts
+from irsim.scenario.resolve.resolved import random_parts
 from irsim.simulation.events import Event, passable_names
 from irsim.simulation.outcome import explored_share
 from irsim.simulation.roles import humans_of

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from irsim.components.behaviors._options import behavior_fields
+from irsim.components.options import behavior_fields
 from irsim.objects.base import SimObject
 from irsim.objects.setters import HINTS, refuse
 from irsim.scenario.single_object import read_object

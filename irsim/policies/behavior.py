@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from irsim.common.arrays import Floats
-from irsim.components.behaviors._options import behavior_fields
+from irsim.components.options import behavior_fields
 from irsim.diagnostics.errors import PolicyError, ScenarioError
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Policy

@@ -22,7 +22,7 @@ from irsim.policies.policy import FunctionPolicy, Policy
 from irsim.policies.registry import POLICIES, RANDOM
 from irsim.policies.trained import COMMON_NAMES, trained_policies, trained_policy
 from irsim.scenario.behavior_override import AS_WRITTEN, behavior_text, parse_behavior, split_behaviors
-from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.locate import why_outside
 from irsim.scenario.yaml.rewrite import yaml_flow
 
 __all__ = [

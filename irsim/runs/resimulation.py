@@ -15,7 +15,7 @@ from irsim.runs.files import RunError, plain_file, unreadable
 from irsim.runs.reading import Run
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.locate import why_outside
 from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.read import or_raise, read
 from irsim.scenario.resolve.resolved import ResolvedScenario

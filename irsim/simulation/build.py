@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import irsim._core as core
-from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.kinematics._handler import handler_class
+from irsim.components.options import BehaviorOptions
 from irsim.options.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.resolve.kernels import Kernels, kernels_of, parts_of, placement_kernel
 from irsim.simulation.fog import build_fog

@@ -24,8 +24,7 @@ from irsim.episodes.watching import zone_results, zones_message
 from irsim.results.episode import EventRecord
 from irsim.results.validation import DryRun, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.resolve.randomness import random_parts
-from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, random_parts
 from irsim.simulation.events import Event, partner_of
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.step_cost import step_work

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import shapely
 
 import irsim._core as core
 from irsim.common.arrays import Floats
@@ -232,8 +233,6 @@ class _Ground:
 
 def _narrowest_ones(line: Floats, obstacles: Any, width: float) -> list[tuple[float, Point]]:
     """The narrowest passage on a way, and further ones that are as narrow."""
-    import shapely
-
     pieces: list[Any] = [shapely.LineString(line).simplify(width / 16)]
     passages: list[tuple[float, Point]] = []
     while pieces and len(passages) < _MAX_EQUAL:
@@ -250,8 +249,6 @@ def _narrowest_ones(line: Floats, obstacles: Any, width: float) -> list[tuple[fl
 
 def _narrowest(way: Any, obstacles: Any, width: float) -> tuple[float, Point] | None:
     """The least distance between obstacles left and right of a way, and the middle of that gap; None if it is wide."""
-    import shapely
-
     for reach in (width * share for share in _REACHES):
         left, right = (
             shapely.intersection(obstacles, shapely.buffer(way, side * reach, single_sided=True, cap_style="flat"))
@@ -276,8 +273,6 @@ def _ground(bounds: tuple[float, float, float, float], things: Sequence[Thing], 
 
 def _outlines(things: Sequence[Thing]) -> Any:
     """The outlines of obstacles as one geometry; None without any, and if they have too many corners."""
-    import shapely
-
     lines: list[Any] = []
     corners = 0
     placed = ((part, list(pose)) for parts, pose in things for part in parts)

@@ -16,8 +16,7 @@ from irsim.common.text import plural
 from irsim.episodes.scene_summary import called
 from irsim.results.picture import LidarHits, SceneRow, SceneTable
 from irsim.scenario.resolve.body_size import has_fixed_shape
-from irsim.scenario.resolve.randomness import random_parts
-from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, random_parts
 from irsim.simulation.build import build_world
 from irsim.validation.scene_passages import find_passages
 

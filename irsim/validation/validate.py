@@ -17,6 +17,8 @@ from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import source_of
 from irsim.scenario.read import Reading, read
 from irsim.scenario.yaml.document import Document, load_path
+from irsim.validation.diff.compare import compare
+from irsim.validation.dry_run import dry_run
 from irsim.validation.feasibility.check import feasibility_findings
 
 __all__ = ["diff", "fix", "report", "report_of", "validate"]
@@ -53,8 +55,6 @@ def validate(
     reading = read(source_of(path, text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
     report = report_of(reading, str(path) if path is not None else "(text)")
     if base is not None or base_text is not None:
-        from irsim.validation.diff.compare import compare
-
         other = read(source_of(base, base_text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
         report.changes = compare(other, reading, seed=seed)
         _mark_old(report.findings, other)
@@ -119,8 +119,6 @@ def diff(
         ScenarioNotFoundError: There is no such file.
         ValueError: Neither or both of a path and a text are given.
     """
-    from irsim.validation.diff.compare import compare
-
     most = limits or DEFAULT_LIMITS
     pair = ((before, before_text), (after, after_text))
     a, b = (read(source_of(path, text, limits), strict=True, limits=most) for path, text in pair)
@@ -176,8 +174,6 @@ def _dry_run_or_findings(
     report: ValidationReport, reading: Reading, seed: int | None, limits: Limits | None
 ) -> DryRun | None:
     """The dry run; None if a random object has no free place with the seed, which is added to the findings."""
-    from irsim.validation.dry_run import dry_run
-
     assert reading.scenario is not None
     try:
         return dry_run(reading.scenario, seed=seed, limits=limits)

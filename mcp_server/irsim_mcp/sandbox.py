@@ -17,7 +17,7 @@ from irsim.common.files import TEMPORARY
 from irsim.common.text import clean
 from irsim.runs.files import RunError, json_of, text_of
 from irsim.runs.store import ID, META, SCENARIO_FILE, find_run, mark_cancelled, run_folders, runs_folder
-from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.locate import why_outside
 from irsim_mcp.answers import failure
 
 __all__ = ["Workspace", "set_aside", "write_file"]

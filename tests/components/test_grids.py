@@ -12,7 +12,7 @@ import shapely
 from PIL import Image
 
 import irsim
-from irsim.components.maps._bundled import bundled_map, bundled_names
+from irsim.components.maps._site import bundled_map, bundled_names
 from irsim.diagnostics.errors import ScenarioError
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.scenario.limits import Limits

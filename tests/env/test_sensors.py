@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.components.sensors._options import SensorOptions
+from irsim.components.options import SensorOptions
 from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
 from irsim.objects.views import views
 from irsim.options.registry import SENSORS

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
 
-from irsim.components.sensors._options import SensorOptions
+from irsim.components.options import SensorOptions
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.options.registry import SENSORS
 from tests.env.driving import Make, take_steps

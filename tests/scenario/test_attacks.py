@@ -17,7 +17,7 @@ from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.report import format_diagnostics
 from irsim.options.registry import REGISTRIES
 from irsim.scenario.limits import Limits
-from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.locate import why_outside
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import load_path, load_text
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from pydantic import BaseModel
 
-from irsim.components.kinematics._options import CustomKinematics
+from irsim.components.options import CustomKinematics
 from irsim.options import registry
 from irsim.options.base import field_docs
 from irsim.scenario.model.scenario import Entry, Scenario
@@ -89,22 +89,11 @@ def test_every_section_at_once() -> None:
         "group_behavior: {name: sfm, social_groups: [[0]], gaze_vision_angle: 90}",
         "plot: {show_text: true, text_position: [0, 1], traj_style: '--', trail_type: ellipse, obj_zorder: 5}",
         "plot: [{show_goal: true, goal_color: tab:blue}]",
-        "color: '#1199ffcc'",
-        "color: [0.1, 0.2, 0.3]",
-        "color: 'xkcd:sky blue'",
-        "color: '0.5'",
-        "description: diff_robot0.png",
-        "velocity: [0.5, 0]",
-        "acce: [.inf, 2]",
-        "mass: .inf",
-        "friction: 0.3",
-        "restitution: 1",
-        "fov: 6.2832\n    fov_radius: 5",
-        "arrive_mode: state\n    goal_threshold: 0.3",
-        "group: 4\n    group_name: team",
-        "role: robot",
+        *(f"color: {color}" for color in ("'#1199ffcc'", "[0.1, 0.2, 0.3]", "'xkcd:sky blue'", "'0.5'")),
+        "description: diff_robot0.png\n    group: 4\n    group_name: team\n    role: robot\n    unobstructed: true",
+        "velocity: [0.5, 0]\n    acce: [.inf, 2]\n    mass: .inf\n    friction: 0.3\n    restitution: 1",
+        "fov: 6.2832\n    fov_radius: 5\n    arrive_mode: state\n    goal_threshold: 0.3",
         "static: true\n    behavior: null",
-        "unobstructed: true",
         "state_dim: 5\n    state: [1, 1, 0, 2, 3]",
         "kinematics: [{name: omni_angular, noise: false, alpha: [0.1, 0.1, 0.1]}]\n    velocity: [1, 0, 0]",
         "tags: [pedestrian, slow]",
@@ -125,23 +114,15 @@ def test_keys_of_objects(entry: str) -> None:
 @pytest.mark.parametrize(
     "world",
     [
-        "name: yard",
-        "description: two robots meet\n  metadata: {author: me, version: 3}",
-        "step_mode: ' External '",
-        "sample_time: 0.1",
-        "collision_mode: reactive",
-        "obstacle_map: null",
+        "name: yard\n  description: two robots meet\n  metadata: {author: me, version: 3}\n  status: Waiting",
+        "step_mode: ' External '\n  sample_time: 0.1\n  seed: 7\n  time_limit: 60\n  boundary: walls\n  depth: 5",
+        "gravity: 1.6\n  friction: 0.1\n  restitution: 0.5\n  drive_tau: 0.2\n  collision_mode: reactive",
+        "obstacle_map: null\n  plot: null\n  offset: null",
         "obstacle_map: cave.png\n  mdownsample: 2",
         "obstacle_map: {name: image, path: cave.png}",
         "obstacle_map: {name: perlin, resolution: 0.1, complexity: 0.1, fractal: 2, attenuation: 0.4, seed: null}",
-        "gravity: 1.6\n  friction: 0.1\n  restitution: 0.5\n  drive_tau: 0.2",
-        "depth: 5",
-        "status: Waiting",
-        "seed: 7\n  time_limit: 60\n  boundary: walls",
         "plot: {figure_pixels: [600, 400], saved_figure: {dpi: 50, format: pdf, bbox_inches: null}, no_axis: true}",
         "plot: {viewpoint: [3, 3], title: Yard, tight: false, show_title: false}",
-        "plot: null",
-        "offset: null",
     ],
 )
 def test_keys_of_the_world(world: str) -> None:

@@ -18,8 +18,7 @@ from irsim.scenario.perturbation import (
     read_perturbations,
 )
 from irsim.scenario.read import or_raise, read
-from irsim.scenario.resolve.randomness import random_parts
-from irsim.scenario.resolve.resolved import ResolvedScenario, Spreads
+from irsim.scenario.resolve.resolved import ResolvedScenario, Spreads, random_parts
 
 SCENE = """
 world: {name: hall, width: 10, height: 10, boundary: walls}

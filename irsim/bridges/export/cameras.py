@@ -21,7 +21,7 @@ from irsim.options.units import Count, Degrees, Meters
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run
 from irsim.scenario.limits import Limits
-from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.locate import why_outside
 
 __all__ = [
     "CameraOptions",

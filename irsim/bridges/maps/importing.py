@@ -22,7 +22,7 @@ from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import ArgumentError
 from irsim.results.records import MapImportResult, MapLevel, MapTrip
 from irsim.scenario.file_kind import explained
-from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.locate import why_outside
 from irsim.scenario.yaml.document import Document
 
 __all__ = ["import_map", "list_levels", "read_occupancy"]

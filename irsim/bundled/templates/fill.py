@@ -15,7 +15,7 @@ from typing import Any
 
 import yaml
 
-from irsim.bundled.templates.metadata import Template, TemplateError
+from irsim.bundled.templates.store import Template, TemplateError
 from irsim.diagnostics.diagnostic import Path
 
 __all__ = ["evaluate", "fill", "format_value", "parse_path", "parse_settings", "replace_values"]

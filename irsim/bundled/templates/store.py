@@ -1,15 +1,173 @@
-"""Finds and reads the bundled templates."""
+"""The bundled templates: where they are, and the content of ``template.yaml``.
+
+::
+
+    title: Corridor passing
+    purpose: Two robots meet head-on between two walls and each keeps to its right.
+    tags: [corridor, hallway, head-on]
+    outcomes: [success]                 # how a run with the default parameters may end
+    parameters:
+      width: {type: number, default: 1.6, min: 1.2, max: 3, unit: m, description: Free width between the walls.}
+    sets:                               # path in scenario.yaml: expression over the parameters
+      obstacle[0].state[1]: 2.5 + width / 2 + 0.15
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
+from typing import Annotated, Any, Literal
 
-from irsim.bundled.templates.metadata import Template, TemplateError
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
 from irsim.common import data_files as resources
 from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import CodedError
 
-__all__ = ["find", "load", "load_all", "meant", "names", "picture_file", "scenario_file"]
+__all__ = [
+    "Outcome",
+    "Parameter",
+    "Template",
+    "TemplateError",
+    "Value",
+    "find",
+    "load",
+    "load_all",
+    "meant",
+    "names",
+    "picture_file",
+    "scenario_file",
+]
+
+Value = bool | int | float | str
+Outcome = Literal["success", "collision", "timeout"]
+
+
+class TemplateError(CodedError, ValueError):
+    """A template or one of its parameters cannot be used."""
+
+
+class _Metadata(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Parameter(_Metadata):
+    """One named parameter of a template."""
+
+    type: Literal["number", "integer", "boolean", "choice"]
+    default: Value
+    description: str
+    unit: str | None = None
+    min: float | None = None
+    max: float | None = None
+    choices: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Parameter:
+        if (self.type == "choice") != bool(self.choices):
+            raise ValueError("choices belong to parameters of type choice, and those need them")
+        self.check("default", self.default)
+        return self
+
+    def allowed(self) -> str:
+        """The accepted values, in words: ``a number from 0.5 to 3 m``."""
+        if self.type == "choice":
+            return ", ".join(self.choices)
+        if self.type == "boolean":
+            return "true, false"
+        unit = f" {self.unit}" if self.unit and self.unit != "1" else ""
+        kind = "an integer" if self.type == "integer" else "a number"
+        if self.min is not None and self.max is not None:
+            return f"{kind} from {self.min:g} to {self.max:g}{unit}"
+        if self.min is not None:
+            return f"{kind}, at least {self.min:g}{unit}"
+        if self.max is not None:
+            return f"{kind}, at most {self.max:g}{unit}"
+        return kind + unit
+
+    def check(self, name: str, value: object) -> Value:
+        """The value in the parameter's own type; text is read as YAML would read it.
+
+        Raises:
+            TemplateError: The value has another type or is out of range.
+        """
+        converted = self._convert(value)
+        if converted is None:
+            raise TemplateError("bad-parameter", f"{name} cannot be {value!r}.", f"give {self.allowed()}.")
+        if isinstance(converted, (int, float)) and not isinstance(converted, bool):
+            low, high = -math.inf if self.min is None else self.min, math.inf if self.max is None else self.max
+            if not low <= converted <= high:
+                raise TemplateError(
+                    "bad-parameter", f"{name} = {converted:g} is out of range.", f"give {self.allowed()}."
+                )
+        return converted
+
+    def _convert(self, value: object) -> Value | None:
+        if self.type == "choice":
+            return str(value) if str(value) in self.choices else None
+        if self.type == "boolean":
+            words = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
+            return value if isinstance(value, bool) else words.get(str(value).lower())
+        if isinstance(value, bool):
+            return None
+        try:
+            number = float(str(value))
+        except ValueError:
+            return None
+        if not math.isfinite(number):
+            return None
+        whole = int(number)
+        if self.type == "integer":
+            return whole if whole == number else None
+        return number
+
+
+class Template(_Metadata):
+    """A template and its default text."""
+
+    name: str
+    title: str
+    purpose: str
+    tags: tuple[str, ...]
+    outcomes: Annotated[tuple[Outcome, ...], Field(min_length=1)]
+    parameters: dict[str, Parameter] = {}
+    sets: dict[str, str] = {}
+    text: str = Field(repr=False)
+
+    def prospect(self, given: Mapping[str, Any] | None = None) -> str:
+        """Say how a run with some parameters ends, as far as it is known: for the default parameters.
+
+        Raises:
+            TemplateError: A name is unknown or a value is not allowed.
+        """
+        values = self.values(dict(given or {}))
+        changed = [
+            f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
+            for name, value in values.items()
+            if value != self.parameters[name].default
+        ]
+        tried = f"With the default parameters it ends in {' or '.join(self.outcomes)}"
+        return f"{tried}; with {', '.join(changed)} it may end otherwise: run it." if changed else f"{tried}."
+
+    def values(self, given: dict[str, Any]) -> dict[str, Value]:
+        """All parameters: the given ones checked, the others at their defaults.
+
+        Raises:
+            TemplateError: A name is unknown or a value is not allowed.
+        """
+        for name in given:
+            if name not in self.parameters:
+                known = ", ".join(self.parameters) or "none"
+                raise TemplateError(
+                    "unknown-parameter",
+                    f"{self.name} has no parameter {name!r}; it has {known}.",
+                    suggestion(name, self.parameters, None),
+                )
+        return {
+            name: parameter.check(name, given.get(name, parameter.default))
+            for name, parameter in self.parameters.items()
+        }
 
 
 def names() -> list[str]:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.behaviors._options import BehaviorOptions
+from irsim.components.options import BehaviorOptions
 from irsim.options.registry import BEHAVIORS
 from irsim.options.units import Count, Degrees, Fraction, Meters, MetersPerSecond, Seconds
 

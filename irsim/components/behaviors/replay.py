@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 import irsim._core as core
-from irsim.components.behaviors._options import BehaviorOptions
+from irsim.components.options import BehaviorOptions
 from irsim.options.base import problem
 from irsim.options.registry import BEHAVIORS
 from irsim.options.units import Bool

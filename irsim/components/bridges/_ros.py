@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import Field, field_validator
 
-from irsim.components.bridges._options import BridgeOptions
+from irsim.components.options import BridgeOptions
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.options.base import Options, problem
 from irsim.options.units import (

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from irsim.components.bridges._options import BridgeOptions, opened_by
+from irsim.components.options import BridgeOptions, opened_by
 from irsim.options.base import Options, problem
 from irsim.options.registry import BRIDGES
 from irsim.options.units import Bool, Degrees, Integer, Meters, Seconds

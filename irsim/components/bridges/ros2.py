@@ -6,8 +6,8 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from irsim.components.bridges._options import opened_by
 from irsim.components.bridges._ros import RosOptions
+from irsim.components.options import opened_by
 from irsim.options.registry import BRIDGES
 from irsim.options.units import Bool, Integer
 

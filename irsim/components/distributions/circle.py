@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from irsim.common.angles import wrap
-from irsim.components.distributions._options import DistributionOptions, WorldExtent
+from irsim.components.options import DistributionOptions, WorldExtent
 from irsim.options.registry import DISTRIBUTIONS
 from irsim.options.units import Meters, Radians
 from irsim.options.vectors import Pose

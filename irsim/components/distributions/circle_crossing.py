@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.distributions._options import MARGIN, DistributionOptions, Drawn, WorldExtent
+from irsim.components.options import MARGIN, DistributionOptions, Drawn, WorldExtent
 from irsim.options.registry import DISTRIBUTIONS
 from irsim.options.units import Meters
 from irsim.options.vectors import Pose

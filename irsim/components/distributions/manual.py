@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from irsim.components.distributions._options import DistributionOptions
+from irsim.components.options import DistributionOptions
 from irsim.options.registry import DISTRIBUTIONS
 
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, TypeVar
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.components.kinematics._options import CustomKinematics
+from irsim.components.options import CustomKinematics
 from irsim.options.colors import ACKER_COLOR, OBSTACLE_COLOR, PUSHABLE_COLOR, ROBOT_COLOR
 from irsim.options.registry import KINEMATICS
 

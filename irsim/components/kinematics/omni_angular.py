@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.kinematics._options import KinematicsOptions
+from irsim.components.options import KinematicsOptions
 from irsim.options.registry import KINEMATICS
 from irsim.options.units import Number
 

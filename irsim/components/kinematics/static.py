@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from irsim.components.kinematics._options import KinematicsOptions
+from irsim.components.options import KinematicsOptions
 from irsim.options.registry import KINEMATICS
 from irsim.options.units import Number
 

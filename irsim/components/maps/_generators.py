@@ -11,11 +11,10 @@ import numpy as np
 from pydantic import Field, create_model
 
 from irsim.common.arrays import Floats
-from irsim.components.maps._bundled import bundled_map, bundled_names
-from irsim.components.maps._options import MapOptions
 from irsim.components.maps._picture import image_raster, open_picture
-from irsim.components.maps._site import MapProblem, MapSite, Raster
+from irsim.components.maps._site import MapProblem, MapSite, Raster, bundled_map, bundled_names
 from irsim.components.maps.perlin import cells_of, noise_values
+from irsim.components.options import MapOptions
 from irsim.options.registry import MAPS
 from irsim.options.units import Meters
 

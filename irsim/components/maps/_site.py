@@ -10,13 +10,23 @@ from typing import TYPE_CHECKING, Any
 
 from irsim.diagnostics.diagnostic import nearest
 
+__all__ = [
+    "OCCUPIED",
+    "MapProblem",
+    "MapSite",
+    "Noise",
+    "Raster",
+    "bundled_map",
+    "bundled_names",
+    "cells_along",
+    "replacement_map",
+]
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from irsim.common.arrays import Floats
-
-__all__ = ["OCCUPIED", "MapProblem", "MapSite", "Noise", "Raster", "cells_along"]
 
 OCCUPIED = 50
 """Map cells with a larger occupancy, of 100, are occupied."""
@@ -200,3 +210,24 @@ class MapSite:
                 continue
             choices += [str(Path(name).parent / p.name) for p in inside if p.suffix.lower() == suffix]
         return nearest(name, choices)
+
+
+_FOLDER = Path(__file__).parent / "_data"
+_STAND_INS = {f"hm3d_{number}.png": f"flat_{1 + (number - 1) % 2}.png" for number in range(1, 10)}
+"""Indoor scans of IR-SIM that cannot be redistributed, and the bundled flats that replace them."""
+
+
+def bundled_names() -> list[str]:
+    """File names of the bundled maps, sorted, without the names that other maps replace."""
+    return sorted(path.name for path in _FOLDER.glob("*.png"))
+
+
+def replacement_map(name: str) -> str | None:
+    """The bundled map that replaces a map that is not included; None for any other name."""
+    return _STAND_INS.get(name)
+
+
+def bundled_map(name: str) -> Path | None:
+    """The file of a bundled map; None if no bundled map has that name."""
+    path = _FOLDER / _STAND_INS.get(name, name)
+    return path if path.parent == _FOLDER and path.name in bundled_names() else None

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.maps._options import MapOptions
 from irsim.components.maps._site import MapSite, Noise, Raster, cells_along
+from irsim.components.options import MapOptions
 from irsim.options.registry import MAPS
 from irsim.options.units import Fraction, Integer, Meters, Number
 

@@ -6,8 +6,8 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from irsim.components.maps._options import MapOptions
 from irsim.components.maps._site import MapSite, Raster
+from irsim.components.options import MapOptions
 from irsim.options.registry import MAPS
 
 

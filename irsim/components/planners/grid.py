@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import irsim._core as core
-from irsim.components.planners._options import GridPlanner
+from irsim.components.options import GridPlanner
 from irsim.options.registry import PLANNERS
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.planners._options import PlannerOptions, SamplingPlanner
+from irsim.components.options import PlannerOptions, SamplingPlanner
 from irsim.options.registry import PLANNERS
 from irsim.options.units import Bool, Integer, Meters, Number
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from irsim.components.sensors._options import SensorOptions
+from irsim.components.options import SensorOptions
 from irsim.options.colors import Color
 from irsim.options.registry import SENSORS
 from irsim.options.units import Fraction, Number, Points

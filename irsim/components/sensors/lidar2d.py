@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.sensors._options import SensorOptions
+from irsim.components.options import SensorOptions
 from irsim.options.base import Options
 from irsim.options.colors import Color
 from irsim.options.registry import SENSORS

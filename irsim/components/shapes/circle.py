@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.shapes._options import ShapeOptions
+from irsim.components.options import ShapeOptions
 from irsim.options.registry import SHAPES
 from irsim.options.units import Bool, Meters
 from irsim.options.vectors import Point, vector

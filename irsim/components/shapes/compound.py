@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 import irsim._core as core
-from irsim.components.shapes._options import ShapeOptions, random_polygon
+from irsim.components.options import ShapeOptions, random_polygon
 from irsim.components.shapes.circle import Circle
 from irsim.components.shapes.polygon import SQUARE, Polygon
 from irsim.components.shapes.rectangle import Rectangle, corners

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import irsim._core as core
-from irsim.components.shapes._options import RandomOutline, random_polygon
+from irsim.components.options import RandomOutline, random_polygon
 from irsim.options.registry import SHAPES
 from irsim.options.units import Bool
 

@@ -1,8 +1,7 @@
 """The closed list of codes of diagnostics and errors, by subject; ``irsim describe CODE`` explains a code."""
 
 from irsim.diagnostics.codes.code import Code
-from irsim.diagnostics.codes.files_and_keys import FILE_AND_YAML, KEYS_AND_VALUES
-from irsim.diagnostics.codes.maps_and_limits import MAPS_AND_LIMITS
+from irsim.diagnostics.codes.files_and_keys import FILE_AND_YAML, KEYS_AND_VALUES, MAPS_AND_LIMITS
 from irsim.diagnostics.codes.objects import OBJECTS
 from irsim.diagnostics.codes.tools import BRIDGES, TOOLS
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from irsim.graphics.scene.style import Color
-from irsim.scenario.path_confinement import BUNDLED, image_places
+from irsim.scenario.locate import BUNDLED, image_places
 
 __all__ = ["BUNDLED", "Pictures"]
 

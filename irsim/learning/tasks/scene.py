@@ -12,8 +12,7 @@ import numpy as np
 import yaml
 
 from irsim.bundled.templates.fill import fill, parse_path
-from irsim.bundled.templates.metadata import Template, TemplateError
-from irsim.bundled.templates.store import load
+from irsim.bundled.templates.store import Template, TemplateError, load
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, suggestion
 from irsim.diagnostics.errors import InputError

@@ -11,8 +11,8 @@ import numpy as np
 
 import irsim._core as core
 from irsim.common.arrays import Floats
-from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.kinematics._handler import KinematicsHandler, construct, handler_class
+from irsim.components.options import BehaviorOptions
 from irsim.diagnostics.errors import BehaviorError
 from irsim.objects.base import SimObject, column
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from irsim.components.behaviors._options import BehaviorOptions, CustomOptions
+from irsim.components.options import BehaviorOptions, CustomOptions
 from irsim.diagnostics.diagnostic import Edit, is_slip_of, nearest
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
 from irsim.scenario.checks._context import Context, distinct

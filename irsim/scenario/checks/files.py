@@ -8,8 +8,8 @@ from typing import Any
 
 from irsim.diagnostics.diagnostic import Edit, Path, nearest
 from irsim.scenario.checks._context import Context
+from irsim.scenario.locate import BUNDLED, image_places, why_outside
 from irsim.scenario.messages.findings import Finding, error, warning
-from irsim.scenario.path_confinement import BUNDLED, image_places, why_outside
 from irsim.scenario.yaml.formatting import quote_value
 
 

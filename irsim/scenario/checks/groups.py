@@ -6,8 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.components.behaviors._options import CustomOptions
 from irsim.components.behaviors.sfm import Sfm
+from irsim.components.options import CustomOptions
 from irsim.diagnostics.diagnostic import Edit
 from irsim.options.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.checks._context import Context

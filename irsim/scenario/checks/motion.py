@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from irsim.common.text import metres
-from irsim.components.behaviors._options import CustomOptions
+from irsim.components.options import CustomOptions
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.checks.magnitude import MAX_MAGNITUDE

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.components.behaviors._options import CustomOptions
+from irsim.components.options import CustomOptions
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.registry import (
     BEHAVIORS,

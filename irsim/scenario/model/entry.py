@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from irsim.components.behaviors._options import CustomOptions
+from irsim.components.options import CustomOptions
 from irsim.options.base import Options
 from irsim.options.colors import ObjectColor
 from irsim.options.registry import (

@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import irsim._core as core
-from irsim.components.behaviors._options import CustomOptions
+from irsim.components.options import CustomOptions
 from irsim.scenario.resolve.kernels import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 

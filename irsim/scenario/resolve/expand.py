@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 from pydantic import BaseModel
 
-from irsim.components.behaviors._options import behavior_fields
-from irsim.components.kinematics._options import KinematicsOptions
 from irsim.components.maps._grid import MapCells, MapGrid, Walls
+from irsim.components.options import KinematicsOptions, behavior_fields
+from irsim.components.shapes.circle import Circle
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.colors import OBSTACLE_COLOR, PUSHABLE_COLOR, ROBOT_COLOR, cycle_color
 from irsim.options.registry import DISTRIBUTIONS
@@ -337,8 +337,6 @@ def _drive(options: Any) -> KinematicsOptions | None:
 
 
 def _default_shape() -> BaseModel:
-    from irsim.components.shapes.circle import Circle
-
     return Circle(radius=DEFAULT_RADIUS)
 
 

@@ -13,7 +13,7 @@ from irsim.options.registry import BEHAVIORS, DISTRIBUTIONS, KINEMATICS, PLANNER
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
-    from irsim.components.behaviors._options import BehaviorOptions
+    from irsim.components.options import BehaviorOptions
     from irsim.scenario.resolve.resolved import ObjectRecord
 
 __all__ = ["Kernels", "kernel_options", "kernels_of", "parts_of", "placement_kernel"]

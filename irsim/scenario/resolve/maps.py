@@ -9,14 +9,13 @@ from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import Any
 
-from irsim.components.maps._bundled import bundled_map, bundled_names
 from irsim.components.maps._grid import MapGrid, map_grid
-from irsim.components.maps._site import MapProblem, MapSite, Noise, Raster
+from irsim.components.maps._site import MapProblem, MapSite, Noise, Raster, bundled_map, bundled_names
 from irsim.options.registry import MAPS
 from irsim.scenario.limits import Limits
+from irsim.scenario.locate import why_outside
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.world import WorldModel
-from irsim.scenario.path_confinement import why_outside
 
 __all__ = ["LoadedMap", "load_map"]
 

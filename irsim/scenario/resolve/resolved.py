@@ -7,14 +7,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
+from irsim.components.options import BehaviorOptions, CustomOptions
+
+__all__ = [
+    "DrawnQuantity",
+    "ObjectRecord",
+    "Placement",
+    "ResolvedScenario",
+    "Spreads",
+    "Variation",
+    "VariedLevel",
+    "random_parts",
+]
+
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from irsim.components.maps._grid import MapGrid
     from irsim.diagnostics.diagnostic import Path
     from irsim.scenario.model.scenario import Gui, ObjectPlot, WorldModel
-
-__all__ = ["DrawnQuantity", "ObjectRecord", "Placement", "ResolvedScenario", "Spreads", "Variation", "VariedLevel"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +51,7 @@ class ObjectRecord:
 
     ``state`` has ``state_dim`` numbers, limits have ``vel_dim`` numbers. ``kinematics``, ``shape``, ``behavior``,
     ``group_behavior`` and ``sensors`` are validated options models of the registries; ``kinematics`` is None for an
-    object without a drive. ``behavior`` may be a :class:`irsim.components.behaviors._options.CustomOptions`.
+    object without a drive. ``behavior`` may be a :class:`irsim.components.options.CustomOptions`.
     """
 
     id: int
@@ -128,7 +139,7 @@ class Placement:
     """The objects of one entry whose places are drawn for each scene, such as ``distribution: random``.
 
     ``range_low``, ``range_high``, ``min_distance`` and ``clear_of`` are fields of ``Drawn`` in
-    :mod:`irsim.components.distributions._options`, and ``options`` is its ``kernel``.
+    :mod:`irsim.components.options`, and ``options`` is its ``kernel``.
     """
 
     objects: list[int]  # ids
@@ -254,3 +265,48 @@ _GIVE_GOALS = ("goal", "waypoints", "distribution")
 
 def _keys(value: Any) -> Any:
     return value if isinstance(value, Mapping) else range(len(value) if isinstance(value, list) else 0)
+
+
+_SAMPLING_PLANNERS = ("rrt", "rrt_star", "informed_rrt_star", "prm")
+
+
+def random_parts(scenario: ResolvedScenario) -> list[str]:
+    """The parts of a run that depend on the seed, in words; empty if every seed gives the same run."""
+    names: dict[str, None] = {}
+    if scenario.placements:
+        names["placement"] = None
+    generator: Any = scenario.world.obstacle_map
+    if getattr(generator, "seed", 0) is None:
+        names["map"] = None
+    for record in scenario.objects:
+        names.update(dict.fromkeys(_of_object(record)))
+    return list(names)
+
+
+def _of_object(record: ObjectRecord) -> list[str]:
+    shape: Any = record.shape
+    drive: Any = record.kinematics
+    parts = shape.parts if shape.name == "compound" else [shape]
+    behaviors: list[Any] = [record.behavior, record.group_behavior]
+    planners = [getattr(behavior, "planner", None) for behavior in behaviors]
+    chances = {
+        "shapes": any(getattr(part, "random_shape", False) for part in parts),
+        "wander goals": record.wander and not record.static,
+        "motion noise": getattr(drive, "noise", False) and not record.static,
+        "sensor noise": any(
+            getattr(sensor, "noise", False) or getattr(sensor, "velocity_noise_std", 0.0) for sensor in record.sensors
+        ),
+        "decisions": any(isinstance(behavior, BehaviorOptions) and behavior.draws() for behavior in behaviors)
+        and not record.static,
+        "planners": any(getattr(planner, "name", planner) in _SAMPLING_PLANNERS for planner in planners),
+        "user code": any(isinstance(behavior, CustomOptions) for behavior in behaviors),
+    }
+    return [name for name, chance in chances.items() if chance] + _perturbed_parts(record)
+
+
+def _perturbed_parts(record: ObjectRecord) -> list[str]:
+    spreads = record.spreads
+    if spreads is None:
+        return []
+    names = {"position": "start positions", "heading": "start headings", "speed": "speeds", "delay": "start delays"}
+    return [text for key, text in names.items() if getattr(spreads, key)]

@@ -7,14 +7,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from pydantic import BaseModel
 
 from irsim.diagnostics.diagnostic import format_path
 from irsim.objects.extensions.behaviors import PythonBehaviors
 from irsim.simulation.build import group_behaviors
 
 if TYPE_CHECKING:
-    from pydantic import BaseModel
-
     from irsim.env import Env
     from irsim.objects.view import ObjectView
     from irsim.scenario.resolve.resolved import ObjectRecord
@@ -119,8 +118,6 @@ def _options(model: BaseModel | None, *without: str) -> Any:
 
 
 def _shape(record: ObjectRecord) -> Any:
-    from pydantic import BaseModel
-
     return _options(record.shape) if isinstance(record.shape, BaseModel) else {"name": record.shape.name}
 
 

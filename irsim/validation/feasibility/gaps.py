@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 import irsim._core as core
@@ -159,8 +160,6 @@ def find_gaps(scene: Scene, *, most: float, open_edge: bool) -> Gaps | None:
     Returns:
         The gaps; None if the scene has too many features or gaps.
     """
-    import shapely
-
     lines: list[tuple[Floats, float]] = []
     count = 0
     for parts, pose in scene.things:
@@ -220,8 +219,6 @@ def _near_pairs(a: Floats, b: Floats, radius: Floats, most: float, shapes: Shape
         (2, P) features beside a gap, the smaller index first, from left to right; None if too many pairs would have
         to be examined.
     """
-    import shapely
-
     low = np.minimum(a[:, 0], b[:, 0]) - radius
     high = np.maximum(a[:, 0], b[:, 0]) + radius + most
     order = np.argsort(low, kind="stable")
@@ -237,8 +234,6 @@ def _near_pairs(a: Floats, b: Floats, radius: Floats, most: float, shapes: Shape
 
 def _shapes(a: Floats, b: Floats) -> Shapes:
     """Make a shapely segment of each feature, and a point of each disc."""
-    import shapely
-
     shapes = np.asarray(shapely.linestrings(np.stack([a, b], axis=1)), dtype=object)
     discs = (a == b).all(axis=1)
     shapes[discs] = shapely.points(a[discs])

@@ -13,7 +13,7 @@ from urllib.parse import unquote
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.source import ImportLimits, unusable
 from irsim.common.text import clean
-from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.locate import why_outside
 
 __all__ = ["Beside", "check"]
 

@@ -10,7 +10,7 @@ from irsim.bridges.maps.ros_server import MapFileError
 from irsim.bridges.maps.source import OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Kind, Occupancy
 from irsim.components.maps._rosmap import read_meta, ros_raster
 from irsim.components.maps._site import MapProblem, MapSite
-from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.locate import why_outside
 
 __all__ = ["KIND"]
 _HALF = 50.0
