@@ -89,7 +89,7 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
     from irsim.graphics.scene.zones import draw_zones
     from irsim.rendering.clearance_map import draw_clearance
     from irsim.rendering.planned_paths import draw_plans
-    from irsim.rendering.snapshot_details import draw_between_steps
+    from irsim.rendering.snapshot import draw_between_steps
 
     def add(scene: Scene) -> None:
         if overlays and "clearance" in overlays:

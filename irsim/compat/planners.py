@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.arrays import Floats
+from irsim.compat.search_drawing import draw_search
 from irsim.navigation.map import Cells, EnvGridMap, cells_of, footprint_of, terrain_of
 from irsim.simulation.random_streams import check_seed, fresh_seed
 
@@ -83,7 +85,7 @@ class PathPlanner:
     def _plan(self, start_pose: Any, goal_pose: Any, key: tuple[int, int, int], show_animation: bool) -> Floats | None:
         start, goal = _point(start_pose, "start"), _point(goal_pose, "goal")
         path, cost, nodes, parents, costs = terrain_of(self.map).plan(
-            self._kernel(),
+            self._options(**{key: getattr(self, key) for key in self._keys}),
             parts=self._footprint(),
             heading=0.0,
             start=start,
@@ -100,15 +102,14 @@ class PathPlanner:
         self.node_list = _link_nodes(nodes, parents, costs) if self._keeps_nodes else []
         points = None if path is None else np.ascontiguousarray(path[::-1].T)
         if show_animation:
-            from irsim.compat.search_drawing import draw_search
-
             draw_search(self.map, nodes, parents, points, start, goal)
         return points
 
     _keeps_nodes = False
-
-    def _kernel(self) -> Any:
-        raise NotImplementedError
+    _options: Any = None
+    """Class of the options of the search in the core."""
+    _keys: tuple[str, ...] = ()
+    """Attributes that are options of the search."""
 
     def _footprint(self) -> list[Any]:
         return footprint_of(self.robot)
@@ -179,15 +180,13 @@ class _GridPlanner(PathPlanner):
 class AStarPlanner(_GridPlanner):
     """Finds the shortest path over the eight neighbours of each cell; the start may be occupied."""
 
-    def _kernel(self) -> Any:
-        return core.AstarOptions(resolution=0.0)
+    _options = functools.partial(core.AstarOptions, resolution=0.0)
 
 
 class JPSPlanner(_GridPlanner):
     """Finds paths as short as A* by jumping over cells without a choice; the start must be free."""
 
-    def _kernel(self) -> Any:
-        return core.JpsOptions(resolution=0.0)
+    _options = functools.partial(core.JpsOptions, resolution=0.0)
 
 
 class RRT(PathPlanner):
@@ -204,6 +203,8 @@ class RRT(PathPlanner):
     """
 
     _keeps_nodes = True
+    _options: Any = core.RrtOptions
+    _keys: tuple[str, ...] = ("expand_dis", "path_resolution", "goal_sample_rate", "max_iter")
 
     def __init__(
         self,
@@ -223,17 +224,6 @@ class RRT(PathPlanner):
         self.expand_dis, self.path_resolution = expand_dis, path_resolution
         self.goal_sample_rate, self.max_iter = goal_sample_rate, max_iter
 
-    def _kernel(self) -> Any:
-        return core.RrtOptions(**self._tree())
-
-    def _tree(self) -> dict[str, Any]:
-        return {
-            "expand_dis": self.expand_dis,
-            "path_resolution": self.path_resolution,
-            "goal_sample_rate": self.goal_sample_rate,
-            "max_iter": self.max_iter,
-        }
-
 
 class RRTStar(RRT):
     """RRT that rewires the tree around each new point, which shortens the path.
@@ -244,6 +234,9 @@ class RRTStar(RRT):
         search_until_max_iter: Continue to improve the path until all samples are drawn, rather than stop at the first
             path.
     """
+
+    _options: Any = core.RrtStarOptions
+    _keys = (*RRT._keys, "connect_circle_dist", "search_until_max_iter")
 
     def __init__(
         self,
@@ -264,16 +257,6 @@ class RRTStar(RRT):
         )
         self.connect_circle_dist, self.search_until_max_iter = connect_circle_dist, search_until_max_iter
 
-    def _kernel(self) -> Any:
-        return core.RrtStarOptions(**self._tree())
-
-    def _tree(self) -> dict[str, Any]:
-        return {
-            **super()._tree(),
-            "connect_circle_dist": self.connect_circle_dist,
-            "search_until_max_iter": self.search_until_max_iter,
-        }
-
 
 class InformedRRTStar(RRTStar):
     """RRT* that, after it has found a path, samples only the ellipse that can contain a shorter one.
@@ -282,6 +265,8 @@ class InformedRRTStar(RRTStar):
         env_map, robot, expand_dis, path_resolution, goal_sample_rate, max_iter, smooth, seed: See :class:`RRT`.
         connect_circle_dist, search_until_max_iter: See :class:`RRTStar`.
     """
+
+    _options = core.InformedRrtStarOptions
 
     def __init__(
         self,
@@ -310,9 +295,6 @@ class InformedRRTStar(RRTStar):
             seed=seed,
         )
 
-    def _kernel(self) -> Any:
-        return core.InformedRrtStarOptions(**self._tree())
-
 
 class PRMPlanner(PathPlanner):
     """Connects random free points to a graph and returns its shortest path.
@@ -327,6 +309,8 @@ class PRMPlanner(PathPlanner):
     """
 
     _keeps_nodes = True
+    _options = core.PrmOptions
+    _keys = ("n_sample", "n_knn", "max_edge_len")
 
     def __init__(
         self,
@@ -365,9 +349,6 @@ class PRMPlanner(PathPlanner):
         """
         key = self._key if rng is None else (int(rng.integers(2**63)), 0, 0)
         return self._plan(start_pose, goal_pose, key, show_animation)
-
-    def _kernel(self) -> Any:
-        return core.PrmOptions(n_sample=self.n_sample, n_knn=self.n_knn, max_edge_len=self.max_edge_len)
 
     def _footprint(self) -> list[Any]:
         return [core.Circle(radius=self.robot_radius, center=(0.0, 0.0))]

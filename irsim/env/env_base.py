@@ -19,7 +19,6 @@ from irsim.env import (
     policies,
     queries,
 )
-from irsim.env.old import random_obstacles
 from irsim.env.parameters import PathParam
 from irsim.env.state import EnvState
 from irsim.graphics.scene.style import Palette
@@ -142,7 +141,7 @@ class Env(EnvState):
     get_lidar_scan = queries.get_lidar_scan
     get_lidar_offset = queries.get_lidar_offset
 
-    # adding and deleting objects: object_list.py, old/random_obstacles.py
+    # adding and deleting objects: object_list.py
     create_robot = object_list.create_robot
     create_obstacle = object_list.create_obstacle
     add_object = object_list.add_object
@@ -151,8 +150,8 @@ class Env(EnvState):
     delete_objects = object_list.delete_objects
     validate_unique_names = object_list.validate_unique_names
     build_tree = object_list.build_tree
-    random_obstacle_position = random_obstacles.random_obstacle_position
-    random_polygon_shape = random_obstacles.random_polygon_shape
+    random_obstacle_position = object_list.random_obstacle_position
+    random_polygon_shape = object_list.random_polygon_shape
 
     # behaviors of scripts, policies, maps, messages: policies.py, queries.py, messages.py
     set_policy = policies.set_policy

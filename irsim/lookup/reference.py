@@ -14,8 +14,15 @@ from pathlib import Path
 import irsim.compat
 from irsim.common import data_files as resources
 from irsim.common.files import write_atomically
-from irsim.compat.changed_scenes import CHANGED_SCENES
-from irsim.compat.differences import ABSENT, DIFFERENCES, EXTENSIONS, FEATURES, KEY_DIFFERENCES, NAME_DIFFERENCES
+from irsim.compat.differences import (
+    ABSENT,
+    CHANGED_SCENES,
+    DIFFERENCES,
+    EXTENSIONS,
+    FEATURES,
+    KEY_DIFFERENCES,
+    NAME_DIFFERENCES,
+)
 from irsim.compat.names import reference_names
 from irsim.lookup.answer import plain_table
 from irsim.lookup.api_pages import PACKS
@@ -100,7 +107,7 @@ def page(schema: Node) -> str:
         schema: JSON Schema of the language.
     """
     ids = [(f"`{name}`", one.theirs, one.ours, one.why) for name, one in DIFFERENCES.items()]
-    scenes = [(f"`{place}`", one.difference, one.why) for place, one in CHANGED_SCENES.items()]
+    scenes = [(f"`{place}`", difference, why) for place, (difference, why) in CHANGED_SCENES.items()]
     parts = [
         "# Compatibility with IR-SIM 2.12",
         "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->",

@@ -19,8 +19,7 @@ import irsim
 from irsim.compat.finder import OldPathFinder
 from irsim.compat.freezing import hook_folders
 from irsim.compat.names import reference_names
-from irsim.compat.paths import NAMES, SAME, old_paths
-from irsim.compat.stubs import stub_files
+from irsim.compat.paths import NAMES, SAME, old_paths, stub_files
 from tests.warm import LIBRARIES, warm
 
 PACKAGES = sorted({path for path in old_paths() if any(other.startswith(f"{path}.") for other in old_paths())})

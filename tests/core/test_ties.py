@@ -14,7 +14,7 @@ import yaml
 
 import irsim
 from irsim.api import read_scenario
-from irsim.compat.changed_scenes import CHANGED_SCENES
+from irsim.compat.differences import CHANGED_SCENES
 from tests.core.test_sidestep import LOCALS, RING
 from tests.core.worlds import assert_success, collisions
 

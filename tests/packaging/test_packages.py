@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from irsim.compat.stubs import stub_files
+from irsim.compat.paths import stub_files
 
 # One process has them all, and so builds sdist and wheel once; the other one builds without a compiler meanwhile.
 pytestmark = [pytest.mark.slow(60), pytest.mark.xdist_group("packages")]

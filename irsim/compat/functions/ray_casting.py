@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
@@ -30,8 +31,6 @@ def cast_rays(
         A tuple (ranges, hits, origin, directions): (N,) ranges [m]; (N,) index of the object that each beam hits, or
         -1; (2,) origin [m]; (N, 2) vectors from the origin to the ends of the beams, divided by ``max_range``.
     """
-    import shapely
-
     beams = np.array([[line.coords[0], line.coords[-1]] for line in lidar_geometry.geoms], dtype=np.float64)
     origin = beams[0, 0, :2] if len(beams) else np.zeros(2)
     directions = (beams[:, 1, :2] - beams[:, 0, :2]) / max_range if len(beams) else np.zeros((0, 2))

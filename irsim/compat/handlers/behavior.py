@@ -1,23 +1,42 @@
-"""The behavior of one object: finds the function or class registered for its drive and name, and calls it."""
+"""Behaviors of one object and of a group: they find what is registered for a drive and a name, and call it."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from irsim.compat.handlers.behavior_maps import behaviors_map
+from irsim.compat.handlers import built_in
 from irsim.objects.extensions.behaviors import call, construct
-from irsim.options.registry import CUSTOM_BEHAVIORS
+from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 
-__all__ = ["Behavior", "print_error"]
+__all__ = [
+    "Behavior",
+    "GroupBehavior",
+    "behaviors_class_map",
+    "behaviors_map",
+    "group_behaviors_class_map",
+    "group_behaviors_map",
+]
+
+REGISTERING = built_in
+"""The module that registers the built-in behaviors when it is imported."""
+
+behaviors_map = CUSTOM_BEHAVIORS.functions
+"""Functions by (kinematics, name)."""
+behaviors_class_map = CUSTOM_BEHAVIORS.classes
+"""Classes by (kinematics, name); user code alone registers them."""
+group_behaviors_map = CUSTOM_GROUP_BEHAVIORS.functions
+"""Functions for groups by (kinematics, name); user code alone registers them."""
+group_behaviors_class_map = CUSTOM_GROUP_BEHAVIORS.classes
+"""Classes for groups by (kinematics, name)."""
 
 
-def print_error(text: str) -> None:
+def _print_error(text: str) -> None:
     """Print a message to standard error, as handlers without an environment do."""
     print(text, file=sys.stderr)
 
@@ -55,10 +74,10 @@ class Behavior:
 
     def _construct(self) -> None:
         name = self.behavior_dict.get("name")
-        maker = CUSTOM_BEHAVIORS.classes.get((getattr(self.object_info, "kinematics", None) or "", name or ""))
+        maker = behaviors_class_map.get((getattr(self.object_info, "kinematics", None) or "", name or ""))
         self._made = None
         if maker is not None:
-            self._made = construct(maker, self.object_info, self.behavior_dict, "behavior class", print_error)
+            self._made = construct(maker, self.object_info, self.behavior_dict, "behavior class", _print_error)
 
     def gen_vel(self, ego_object: Any, external_objects: Any = None) -> Any:
         """Return the control that the behavior chooses.
@@ -95,3 +114,46 @@ class Behavior:
             known = sorted(name for drive, name in behaviors_map if drive == kinematics)
             raise ValueError(f"no behavior {action!r} is registered for {kinematics!r}; there are {', '.join(known)}")
         return function(**kwargs)
+
+
+class GroupBehavior:
+    """A behavior that chooses the controls of all members of a group together.
+
+    Args:
+        members: The group; the drive of the first one counts.
+        **behavior_dict: The YAML mapping: ``name`` and the keys of the behavior.
+    """
+
+    def __init__(self, members: Sequence[Any], **behavior_dict: Any) -> None:
+        self.members = list(members)
+        self.behavior_dict = behavior_dict
+        self.kinematics = self.members[0].kinematics if self.members else None
+        self.name = behavior_dict.get("name")
+        self._made: Callable[..., Any] | None = None
+        self._construct()
+
+    def _construct(self) -> None:
+        key = (self.kinematics or "static", self.name or "")
+        maker = group_behaviors_class_map.get(key)
+        self._made = None
+        if maker is None:
+            if self.name is not None and key not in group_behaviors_map:
+                _print_error(f"group behavior {self.name!r} is not registered for {self.kinematics!r}")
+            return
+        self._made = construct(maker, self.members, self.behavior_dict, "group behavior", _print_error)
+
+    def update_members(self, members: Sequence[Any]) -> None:
+        """Replace the members of the group."""
+        self.members = list(members)
+
+    def load_group_behaviors(self, group_behaviors: str = ".group_behavior_methods") -> None:
+        """Import a module, which registers its behaviors; a leading dot means this package."""
+        import_module(group_behaviors, package="irsim.lib.behavior")
+        self._construct()
+
+    def gen_group_vel(self) -> list[Any]:
+        """Return one control per member, (vel_dim, 1); a member whose entry is None follows its own behavior."""
+        act = self._made or group_behaviors_map.get((self.kinematics or "static", self.name or ""))
+        if act is None or not self.members:
+            return [None] * len(self.members)
+        return list(act(self.members, **self.behavior_dict))

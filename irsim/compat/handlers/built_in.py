@@ -1,4 +1,4 @@
-"""The built-in behaviors as functions of arrays and of objects; the engine computes the controls."""
+"""The built-in behaviors as functions of arrays and of objects, and for groups; the engine computes the controls."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from irsim.compat.functions.social_force import social_force_model
 from irsim.compat.handlers.decide import decide_among
 from irsim.objects.extensions.drives import diff_control
 from irsim.objects.extensions.registration import register_behavior
-from irsim.options.registry import CUSTOM_BEHAVIORS
+from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 
 __all__ = [
     "AckerDash",
@@ -25,16 +25,22 @@ __all__ = [
     "OmniAngularDash",
     "OmniDash",
     "OmniRVO",
+    "OrcaGroupBehavior",
     "SFMVelocity",
+    "SfmGroupBehavior",
     "WrapToPi",
     "beh_acker_dash",
     "beh_diff_dash",
+    "beh_diff_orca",
     "beh_diff_rvo",
     "beh_diff_sfm",
+    "beh_diff_sfm_group",
     "beh_omni_angular_dash",
     "beh_omni_dash",
+    "beh_omni_orca",
     "beh_omni_rvo",
     "beh_omni_sfm",
+    "beh_omni_sfm_group",
     "reciprocal_vel_obs",
     "register_behavior",
     "relative_position",
@@ -248,4 +254,52 @@ CUSTOM_BEHAVIORS.functions |= {
     ("omni", "sfm"): beh_omni_sfm,
     ("omni_angular", "dash"): beh_omni_angular_dash,
     ("acker", "dash"): beh_acker_dash,
+}
+
+
+class _NativeGroup:
+    """A built-in behavior for a group of objects.
+
+    Args:
+        members: The group, objects of one environment.
+        **kwargs: Keys of the YAML mapping.
+
+    Raises:
+        ValidationError: A value is invalid.
+    """
+
+    behavior = ""
+
+    def __init__(self, members: Sequence[Any], **kwargs: Any) -> None:
+        self._options = behavior_options(self.behavior, kwargs)
+        self._roles = str(kwargs.get("target_roles", "all"))
+
+    def __call__(self, members: Sequence[Any], **kwargs: Any) -> list[Floats]:
+        """Return the controls of all members, (vel_dim, 1) each, for the current state of the simulation."""
+        if not members:
+            return []
+        others = [o for o in members[0].environment_objects if not any(o is m for m in members)]
+        seen = [other for other in others if self._roles not in ("robot", "obstacle") or other.role == self._roles]
+        return decide_among(list(members), seen, self._options, grouped=True)
+
+
+class OrcaGroupBehavior(_NativeGroup):
+    """`orca` for a group."""
+
+    behavior = "orca"
+
+
+class SfmGroupBehavior(_NativeGroup):
+    """`sfm` for a group, with social groups within it."""
+
+    behavior = "sfm"
+
+
+beh_omni_orca = beh_diff_orca = OrcaGroupBehavior
+beh_omni_sfm_group = beh_diff_sfm_group = SfmGroupBehavior
+CUSTOM_GROUP_BEHAVIORS.classes |= {
+    ("omni", "orca"): beh_omni_orca,
+    ("diff", "orca"): beh_diff_orca,
+    ("omni", "sfm"): beh_omni_sfm_group,
+    ("diff", "sfm"): beh_diff_sfm_group,
 }

@@ -6,6 +6,8 @@ import math
 from typing import Any, ClassVar
 
 import numpy as np
+import shapely
+from shapely.affinity import affine_transform
 
 from irsim.common.arrays import Floats
 from irsim.compat.functions.polygons import polygon_inequality, random_generate_polygon
@@ -44,11 +46,11 @@ class geometry_handler:
     """
 
     init_vertices: None = None
+    kind = ""
+    """Default name."""
 
-    def __init__(self, name: str, **kwargs: Any) -> None:
-        import shapely
-
-        self.name = name
+    def __init__(self, name: str | None = None, **kwargs: Any) -> None:
+        self.name = name or self.kind
         self.wheelbase: float | None = kwargs.get("wheelbase")
         self._original = self.construct_original_geometry(**kwargs)
         self.geometry: Any = self._original
@@ -121,8 +123,7 @@ class geometry_handler:
 class CircleGeometry(geometry_handler):
     """A disc, as a polygon of 64 vertices."""
 
-    def __init__(self, name: str = "circle", **kwargs: Any) -> None:
-        super().__init__(name, **kwargs)
+    kind = "circle"
 
     def construct_original_geometry(
         self,
@@ -133,8 +134,6 @@ class CircleGeometry(geometry_handler):
         wheelbase: float | None = None,
     ) -> Any:
         """Return the polygon in the body frame."""
-        import shapely
-
         if random_shape:
             radius = float(current_rng().uniform(*(radius_range or [0.1, 1.0])))
         x, y = center or [0.0, 0.0]
@@ -161,15 +160,12 @@ class CircleGeometry(geometry_handler):
 class RectangleGeometry(geometry_handler):
     """A rectangle about the origin, or with the origin on the rear axle where there is a wheelbase."""
 
-    def __init__(self, name: str = "rectangle", **kwargs: Any) -> None:
-        super().__init__(name, **kwargs)
+    kind = "rectangle"
 
     def construct_original_geometry(
         self, length: float = 1.0, width: float = 1.0, wheelbase: float | None = None
     ) -> Any:
         """Return the polygon in the body frame."""
-        import shapely
-
         rear = -length / 2 if wheelbase is None else -(length - wheelbase) / 2
         half = width / 2
         return shapely.Polygon([(rear, -half), (rear + length, -half), (rear + length, half), (rear, half)])
@@ -178,37 +174,19 @@ class RectangleGeometry(geometry_handler):
 class PolygonGeometry(geometry_handler):
     """A polygon by its vertices, or a random one."""
 
-    def __init__(self, name: str = "polygon", **kwargs: Any) -> None:
-        super().__init__(name, **kwargs)
+    kind = "polygon"
 
     def construct_original_geometry(
         self, vertices: Any = None, random_shape: bool = False, is_convex: bool = False, **kwargs: Any
     ) -> Any:
         """Return the polygon in the body frame."""
-        import shapely
-
         if random_shape:
             vertices = _random_vertices(is_convex, kwargs)
         return shapely.Polygon(_SQUARE if vertices is None else np.asarray(vertices, dtype=np.float64))
 
 
-class LinestringGeometry(geometry_handler):
-    """An open polyline."""
-
-    def __init__(self, name: str = "linestring", **kwargs: Any) -> None:
-        super().__init__(name, **kwargs)
-
-    def construct_original_geometry(
-        self, vertices: Any = None, random_shape: bool = False, is_convex: bool = True, **kwargs: Any
-    ) -> Any:
-        """Return the line in the body frame."""
-        import shapely
-
-        if random_shape:
-            vertices = _random_vertices(is_convex, kwargs)
-        if vertices is None:
-            raise TypeError("a linestring needs `vertices`")
-        return shapely.LineString(np.asarray(vertices, dtype=np.float64))
+class _LineGeometry(geometry_handler):
+    """A shape without area."""
 
     def get_init_Gh(self) -> Inequality:
         """Return None for each value, because a line has no interior."""
@@ -219,20 +197,36 @@ class LinestringGeometry(geometry_handler):
         return _NO_AREA
 
 
+class LinestringGeometry(_LineGeometry):
+    """An open polyline."""
+
+    kind = "linestring"
+
+    def construct_original_geometry(
+        self, vertices: Any = None, random_shape: bool = False, is_convex: bool = True, **kwargs: Any
+    ) -> Any:
+        """Return the line in the body frame."""
+        if random_shape:
+            vertices = _random_vertices(is_convex, kwargs)
+        if vertices is None:
+            raise TypeError("a linestring needs `vertices`")
+        return shapely.LineString(np.asarray(vertices, dtype=np.float64))
+
+
 class CompoundGeometry(geometry_handler):
     """The union of circles, rectangles and polygons."""
 
     _parts: ClassVar[tuple[str, ...]] = ("circle", "rectangle", "polygon")
 
-    def __init__(self, name: str = "compound", **kwargs: Any) -> None:
+    kind = "compound"
+
+    def __init__(self, name: str | None = None, **kwargs: Any) -> None:
         self._pieces: list[Any] = []
         self._placed: list[Any] = []
         super().__init__(name, **kwargs)
 
     def construct_original_geometry(self, parts: Any = None, **kwargs: Any) -> Any:
         """Return the union of the parts in the body frame."""
-        import shapely
-
         if not parts:
             raise ValueError("a compound has at least one part")
         for part in parts:
@@ -271,37 +265,29 @@ class CompoundGeometry(geometry_handler):
         return [_outline(piece) for piece in self._pieces]
 
 
-class PointsGeometry(geometry_handler):
+class PointsGeometry(_LineGeometry):
     """The outlines of square cells about points, of a map."""
 
-    def __init__(self, name: str = "map", **kwargs: Any) -> None:
-        super().__init__(name, **kwargs)
+    kind = "map"
 
     def construct_original_geometry(self, points: Any = None, reso: Any = 0.1, **kwargs: Any) -> Any:
         """Return the boundary of the union of the cells."""
-        import shapely
-
         size = np.broadcast_to(np.asarray(reso, dtype=np.float64).reshape(-1), (2,)) / 2
         cells = [shapely.box(x - size[0], y - size[1], x + size[0], y + size[1]) for x, y in np.asarray(points).T]
         outline: Any = shapely.union_all(cells).boundary
         return outline if outline.geom_type == "MultiLineString" else shapely.MultiLineString([outline])
 
-    def get_init_Gh(self) -> Inequality:
-        """Return None for each value, because outlines have no interior."""
-        return _NO_AREA
-
-    def get_Gh(self, **kwargs: Any) -> Inequality:
-        """Return None for each value, because outlines have no interior."""
-        return _NO_AREA
-
 
 _KINDS: dict[str, type[geometry_handler]] = {
-    "circle": CircleGeometry,
-    "compound": CompoundGeometry,
-    "linestring": LinestringGeometry,
-    "map": PointsGeometry,
-    "polygon": PolygonGeometry,
-    "rectangle": RectangleGeometry,
+    maker.kind: maker
+    for maker in (
+        CircleGeometry,
+        CompoundGeometry,
+        LinestringGeometry,
+        PointsGeometry,
+        PolygonGeometry,
+        RectangleGeometry,
+    )
 }
 
 
@@ -329,24 +315,22 @@ class GeometryFactory:
 class _BodyGeometry(geometry_handler):
     """The geometry of an object of a simulation."""
 
-    def construct_original_geometry(self, **kwargs: Any) -> Any:
+    def construct_original_geometry(self, *args: Any, **kwargs: Any) -> Any:
         """Return the geometry that the handler was created with."""
         return kwargs["body"]
 
 
-class _DiscGeometry(_BodyGeometry):
-    get_init_Gh = CircleGeometry.get_init_Gh
-    get_Gh = CircleGeometry.get_Gh
+class _DiscBody(_BodyGeometry, CircleGeometry):
+    pass
 
 
-class _LineGeometry(_BodyGeometry):
-    get_init_Gh = LinestringGeometry.get_init_Gh
-    get_Gh = LinestringGeometry.get_Gh
+class _LineBody(_BodyGeometry, _LineGeometry):
+    pass
 
 
 def handler_of(view: Any) -> geometry_handler:
     """Return the shape of an object at its current pose."""
-    kinds: dict[str, type[geometry_handler]] = {"circle": _DiscGeometry, "linestring": _LineGeometry}
+    kinds: dict[str, type[geometry_handler]] = {"circle": _DiscBody, "linestring": _LineBody}
     maker: Any = kinds.get(view.shape, _BodyGeometry)
     made: geometry_handler = maker(view.shape, body=view.original_geometry, wheelbase=view.wheelbase)
     made.step(view.state)
@@ -361,8 +345,6 @@ def _random_vertices(is_convex: bool, keys: dict[str, Any]) -> Any:
 
 
 def _placed(geometry: Any, state: Floats) -> Any:
-    from shapely.affinity import affine_transform
-
     x, y, theta = np.asarray(state, dtype=np.float64).reshape(-1)[:3]
     cosine, sine = math.cos(theta), math.sin(theta)
     return affine_transform(geometry, [cosine, -sine, sine, cosine, x, y])

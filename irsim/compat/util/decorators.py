@@ -31,51 +31,49 @@ def _arguments(function: Function, args: Any, kwargs: Any) -> inspect.BoundArgum
     return bound
 
 
-def validate_shape(**shape_requirements: Any) -> Callable[[Function], Function]:
+def _check_arguments(requirements: dict[str, Any], check: Callable[[str, Any, Any], None]) -> Any:
+    """Return a decorator that calls ``check(name, value, wanted)`` for each of these arguments that is not None."""
+
+    def decorate(function: Function) -> Function:
+        @functools.wraps(function)
+        def checked(*args: Any, **kwargs: Any) -> Any:
+            given = _arguments(function, args, kwargs).arguments
+            for name, wanted in requirements.items():
+                if given.get(name) is not None:
+                    check(name, given[name], wanted)
+            return function(*args, **kwargs)
+
+        return checked
+
+    return decorate
+
+
+def validate_shape(**shape_requirements: Any) -> Any:
     """Return a decorator that checks the shapes of array arguments: a minimum number of rows, or the whole shape.
 
     Arguments that are None are not checked.
     """
 
-    def decorate(function: Function) -> Function:
-        @functools.wraps(function)
-        def checked(*args: Any, **kwargs: Any) -> Any:
-            given = _arguments(function, args, kwargs).arguments
-            for name, wanted in shape_requirements.items():
-                value = given.get(name)
-                if value is None:
-                    continue
-                if not isinstance(value, np.ndarray):
-                    raise TypeError(f"Parameter {name!r} must be a numpy array, got {type(value).__name__}")
-                fits = value.shape == wanted if isinstance(wanted, tuple) else value.shape[0] >= wanted
-                if not fits:
-                    raise ValueError(f"Parameter {name!r} must have shape {wanted}, got {value.shape}")
-            return function(*args, **kwargs)
+    def check(name: str, value: Any, wanted: Any) -> None:
+        if not isinstance(value, np.ndarray):
+            raise TypeError(f"Parameter {name!r} must be a numpy array, got {type(value).__name__}")
+        fits = value.shape == wanted if isinstance(wanted, tuple) else value.shape[0] >= wanted
+        if not fits:
+            raise ValueError(f"Parameter {name!r} must have shape {wanted}, got {value.shape}")
 
-        return checked
-
-    return decorate
+    return _check_arguments(shape_requirements, check)
 
 
-def validate_length(**length_requirements: int) -> Callable[[Function], Function]:
+def validate_length(**length_requirements: int) -> Any:
     """Return a decorator that checks the minimum length of arguments; lengths that are None are not checked."""
 
-    def decorate(function: Function) -> Function:
-        @functools.wraps(function)
-        def checked(*args: Any, **kwargs: Any) -> Any:
-            given = _arguments(function, args, kwargs).arguments
-            for name, min_length in length_requirements.items():
-                if given[name] is None:
-                    continue
-                if not hasattr(given[name], "__len__"):
-                    raise TypeError(f"Parameter {name!r} must be a sequence, got {type(given[name]).__name__}")
-                if len(given[name]) < min_length:
-                    raise ValueError(f"Parameter {name!r} must have length >= {min_length}, got {len(given[name])}")
-            return function(*args, **kwargs)
+    def check(name: str, value: Any, min_length: int) -> None:
+        if not hasattr(value, "__len__"):
+            raise TypeError(f"Parameter {name!r} must be a sequence, got {type(value).__name__}")
+        if len(value) < min_length:
+            raise ValueError(f"Parameter {name!r} must have length >= {min_length}, got {len(value)}")
 
-        return checked
-
-    return decorate
+    return _check_arguments(length_requirements, check)
 
 
 def _convert_arguments(names: tuple[str, ...], convert: Callable[[Any], Any]) -> Callable[[Function], Function]:

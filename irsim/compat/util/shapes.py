@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from shapely.affinity import affine_transform
 
 from irsim.common.arrays import Floats
 from irsim.compat.functions.frames import get_affine_transform
@@ -67,8 +68,6 @@ def geometry_transform(geometry: Any, state: Any) -> Any:
     """Transform a shapely geometry from the body frame to a pose; without a geometry, return None."""
     if geometry is None:
         return None
-    from shapely.affinity import affine_transform
-
     return affine_transform(geometry, get_affine_transform(state))
 
 

@@ -15,10 +15,10 @@ if(NOT SKBUILD_STATE STREQUAL "editable")
     endif()
   endforeach()
   execute_process(
-    COMMAND "${Python_EXECUTABLE}" "${IRSIM_ROOT}/irsim/compat/stubs.py" "${CMAKE_CURRENT_BINARY_DIR}/irsim-stubs"
+    COMMAND "${Python_EXECUTABLE}" "${IRSIM_ROOT}/irsim/compat/paths.py" "${CMAKE_CURRENT_BINARY_DIR}/irsim-stubs"
     RESULT_VARIABLE IRSIM_STUBS)
   if(NOT IRSIM_STUBS EQUAL 0)
-    message(FATAL_ERROR "irsim/compat/stubs.py failed")
+    message(FATAL_ERROR "irsim/compat/paths.py failed")
   endif()
   install(DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/irsim-stubs/" DESTINATION "irsim-stubs")
 endif()
