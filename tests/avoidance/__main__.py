@@ -15,9 +15,8 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from tests.avoidance.comparison import Pool, exact_losses, pools
 from tests.avoidance.families import BEHAVIORS, PEER_BEHAVIORS, groups
-from tests.avoidance.results import FOLDER, Key, Outcomes, read, write
+from tests.avoidance.results import FOLDER, Key, Outcomes, Pool, exact_losses, pools, read, write
 
 WORKER = Path(__file__).with_name("worker.py")
 OURS, PEER = FOLDER / "ours.csv", FOLDER / "peer.csv"

@@ -21,6 +21,8 @@ from tests.core.worlds import (
 )
 from tests.effort import for_all
 
+pytestmark = pytest.mark.every_python
+
 ALL = np.ones(1, np.uint8)
 NOISY = core.DiffOptions(noise=True, alpha=[0.03, 0.01, 0.01, 0.03])
 
@@ -167,9 +169,6 @@ def test_history_skips_steps_without_motion() -> None:
     assert state.trajectory(1).shape == (0, 5)
     with pytest.raises(ValueError, match="history"):
         scene(robot())[1].trajectory(0)
-
-
-pytestmark = pytest.mark.every_python
 
 
 def test_a_log_holds_what_a_rollout_returns() -> None:
