@@ -36,8 +36,6 @@ from tests.core.worlds import (
 
 pytestmark = pytest.mark.every_python
 
-WORLD_SIZED = ("count", "scene", "noise", "seed")
-
 
 def movers(name: str, seeds: Sequence[int]) -> tuple[core.World, core.State]:
     """Objects of every drive that run a behavior among two things."""
