@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from irsim.common.lazy import lazy_names
-from irsim.learning.registration import register_environments
+from irsim.learning.tasks.files import register_environments
 
 if TYPE_CHECKING:
     from irsim.learning.gym_env import Env

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from irsim.benchmarks.suite import SUITES, Seeds, Suite, SuiteScenario, load_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.lookup.answer import Answer, Key
-from irsim.policies.converters.weights import CONVERTERS
+from irsim.policies.converters.convert import CONVERTERS
 from irsim.policies.description import PolicyInfo, describe_policy, list_policies
 from irsim.policies.registry import POLICIES
 from irsim.policies.trained import trained_policies

@@ -19,6 +19,7 @@ from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEH
 from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.observations import Observations
 from irsim.policies.policy import FunctionPolicy, Policy
+from irsim.policies.random import RandomPolicy
 from irsim.policies.registry import POLICIES, RANDOM
 from irsim.policies.trained import COMMON_NAMES, trained_policies, trained_policy
 from irsim.scenario.behavior_override import AS_WRITTEN, behavior_text, parse_behavior, split_behaviors
@@ -110,8 +111,6 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
         trained.source = text
         return trained
     if name == RANDOM:
-        from irsim.policies.random import RandomPolicy
-
         return _named(_made(name, RandomPolicy, keys), text)
     maker = POLICIES.get(name) if root is None else None
     if maker is None:

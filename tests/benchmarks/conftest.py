@@ -1,4 +1,4 @@
-"""What tests of benchmarks share: a suite, a marker, and processes that start at once."""
+"""A suite, a marker and fixtures for tests of benchmarks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What tests of learning share."""
+"""A fixture for tests of learning."""
 
 from __future__ import annotations
 

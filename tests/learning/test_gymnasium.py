@@ -15,8 +15,7 @@ from pettingzoo.test import parallel_api_test, parallel_seed_test
 import irsim.learning
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning import Env, ParallelEnv, VectorEnv
-from irsim.learning.registration import environment_id
-from irsim.learning.tasks.files import TASKS, TaskError
+from irsim.learning.tasks.files import TASKS, TaskError, environment_id
 from tests.learning.tasks import CHOICES, crowd, lidar_among_boxes, task
 
 MADE = {"controls": lidar_among_boxes(), "choices": lidar_among_boxes(action=CHOICES)}
@@ -196,7 +195,7 @@ def test_an_environment_tells_contacts_within_its_steps() -> None:
 
 
 def eight_steps(workers: int, mode: str = "NextStep", **world: Any) -> list[Any]:
-    """What a vector of two such worlds answers."""
+    """The answers of a vector of two such worlds."""
     env = VectorEnv(tunnel("ann", "bob", **world), 4, autoreset_mode=mode, workers=workers)
     try:
         env.reset(seed=0)

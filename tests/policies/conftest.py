@@ -1,4 +1,4 @@
-"""What tests of policies share."""
+"""A fixture for tests of policies."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from irsim.common.data_files import skills_directory
 from irsim.diagnostics.errors import ArgumentError, InputError, PolicyError
 from irsim.lookup import lookup
 from irsim.policies import Needs, Observations, Policy
-from irsim.policies.converters.weights import CONVERTERS
+from irsim.policies.converters.convert import CONVERTERS
 from irsim.policies.description import describe_policy
 from irsim.policies.trained import COMMON_NAMES, trained_policies
 

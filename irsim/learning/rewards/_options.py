@@ -8,7 +8,7 @@ from irsim.options.units import Number
 
 __all__ = ["REWARDS", "RewardOptions"]
 
-REWARDS = Registry("reward", "irsim.learning.rewards", "irsim.rewards", families=("own", "others", "python"))
+REWARDS = Registry("reward", "irsim.learning.rewards", "irsim.rewards", families=("terms",))
 """Terms of rewards: a kernel of the core, or a function of :class:`irsim.learning.step.Moment` over all learners."""
 
 

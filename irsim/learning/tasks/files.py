@@ -1,9 +1,10 @@
-"""Reads and checks task files."""
+"""Reads and checks task files, and registers the bundled tasks with Gymnasium."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from irsim.learning.tasks.task import Task
 from irsim.scenario.file_kind import FileKind
 from irsim.scenario.yaml.document import Document, load_data, load_path
 
-__all__ = ["TASKS", "TaskError", "TaskSource", "open_task", "task_error"]
+__all__ = ["TASKS", "TaskError", "TaskSource", "environment_id", "open_task", "register_environments", "task_error"]
 
 TaskSource = str | os.PathLike[str] | Mapping[str, Any] | Task
 """A task, its data, the path of its file, or the name of a bundled task."""
@@ -76,3 +77,25 @@ def _error(document: Document, problems: Sequence[Diagnostic]) -> TaskError:
 
 TASKS = FileKind(key="task", model=Task, folder=Path(__file__).with_name("bundled"), error=_error)
 """Task files."""
+
+_VERSION = 0
+
+
+def environment_id(task: str) -> str:
+    """The id of a bundled task: ``irsim/GoalLidar-v0`` for ``goal_lidar``."""
+    return f"irsim/{''.join(word.capitalize() for word in task.split('_'))}-v{_VERSION}"
+
+
+def register_environments() -> None:
+    """Register the bundled tasks, and ``irsim/Task-v0`` with the argument ``task``; nothing without Gymnasium."""
+    if find_spec("gymnasium") is None:
+        return
+    import gymnasium  # an import of what only some have installed
+
+    entries = {"entry_point": "irsim.learning.gym_env:Env", "vector_entry_point": "irsim.learning.vector_env:VectorEnv"}
+    known = gymnasium.registry
+    for task in TASKS.names():
+        if environment_id(task) not in known:
+            gymnasium.register(environment_id(task), kwargs={"task": str(TASKS.bundled(task))}, **entries)
+    if (general := f"irsim/Task-v{_VERSION}") not in known:
+        gymnasium.register(general, **entries)

@@ -24,13 +24,15 @@ from irsim.learning.worlds import Worlds
 from irsim.policies.networks.document import PolicyDocument
 from irsim.policies.networks.files import save_network
 from irsim.policies.networks.network import Network, check_network, read_document
-from irsim.policies.networks.onnx.writing import save_onnx
 from irsim.policies.networks.values import Array
 
 require("learn", "torch", "stable_baselines3")
 import torch
+from matplotlib.figure import Figure
 from stable_baselines3 import PPO
 from torch import nn
+
+from irsim.learning.training.sarl.train import sarl_network_of
 
 __all__ = ["export_policy", "network_of"]
 
@@ -84,12 +86,12 @@ def export_policy(folder: str | Path, out: str | Path, *, license: str = "", des
         },
     }
     if isinstance(settings, SarlSettings):
-        from irsim.learning.training.sarl.train import sarl_network_of
-
         network = sarl_network_of(run.best, file, settings, card)
     else:
         network = network_of(PPO.load(run.best, device="cpu").policy, file, card)
     if target.suffix == ".onnx":
+        from irsim.policies.networks.onnx.writing import save_onnx  # of another extra
+
         save_onnx(target, network)
     else:
         save_network(target, network)
@@ -218,8 +220,6 @@ def draw_curve(rounds: Sequence[Mapping[str, Any]], title: str, file: Path) -> N
         title: Title of the picture.
         file: The PNG to write.
     """
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(6.4, 3.6), dpi=100, layout="constrained")
     axes = figure.add_subplot()
     decisions = [one["steps"] / 1e6 for one in rounds]

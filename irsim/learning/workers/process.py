@@ -1,19 +1,24 @@
-"""A worker process, as its parent sees it, and the messages that they exchange over pipes."""
+"""A worker process, as its parent sees it and as it runs, and the messages that they exchange over pipes."""
 
 from __future__ import annotations
 
 import os
 import pickle
 import select
+import signal
 import struct
+import sys
+import threading
 from collections.abc import Sequence
 from typing import Any
 
-from irsim.common.child import ONE_THREAD, Child, python
+from irsim.common.child import ONE_THREAD, Child, answers, end_with_parent, python
 from irsim.diagnostics.errors import WorkerError
+from irsim.learning.workers.memory import SharedMemory
+from irsim.learning.workers.part import Part, python_parts
+from irsim.learning.worlds import Worlds
 
-__all__ = ["DONE", "Worker", "packed_error", "read_message", "stop", "write_message"]
-
+__all__ = ["DONE", "Worker", "main", "packed_error", "read_message", "stop", "write_message"]
 
 DONE = b"\0"
 """First byte of an answer: the command was carried out. Any other one is followed by an error as a message."""
@@ -101,7 +106,7 @@ class Worker:
 
     def __init__(self, files: Sequence[int]) -> None:
         try:  # Ctrl-C at a terminal reaches only the parent
-            self._child = Child(python("irsim.learning.workers.child"), pass_fds=files, env=os.environ | ONE_THREAD)
+            self._child = Child(python("irsim.learning.workers.process"), pass_fds=files, env=os.environ | ONE_THREAD)
         except OSError as error:
             raise WorkerError(f"a worker process cannot be started: {error}", "give fewer workers") from error
         self._commands, self._answers = self._child.input.fileno(), self._child.output.fileno()
@@ -169,3 +174,46 @@ def stop(workers: list[Worker], owner: int) -> None:
     for worker in workers:
         worker.end()
     workers.clear()
+
+
+_EXIT_S = 1.0
+"""Time for the interpreter to end by itself [s]."""
+
+
+def main() -> None:
+    """Carry out commands."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is a matter of the parent
+    pipe = answers()
+    end_with_parent()
+    try:
+        _serve(pipe.fileno())
+    except (EOFError, OSError):  # the parent has closed the pipes, or does not live any more
+        end = threading.Timer(_EXIT_S, os._exit, (0,))
+        end.daemon = True
+        end.start()
+
+
+def _serve(pipe: int) -> None:
+    setup: dict[str, Any] = read_message(0)
+    try:
+        sys.argv = setup["argv"]  # files of scenarios are looked for beside the script, too
+        worlds = Worlds(setup["task"], setup["n"], seed=setup["seed"], threads=setup["threads"], level=setup["level"])
+        if python_parts(worlds) != setup["python"]:
+            raise RuntimeError("the program that made the environment has registered behaviors, sensors or drives")
+    except BaseException as error:
+        read_message(0)
+        write_message(pipe, packed_error(error), b"\1")
+        return
+    layout = read_message(0)
+    memory = SharedMemory(setup["memory"])
+    part = Part(worlds, setup["number"], setup["first"], layout, memory.arrays(layout))
+    memory.close()
+    os.write(pipe, DONE)
+    while True:
+        command = read_message(0)
+        try:
+            part.do(command)
+        except BaseException as error:  # of a function of the user, SystemExit too: it is raised in the parent
+            write_message(pipe, packed_error(error), b"\1")
+        else:
+            os.write(pipe, DONE)

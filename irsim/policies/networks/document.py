@@ -9,11 +9,11 @@ from pydantic import ConfigDict, Field, model_validator
 from irsim.options.base import Options, problem
 from irsim.options.selection import Select
 from irsim.options.units import Bool, Integer, Number, Seconds
-from irsim.policies.networks.frames import Frame
 from irsim.policies.networks.layers._options import LAYERS, LayerOptions
 from irsim.policies.networks.layout import Layout, layout_needs
 from irsim.policies.networks.lookahead import Lookahead
 from irsim.policies.networks.parts._options import Label
+from irsim.policies.networks.values import Frame
 from irsim.scenario.file_kind import schema_text
 
 __all__ = [

@@ -13,7 +13,7 @@ from pydantic import Field
 from irsim.common.arrays import Floats
 from irsim.options.base import Options
 from irsim.options.units import Fraction, Integer, Meters, Number, Seconds
-from irsim.policies.networks.frames import Frame, turn_back, x_axis
+from irsim.policies.networks.values import Frame, turn_back, x_axis
 from irsim.policies.observations import Neighbors, Observations
 
 __all__ = [

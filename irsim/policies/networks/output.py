@@ -9,8 +9,7 @@ import numpy as np
 from irsim.common.arrays import Floats
 from irsim.policies.networks.document import OutputOptions
 from irsim.policies.networks.errors import PolicyInputError
-from irsim.policies.networks.frames import turn_back, x_axis
-from irsim.policies.networks.values import Array, apply
+from irsim.policies.networks.values import Array, apply, turn_back, x_axis
 from irsim.policies.observations import Observations
 
 __all__ = ["Present", "are_finite", "decide"]

@@ -10,7 +10,7 @@ import numpy as np
 
 from irsim.policies.networks.document import PolicyDocument
 from irsim.policies.networks.errors import PolicyFileError, flaw
-from irsim.policies.networks.layers._linear import Activation
+from irsim.policies.networks.layers._options import Activation
 from irsim.policies.networks.layout import Layout, layout_shapes
 from irsim.policies.networks.network import Network, check_network, read_document
 from irsim.policies.networks.values import Array

@@ -14,8 +14,7 @@ import irsim
 from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
 from irsim.options.registry import Feature
-from irsim.policies.converters.convert import convert_policy
-from irsim.policies.converters.weights import CONVERTERS
+from irsim.policies.converters.convert import CONVERTERS, convert_policy
 from irsim.policies.networks import PolicyFileError, open_network
 from irsim.policies.networks.layout import observe
 from irsim.testing import conformance

@@ -25,7 +25,7 @@ AHEAD = {"moves": {"kind": "holonomic"}}
 
 
 def assert_values(policy: Any, weights: Arrays, count: int = 30) -> Any:
-    """Compare the values of a policy with those of plain NumPy; returns what its robots observe of themselves."""
+    """Compare the values of a policy with plain NumPy; returns the observations that its robots make of themselves."""
     seen = observations(count)
     observed = observe(policy.head.layout, seen)
     own, people = observed["self"].array, observed["people"]

@@ -74,7 +74,7 @@ def observations(count: int = 7, seed: int = 0, neighbors: int = 5) -> Observati
 
 
 def people(*rows: tuple[float, ...], count: int | None = None, radius: float = 0.3, **given: Any) -> Neighbors:
-    """What one robot sees of others that stand at x, y or move with x, y, vx, vy; padded to ``count`` rows."""
+    """Neighbors of one robot that stand at x, y or move with x, y, vx, vy; padded to ``count`` rows."""
     size = len(rows) if count is None else count
     table = np.zeros((1, size, 4))
     for k, row in enumerate(rows):

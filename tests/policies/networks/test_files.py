@@ -146,8 +146,8 @@ def test_all_problems_arrive_together() -> None:
         data["drives"] = "diff"
         data["card"]["seeds"] = ["a"]
 
-    found = refused(changed(spoil)).problems
-    assert [format_path(problem.path) for problem in found] == ["drives", "card.seeds[0]", "network[2].units"]
+    problems = refused(changed(spoil)).problems
+    assert [format_path(problem.path) for problem in problems] == ["drives", "card.seeds[0]", "network[2].units"]
 
 
 @pytest.mark.parametrize(

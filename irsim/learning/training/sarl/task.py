@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.learning.rewards.others import Clearance, Social
-from irsim.learning.rewards.own import Arrival, Collision
+from irsim.learning.rewards.terms import Arrival, Clearance, Collision, Social
 from irsim.learning.tasks.files import TaskError
 from irsim.learning.tasks.task import Task
 from irsim.learning.training.settings import SarlSettings

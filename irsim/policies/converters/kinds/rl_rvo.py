@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from irsim.options.units import Integer, Meters, MetersPerSecond, Seconds
-from irsim.policies.converters.weights import CONVERTERS, ConverterOptions, Weights
+from irsim.policies.converters.convert import CONVERTERS, ConverterOptions, Weights
 from irsim.policies.networks.document import FORMAT, VERSION, PolicyDocument
 from irsim.policies.networks.network import Network, read_document
 from irsim.policies.networks.values import Array, sides

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from irsim.options.units import Fraction, Integer, Meters, Seconds
-from irsim.policies.converters.weights import CONVERTERS, ConverterOptions, Weights
+from irsim.policies.converters.convert import CONVERTERS, ConverterOptions, Weights
 from irsim.policies.networks.network import Network
 from irsim.policies.networks.sarl import sarl_network
 

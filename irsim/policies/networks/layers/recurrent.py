@@ -7,8 +7,20 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from irsim.policies.networks.layers._linear import Gates, gates_arrays, gru_cell, linear
-from irsim.policies.networks.layers._options import LAYERS, Arrays, LayerOptions, Plan, ShapeError, Units, only, vector
+from irsim.policies.networks.layers._options import (
+    LAYERS,
+    Arrays,
+    Gates,
+    LayerOptions,
+    Plan,
+    ShapeError,
+    Units,
+    gates_arrays,
+    gru_cell,
+    linear,
+    only,
+    vector,
+)
 from irsim.policies.networks.values import Array, Shape, Value
 
 _BACK = "_back"

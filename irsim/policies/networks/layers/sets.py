@@ -10,7 +10,6 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.options.units import Bool, Integer
-from irsim.policies.networks.layers._linear import linear, mask_of
 from irsim.policies.networks.layers._options import (
     LAYERS,
     Arrays,
@@ -18,6 +17,8 @@ from irsim.policies.networks.layers._options import (
     Plan,
     ShapeError,
     Units,
+    linear,
+    mask_of,
     only,
     same_set,
 )

@@ -10,16 +10,20 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.options.units import Bool, Count, Integer, Number
-from irsim.policies.networks.layers._linear import Activation, activate, linear, mask_of, spread
 from irsim.policies.networks.layers._options import (
     LAYERS,
+    Activation,
     Arrays,
     LayerOptions,
     Plan,
     ShapeError,
     Units,
+    activate,
+    linear,
+    mask_of,
     only,
     same_set,
+    spread,
 )
 from irsim.policies.networks.values import Array, Shape, Value, add_in_order
 

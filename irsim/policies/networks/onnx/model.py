@@ -7,9 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from irsim.common.extras import require
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.policies.networks.errors import Limits, PolicyFileError, flaw
+
+require("onnx", "onnx", "onnxruntime")
+import onnx
 
 __all__ = ["OPERATIONS", "OnnxModel", "Tensor", "check_model"]
 
@@ -77,8 +81,6 @@ def check_model(content: bytes, source: str, limits: Limits) -> OnnxModel:
     Raises:
         PolicyFileError: It is not a valid model, or it may not run.
     """
-    import onnx
-
     try:
         model = onnx.load_model_from_string(content)
         problems = list(_forbidden(model, limits))
@@ -170,8 +172,6 @@ def _sizes(item: Any) -> tuple[int, ...] | None:
 
 
 def _tensor(item: Any) -> Tensor:
-    import onnx
-
     sizes = _sizes(item)
     assert sizes is not None
     return Tensor(sizes, str(onnx.helper.tensor_dtype_to_np_dtype(item.type.tensor_type.elem_type)))

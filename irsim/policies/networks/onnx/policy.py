@@ -24,6 +24,9 @@ from irsim.policies.networks.values import Array, Shape, Value
 if TYPE_CHECKING:
     from irsim.policies.observations import Observations
 
+require("onnx", "onnx", "onnxruntime")
+import onnxruntime
+
 __all__ = ["METADATA", "OnnxDocument", "OnnxPolicy", "open_onnx"]
 
 METADATA = "irsim"
@@ -67,8 +70,6 @@ class OnnxPolicy(NetworkPolicy):
     """
 
     def __init__(self, name: str, document: OnnxDocument, model: OnnxModel, facts: Mapping[str, Any]) -> None:
-        import onnxruntime
-
         memory = {before: model.inputs[before] for before in document.memory}
         remembered = sum(int(np.prod(tensor.shape)) for tensor in memory.values())
         size = {"parameters": model.parameters, "work": model.work, "memory": remembered}
@@ -139,8 +140,6 @@ class OnnxPolicy(NetworkPolicy):
 
 def _session(content: bytes) -> Any:
     """A session on one thread of the processor, without memory that grows."""
-    import onnxruntime
-
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.execution_mode = onnxruntime.ExecutionMode.ORT_SEQUENTIAL
@@ -165,9 +164,7 @@ def open_onnx(path: Path, content: bytes, facts: Mapping[str, Any], limits: Limi
 
     Raises:
         PolicyFileError: Model or document are not valid, or do not fit together.
-        ExtraError: onnx or onnxruntime are not installed.
     """
-    require("onnx", "onnx", "onnxruntime")
     source = clean(str(path))
     model = check_model(content, source, limits)
     text = model.metadata.get(METADATA)

@@ -18,6 +18,9 @@ from irsim.policies.networks.network import FIX, Network, check_network
 from irsim.policies.networks.onnx.policy import METADATA, OnnxDocument
 from irsim.policies.networks.values import Array
 
+require("onnx", "onnx")
+from onnx import TensorProto, helper, numpy_helper
+
 __all__ = ["onnx_bytes", "save_onnx"]
 
 _OPSET, _IR_VERSION = 17, 9
@@ -57,9 +60,6 @@ def onnx_bytes(network: Network, source: str = "network") -> bytes:
         PolicyFileError: The network has a layer or an activation that is not written.
         ExtraError: onnx is not installed.
     """
-    require("onnx", "onnx")
-    from onnx import TensorProto, helper
-
     plan = check_network(network, source)
     _check_layers(network, source)
     document = network.document
@@ -99,8 +99,6 @@ class _Graph:
     """
 
     def __init__(self, type: np.dtype[Any]) -> None:
-        from onnx import helper
-
         self.type, self.kind = type, helper.np_dtype_to_tensor_dtype(type)
         self.nodes: list[Any] = []
         self.constants: list[Any] = []
@@ -109,16 +107,12 @@ class _Graph:
 
     def node(self, operation: str, inputs: list[str], output: str | None = None, **attributes: Any) -> str:
         """Add an operation, and return the name of its result."""
-        from onnx import helper
-
         name = output or f"_{len(self.nodes)}"
         self.nodes.append(helper.make_node(operation, inputs, [name], **attributes))
         return name
 
     def constant(self, array: Array) -> str:
         """Add an array, and return its name."""
-        from onnx import numpy_helper
-
         name = f"_c{len(self.constants)}"
         self.constants.append(numpy_helper.from_array(np.ascontiguousarray(array), name))
         return name
@@ -181,8 +175,6 @@ def _dense(graph: _Graph, layer: Any, arrays: dict[str, Array]) -> None:
 
 
 def _pool(graph: _Graph, layer: Any, arrays: dict[str, Array]) -> None:
-    from onnx import TensorProto
-
     (before,) = layer.inputs
     each = graph.node("Unsqueeze", [graph.masks[before], graph.axis(2)])
     zero = graph.number(0.0)

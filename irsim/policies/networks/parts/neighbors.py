@@ -10,9 +10,8 @@ from pydantic import AfterValidator, Field
 import irsim._core as core
 from irsim.options.units import Bool, Integer, Meters, MetersPerSecond
 from irsim.policies.networks.errors import PolicyInputError
-from irsim.policies.networks.frames import Frame
 from irsim.policies.networks.parts._options import PARTS, PartOptions, unique
-from irsim.policies.networks.values import Channel
+from irsim.policies.networks.values import Channel, Frame
 from irsim.policies.observations import Observations
 from irsim.policies.policy import Needs
 

@@ -11,9 +11,8 @@ from pydantic import AfterValidator, Field
 import irsim._core as core
 from irsim.options.units import Bool, Integer, Meters, MetersPerSecond, Number, Radians, RadiansPerSecond
 from irsim.policies.networks.errors import PolicyInputError
-from irsim.policies.networks.frames import Frame, turn_back, x_axis
 from irsim.policies.networks.parts._options import PARTS, PartOptions, unique
-from irsim.policies.networks.values import Channel, Value
+from irsim.policies.networks.values import Channel, Frame, Value, turn_back, x_axis
 from irsim.policies.observations import Observations
 
 OwnFeature = Literal[
