@@ -7,15 +7,15 @@ from typing import Any
 
 import pytest
 import yaml
+from PIL import Image
 
 import irsim
 from irsim.benchmarks.stored import resume_benchmark, run_plan
 from irsim.benchmarks.suite import SUITES, Suite, SuiteError, is_suite, load_suite
 from irsim.benchmarks.suite_plan import suite_plan, suite_policy, suite_scene
-from irsim.benchmarks.suite_scenarios import expand
 from irsim.env import Env
 from irsim.scenario.read import read
-from irsim.scenario.yaml.document import load_path, load_text
+from irsim.scenario.yaml.document import load_text
 
 MINIMAL: dict[str, Any] = {
     "suite": "mine", "version": 1, "title": "Mine", "steps": 50, "policies": {"dash": "dash"},
@@ -38,6 +38,9 @@ def test_bundled_suites_are_valid_and_their_scenarios_can_be_built(name: str) ->
         assert [item.message for item in reading.diagnostics if item.severity == "error"] == []
 
 
+WORLD: dict[str, Any] = {"name": "one", "scenario": {"world": {}}}
+
+
 @pytest.mark.parametrize(
     ("changes", "problem"),
     [
@@ -53,57 +56,37 @@ def test_bundled_suites_are_valid_and_their_scenarios_can_be_built(name: str) ->
         ({"seeds": {"count": 5, "full": 3}}, "full must be at least count (5), got 3"),
         ({"density": "robot[0].number"}, "which no scenario varies"),
         ({"scenarios": [{"name": "a b", "template": "crossing"}]}, "scenarios[0].name"),
+        ({"scenarios": [{"name": "one", "template": "crosing"}]}, "there is no template 'crosing'"),
+        ({"scenarios": [{"name": "one", "template": "crossing", "parameters": {"spede": 1}}]}, "spede"),
+        ({"scenarios": [{"name": "one", "file": "nowhere.yaml"}]}, "nowhere.yaml is not a scenario file"),
+        ({"scenarios": [{**WORLD, "vary": {"robot[0].number": [1]}}]}, "has nothing at 'robot[0].number'"),
+        ({"scenarios": [{**WORLD, "vary": {"world.width": list(range(1, 300))}}]}, "more than 200"),
+        ({"scenarios": [{**WORLD, "vary": {"world.name": ["a b", "a/b"]}}]}, "are called 'one-a-b'"),
     ],
 )
 def test_every_problem_of_a_suite_file_is_named(changes: dict[str, Any], problem: str, tmp_path: Path) -> None:
     with pytest.raises(SuiteError) as caught:
-        SUITES.read(load_path(written(tmp_path, **changes)))
+        suite_plan(str(written(tmp_path, **changes)))
     assert problem in caught.value.message
 
 
 def test_several_problems_are_named_at_once(tmp_path: Path) -> None:
     with pytest.raises(SuiteError) as caught:
-        SUITES.read(load_path(written(tmp_path, steps=0, version="x", protocols=[])))
+        suite_plan(str(written(tmp_path, steps=0, version="x", protocols=[])))
     assert all(key in caught.value.message for key in ("steps", "version", "protocols"))
 
 
-@pytest.mark.parametrize(
-    ("scenario", "problem"),
-    [
-        ({"name": "one", "template": "crosing"}, "there is no template 'crosing'"),
-        ({"name": "one", "template": "crossing", "parameters": {"spede": 1}}, "spede"),
-        ({"name": "one", "file": "nowhere.yaml"}, "nowhere.yaml is not a scenario file"),
-        (
-            {"name": "one", "scenario": {"world": {"width": 5}}, "vary": {"robot[0].number": [1]}},
-            "has nothing at 'robot[0].number'",
-        ),
-        ({"name": "one", "scenario": {"world": {}}, "vary": {"world.width": list(range(1, 300))}}, "more than 200"),
-        ({"name": "one", "scenario": {"world": {}}, "vary": {"world.name": ["a b", "a/b"]}}, "are called 'one-a-b'"),
-    ],
-)
-def test_a_suite_that_cannot_be_expanded_says_where(scenario: dict[str, Any], problem: str, tmp_path: Path) -> None:
-    file = written(tmp_path, scenarios=[scenario])
-    with pytest.raises(SuiteError) as caught:
-        expand(SUITES.read(load_path(file)), file)
-    assert problem in caught.value.message
-
-
 def test_every_combination_of_values_is_a_scenario_under_every_protocol(tmp_path: Path) -> None:
-    scenario = {
-        "name": "field",
-        "scenario": {
-            "world": {"width": 5, "step_time": 0.2},
-            "robot": [{"number": 1, "distribution": {"name": "random"}}],
-        },
-        "vary": {"robot[0].number": [1, 2], "world.height": [5, 7.5]},
-    }  # fmt: skip
+    robot = {"number": 1, "distribution": {"name": "random"}}
+    field = {"world": {"width": 5, "step_time": 0.2}, "robot": [robot]}
+    vary = {"robot[0].number": [1, 2], "world.height": [5, 7.5]}
+    scenario = {"name": "field", "scenario": field, "vary": vary}
     plan = suite_plan(str(written(tmp_path, scenarios=[scenario], protocols=["yield", "freeze"])))
     names = [f"field-{n}-{h}" for n in (1, 2) for h in ("5", "7.5")]
     assert [one.name for one in plan.scenarios] == [f"{n}/{p}" for p in ("yield", "freeze") for n in names]
     last = yaml.safe_load(plan.scenarios[-1].text)
-    assert last["world"] == {
-        "width": 5, "height": 7.5, "step_time": 0.2, "after_arrival": "freeze", "time_limit": 10.0,
-    }  # fmt: skip
+    ends = {"after_arrival": "freeze", "time_limit": 10.0}
+    assert last["world"] == {"width": 5, "height": 7.5, "step_time": 0.2, **ends}
     assert last["robot"][0]["number"] == 2
     kept = suite_plan(str(written(tmp_path, scenarios=[scenario])), scenarios=["field-2-5"], policies=["dash", "rvo"])
     assert [one.name for one in kept.scenarios] == ["field-2-5"]
@@ -111,12 +94,9 @@ def test_every_combination_of_values_is_a_scenario_under_every_protocol(tmp_path
 
 
 def test_a_scenario_file_may_name_a_map_beside_it(tmp_path: Path) -> None:
-    from PIL import Image
-
     Image.new("L", (20, 20), 255).save(tmp_path / "hall.png")
-    (tmp_path / "hall.yaml").write_text(
-        "world: {width: 5, height: 5, obstacle_map: hall.png}\nrobot: {goal: [4, 4, 0]}\n"
-    )
+    scene = "world: {width: 5, height: 5, obstacle_map: hall.png}\nrobot: {goal: [4, 4, 0]}\n"
+    (tmp_path / "hall.yaml").write_text(scene)
     file = written(tmp_path, scenarios=[{"name": "hall", "file": "hall.yaml"}])
     [one] = suite_plan(str(file)).scenarios
     assert (one.folder, list(one.maps)) == (str(tmp_path), ["hall.png"])
@@ -191,8 +171,7 @@ def test_the_first_collision_of_an_episode_decides_it(goal: list[int], step: int
     [episode] = result.episodes
     assert (episode.outcome, episode.steps) == ("collision", step)
     assert episode.failures == {"robot_0": "collision with 'obstacle_2'"}
-    metrics = episode.metrics
-    assert (metrics["success"], metrics["collision"], metrics["timeout"]) == (0, 1, 0)
+    assert [episode.metrics[key] for key in ("success", "collision", "timeout")] == [0, 1, 0]
     assert not any("ended early" in note for note in result.notes)
 
 
@@ -232,8 +211,6 @@ def test_a_scenario_of_a_suite_is_run_alone(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_a_folder_that_a_plan_names_can_be_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from PIL import Image
-
     Image.new("L", (20, 20), 255).save(tmp_path / "map.png")
     robot = {"kinematics": {"name": "diff"}}
     scenario = {"world": {"width": 4, "height": 4, "obstacle_map": "map.png"}, "robot": [robot]}

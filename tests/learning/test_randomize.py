@@ -80,32 +80,6 @@ def test_any_of_the_objects_may_be_the_absent_ones() -> None:
     assert here[:, 1:].mean(axis=0) == pytest.approx(0.5, abs=0.15)
 
 
-@pytest.mark.parametrize(
-    "made", [rich(), corridor(), crowd(randomize={"number": {"learners": [1, 4]}, "speed": {"learners": [0.5, 1]}})],
-    ids=["everything", "variants", "learners"],
-)  # fmt: skip
-def test_a_world_is_the_same_alone_and_among_others_on_any_number_of_threads(made: dict[str, Any]) -> None:
-    n = 4
-    together = [Worlds(made, n, seed=7, threads=threads) for threads in (1, 3)]
-    alone = [Worlds(made, 1, seed=7 + i) for i in range(n)]
-    rng = np.random.default_rng(1)
-    for _ in range(130):
-        actions = rng.uniform(-1, 1, (n, alone[0].learners, 2))
-        for worlds, given in [(one, actions) for one in together] + list(zip(alone, actions[:, None], strict=True)):
-            result = worlds.step(given.reshape(-1, 2))
-            if result.over.any():
-                worlds.reset(result.over)
-        pose = together[0].simulation.pose.reshape(n, -1, 3)
-        assert np.array_equal(pose, together[1].simulation.pose.reshape(n, -1, 3), equal_nan=True)
-        seen = together[0].observe()
-        assert np.array_equal(seen, together[1].observe())
-        for i, world in enumerate(alone):
-            assert np.array_equal(pose[i], world.simulation.pose, equal_nan=True)
-            assert np.array_equal(seen.reshape(n, -1)[i], world.observe().ravel())
-            for name, values in world.drawn.items():
-                assert np.array_equal(values[0], together[0].drawn[name][i])
-
-
 def test_what_happened_before_does_not_matter() -> None:
     worlds, again = Worlds(rich(), 3, seed=4), Worlds(rich(), 3, seed=50)
     first = drawn_over(worlds, 3)

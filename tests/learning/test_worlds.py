@@ -12,7 +12,7 @@ from irsim.learning.tasks.files import TaskError
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks.layout import Layout, layout_needs, observe
 from irsim.policies.observe import Observer
-from tests.learning.tasks import LIDAR, RANDOM, crowd, lidar_among_boxes, of_python, task
+from tests.learning.tasks import LIDAR, RANDOM, corridor, crowd, lidar_among_boxes, of_python, rich, task
 
 AHEAD = np.array([[1.0, 0.0]])
 
@@ -42,20 +42,33 @@ MOTION = {"contacts": "swept", "integration": "exact"}
 """Arcs within a step, on which contacts count."""
 
 
-@pytest.mark.parametrize(
-    "made", [crowd(), crowd(8, world=MOTION), lidar_among_boxes()], ids=["crowd", "swept crowd", "lidar"]
-)
-def test_a_world_is_the_same_alone_and_among_others_on_any_number_of_threads(made: dict[str, Any]) -> None:
-    together = [Worlds(made, 5, seed=7, threads=threads) for threads in (1, 3)]
-    alone = [Worlds(made, 1, seed=7 + i) for i in range(5)]
+DRAWN_LEARNERS = {"number": {"learners": [1, 4]}, "speed": {"learners": [0.5, 1]}}
+MADE = {
+    "crowd": crowd(),
+    "swept crowd": crowd(8, world=MOTION),
+    "lidar": lidar_among_boxes(),
+    "everything is drawn": rich(),
+    "variants": corridor(),
+    "learners are drawn": crowd(randomize=DRAWN_LEARNERS),
+}
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_a_world_is_the_same_alone_and_among_others_on_any_number_of_threads(name: str) -> None:
+    n = 4
+    together = [Worlds(MADE[name], n, seed=7, threads=threads) for threads in (1, 3)]
+    alone = [Worlds(MADE[name], 1, seed=7 + i) for i in range(n)]
     rng = np.random.default_rng(1)
-    for _ in range(120):
-        actions = rng.uniform(-1, 1, (5, alone[0].learners, 2))
-        one, other = (one_step(worlds, actions.reshape(-1, 2)) for worlds in together)
-        assert all(map(np.array_equal, one, other))
+    for _ in range(130):
+        actions = rng.uniform(-1, 1, (n, alone[0].learners, 2))
+        one, other = ((*one_step(worlds, actions.reshape(-1, 2)), worlds.simulation.pose) for worlds in together)
+        assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(one, other, strict=True))
         for i, world in enumerate(alone):
-            mine = one_step(world, actions[i])
-            assert all(np.array_equal(a.ravel(), b.reshape(5, -1)[i]) for a, b in zip(mine, one, strict=True))
+            mine = (*one_step(world, actions[i]), world.simulation.pose)
+            for own, every in zip(mine, one, strict=True):
+                assert np.array_equal(own.ravel(), every.reshape(n, -1)[i], equal_nan=True)
+            for key, values in world.drawn.items():
+                assert np.array_equal(values[0], together[0].drawn[key][i])
 
 
 TERMS = [

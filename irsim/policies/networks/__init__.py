@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     from irsim.policies.networks.files import save_network
     from irsim.policies.networks.layout import Layout, layout_bounds, layout_needs, layout_shapes, observe
     from irsim.policies.networks.network import Network
-    from irsim.policies.networks.network_policy import NetworkPolicy, open_network
+    from irsim.policies.networks.network_policy import NetworkPolicy
+    from irsim.policies.networks.opening import open_network
     from irsim.policies.networks.plain_weights import mlp
 
 __all__ = [
@@ -44,7 +45,7 @@ __getattr__, __dir__ = lazy_names(
         "layout_shapes": "irsim.policies.networks.layout",
         "mlp": "irsim.policies.networks.plain_weights",
         "observe": "irsim.policies.networks.layout",
-        "open_network": "irsim.policies.networks.network_policy",
+        "open_network": "irsim.policies.networks.opening",
         "save_network": "irsim.policies.networks.files",
     },
 )

@@ -1,25 +1,21 @@
-"""Networks as policies: of layers, with a memory of each robot, or value networks that look ahead."""
+"""Networks as policies: of layers, with what they remember of each robot, and value networks that look ahead."""
 
 from __future__ import annotations
 
-import hashlib
 from abc import abstractmethod
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.arrays import Floats
-from irsim.common.text import clean
 from irsim.policies.driver import decision_steps
 from irsim.policies.networks.document import PolicyHead
-from irsim.policies.networks.errors import LIMITS, Limits, PolicyFileError, PolicyInputError, flaw
-from irsim.policies.networks.files import read_bytes, read_network
+from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.layout import layout_needs, layout_shapes, observe
 from irsim.policies.networks.lookahead import Lookahead, best_moves, look_ahead, straight, take_rows
-from irsim.policies.networks.network import GraphPlan, Network, check_network, run_graph
+from irsim.policies.networks.network import GraphPlan, Network, run_graph
 from irsim.policies.networks.output import Present, decide
 from irsim.policies.networks.values import Array, Value
 from irsim.policies.policy import Policy
@@ -27,7 +23,7 @@ from irsim.policies.policy import Policy
 if TYPE_CHECKING:
     from irsim.policies.observations import Observations
 
-__all__ = ["SUFFIXES", "LayerPolicy", "LookaheadPolicy", "NetworkPolicy", "Slots", "open_network"]
+__all__ = ["LayerPolicy", "LookaheadPolicy", "NetworkPolicy", "Slots"]
 
 _NUMBERS_AT_ONCE = 500_000
 """Results of layers that are computed together: as many robots as fit the caches, and never much memory."""
@@ -217,36 +213,3 @@ class LookaheadPolicy(LayerPolicy):
     def describe(self) -> dict[str, Any]:
         """Facts for people and programs: plain data for JSON."""
         return {**super().describe(), "lookahead": self.lookahead.model_dump(mode="json")}
-
-
-SUFFIXES = (".npz", ".onnx")
-"""Suffixes of files of networks."""
-
-
-def open_network(path: str | Path, *, limits: Limits = LIMITS) -> NetworkPolicy:
-    """The policy in a file; its name is the file's without the suffix. No code of the file is run.
-
-    Args:
-        path: A ``.npz`` file of the format ``irsim-policy``, or an ``.onnx`` file with its metadata.
-        limits: How large it may be.
-
-    Raises:
-        PolicyFileError: The file is not valid, or over the limits; the error names every place.
-        ExtraError: It is an ``.onnx`` file, and onnxruntime is not installed.
-    """
-    path = Path(path)
-    source = clean(str(path))
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        unknown = flaw("", "the suffix says what kind of network it is", path.suffix, " or ".join(SUFFIXES))
-        raise PolicyFileError(source, [unknown], "name a .npz or .onnx file")
-    content = read_bytes(path, limits.file_bytes)
-    facts = {"file": str(path), "bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
-    if suffix == ".onnx":
-        from irsim.policies.networks.onnx.policy import open_onnx
-
-        return open_onnx(path, content, facts, limits)
-    network = read_network(content, source, limits)
-    plan = check_network(network, source, limits)
-    kind = LayerPolicy if network.document.lookahead is None else LookaheadPolicy
-    return kind(path.stem, network, plan, {"format": "irsim-policy 1", **facts})

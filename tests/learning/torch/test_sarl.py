@@ -25,6 +25,7 @@ from irsim.learning.training.train import train
 from irsim.learning.worlds import Worlds
 from irsim.policies.networks import observe, open_network, save_network
 from irsim.policies.networks.sarl import sarl_network
+from tests.learning.torch.conftest import assert_resumed_as_whole
 from tests.policies.networks.observed import observations
 from tests.policies.networks.sarl_weights import sarl_weights, value_of
 
@@ -106,27 +107,11 @@ def test_a_trained_file_drives_as_in_its_training(tmp_path: Path) -> None:
     assert irsim.benchmark(tmp_path / "scene.yaml", policies=[str(file)], seeds=1, workers=1).rows[0].episodes == 1
 
 
-def results(folder: Path) -> list[dict[str, Any]]:
-    return [{key: value for key, value in one.items() if key != "seconds"} for one in RunFolder(folder).rounds()]
-
-
 def test_a_resumed_training_equals_one_that_was_never_interrupted(tmp_path: Path) -> None:
-    train_sarl(circle(), tmp_path / "whole", SMALL)
+    def weights(file: Path) -> dict[str, Any]:
+        return torch.load(file, weights_only=True)["net"]
 
-    class Killed(Exception):
-        pass
-
-    def kill(done: Any) -> None:
-        if done.number == 2:
-            raise Killed
-
-    with pytest.raises(Killed):
-        train_sarl(circle(), tmp_path / "killed", SMALL, on_round=kill)
-    train_sarl("", tmp_path / "killed", resume=True)
-    assert results(tmp_path / "whole") == results(tmp_path / "killed")
-    assert len(results(tmp_path / "whole")) >= 3
-    a, b = (torch.load(tmp_path / name / "latest.zip", weights_only=True)["net"] for name in ("whole", "killed"))
-    assert all(torch.equal(a[key], b[key]) for key in a)
+    assert len(assert_resumed_as_whole(train_sarl, weights, tmp_path, circle(), SMALL)) >= 3
 
 
 def test_trainings_of_other_algorithms_are_not_mixed_up(tmp_path: Path) -> None:

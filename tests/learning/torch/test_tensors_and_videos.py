@@ -1,9 +1,11 @@
-"""Tensors of torch that share the memory of observations, and videos of Gymnasium's wrapper."""
+"""Tensors of torch that share memory with observations, files of ``torch.save``, and videos of Gymnasium's wrapper."""
 
 from __future__ import annotations
 
+import io
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import gymnasium
 import imageio_ffmpeg
@@ -12,8 +14,10 @@ import pytest
 import torch
 from gymnasium.wrappers import RecordVideo
 from PIL import Image
+from torch import nn
 
 from irsim.learning import VectorEnv
+from irsim.policies.converters.torch_files.reader import parse_torch
 from tests.learning.tasks import lidar_among_boxes, task
 
 pytestmark = pytest.mark.learn
@@ -64,3 +68,31 @@ def test_the_wrapper_of_gymnasium_writes_a_video_of_each_episode(tmp_path: Path)
         assert len(files) == count + 1
         first, last = (np.asarray(Image.open(file), dtype=int) for file in (files[0], files[-1]))
         assert (np.abs(first - last) > 60).any(), "the robot has moved"
+
+
+class Net(nn.Module):
+    def __init__(self) -> None:
+        super().__init__()
+        self.rnn = nn.GRU(8, 4, bidirectional=True)
+        self.pi = nn.Sequential(nn.Linear(4, 3), nn.ReLU(), nn.LayerNorm(3))
+        self.log_std = nn.Parameter(torch.zeros(2))
+
+
+@pytest.mark.parametrize("zipped", [True, False])
+@pytest.mark.parametrize("dtype", [torch.float32, torch.float64, torch.float16, torch.bfloat16])
+def test_weights_are_read_as_they_were_saved(zipped: bool, dtype: torch.dtype) -> None:
+    torch.manual_seed(1)
+    net = Net().to(dtype)
+    adam = torch.optim.Adam(net.parameters())
+    forms: list[tuple[Any, str]] = [
+        (net.state_dict(), ""),
+        (net, ""),
+        ({"model": net.state_dict(), "optimizer": adam.state_dict(), "epoch": 3}, "model."),
+    ]
+    for saved, before in forms:
+        target = io.BytesIO()
+        torch.save(saved, target, _use_new_zipfile_serialization=zipped)
+        arrays = parse_torch(target.getvalue(), "net.pth")
+        assert arrays.keys() == {before + name for name in net.state_dict()}
+        for name, tensor in net.state_dict().items():
+            assert (arrays[before + name] == tensor.float().numpy()).all()

@@ -19,21 +19,17 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim.learning import SB3VecEnv, Worlds
 from irsim.learning.training.export import export_policy, network_of
 from irsim.learning.training.extractor import PartsExtractor, columns_of
-from irsim.learning.training.run_folder import RunFolder
 from irsim.learning.training.settings import TrainingSettings, read_settings
 from irsim.learning.training.train import MaskedRolloutBuffer, train
 from irsim.policies.networks import open_network, save_network
 from irsim.policies.networks.layout import layout_needs, observe
 from irsim.policies.observe import Observer
 from tests.learning.tasks import ROBOT, crowd, lidar_among_boxes, task
+from tests.learning.torch.conftest import assert_equal_weights, assert_resumed_as_whole, results
 
 pytestmark = pytest.mark.learn
 SMALL = TrainingSettings(steps=4 * 2 * 16 * 8, slots=8, rollout=16, batch=64, epochs=2, round_updates=2, units=[16, 16])
 FEW = {"validation_count": 6}
-
-
-def results(folder: Path) -> list[dict[str, Any]]:
-    return [{key: value for key, value in one.items() if key != "seconds"} for one in RunFolder(folder).rounds()]
 
 
 def weights(file: Path) -> dict[str, Any]:
@@ -42,22 +38,8 @@ def weights(file: Path) -> dict[str, Any]:
 
 @pytest.mark.parametrize("made", [lidar_among_boxes(seeds=FEW), crowd(3, seeds=FEW)], ids=["lidar", "crowd"])
 def test_a_resumed_training_equals_one_that_was_never_interrupted(made: dict[str, Any], tmp_path: Path) -> None:
-    train(made, tmp_path / "whole", SMALL)
-
-    class Killed(Exception):
-        pass
-
-    def kill(done: Any) -> None:
-        if done.number == 2:
-            raise Killed
-
-    with pytest.raises(Killed):
-        train(made, tmp_path / "killed", SMALL, on_round=kill)
-    train("", tmp_path / "killed", resume=True)
-    assert results(tmp_path / "whole") == results(tmp_path / "killed")
-    assert [one["round"] for one in results(tmp_path / "whole")] == [1, 2, 3, 4]
-    a, b = (weights(tmp_path / name / "latest.zip") for name in ("whole", "killed"))
-    assert all(torch.equal(a[key], b[key]) for key in a)
+    whole = assert_resumed_as_whole(train, weights, tmp_path, made, SMALL)
+    assert [one["round"] for one in whole] == [1, 2, 3, 4]
 
 
 def test_workers_change_nothing(tmp_path: Path) -> None:
@@ -65,8 +47,7 @@ def test_workers_change_nothing(tmp_path: Path) -> None:
     for workers in (1, 2):
         train(made, tmp_path / str(workers), SMALL.model_copy(update={"steps": 256}), workers=workers)
     assert results(tmp_path / "1") == results(tmp_path / "2")
-    a, b = (weights(tmp_path / name / "latest.zip") for name in ("1", "2"))
-    assert all(torch.equal(a[key], b[key]) for key in a)
+    assert_equal_weights(*(weights(tmp_path / name / "latest.zip") for name in ("1", "2")))
 
 
 def test_other_seeds_learn_otherwise(tmp_path: Path) -> None:
@@ -208,23 +189,9 @@ def test_a_training_rises_through_the_levels_and_resumes_on_its_level(tmp_path: 
     curriculum = {"levels": levels, "up": 0.02, "episodes": 60}
     made = task({"state": [8.55, 5, 0]}, {"state": [8.5, 3, 0], "goal": [9, 3]}, horizon=2, seeds=FEW)
     made |= {"curriculum": curriculum, "randomize": {"speed": {"learners": [0.5, 1.0]}}}
-    reached = []
-
-    def kill(done: Any) -> None:
-        reached.append(done.number)
-        if done.number == 2:
-            raise RuntimeError
-
-    train(made, tmp_path / "whole", SMALL)
-    with pytest.raises(RuntimeError):
-        train(made, tmp_path / "killed", SMALL, on_round=kill)
-    train("", tmp_path / "killed", resume=True)
-    whole = results(tmp_path / "whole")
-    assert whole == results(tmp_path / "killed")
+    whole = assert_resumed_as_whole(train, weights, tmp_path, made, SMALL)
     assert len({one["level"] for one in whole}) > 1
     assert {one["level"] for one in whole} <= {0, 1, 2}
-    a, b = (weights(tmp_path / name / "latest.zip") for name in ("whole", "killed"))
-    assert all(torch.equal(a[key], b[key]) for key in a)
 
 
 def test_a_policy_that_observes_draws_is_trained_and_not_exported(tmp_path: Path) -> None:

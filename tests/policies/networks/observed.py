@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -112,3 +113,13 @@ def moved(whole: Observations, turn: float, shift: tuple[float, float]) -> Obser
 def same_bits(a: Any, b: Any) -> bool:
     """Whether two arrays are equal, bit for bit."""
     return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+
+
+def assert_same_in_any_company(decide: Callable[[Observations], Any], whole: Observations) -> Any:
+    """A robot gets the same bits alone, in a batch, and in another order; returns the decisions of the batch."""
+    together, count = decide(whole), len(whole)
+    order = np.random.default_rng(count).permutation(count)
+    assert same_bits(decide(rows(whole, order)), together[order])
+    for k in range(count):
+        assert same_bits(decide(rows(whole, [k])), together[k : k + 1])
+    return together

@@ -18,7 +18,7 @@ from irsim.policies.networks.layout import Layout
 from irsim.policies.networks.lookahead import Lookahead, MoveSet, look_ahead, moves_of
 from irsim.policies.networks.network import read_document
 from irsim.policies.networks.sarl import joint_state_parts
-from tests.policies.networks.observed import moved, observations, people, rows, same_bits
+from tests.policies.networks.observed import assert_same_in_any_company, moved, observations, people, rows, same_bits
 from tests.policies.networks.sarl_weights import sarl_file
 
 SPEEDS = [(math.exp(k / 5) - 1) / (math.e - 1) for k in range(1, 6)]
@@ -156,12 +156,8 @@ def test_a_decision_is_the_same_alone_and_in_any_batch(opened: Any, kind: str, m
     policy = opened(sarl_file(kind))
     for count in (1, 2, 7, 40):
         whole = observations(count, seed=count, neighbors=5)
-        together = policy.act(whole)
+        together = assert_same_in_any_company(policy.act, whole)
         assert together.shape == (count, 2)
-        order = np.random.default_rng(count).permutation(count)
-        assert same_bits(policy.act(rows(whole, order)), together[order])
-        for k in range(count):
-            assert same_bits(policy.act(rows(whole, [k])), together[k : k + 1])
         monkeypatch.setattr(network_policy, "_MOVES_AT_ONCE", 250)
         assert same_bits(policy.act(whole), together)
         monkeypatch.undo()

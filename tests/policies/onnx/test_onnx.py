@@ -16,7 +16,7 @@ from irsim.policies.networks import Limits, PolicyFileError, mlp, open_network, 
 from irsim.policies.networks.document import PolicyDocument
 from irsim.policies.networks.network import Network, read_document
 from irsim.policies.networks.onnx.writing import onnx_bytes, save_onnx
-from tests.policies.networks.observed import observations, rows, same_bits
+from tests.policies.networks.observed import assert_same_in_any_company, observations, rows
 from tests.policies.onnx.models import DOCUMENT, FLOAT, model, perceptron, tensor, weights, write
 
 pytestmark = pytest.mark.onnx
@@ -48,12 +48,8 @@ def test_a_model_decides_as_the_same_network_of_our_layers(tmp_path: Path, insid
 def test_a_decision_is_the_same_alone_and_in_any_batch(tmp_path: Path) -> None:
     policy = open_network(write(tmp_path / "net.onnx", perceptron()))
     for count in (1, 2, 5, 33):
-        seen = observations(count, count)
-        together = policy.act(seen)
-        assert together.shape == (count, 2)
-        for k in range(count):
-            assert same_bits(policy.act(rows(seen, [k])), together[k : k + 1])
-    assert policy.act(rows(seen, np.zeros(0, dtype=int))).shape == (0, 2)
+        assert assert_same_in_any_company(policy.act, observations(count, count)).shape == (count, 2)
+    assert policy.act(rows(observations(), np.zeros(0, dtype=int))).shape == (0, 2)
 
 
 def test_sets_masks_and_joined_inputs(tmp_path: Path) -> None:
