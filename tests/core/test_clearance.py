@@ -1,4 +1,4 @@
-"""Distances: over a trace against shapely, and of room on a lattice, whose widest ways are those of flooding."""
+"""Distances: over a trace against shapely, and of room on a lattice, with the widest ways that flooding finds."""
 
 from __future__ import annotations
 

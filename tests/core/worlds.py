@@ -135,31 +135,15 @@ def scene(
     *objects: core.ObjectSpec,
     seeds: Sequence[int] = (0,),
     mode: int = 0,
-    step_time: float = 0.1,
-    placements: Sequence[core.RandomPlacement] = (),
     history: bool = False,
-    fog: core.Fog | None = None,
-    perturbations: Sequence[core.Perturbation] = (),
     extent: Sequence[float] = (0.0, 0.0, 10.0, 10.0),
-    zones: Sequence[core.Part] = (),
-    views: Sequence[core.View] = (),
-    targets: Sequence[int] = (),
+    **options: Any,
 ) -> tuple[core.World, core.State]:
-    """World and state of these objects; one copy per seed."""
-    world = core.World(
-        step_time=step_time,
-        collision_mode=mode,
-        gravity=9.81,
-        objects=objects,
-        placements=placements,
-        copies=len(seeds),
-        fog=fog,
-        perturbations=perturbations,
-        zones=zones,
-        views=views,
-        targets=targets,
-    )
-    if perturbations:
+    """World and state of these objects; one copy per seed. Options are arguments of the world."""
+    nothing = dict.fromkeys(("placements", "perturbations", "zones", "views", "targets"), ())
+    usual = {"step_time": 0.1, "gravity": 9.81, "fog": None, **nothing}
+    world = core.World(collision_mode=mode, objects=objects, copies=len(seeds), **{**usual, **options})
+    if options.get("perturbations"):
         world.extent = tuple(extent)
     return world, core.State(world, np.array(seeds, dtype=np.uint64), history)
 

@@ -38,16 +38,9 @@ def register_unicycle() -> list[Any]:
         def step(self, state: Any, velocity: Any, step_time: float) -> Any:
             assert state.shape == (4, 1)
             assert velocity.shape == (2, 1)
-            x, y, theta, count = state[:, 0]
-            v, w = velocity[:, 0]
-            return np.array(
-                [
-                    [x + self.gain * v * math.cos(theta) * step_time],
-                    [y + self.gain * v * math.sin(theta) * step_time],
-                    [theta + w * step_time],
-                    [count + 1],
-                ]
-            )
+            theta, (v, w) = state[2, 0], velocity[:, 0] * step_time
+            way = self.gain * v
+            return state + np.array([[way * math.cos(theta)], [way * math.sin(theta)], [w], [1.0]])
 
     return made
 
