@@ -1,4 +1,4 @@
-"""Write ``irsim/compatibility/names.json``: public names of PyPI's ir-sim 2.12.0, and parameters of its callables.
+"""Record again the public names of PyPI's ir-sim 2.12.0, and parameters of its callables, in irsim/compat/names.json.
 
 REFERENCE tests/compat/record_names.py        # with an interpreter that has ir-sim installed
 """
@@ -10,37 +10,12 @@ import inspect
 import json
 from pathlib import Path
 
-CLASSES = {
-    "irsim.env": ["EnvBase", "EnvBase3D"],
-    "irsim.env.env_config": ["EnvConfig"],
-    "irsim.env.env_plot": ["EnvPlot"],
-    "irsim.env.env_logger": ["EnvLogger"],
-    "irsim.world": ["World", "ObjectBase", "ObjectFactory", "ObstacleMap", "SensorFactory"],
-    "irsim.world.object_base": ["ObjectInfo", "ObstacleInfo"],
-    "irsim.world.object_group": ["ObjectGroup"],
-    "irsim.world.map": ["Map", "FogMap", "GridMapGenerator", "ImageGridGenerator", "PerlinGridGenerator"],
-    "irsim.world.sensors": ["Lidar2D", "FMCWLidar2D", "Contact2D"],
-    "irsim.lib": ["Behavior", "GroupBehavior", "KinematicsHandler", "KinematicsFactory", "GeometryFactory"],
-    "irsim.lib.path_planners": ["AStarPlanner", "JPSPlanner", "RRT", "RRTStar", "InformedRRTStar", "PRMPlanner"],
-    "irsim.gui": ["MouseControl", "KeyboardControl"],
-    "irsim.msg": ["Odometry", "LaserScan", "ObjectState", "WorldState", "Quaternion"],
-}
-MODULES = [
+PACKAGES = {
     *("irsim", "irsim.env", "irsim.world", "irsim.world.map", "irsim.world.sensors", "irsim.lib", "irsim.lib.behavior"),
     *("irsim.lib.behavior.behavior_registry", "irsim.lib.behavior.behavior_methods", "irsim.lib.path_planners"),
     *("irsim.util", "irsim.util.util", "irsim.util.random", "irsim.config", "irsim.gui", "irsim.msg"),
-]
-LEAVES = [
-    *("irsim.gui.keyboard_control", "irsim.gui.mouse_control", "irsim.version"),
-    *(f"irsim.world.sensors.{name}" for name in ("contact2d", "fmcw_lidar2d", "lidar2d", "sensor_factory")),
-    *(f"irsim.world.robots.robot_{name}" for name in ("acker", "diff", "omni")),
-    *(f"irsim.world.obstacles.obstacle_{name}" for name in ("acker", "diff", "omni", "static")),
-    *(f"irsim.world.map.{name}_map_generator" for name in ("image", "perlin")),
-    *("irsim.world.map.fog_map", "irsim.world.map.grid_map_generator_base", "irsim.world.map.obstacle_map"),
-    *("irsim.world.object_plot", "irsim.lib.algorithm.contact", "irsim.lib.path_planners.grid_planner_base"),
-    *("irsim.util.decorator", "irsim.util.message"),
-]
-"""Modules of which only what they define counts."""
+}
+"""Modules whose names count wherever they are defined; of other modules only what they define counts."""
 
 
 def parameters(item: object) -> list[str] | None:
@@ -66,17 +41,16 @@ def names_of(item: object) -> dict[str, list[str] | None]:
 
 
 def main() -> None:
-    """Write the file."""
-    names = {module: names_of(importlib.import_module(module)) for module in MODULES}
-    for leaf in LEAVES:
-        module = importlib.import_module(leaf)
-        own = names_of(module)
-        names[leaf] = {name: own[name] for name in own if getattr(vars(module)[name], "__module__", "") == leaf}
-    for module, classes in CLASSES.items():
-        for name in classes:
-            names[f"{module}:{name}"] = names_of(getattr(importlib.import_module(module), name))
-    text = json.dumps(names, indent=1, sort_keys=True)
-    (Path(__file__).parents[2] / "irsim" / "compatibility" / "names.json").write_text(text + "\n", encoding="utf-8")
+    """Write the file, for the modules and classes that it has."""
+    path = Path(__file__).parents[2] / "irsim" / "compat" / "names.json"
+    names = {}
+    for place in json.loads(path.read_text(encoding="utf-8")):
+        module, _, owner = place.partition(":")
+        home = importlib.import_module(module)
+        names[place] = own = names_of(getattr(home, owner) if owner else home)
+        if not owner and module not in PACKAGES:
+            names[place] = {name: own[name] for name in own if getattr(vars(home)[name], "__module__", "") == module}
+    path.write_text(json.dumps(names, indent=1, sort_keys=True) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -20,7 +20,6 @@ from irsim.lib import (
     ackermann_kinematics,
     differential_kinematics,
     generate_polygon,
-    kinematics_factory,
     omni_kinematics,
     random_generate_polygon,
     reciprocal_vel_obs,
@@ -322,10 +321,8 @@ TWO, THREE = np.array([[1.0], [0.5]]), np.ones((3, 1))
 @pytest.mark.parametrize(
     ("function", "arguments", "expected"),
     [
-        (diff, (STATE, TWO, 0.1), [-0.09991351502732795, 0.004158066243329049, -3.133185307179586]),
         (diff, (CAR, TWO, 0.1), [-0.09991351502732795, 0.004158066243329049, -3.133185307179586]),
         (acker, (CAR, TWO, 0.1), [-0.09991351502732795, 0.004158066243329049, 3.120271003550867, 0.5]),
-        (acker, (CAR, TWO, 0.1, False, None, "angular", 2), [-0.099913515027, 0.004158066243, 3.110135501775, 0.25]),
         (omni, (STATE, TWO, 0.1), [-0.10199254814899249, -0.045798691270334924, 3.1]),
         (turning, (STATE, THREE, 0.1), [-0.104071581270657, -0.0957554487839989, -3.083185307179586]),
     ],
@@ -356,7 +353,3 @@ def test_columns_of_a_wrong_shape_are_refused(function: Any, arguments: Any, err
 def test_noise_of_kinematics_has_the_stated_deviation() -> None:
     outs = np.array([diff(STATE * 0, TWO, 1.0, True, [0.04, 0.0, 0.0, 0.09])[:, 0] for _ in range(4000)])
     assert outs[:, [0, 2]].std(axis=0) == pytest.approx([0.2, 0.15], rel=0.1)
-
-
-def test_functions_by_drive() -> None:
-    assert kinematics_factory == {"diff": diff, "acker": acker, "omni": omni}

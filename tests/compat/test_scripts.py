@@ -9,7 +9,6 @@ import pytest
 from irsim.compat import DIFFERENCES
 from tests.compat.differences import KNOWN
 from tests.compat.scripts import NAMES, play, recorded, same
-from tests.effort import some
 from tests.warm import warm
 
 pytestmark = pytest.mark.one_python
@@ -19,7 +18,7 @@ def _name(fact: str) -> str:
     return fact.removeprefix(">> ").partition(" = ")[0]
 
 
-@pytest.mark.parametrize("name", some(NAMES))
+@pytest.mark.parametrize("name", NAMES)
 def test_a_script_prints_what_it_printed(name: str) -> None:
     facts, complaint = play(name, sys.executable, warm)
     assert complaint == ""

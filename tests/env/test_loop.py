@@ -100,15 +100,6 @@ def test_state_is_a_snapshot_and_the_trajectory_holds_every_step(env: Any) -> No
     assert env.robot.trajectory[0].shape == (3, 1)
 
 
-@pytest.mark.parametrize(
-    "action", [[0.5, 0.2], (0.5, 0.2), np.array([0.5, 0.2]), np.array([[0.5], [0.2]]), [[0.5, 0.2]]]
-)
-def test_one_action_in_every_spelling(env: Any, action: Any) -> None:
-    env.step(action)
-    assert env.robot.velocity[:, 0].tolist() == [0.5, 0.2]
-    assert env.robot.state[:, 0] == pytest.approx([1.05, 1.0, 0.02], abs=1e-12)
-
-
 TWO = """
 world: {height: 10, width: 10}
 robot:
@@ -157,17 +148,6 @@ def test_bad_actions_say_what_is_wrong(make: Make, action: Any, target: Any, err
         env.step(action, target)
 
 
-def test_external_mode_moves_nothing_but_evaluates(make: Make) -> None:
-    env = make(WALL, step_mode="external")
-    env.step()
-    assert (env.robot.state[0, 0], env.time) == (1.0, 0.1)
-    env.robot.set_state([4, 1, 0])
-    env.step()
-    assert (env.robot.collision, env.time) == (True, 0.2)
-    with pytest.raises(ValueError, match="external"):
-        env.step([0.1, 0.1])
-
-
 def test_rollout_equals_steps(make: Make) -> None:
     stepped, rolled = make(WALL), make(WALL)
     poses = []
@@ -180,16 +160,6 @@ def test_rollout_equals_steps(make: Make) -> None:
     assert rolled.events == stepped.events
     assert result.time[-1] == pytest.approx(stepped.sim_time)
     assert rolled.robot.trajectory[-1].tolist() == stepped.robot.trajectory[-1].tolist()
-
-
-def test_environments_do_not_meet(make: Make) -> None:
-    a, b = make(ONE), make(ONE)
-    a.step()
-    assert (b.time, b.robot.state[0, 0]) == (0, 1.0)
-    a.end()
-    b.step()
-    a.step()
-    assert (a.time, b.time) == (0.2, 0.1)
 
 
 def test_a_script_may_go_on_after_the_end(make: Make, tmp_path: Path) -> None:
@@ -207,15 +177,6 @@ def test_a_script_may_go_on_after_the_end(make: Make, tmp_path: Path) -> None:
         assert env.time == 0
     assert not (tmp_path / "never.gif").exists()
     assert len(env.rollout(2).time) == 2
-
-
-def test_pause_and_resume(env: Any) -> None:
-    env.pause()
-    env.step()
-    assert (env.time, env.status) == (0, "Pause")
-    env.resume()
-    env.step()
-    assert (env.time, env.status) == (0.1, "Running")
 
 
 def test_missing_file_names_places_and_near_matches(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:

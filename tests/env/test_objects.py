@@ -269,7 +269,7 @@ obstacle:
         np.testing.assert_array_equal(polygon.original_vertices, expected)
 
 
-def test_reload(env: Any, make: Make, tmp_path: Any) -> None:
+def test_reload(env: Any, make: Make) -> None:
     env.add_object(env.create_obstacle())
     env.step()
     env.reload()
@@ -279,12 +279,6 @@ def test_reload(env: Any, make: Make, tmp_path: Any) -> None:
     env.step()
     twin.step()
     np.testing.assert_array_equal(env.robot.state, twin.robot.state)
-    other = tmp_path / "other.yaml"
-    other.write_text("world: {width: 3}\nrobot: [{kinematics: {name: omni}}]")
-    env.reload(other)
-    assert (len(env.objects), env.world_param.count, env._world.width) == (1, 0, 3)
-    env.step([1, 0])
-    assert env.time == 0.1
 
 
 def test_pictures_follow(make: Make, tmp_path: Any) -> None:

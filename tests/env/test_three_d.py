@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import irsim
+from tests.env.driving import Make
 
 YAML = """\
 world: {width: 6, height: 4, depth: 3}
@@ -22,16 +23,8 @@ obstacle:
 """
 
 
-@pytest.fixture
-def path(tmp_path: Path) -> Path:
-    path = tmp_path / "space.yaml"
-    path.write_text(YAML, encoding="utf-8")
-    return path
-
-
-def test_the_simulation_is_the_flat_one(path: Path) -> None:
-    flat = irsim.make(str(path), headless=True, log_level="ERROR")
-    space = irsim.make(str(path), projection="3D", display=False, log_level="ERROR")
+def test_the_simulation_is_the_flat_one(make: Make) -> None:
+    flat, space = make(YAML), make(YAML, projection="3D", headless=False, display=False)
     assert isinstance(space, irsim.EnvBase3D)
     for _ in range(20):
         flat.step()
@@ -39,11 +32,10 @@ def test_the_simulation_is_the_flat_one(path: Path) -> None:
         space.render(0)
     assert np.array_equal(flat.robot.state, space.robot.state)
     assert (space._world.depth, space._world.z_range) == (3.0, [0.0, 3.0])
-    space.end(ending_time=0)
 
 
-def test_pictures_and_drawings(path: Path, tmp_path: Path) -> None:
-    env = irsim.make(str(path), projection="3d", display=False, log_level="ERROR")
+def test_pictures_and_drawings(make: Make, tmp_path: Path) -> None:
+    env = make(YAML, projection="3d", headless=False, display=False)
     env.path_param.fig_path = str(tmp_path)
     ax = env._env_plot.ax
     assert ax.name == "3d"
@@ -61,11 +53,10 @@ def test_pictures_and_drawings(path: Path, tmp_path: Path) -> None:
     assert len(ax.collections) <= drawn + 2  # frames replace each other
     env.reset()
     env.render(0)
-    env.end(ending_time=0)
 
 
-def test_an_animation_in_space(path: Path, tmp_path: Path) -> None:
-    env = irsim.make(str(path), projection="3d", display=False, save_ani=True, log_level="ERROR")
+def test_an_animation_in_space(make: Make, tmp_path: Path) -> None:
+    env = make(YAML, projection="3d", headless=False, display=False, save_ani=True)
     env.path_param.ani_path = str(tmp_path)
     for _ in range(3):
         env.step()
