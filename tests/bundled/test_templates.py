@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import functools
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,7 @@ from PIL import Image
 
 import irsim
 from irsim.bundled import templates
-from irsim.bundled.templates import Template
+from irsim.bundled.templates import Template, store
 from irsim.common import data_files as resources
 from tests.bundled.draw import draw
 from tests.effort import some
@@ -24,6 +26,13 @@ pytestmark = pytest.mark.one_python
 
 ALL = templates.names()
 MODELINE = "# yaml-language-server: $schema=../../schema/scenario.schema.json"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def templates_are_read_once() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(store, "load", functools.cache(store.load))
+        yield
 
 
 @pytest.fixture(params=ALL)

@@ -186,9 +186,8 @@ def test_generators_that_fail(tmp_path, stripes) -> None:
     with pytest.raises(ScenarioError, match="ArithmeticError: no period"):
         make(tmp_path, "{name: stripes, resolution: 0.5, period: 0}")
     diagnostics = read(scenario(tmp_path, "{name: stripes, resolution: 0.5, perod: 1}"), strict=True).diagnostics
-    assert [(item.code, item.path[-1]) for item in diagnostics if item.severity == "error"] == [
-        ("unknown-key", "perod")
-    ]
+    (error,) = [item for item in diagnostics if item.severity == "error"]
+    assert (error.code, error.path[-1]) == ("unknown-key", "perod")
     with pytest.raises(ValueError, match="built-in"):
         type("Mine", (GridMapGenerator,), {"name": "ros", "__module__": "mine"})
 
@@ -197,38 +196,41 @@ def test_resolving_by_hand() -> None:
     assert resolve_obstacle_map(None) is None
     assert resolve_obstacle_map(np.arange(6).reshape(2, 3)).tolist() == [[0, 1, 2], [3, 4, 5]]
     assert resolve_obstacle_map({"name": "perlin", "resolution": 0.5, "seed": 1}, 10.2, 10.3).shape == (20, 21)
-    for wrong in (3, {"resolution": 1}, ["a"]):
-        with pytest.raises(TypeError):
+    maps = ({"name": "image"}, {"name": "perlin"}, {"name": "nope", "resolution": 1})
+    refused = {TypeError: (3, {"resolution": 1}, ["a"]), ValueError: maps, FileNotFoundError: ("nope.png",)}
+    for error, wrong in [(error, wrong) for error, values in refused.items() for wrong in values]:
+        with pytest.raises(error, match=r"need|unknown" if error is ValueError else None):
             resolve_obstacle_map(wrong, 5, 5)
-    for wrong in ({"name": "image"}, {"name": "perlin"}, {"name": "nope", "resolution": 1}):
-        with pytest.raises(ValueError, match=r"need|unknown"):
-            resolve_obstacle_map(wrong, 5, 5)
-    with pytest.raises(FileNotFoundError):
-        resolve_obstacle_map("nope.png")
     with pytest.raises(ValueError, match="octaves"):
         PerlinGridGenerator(5, 5, fractal=0)
 
 
-def codes(path: Path, limits: Limits | None = None) -> list[tuple[str, str, int | None]]:
-    diagnostics = read(path, limits=limits or Limits()).diagnostics
-    return [(item.code, item.severity, item.line) for item in diagnostics if item.code != "initial-overlap"]
+def codes(path: Path, **limits: Any) -> list[str]:
+    diagnostics = read(path, limits=Limits(**limits)).diagnostics
+    return [f"{item.severity} {item.code} {item.line}" for item in diagnostics if item.code != "initial-overlap"]
 
 
-def test_what_is_wrong_with_a_map_is_said(tmp_path) -> None:
+@pytest.mark.parametrize(
+    ("obstacle_map", "limits", "finding"),
+    [
+        ("text.png", {}, "error map-unreadable 1"),
+        ("black.png", {}, "warning map-full 1"),
+        ("large.png", {"cells": 1000}, "error map-too-large 1"),
+        ("{name: perlin, resolution: 0.01, seed: 1}", {"cells": 1000}, "error map-too-large 1"),
+        ("large.png", {"map_bytes": 10}, "error map-too-large 1"),
+    ],
+)
+def test_what_is_wrong_with_a_map_is_said(tmp_path, obstacle_map, limits, finding) -> None:
     (tmp_path / "text.png").write_text("no picture")
     Image.new("L", (4, 4), 0).save(tmp_path / "black.png")
     Image.new("L", (40, 40), 0).save(tmp_path / "large.png")
-    assert codes(scenario(tmp_path, "text.png")) == [("map-unreadable", "error", 1)]
-    assert codes(scenario(tmp_path, "black.png")) == [("map-full", "warning", 1)]
-    few = Limits(cells=1000)
-    assert codes(scenario(tmp_path, "large.png"), few) == [("map-too-large", "error", 1)]
-    assert codes(scenario(tmp_path, "{name: perlin, resolution: 0.01, seed: 1}"), few) == [
-        ("map-too-large", "error", 1)
-    ]
-    assert codes(scenario(tmp_path, "large.png"), Limits(map_bytes=10)) == [("map-too-large", "error", 1)]
+    assert codes(scenario(tmp_path, obstacle_map), **limits) == [finding]
+
+
+def test_maps_that_are_not_there(tmp_path) -> None:
+    (tmp_path / "large.png").write_text("")
     [missing] = read(scenario(tmp_path, "lage.png")).diagnostics
-    assert missing.code == "map-not-found"
-    assert missing.fix == "path: large.png"
+    assert (missing.code, missing.fix) == ("map-not-found", "path: large.png")
     assert "cave.png" in str(missing.allowed)
     [missing] = read(scenario(tmp_path, "{name: image, path: cav.png}")).diagnostics
     assert (missing.fix, missing.path) == ("path: cave.png", ("world", "obstacle_map", "path"))
@@ -238,14 +240,12 @@ def test_maps_stay_inside_the_workspace(tmp_path) -> None:
     inside, outside = tmp_path / "inside", tmp_path / "secret.png"
     inside.mkdir()
     Image.new("L", (4, 4), 0).save(outside)
-    limits = Limits(root=str(inside))
-    for name in ("../secret.png", str(outside)):
-        assert [code for code, *_ in codes(scenario(inside, f"'{name}'"), limits)] == ["path-outside-workspace"]
     (inside / "link.png").symlink_to(outside)
-    assert [code for code, *_ in codes(scenario(inside, "link.png"), limits)] == ["path-outside-workspace"]
-    assert codes(scenario(inside, "cave.png"), limits) == []
     Image.new("L", (4, 4), 0).save(inside / "own.png")
-    assert codes(scenario(inside, "own.png"), limits) == [("map-full", "warning", 1)]
+    for name in ("../secret.png", str(outside), "link.png"):
+        assert codes(scenario(inside, f"'{name}'"), root=str(inside)) == ["error path-outside-workspace 1"]
+    assert codes(scenario(inside, "cave.png"), root=str(inside)) == []
+    assert codes(scenario(inside, "own.png"), root=str(inside)) == ["warning map-full 1"]
 
 
 @pytest.mark.slow
@@ -272,15 +272,12 @@ def test_maps_are_drawn(tmp_path) -> None:
 
 
 @pytest.mark.parametrize("goal", [(15, 7), (-3, 7), (5, 12), (5, -9)])
-def test_walls_round_the_world_hold_in_contact_mode(tmp_path, goal) -> None:
-    (tmp_path / "room.yaml").write_text(
-        "world: {width: 12, height: 8, collision_mode: contact, boundary: walls}\n"
-        "robot: {kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [5, 4, 0],\n"
-        f"        behavior: {{name: dash}}, goal: [{goal[0]}, {goal[1]}]}}\n"
-    )
-    env = irsim.make(tmp_path / "room.yaml", headless=True, log_level="ERROR")
-    for _ in range(150):
-        env.step()
+def test_walls_round_the_world_hold_in_contact_mode(goal) -> None:
+    robot = {"kinematics": {"name": "omni"}, "shape": {"name": "circle", "radius": 0.3}, "behavior": {"name": "dash"}}
+    world = {"width": 12, "height": 8, "collision_mode": "contact", "boundary": "walls"}
+    data = {"world": world, "robot": {**robot, "state": [5, 4, 0], "goal": [*goal]}}
+    env = irsim.make(read(data).scenario, headless=True, log_level="ERROR")
+    env.rollout(150, until_done=False)
     x, y = env.robot.state[:2, 0]
     assert 0.3 - 1e-3 <= x <= 11.7 + 1e-3
     assert 0.3 - 1e-3 <= y <= 7.7 + 1e-3

@@ -20,11 +20,8 @@ def test_a_color_is_the_one_that_is_drawn(color: Any) -> None:
     assert rgb(color) == pytest.approx(to_rgb(color), abs=1e-12)
 
 
-def test_names_may_have_capital_letters() -> None:
+def test_names_may_have_capital_letters_and_are_the_same_when_read_again() -> None:
     assert rgb("SteelBlue") == rgb("steelblue")
-
-
-def test_a_name_that_pillow_has_read_before_is_the_same() -> None:
     assert rgb("teal") == rgb("teal") == tuple(value / 255 for value in getrgb("teal"))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import subprocess
@@ -35,18 +36,14 @@ def codes(text: str, **options: Limits) -> list[str]:
     return [item.code for item in read(text, **options).errors]
 
 
+def bomb(first: str, level: str, names: str) -> str:
+    """Each line holds the one before ten times."""
+    lines = [first] + [level.format(name, ", ".join([f"*{last}"] * 10)) for last, name in itertools.pairwise(names)]
+    return "\n".join(lines) + "\n"
+
+
 def merge_bomb() -> str:
-    lines = ["a: &a {k0: 0, k1: 0, k2: 0, k3: 0, k4: 0, k5: 0, k6: 0, k7: 0, k8: 0, k9: 0}"]
-    for previous, name in zip("abcdef", "bcdefg", strict=True):
-        lines.append(f"{name}: &{name} {{<<: [{', '.join(['*' + previous] * 10)}]}}")
-    return "\n".join(lines) + "\n"
-
-
-def alias_bomb() -> str:
-    lines = ['a: &a ["lol", "lol", "lol", "lol", "lol", "lol", "lol", "lol", "lol"]']
-    for previous, name in zip("abcdefgh", "bcdefghi", strict=True):
-        lines.append(f"{name}: &{name} [{', '.join(['*' + previous] * 9)}]")
-    return "\n".join(lines) + "\n"
+    return bomb("a: &a {" + ", ".join(f"k{key}: 0" for key in range(10)) + "}", "{0}: &{0} {{<<: [{1}]}}", "abcdefg")
 
 
 def nested_merges() -> str:
@@ -93,7 +90,7 @@ HERD = "robot:\n  - {{number: {}, kinematics: {{name: diff}}}}\n"
     ("text", "code", "seconds"),
     [
         (merge_bomb(), "alias-expansion", 0.1),
-        (alias_bomb(), "alias-expansion", 0.1),
+        (bomb('a: &a ["lol", "lol"]', "{0}: &{0} [{1}]", "abcdefghi"), "alias-expansion", 0.1),
         *((text, "too-deep|yaml-syntax", 0.5) for text in DEEP.values()),
         *((HERD.format(n), "too-many-objects", 0.2) for n in ("1000000", "1000000000000000000000", "99999999")),
     ],
@@ -156,9 +153,16 @@ def test_many_entries_of_many() -> None:
         "world: {seed: 99999999999999999999}\n",
         "robot: {number: 1.0e+300}\n",
         "robot: {state: [1.0e+999, 0, 0]}\n",
+        "#!/usr/bin/env python\nimport os\nprint(os.getcwd())\n",
+        "<html>\n<body>Not found</body></html>\n",
+        '{"world": {"height": 10},}\n}',
+        "Hello,\nworld\n",
+        "- 1\n- 2\n",
+        "42\n---\n",
+        "world\n",
     ],
 )
-def test_monstrous_numbers(text: str) -> None:
+def test_monstrous_numbers_and_what_is_no_scenario_are_refused(text: str) -> None:
     with within(0.2 * SLOW_MACHINE):
         reading = read(text)
     assert reading.scenario is None
@@ -181,24 +185,6 @@ def test_a_file_that_is_not_text_is_reported(kind: str, tmp_path: Path) -> None:
     with within(0.2 * SLOW_MACHINE):
         (problem,) = read(path).errors
     assert problem.code in ("not-a-file", "not-text", "unreadable")
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "#!/usr/bin/env python\nimport os\nprint(os.getcwd())\n",
-        "<html>\n<body>Not found</body></html>\n",
-        '{"world": {"height": 10},}\n}',
-        "Hello,\nworld\n",
-        "- 1\n- 2\n",
-        "42\n---\n",
-        "world\n",
-    ],
-)
-def test_data_that_are_not_a_scenario_are_reported(text: str) -> None:
-    reading = read(text)
-    assert reading.scenario is None
-    assert len(reading.errors) >= 1
 
 
 def test_tags_construct_nothing(tmp_path: Path) -> None:
@@ -227,14 +213,13 @@ def root(tmp_path: Path) -> Path:
     return root
 
 
-@pytest.mark.parametrize("name", ["maps/a.png", "./maps/a.png", "maps//a.png", "not-there.png", "a..b", "地图　1.png"])
-def test_names_that_lead_downwards_pass(root: Path, name: str) -> None:
-    assert why_outside(name, root) is None
-
-
 @pytest.mark.parametrize(
     ("name", "why"),
     [
+        *(
+            (name, None)
+            for name in ("maps/a.png", "./maps/a.png", "maps//a.png", "not-there.png", "a..b", "地图　1.png")
+        ),
         ("../secret.png", "leads upwards"),
         ("maps/../../secret.png", "leads upwards"),
         ("maps\\..\\..\\secret.png", "leads upwards"),
@@ -251,8 +236,9 @@ def test_names_that_lead_downwards_pass(root: Path, name: str) -> None:
         ("maps/" + "x" * 5000, "cannot be followed"),
     ],
 )
-def test_names_that_lead_elsewhere_do_not(root: Path, name: str, why: str) -> None:
-    assert why in str(why_outside(name, root))
+def test_only_names_that_lead_downwards_pass(root: Path, name: str, why: str | None) -> None:
+    reason = why_outside(name, root)
+    assert (reason is None) if why is None else why in str(reason)
 
 
 @POSIX

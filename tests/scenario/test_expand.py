@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from irsim.options.colors import CYCLE
 from irsim.scenario.read import read
-from irsim.scenario.resolve.per_object import is_per_object, kind_of, spread
+from irsim.scenario.resolve.per_object import kind_of, spread
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 DIFF = {"kinematics": {"name": "diff"}}
@@ -263,7 +263,6 @@ def test_nothing_is_shared_that_changes() -> None:
 
 numbers = st.floats(allow_nan=False) | st.integers() | st.booleans()
 vectors = st.lists(numbers, max_size=4)
-scalars = numbers | st.none() | st.text(max_size=3) | st.dictionaries(st.text(max_size=3), numbers, max_size=2)
 others = st.text(max_size=3) | st.none() | vectors | st.dictionaries(st.text(max_size=3), numbers, max_size=2)
 
 
@@ -302,22 +301,6 @@ def test_exceptions() -> None:
     assert spread(["a", "b"], 2, kind_of("tags")) == [["a", "b"]] * 2
     assert spread([[1, 1], [2, 2]], 2, kind_of("waypoints")) == [[[1, 1], [2, 2]]] * 2
     assert spread([[[1, 1], [2, 2]], [[3, 3]]], 2, kind_of("waypoints")) == [[[1, 1], [2, 2]], [[3, 3]]]
-
-
-@given(scalars | vectors, st.integers(0, 6))
-def test_one_value_goes_to_all(value: Any, count: int) -> None:
-    assert spread(value, count) == [value] * count
-
-
-@given(st.lists(others, min_size=1, max_size=6), st.integers(0, 8))
-def test_lists_go_by_element_and_the_last_is_repeated(values: list[Any], count: int) -> None:
-    result = spread(values, count)
-    assert len(result) == count
-    if is_per_object(values):
-        for i, item in enumerate(result):
-            assert item is values[min(i, len(values) - 1)]
-    else:
-        assert all(item is values for item in result)
 
 
 @given(others | st.lists(others, max_size=6), st.integers(0, 5))

@@ -104,8 +104,7 @@ def test_the_text_of_a_perturbation_means_the_same(values, speed: float, heading
 def test_everything_that_is_wrong_is_said_at_once(given: object, words: list[str]) -> None:
     with pytest.raises(InputError) as error:
         read_perturbations(given)
-    assert error.value.where == "perturb"
-    assert error.value.code == "bad-argument"
+    assert (error.value.where, error.value.code) == ("perturb", "bad-argument")
     assert "position=0.1" in str(error.value.fix)
     for text in words:
         assert text in error.value.message
@@ -183,17 +182,11 @@ def test_its_schema_has_units_and_descriptions() -> None:
     assert "string" in str(schema["heading"])
 
 
-@pytest.mark.parametrize(
-    ("behavior", "random"),
-    [
-        ("{name: avocado}", True),
-        ("{name: avocado, noise: 0}", False),
-        ("{name: footprint_orca}", True),
-        ("{name: orca}", False),
-        ("{name: follow, local: avocado}", True),
-        ("{name: follow, local: orca}", False),
-    ],
-)
+RANDOM = ["{name: avocado}", "{name: footprint_orca}", "{name: follow, local: avocado}"]
+CERTAIN = ["{name: avocado, noise: 0}", "{name: orca}", "{name: follow, local: orca}"]
+
+
+@pytest.mark.parametrize(("behavior", "random"), [(b, True) for b in RANDOM] + [(b, False) for b in CERTAIN])
 def test_behaviors_that_draw_random_numbers_make_a_run_random(behavior: str, random: bool) -> None:
     text = f"robot:\n  - {{kinematics: {{name: diff}}, goal: [5, 5, 0], behavior: {behavior}}}\n"
     assert random_parts(or_raise(read(text, strict=True))[0]) == (["decisions"] if random else [])
