@@ -261,9 +261,8 @@ class Connection:
             if name not in self._row_of:
                 listed = ", ".join(self.scene.names[:5])
                 fix = suggestion(name, self.scene.names, f"the objects are {listed}")
-                raise BridgeError(
-                    "bridge-failed", f"{bridge.name} sent {what} of an unknown object {clean(name)!r}", fix
-                )
+                what = f"{bridge.name} sent {what} of an unknown object {clean(name)!r}"
+                raise BridgeError("bridge-failed", what, fix)
             if what in ("poses", "twists") and self._owned.get(name) is not bridge:
                 fix = "name it in the agents of the bridge; for another start send starts"
                 raise BridgeError("bridge-failed", f"{bridge.name} sent {what} of '{name}', which irsim moves", fix)
@@ -305,9 +304,8 @@ class Connection:
             if key not in lidars or len(beams) != lidars[key].beams or np.isnan(beams).any():
                 listed = ", ".join(f"{lidar.key} ({lidar.beams} beams)" for lidar in list(lidars.values())[:5])
                 what = f"{bridge.name} sent {len(beams)} ranges of {clean(key)!r} that cannot be used"
-                raise BridgeError(
-                    "bridge-failed", what, f"the lidars are {listed}; infinite is a beam that hit nothing"
-                )
+                fix = f"the lidars are {listed}; infinite is a beam that hit nothing"
+                raise BridgeError("bridge-failed", what, fix)
             result[key] = beams
         return result
 

@@ -1,22 +1,25 @@
-"""Bridges in the steps of an environment: what they see, and what they may change."""
+"""Bridges in the steps of an environment: what they see, what they may change, and one of a package of its own."""
 
 from __future__ import annotations
 
 import math
 import shlex
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import pytest
+from pydantic import Field
 
 import irsim
-from irsim.bridges.base import Bridge, BridgeError, BridgeLostError
+from irsim.bridges.base import BridgeError, BridgeLostError
 from irsim.bridges.connect import connect
 from irsim.bridges.options import check_files
-from irsim.bridges.state import Feedback, Motion, WorldState
+from irsim.bridges.state import Motion
+from irsim.plugins import BRIDGES, Bridge, BridgeOptions, Feedback, Meters, SceneDescription, WorldState
 from irsim.scenario.limits import Limits
 from tests.bridges.peer import Peer
 from tests.bridges.scenes import environment
@@ -340,3 +343,52 @@ def test_bridges_of_a_server_write_only_into_its_folder(folder: str, tmp_path: P
         check_files([one], tmp_path)
     one.folder = "bags/first"
     check_files([one], tmp_path)
+
+
+MEADOW = "robot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [8, 1], behavior: {name: dash}}\n"
+
+
+class Leash(BridgeOptions):
+    """Calls robots back that are too far from where they began."""
+
+    name: Literal["leash"] = "leash"
+    length: Annotated[Meters, Field(gt=0)] = 1.0
+    """Length of the leash."""
+
+
+class Called(Bridge):
+    """Gives the start as a new goal."""
+
+    def __init__(self, options: Leash) -> None:
+        self.name, self.options, self.far = "leash", options, False
+
+    def open(self, scene: SceneDescription, start: WorldState) -> None:
+        self.start = scene.robots[0].pose
+
+    def push(self, state: WorldState) -> None:
+        self.far = self.far or bool(state.pose[0, 0] - self.start[0] > self.options.length)
+
+    def pull(self) -> Feedback | None:
+        return Feedback(goals={"robot_0": self.start}) if self.far else None
+
+    def notes(self) -> list[str]:
+        return ["the leash was tight"] if self.far else []
+
+
+@pytest.fixture
+def leash() -> Iterator[None]:
+    BRIDGES.register(Leash)(Called)
+    yield
+    BRIDGES._features.pop("leash")
+
+
+def test_it_is_a_bridge_like_any_other(leash: None) -> None:
+    result = irsim.run(text=MEADOW + "bridges: [{name: leash, length: 0.5}]\n", seed=0, steps=30)
+    assert 0.5 < result.robots[0].path_length < 2
+    assert result.notes == ["the leash was tight"]
+
+
+def test_its_options_are_checked(leash: None) -> None:
+    wrong: Any = {"name": "leash", "length": 0}
+    with pytest.raises(Exception, match="length"):
+        irsim.run(text=MEADOW, seed=0, bridges=[wrong])

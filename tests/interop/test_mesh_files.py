@@ -91,16 +91,6 @@ def test_a_scan_with_its_winding_reversed_and_one_with_another_up(tmp_path) -> N
     assert import_map(lying, tmp_path / "d.yaml", up="z").free_area == pytest.approx(40.5, abs=0.5)
 
 
-def test_levels_and_seed_points(tmp_path) -> None:
-    file = write_glb(tmp_path / "house.glb", house())
-    upper = import_map(file, tmp_path / "up.yaml", level=1)
-    assert upper.height == pytest.approx(2.8, abs=0.01)
-    assert read_sidecar(tmp_path / "up.yaml").to_scene([[1.0, 1.0]])[0, 1] == pytest.approx(2.8, abs=0.01)
-    bed = import_map(file, tmp_path / "bed.yaml", seed_point=(7.0, 5.0))
-    assert bed.kept == 1
-    assert bed.free_area == pytest.approx(3.2, abs=0.4)
-
-
 def test_three_million_triangles_in_seconds(tmp_path) -> None:
     """A noisy floor of 30 m x 20 m. The limit is for a loaded machine; alone it takes about 6 s of processor time."""
     n = 1250

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from irsim.bridges.maps import import_map, read_sidecar
+from irsim.bridges.maps import import_map
 from irsim.scenario.read import read
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("opendrive")]
@@ -83,15 +83,3 @@ def test_lanes_as_carla_sees_them(tmp_path, write, lanes, kind, record_property)
     record_property("iou", iou)
     assert iou > 0.95, iou
     assert result.components[0] == pytest.approx(result.free_area)
-
-
-def test_waypoints_lie_on_free_cells(tmp_path) -> None:
-    file = generated(tmp_path)
-    import_map(file, tmp_path / "town.yaml", resolution=CELL)
-    sidecar = read_sidecar(tmp_path / "town.yaml")
-    grid = read(tmp_path / "town.yaml").scenario.grid
-    places = [point.transform.location for point in carla.Map("town", file.read_text()).generate_waypoints(1.0)]
-    points = sidecar.to_irsim(np.array([[place.x, -place.y, place.z] for place in places]))
-    i, j = np.floor((points[:, :2] - grid.origin) / CELL).astype(int).T
-    assert (grid.cells.occupied[i, j] == 0).mean() > 0.99
-    assert len(points) > 300

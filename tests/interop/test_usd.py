@@ -116,23 +116,6 @@ def test_bodies_are_where_they_are_simulated_and_collide(run) -> None:
     assert not stage.GetPrimAtPath("/World/Obstacles/disc").HasAPI(UsdPhysics.RigidBodyAPI)
 
 
-def test_a_character_takes_the_place_of_a_body(run, tmp_path: Path) -> None:
-    """The page says how: reference an asset at ``body`` in a layer over the exported one."""
-    export_run(run, tmp_path / "run.usda")
-    (tmp_path / "person.usda").write_text(PERSON)
-    stage = Usd.Stage.CreateNew(str(tmp_path / "mine.usda"))
-    stage.SetTimeCodesPerSecond(10)  # else OpenUSD stretches the time of the layer below
-    stage.GetRootLayer().subLayerPaths = ["./run.usda"]
-    body = stage.OverridePrim("/World/Pedestrians/walker/body")
-    for child in body.GetChildren():
-        child.SetActive(False)
-    stage.DefinePrim(f"{body.GetPath()}/person").GetReferences().AddReference("./person.usda")
-    person = stage.GetPrimAtPath(f"{body.GetPath()}/person")
-    assert person.GetTypeName() == "Sphere"
-    place = UsdGeom.XformCache(12).GetLocalToWorldTransform(person).ExtractTranslation()
-    assert tuple(place) == pytest.approx((5, 3, 0))
-
-
 def test_a_scenario_that_was_not_run(tmp_path: Path) -> None:
     (tmp_path / "scene.yaml").write_text(TEXT)
     target = export_scene(tmp_path / "scene.yaml", tmp_path / "start.usda")

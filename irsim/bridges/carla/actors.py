@@ -172,9 +172,8 @@ class Ground:
         if road is not None:
             return road
         what = f"there is no ground at x={x:.1f}, y={y:.1f} of CARLA"
-        raise BridgeError(
-            "bridge-mismatch", what, "move the scenario into the town with transform, or write ground: 0.0"
-        )
+        fix = "move the scenario into the town with transform, or write ground: 0.0"
+        raise BridgeError("bridge-mismatch", what, fix)
 
     def road(self, x: float, y: float) -> float | None:
         """Height of the nearest road [m], or the height that was given; None without a road near by."""

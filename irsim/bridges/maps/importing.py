@@ -182,9 +182,8 @@ def _options(given: dict[str, Any]) -> ImportOptions:
         raise ArgumentError(what, f"options of imports are {', '.join(ImportOptions.model_fields)}") from None
     if chosen.bounds is not None and not (chosen.bounds[0] < chosen.bounds[2] and chosen.bounds[1] < chosen.bounds[3]):
         shown = ", ".join(f"{value:g}" for value in chosen.bounds)
-        raise ArgumentError(
-            f"the bounds {shown} hold nothing", "give x, y of the lower left and the upper right corner"
-        )
+        fix = "give x, y of the lower left and the upper right corner"
+        raise ArgumentError(f"the bounds {shown} hold nothing", fix)
     return chosen
 
 

@@ -110,9 +110,8 @@ def _chosen(levels: list[Level], candidates: list[int], options: ImportOptions) 
     if options.level is not None:
         if options.level >= len(levels):
             listed = ", ".join(f"{k} at {level.height:.2f} m" for k, level in enumerate(levels))
-            raise BridgeError(
-                "bridge-file", f"there is no level {options.level}; levels are {listed}", "give one of them"
-            )
+            what = f"there is no level {options.level}; levels are {listed}"
+            raise BridgeError("bridge-file", what, "give one of them")
         return options.level
     if options.height is not None:
         wanted = options.height

@@ -114,9 +114,8 @@ def suite_text(
     """
     tracks, _ = make_tracks(recording, places, rate, window)
     if not tracks:
-        raise BridgeError(
-            "bridge-file", "no pedestrian is in this window of time and space", "widen --from, --to and --crop"
-        )
+        what = "no pedestrian is in this window of time and space"
+        raise BridgeError("bridge-file", what, "widen --from, --to and --crop")
     low, high = bounds(tracks, layout)
     inset = np.minimum(max(layout.margin / 2, ROBOT_RADIUS), (high - low) / 4)
     inner_low, inner_high = low + inset, high - inset
@@ -274,9 +273,8 @@ def import_pedestrians(
         if value is not None and not (math.isfinite(value) and value > 0):
             raise ArgumentError(f"{name} must be a positive number, got {value}", f"give a {name} above 0")
     if episodes.windows > MAX_SCENARIOS:
-        raise ArgumentError(
-            f"a suite has at most {MAX_SCENARIOS} windows, got {episodes.windows}", "give fewer windows"
-        )
+        what = f"a suite has at most {MAX_SCENARIOS} windows, got {episodes.windows}"
+        raise ArgumentError(what, "give fewer windows")
     if not (math.isfinite(layout.margin) and layout.margin >= 0):
         raise ArgumentError(f"margin must be 0 or more, got {layout.margin}", "give a margin in metres, such as 1")
     if layout.robot and BEHAVIORS.get(layout.behavior) is None:

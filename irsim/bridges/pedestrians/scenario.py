@@ -138,9 +138,8 @@ def check_size(tracks: Sequence[Track]) -> None:
     """
     rows = sum(len(track.times) for track in tracks)
     if rows * _EVENTS_PER_ROW > DEFAULT_LIMITS.events or len(tracks) > DEFAULT_LIMITS.objects:
-        raise BridgeError(
-            "bridge-file", f"{len(tracks)} pedestrians with {rows} rows are more than a file may hold", _FIX
-        )
+        what = f"{len(tracks)} pedestrians with {rows} rows are more than a file may hold"
+        raise BridgeError("bridge-file", what, _FIX)
 
 
 def checked(text: str) -> str:

@@ -228,9 +228,8 @@ def _row(path: Path, number: int, frame: float, person: float, x: float, y: floa
 
 def _check_count(path: Path, number: int, rows: Numbers) -> None:
     if len(rows) > 4 * _MAX_ROWS:
-        raise _bad(
-            path, number, f"is row {len(rows) // 4}, and at most {_MAX_ROWS} are read", "cut a part out of the file"
-        )
+        what = f"is row {len(rows) // 4}, and at most {_MAX_ROWS} are read"
+        raise _bad(path, number, what, "cut a part out of the file")
 
 
 def _bad(path: Path, number: int, what: str, fix: str) -> BridgeError:

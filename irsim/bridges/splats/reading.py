@@ -151,9 +151,8 @@ def read_header(path: Path) -> Header:
 
 
 def _refuse_line(path: Path, line: int, what: str) -> NoReturn:
-    raise BridgeError(
-        "bridge-file", f"'{clean(path, 200)}', line {line}: {what}", "give a .ply file of Gaussian splats"
-    )
+    what = f"'{clean(path, 200)}', line {line}: {what}"
+    raise BridgeError("bridge-file", what, "give a .ply file of Gaussian splats")
 
 
 MAX_SPLATS = 20_000_000

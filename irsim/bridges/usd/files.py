@@ -78,9 +78,8 @@ def save_stage(stage: Any, target: Path) -> None:
         what = f"OpenUSD cannot write {target.name}: {error}"
         raise BridgeError("bridge-failed", what, "check permissions and the space left") from None
     if not done:
-        raise BridgeError(
-            "bridge-failed", f"OpenUSD cannot write {target.name}", "check permissions and the space left"
-        )
+        fix = "check permissions and the space left"
+        raise BridgeError("bridge-failed", f"OpenUSD cannot write {target.name}", fix)
 
 
 def export_scene(

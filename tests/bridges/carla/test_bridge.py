@@ -182,23 +182,6 @@ def test_no_client(monkeypatch: pytest.MonkeyPatch) -> None:
         import_client()
 
 
-@pytest.mark.parametrize(
-    ("key", "message"),
-    [
-        ("lidar: {low: 3}", "low must be below high"),
-        ("lidar: {lower: 5}", "lower must not be above upper"),
-        ("command: fly", "'fly'"),
-        ("port: 65535", "65534"),
-        ("wheelbase: 0", "wheelbase"),
-        ("ground: roof", "roof"),
-    ],
-)
-def test_options_that_cannot_be(key: str, message: str) -> None:
-    result = irsim.validate(text=SCENE + f"bridges: [{{name: carla, {key}}}]\n")
-    assert not result.valid
-    assert message in " ".join(str(finding) for finding in result.findings)
-
-
 Serve = Callable[..., int]
 
 

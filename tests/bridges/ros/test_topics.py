@@ -1,4 +1,4 @@
-"""The table of topics, and options of the bridges to ROS."""
+"""The table of topics, options of the bridges, and bodies and maps as messages, without the libraries of ROS."""
 
 from __future__ import annotations
 
@@ -6,21 +6,27 @@ import re
 import sys
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import irsim
 from irsim.bridges.base import BridgeError
+from irsim.bridges.export.formats import _ros_run
 from irsim.bridges.options import read_bridge
 from irsim.bridges.ros.backends.base import Node
 from irsim.bridges.ros.backends.opening import open_backend
 from irsim.bridges.ros.bridge import RosBridge
 from irsim.bridges.ros.incoming import Inbox
+from irsim.bridges.ros.markers import body_markers
 from irsim.bridges.ros.topics import TABLE, Qos, ros_names, scene_topics
 from irsim.common.extras import ExtraError
 from irsim.components.bridges._ros import TOPIC_KEYS, TOPIC_NAME
 from irsim.components.bridges.ros2 import Ros2
 from irsim.diagnostics.errors import ScenarioError
+from irsim.objects.describe import describe_scene
 from irsim.simulation.scene import Lidar, SceneDescription, SceneObject
 from tests.bridges.scenes import environment
 
@@ -120,13 +126,20 @@ def test_the_scenario_of_the_page_is_valid_and_all_topics_are_in_its_table() -> 
         ("{name: mujoco, report: hall.yaml}", "report: report.json"),  # it would be overwritten
         ("{name: mujoco, agents: [me]}", "no object is called 'me'"),
         ("{name: carla, follow: {me: 3}}", "no object is called 'me'"),
+        ("{name: carla, lidar: {low: 3}}", "low must be below high"),
+        ("{name: carla, lidar: {lower: 5}}", "lower must not be above upper"),
+        ("{name: carla, command: fly}", "'fly'"),
+        ("{name: carla, port: 65535}", "65534"),
+        ("{name: carla, wheelbase: 0}", "wheelbase"),
+        ("{name: carla, ground: roof}", "roof"),
     ],
 )
 def test_wrong_options_are_named_with_their_line(bridge: str, words: str) -> None:
     Path("a.yaml").write_text(f"{WORLD}bridges: [{bridge}]\n")
     with pytest.raises(ScenarioError, match=words) as error:
         irsim.make("a.yaml", display=False)
-    assert [item.path[:2] for item in error.value.diagnostics if item.severity == "error"] == [("bridges", 0)]
+    paths = [item.path[:2] for item in error.value.diagnostics if item.severity == "error"]
+    assert paths == [("bridges", 0)] * (2 if "ground" in bridge else 1)  # it is a word or a number
     assert "3:" in str(error.value)
 
 
@@ -164,3 +177,69 @@ def test_variables_of_ros_keep_a_node_here(name: str, value: str, stays: bool, m
     monkeypatch.setenv(name, value)
     open_backend(Ros2(backend="dds", domain=3), Node("node", [], Inbox(), None))  # type: ignore[arg-type]
     assert loopbacks == [stays]
+
+
+BODIES = """
+world: {width: 4, height: 2, obstacle_map: {name: ros, path: map.yaml}}
+robot: {name: rover, kinematics: {name: omni}, shape: {name: circle, radius: 0.2, center: [0.1, 0]},
+  state: [1, 0.5, 1.5707963], goal: [3, 0.5], color: red}
+obstacle:
+  - {shape: {name: circle, radius: 0.3, center: [0.5, 0]}, state: [3, 0.5, 1.5707963], color: blue}
+  - {shape: {name: linestring, vertices: [[0, 0], [1, 0], [1, 0.5]]}, state: [0, 1, 0]}
+  - {shape: {name: polygon, vertices: [[0, 0], [1, 0], [1, 0.5]]}, state: [2, 1, 0]}
+"""
+
+
+class Plain:
+    """Makes messages that only hold what they were made of."""
+
+    def __call__(self, package: str, name: str) -> Any:
+        return lambda *given, **fields: SimpleNamespace(given=given, **fields)
+
+    def header(self, stamp: int, frame: str) -> str:
+        return frame
+
+    def pose(self, x: float, y: float, heading: float) -> Any:
+        return SimpleNamespace(at=[x, y, heading], position=SimpleNamespace(z=0.0))
+
+    def vector(self, x: float, y: float, z: float) -> Any:
+        return SimpleNamespace(x=x, y=y, z=z)
+
+    def points(self, rows: Any) -> list[list[float]]:
+        return np.asarray(rows).tolist()
+
+    def grid(self, stamp: int, frame: str, side: float, origin: Any, levels: Any) -> Any:
+        return SimpleNamespace(frame=frame, side=side, origin=origin, levels=levels)
+
+
+@pytest.fixture
+def bodies() -> SceneDescription:
+    levels = np.array([[0, 0, 100, 0], [0, 30, 0, 70]], np.uint8)
+    Image.fromarray(levels).save("map.pgm")
+    Path("map.yaml").write_text("{image: map.pgm, resolution: 1.0, origin: [0, 0, 0], mode: raw}")
+    Path("scene.yaml").write_text(BODIES)
+    return describe_scene(irsim.make("scene.yaml", headless=True, log_level="ERROR").simulation)
+
+
+@pytest.mark.parametrize("kind", ["live", "recorded"])
+def test_each_body_is_a_marker_where_it_is(bodies: SceneDescription, kind: str) -> None:
+    frames: Any = {"rover": "rover/base"}
+    made = body_markers(Plain(), bodies, frames, "map", united=kind == "recorded")  # type: ignore[arg-type]
+    markers = [marker for marker in made.given[0] if marker.ns == "bodies"]
+    rover, disk, line, area = markers
+    assert [marker.type for marker in markers] == [3, 3, 4, 11]
+    assert [marker.header for marker in markers] == ["rover/base", "map", "map", "map"]
+    assert (rover.scale.x, disk.scale.y) == pytest.approx((0.4, 0.6)), "scales are diameters"
+    assert rover.pose.at == pytest.approx([0.1, 0, 0]), "in its own frame"
+    assert disk.pose.at == pytest.approx([3, 1, 1.5707963], abs=1e-4), "in the world"
+    assert rover.color.given == (1, 0, 0, 1)
+    assert disk.color.given == (0, 0, 1, 1)
+    assert line.points == [[0, 0], [1, 0], [1, 0.5]]
+    assert sorted(area.points) == [[0, 0], [1, 0], [1, 0.5]]
+    assert [marker.text for marker in made.given[0] if marker.ns == "names"] == ["rover"]
+
+
+def test_a_grid_keeps_the_levels_of_its_map(bodies: SceneDescription) -> None:
+    grid = _ros_run.occupancy_grid(Plain(), bodies, "map")  # type: ignore[arg-type]
+    assert (grid.side, grid.origin) == (1, (0, 0))
+    assert grid.levels.tolist() == [[0, 0], [30, 0], [0, 100], [70, 0]], "(nx, ny), from below"

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from irsim.bridges.base import BridgeError
 from irsim.bridges.frames import axes_of
@@ -17,7 +16,6 @@ from irsim.bridges.maps.source import ImportLimits, ImportOptions
 from irsim.bridges.splats import occupancy
 from irsim.bridges.splats.occupancy import Footprints, PlanOptions, find_floor, ground_plan, spread
 from irsim.bridges.splats.splats import Splats
-from irsim.cli.app import app
 from tests.bridges.splats.conftest import Site
 from tests.bridges.splats.scenes import room, write_ply
 
@@ -176,17 +174,3 @@ def test_a_seed_point_outside_of_the_floor_is_an_error(site: Site) -> None:
     with pytest.raises(BridgeError, match=r"no floor at the seed point \(3.8, 3\)"):
         list_levels(site.scene, up="-y", resolution=0.1, seed_point=(3.8, 3.0))
     assert list_levels(site.scene, up="-y", resolution=0.1, seed_point=(1.0, 1.0)).free_area > 30
-
-
-def test_the_command(site: Site, tmp_path: Path) -> None:
-    out = tmp_path / "room.yaml"
-    arguments = ["map", "import", str(site.scene), "-o", str(out), "--up=-y", "--resolution", "0.1", "--robot"]
-    done = CliRunner().invoke(app, arguments)
-    assert done.exit_code == 0, done.output
-    assert "floor at -1.20 m" in done.output
-    assert out.with_suffix(".bridge.json").is_file()
-    broken = tmp_path / "broken.ply"
-    broken.write_bytes(site.scene.read_bytes()[:5000])
-    done = CliRunner().invoke(app, ["map", "import", str(broken), "-o", str(tmp_path / "b.yaml")])
-    assert done.exit_code != 0
-    assert not (tmp_path / "b.yaml").exists()

@@ -66,23 +66,6 @@ def test_actors_that_were_spawned_before_a_failure_are_destroyed(stand_in: Start
     town.check_clean()
 
 
-@pytest.mark.parametrize(
-    ("more", "message"),
-    [
-        (", town: Town07", "failed to generate map"), (", ground: road", "has no roads"),
-        (", follow: {pillar: hero}", "the town has no such actor"),
-    ],
-)  # fmt: skip
-def test_what_does_not_fit_is_said(stand_in: StartTown, more: str, message: str) -> None:
-    town = stand_in()
-    with pytest.raises(BridgeError) as caught:
-        _run(town.port, more)
-    assert message in str(caught.value)
-    assert town.left() == set()
-    for event in town.events("settings")[-1:]:
-        assert event["settings"][0] is False
-
-
 def test_an_exception_in_the_loop(stand_in: StartTown) -> None:
     town = stand_in()
     env = irsim.make(_scene(town.port), display=False)
@@ -128,11 +111,6 @@ def test_another_client_may_tick(stand_in: StartTown) -> None:
     assert town.left() == set()
     walked = [e for e in town.events("batch") if 4 in e["kinds"]]
     assert 15 <= walked[-1]["frame"] - walked[0]["frame"] <= 25
-
-
-def test_a_client_that_ticks_irregularly(stand_in: StartTown) -> None:
-    with pytest.raises(BridgeError, match=r"fixed_delta_seconds to 0\.1"):
-        _run(stand_in().port, ", clock: external")
 
 
 HALL = """

@@ -1,4 +1,4 @@
-"""A stand-in for rosbridge_server, not rosbridge_server: `rosbridge_standin.py PORT ROS [silent|drop]`.
+"""A stand-in for rosbridge_server, not rosbridge_server: `rosbridge_standin.py PORT [drop|robot]`.
 
 It speaks the operations advertise, publish and subscribe of the protocol rosbridge 2.0 over WebSocket. As the server
 does, it knows the definitions of messages and refuses fields that a message does not have; here they are turned into
@@ -12,13 +12,12 @@ import json
 import sys
 from typing import Any
 
+import numpy as np
 from autobahn.asyncio.websocket import WebSocketServerFactory, WebSocketServerProtocol
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys import Stores, get_typestore
 
-PORT, ROS = int(sys.argv[1]), int(sys.argv[2])
-STORE = get_typestore(Stores.ROS2_HUMBLE if ROS == 2 else Stores.ROS1_NOETIC)
-if ROS == 1:
-    STORE.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", "tf2_msgs/msg/TFMessage"))
+PORT, HOW = int(sys.argv[1]), sys.argv[2:]
+STORE = get_typestore(Stores.ROS2_HUMBLE)
 TWIST = {"linear": {"x": 0.4, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.5}}
 BAD = {"linear": {"x": None, "y": 0.0, "z": 0.0}, "angular": "fast"}
 
@@ -30,19 +29,14 @@ def say(topic: str, text: object) -> None:
 def built(value: Any, kind: str) -> Any:
     """The message of a JSON object; an error if they do not fit."""
     if kind.startswith("builtin_interfaces"):
-        names = ("sec", "nanosec") if ROS == 2 else ("secs", "nsecs")
-        assert set(value) == set(names), value
-        return STORE.types[kind](*(value[name] for name in names))
+        assert set(value) == {"sec", "nanosec"}, value
+        return STORE.types[kind](value["sec"], value["nanosec"])
     fields = dict(STORE.fielddefs[kind][1])
-    if "seq" in fields:
-        value = {"seq": 0, **value}
     assert set(value) == set(fields), (kind, set(value) ^ set(fields))
     return STORE.types[kind](**{name: member(value[name], form) for name, form in fields.items()})
 
 
 def member(value: Any, definition: Any) -> Any:
-    import numpy as np
-
     form, detail = definition
     if form.name == "NAME":
         return built(value, detail)
@@ -57,8 +51,8 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
     def onOpen(self) -> None:
         self.kinds: dict[str, str] = {}
         self.count = 0
-        if sys.argv[3:] == ["drop"]:  # the first connection breaks
-            sys.argv[3] = "silent"
+        if HOW == ["drop"]:  # the first connection breaks
+            HOW[:] = ["silent"]
             asyncio.get_running_loop().call_later(1.0, self.dropConnection, True)
             asyncio.get_running_loop().call_later(1.0, say, "dropped", "")
 
@@ -66,8 +60,8 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
         said = json.loads(payload)
         topic = said.get("topic", "")
         if said["op"] == "advertise":
-            assert said["type"].count("/") == ROS, said["type"]
-            self.kinds[topic] = said["type"] if ROS == 2 else said["type"].replace("/", "/msg/")
+            assert said["type"].count("/") == 2, said["type"]
+            self.kinds[topic] = said["type"]
             say("advertise", f"{topic} {said['type']} {said.get('latch', False)}")
         elif said["op"] == "publish":
             message = built(said["msg"], self.kinds[topic])
@@ -77,14 +71,14 @@ class Server(WebSocketServerProtocol):  # type: ignore[misc]
             say("subscribe", f"{topic} {said['type']}")
             if topic.endswith("odom"):
                 asyncio.get_running_loop().call_later(0.1, self.odometry, topic)
-            if topic.endswith("cmd_vel") and len(sys.argv) < 4:
+            if topic.endswith("cmd_vel") and not HOW:
                 asyncio.get_running_loop().call_later(0.1, self.command, topic)
 
     def odometry(self, topic: str) -> None:
         """Say again and again that the robot stands at the origin."""
         if self.state != self.STATE_OPEN:
             return
-        time = {"sec": 1, "nanosec": 0} if ROS == 2 else {"secs": 1, "nsecs": 0}
+        time = {"sec": 1, "nanosec": 0}
         pose = {"position": {"x": 0, "y": 0, "z": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}
         zero = {"linear": {"x": 0, "y": 0, "z": 0}, "angular": {"x": 0, "y": 0, "z": 0}}
         message = {

@@ -30,21 +30,20 @@ robot:
 
 @pytest.fixture
 def stand_in(start: Start) -> StandIn:
-    """Starts a stand-in for a release of ROS; its port, and its process."""
+    """Starts a stand-in; its port, and its process."""
 
-    def starting(ros: int, *how: str) -> tuple[int, Peer]:
+    def starting(*how: str) -> tuple[int, Peer]:
         port = free_port()
-        server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), str(ros), *how)
+        server = start(PYTHON, str(HERE / "rosbridge_standin.py"), str(port), *how)
         until(lambda: server.on("ready"), 30, "the stand-in does not start")
         return port, server
 
     return starting
 
 
-@pytest.mark.parametrize("ros", [1, 2])
-def test_both_ways_over_one_port(stand_in: StandIn, make_env: MakeEnv, ros: int) -> None:
-    port, server = stand_in(ros)
-    env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, ros: {ros}, clock: wall}}]\n")
+def test_both_ways_over_one_port(stand_in: StandIn, make_env: MakeEnv) -> None:
+    port, server = stand_in()
+    env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, clock: wall}}]\n")
     with irsim.connect(env) as connection:
         for _ in range(600):
             env.step()
@@ -53,20 +52,18 @@ def test_both_ways_over_one_port(stand_in: StandIn, make_env: MakeEnv, ros: int)
         velocity = env.robot.velocity[:2, 0].tolist()
         notes = connection.notes()
     assert velocity == pytest.approx([0.4, 0.5])
-    kind = "nav_msgs/msg/Odometry" if ros == 2 else "nav_msgs/Odometry"
-    assert f"/robot_0/odom {kind} False" in server.on("advertise")
+    assert "/robot_0/odom nav_msgs/msg/Odometry False" in server.on("advertise")
     assert any(one.startswith("/map ") and one.endswith("True") for one in server.on("advertise"))
     said = json.loads(server.on("/robot_0/pose")[-1].split(" ", 1)[1])
     assert said["header"]["frame_id"] == "map"
-    assert set(said["header"]["stamp"]) == ({"sec", "nanosec"} if ros == 2 else {"secs", "nsecs"})
+    assert set(said["header"]["stamp"]) == {"sec", "nanosec"}
     assert len(server.on("/map")) == len(server.on("/irsim/markers")) == 1
     assert any("the velocity is not a number" in note or "is missing" in note for note in notes)  # the bad ones
 
 
-@pytest.mark.parametrize("ros", [1, 2])
-def test_a_real_robot_behind_the_server_stops_when_we_are_killed(stand_in: StandIn, start: Start, ros: int) -> None:
-    port, server = stand_in(ros, "robot")
-    bridge = f"bridges: [{{name: rosbridge, port: {port}, ros: {ros}, mode: real, dry_run: false}}]\n"
+def test_a_real_robot_behind_the_server_stops_when_we_are_killed(stand_in: StandIn, start: Start) -> None:
+    port, server = stand_in("robot")
+    bridge = f"bridges: [{{name: rosbridge, port: {port}, mode: real, dry_run: false}}]\n"
     Path("real.yaml").write_text(REAL + bridge)
     driver = start(PYTHON, str(HERE / "real_driver.py"), "real.yaml", "600")
 
@@ -81,23 +78,8 @@ def test_a_real_robot_behind_the_server_stops_when_we_are_killed(stand_in: Stand
     assert time.monotonic() - began < 0.9  # command_timeout, and time for busy processes
 
 
-def test_a_server_that_dies_ends_the_run(stand_in: StandIn, make_env: MakeEnv) -> None:
-    port, server = stand_in(2, "silent")
-    env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, timeout: 1, clock: wall}}]\n")
-
-    def step_until_lost() -> None:
-        with irsim.connect(env):
-            env.step()
-            server.process.kill()
-            for _ in range(200):
-                env.step()
-
-    with pytest.raises(BridgeLostError, match=f"rosbridge server at 127.0.0.1:{port} is lost"):
-        step_until_lost()
-
-
 def test_a_connection_that_breaks_is_made_again(stand_in: StandIn, make_env: MakeEnv) -> None:
-    port, server = stand_in(2, "drop")
+    port, server = stand_in("drop")
     env = make_env(f"{SCENE}bridges: [{{name: rosbridge, port: {port}, timeout: 20, clock: wall}}]\n")
     steps = 0
     with irsim.connect(env):

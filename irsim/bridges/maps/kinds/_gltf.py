@@ -82,9 +82,8 @@ def _content(path: Path) -> tuple[Any, int | None]:
             if version != 2:
                 raise unusable(path, f"it has version {version} of glTF", "export it as glTF 2.0")
             if kind != b"JSON" or 20 + length > size or total > size:
-                raise unusable(
-                    path, f"it ends after {size:,} bytes, and its header promises {max(total, 20 + length):,}"
-                )
+                what = f"it ends after {size:,} bytes, and its header promises {max(total, 20 + length):,}"
+                raise unusable(path, what)
             start = 20 + length
             if start + 8 <= size:
                 file.seek(start)
@@ -135,9 +134,8 @@ def _checked(path: Path, content: dict[str, Any], binary: int | None, limits: Im
             raise unusable(path, f"its node {root} is below another one, or itself")
     total = sum(triangles[_index(node["mesh"])] for node in nodes if "mesh" in node)
     if total > limits.triangles:
-        raise unusable(
-            path, f"it has {total:,} triangles, and at most {limits.triangles:,} are read", "simplify the mesh"
-        )
+        what = f"it has {total:,} triangles, and at most {limits.triangles:,} are read"
+        raise unusable(path, what, "simplify the mesh")
     return Beside(path.parent, names)
 
 

@@ -81,9 +81,8 @@ def read_tiles(path: Path, content: bytes) -> list[Tile]:
             break
         place += _TILE.size
         if place + size > len(content):
-            raise unusable(
-                path, f"tile {number} of {size:,} bytes begins at {place:,}, and it ends at {len(content):,}"
-            )
+            what = f"tile {number} of {size:,} bytes begins at {place:,}, and it ends at {len(content):,}"
+            raise unusable(path, what)
         tiles.append(_tile(path, memoryview(content)[place : place + size], place))
         place += size
     return tiles

@@ -79,6 +79,5 @@ def message_class(kind: str, package: str) -> Any:
         return getattr(import_module(space.replace("/", ".")), name)
     except (ImportError, AttributeError):
         named = package.format(space.partition("/")[0].replace("_", "-"))
-        raise BridgeError(
-            "bridge-failed", f"the ROS installation has no messages {kind}", f"apt install {named}"
-        ) from None
+        what = f"the ROS installation has no messages {kind}"
+        raise BridgeError("bridge-failed", what, f"apt install {named}") from None

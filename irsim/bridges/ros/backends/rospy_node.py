@@ -48,9 +48,8 @@ class RospyBackend(Backend):
         rosgraph: Any = import_module("rosgraph")
         address = master or rosgraph.get_master_uri()
         if not rosgraph.Master(f"/{self.node}", master_uri=address).is_online():
-            raise BridgeLostError(
-                f"no ROS master answers at {address}", "start roscore, or set master: http://HOST:11311"
-            )
+            fix = "start roscore, or set master: http://HOST:11311"
+            raise BridgeLostError(f"no ROS master answers at {address}", fix)
         self.peer = f"the ROS master at {address}"
         self._publishers: dict[Topic, Any] = {}
         self._subscribers: list[Any] = []

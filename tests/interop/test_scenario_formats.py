@@ -1,4 +1,4 @@
-"""Recorded runs as OpenSCENARIO, against its schema and an independent reader."""
+"""Recorded runs as OpenSCENARIO, for its schema and an independent reader, and as CommonRoad, for its library."""
 
 from __future__ import annotations
 
@@ -12,8 +12,11 @@ import numpy as np
 import pytest
 
 import irsim
+from irsim.bridges.export.export import export_run
+from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.runs import Run
 from tests.bridges.scenes import recorded
+from tests.interop.usd_run import record
 
 pytestmark = pytest.mark.interop
 SCENE = """
@@ -87,3 +90,51 @@ def test_scenariogeneration_reads_the_trajectories(run: Run) -> None:
         np.testing.assert_allclose(turn, 0, atol=1e-5)
         assert np.abs(np.diff(read_pose[:, 2])).max() < 0.5  # no jump at half a turn
     assert len(trace.time) == 51
+
+
+@pytest.fixture(scope="module")
+def shapes(tmp_path_factory):
+    pytest.importorskip("commonroad")
+    return record(tmp_path_factory.mktemp("commonroad"))
+
+
+def test_commonroad_reads_what_was_simulated(shapes, tmp_path) -> None:
+    from commonroad.common.file_reader import CommonRoadFileReader
+
+    target = tmp_path / "run.xml"
+    result = export_run(shapes, target, to="commonroad")
+    assert "the map was left out" in " ".join(result.notes)
+    scenario, problems = CommonRoadFileReader(str(target)).open()
+    assert scenario.dt == 0.1
+    scene, states = recorded_scene(shapes), list(recorded_states(shapes))
+    kinds = {item.obstacle_type.value for item in scenario.dynamic_obstacles}
+    assert kinds == {"unknown", "pedestrian"}
+    [walker] = [item for item in scenario.dynamic_obstacles if item.obstacle_type.value == "pedestrian"]
+    assert (walker.initial_state.time_step, walker.prediction.trajectory.final_state.time_step) == (4, 40)
+    robots = [item for item in scenario.dynamic_obstacles if item.obstacle_type.value == "unknown"]
+    for item, index in zip([walker, *robots], [5, 0, 1], strict=True):
+        for state in states:
+            x, y, yaw = state.pose[index]
+            read = item.state_at_time(state.step)
+            assert (read is None) == math.isnan(x)
+            if read is not None:
+                np.testing.assert_allclose(read.position, [x, y], atol=2e-9)
+                assert math.remainder(read.orientation - yaw, math.tau) == pytest.approx(0, abs=2e-9)
+    assert walker.prediction.trajectory.state_at_time_step(12).velocity == pytest.approx(2.5, abs=1e-6)
+    assert {problem.initial_state.position[0] for problem in problems.planning_problem_dict.values()} == {1.0, 2.0}
+    assert scene.agent("walker").moves
+
+
+def test_static_bodies_are_where_they_were(shapes, tmp_path) -> None:
+    from commonroad.common.file_reader import CommonRoadFileReader
+
+    export_run(shapes, tmp_path / "run.xml", to="commonroad")
+    scenario, _ = CommonRoadFileReader(str(tmp_path / "run.xml")).open()
+    placed = [item.occupancy_at_time(0).shapely_object for item in scenario.static_obstacles]
+    u_shape = 1.5 * 1.5 - 0.5
+    assert len(placed) == 1 + 2 + 1 + 4, "a U, two legs of a wall, a disc, four walls around the world"
+    [disc] = [item for item in scenario.static_obstacles if hasattr(item.obstacle_shape, "radius")]
+    assert disc.obstacle_shape.radius == pytest.approx(0.3)
+    np.testing.assert_allclose(disc.initial_state.position, [4.1, 7.0], atol=2e-9)
+    [concave] = [shape for shape in placed if shape.area == pytest.approx(u_shape, abs=2e-3)]
+    assert concave.bounds[:2] == pytest.approx((6 - 1.5 * math.sin(0.3), 6.0), abs=1e-6)
