@@ -65,17 +65,6 @@ def test_diff_turns_on_the_spot_at_its_goal_and_stays_there(make, behavior: str,
     assert max(abs(robot.velocity).max() for robot in env.robot_list) < 1e-9
 
 
-def test_the_field_file_of_a_diff_robot_with_a_heading() -> None:
-    text = (
-        "world: {width: 10, height: 10, time_limit: 40}\n"
-        "robot: [{kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [2, 5, 0], goal: [6, 5, 1.57], "
-        "arrive_mode: state, goal_threshold: 0.1, behavior: {name: dash}}]"
-    )
-    result = assert_success(text)
-    x, y, heading = result.robots[0].pose
-    assert math.hypot(x - 6, y - 5, heading - 1.57) < 0.1
-
-
 @pytest.mark.parametrize("behavior", ["orca", "avocado", "sfm", "footprint_orca"])
 def test_members_of_a_group_turn_at_their_goals_too(behavior: str) -> None:
     text = (
