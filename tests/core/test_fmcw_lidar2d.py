@@ -24,23 +24,6 @@ def facing(own: list[float], other: list[float], heading: float, **options) -> c
     return state
 
 
-@pytest.mark.parametrize(
-    ("own", "other", "heading", "compensate", "speed"),
-    [
-        ([0.5, 0], [0.8, 0], PI, False, -1.3),  # head on
-        ([0.5, 0], [0.8, 0], 0.0, False, 0.3),  # receding
-        ([0.5, 0], [0.0, 0], 0.0, False, -0.5),
-        ([0, 0], [0.8, 0], PI / 2, False, 0.0),  # across the beam
-        ([0, 0.7], [0.0, 0], 0.0, False, 0.0),  # nor is the carrier's own turning seen
-        ([0.5, 0], [0.8, 0], PI, True, -0.8),  # without the carrier
-        ([0.5, 0], [0.0, 0], PI, True, 0.0),
-    ],
-)
-def test_radial_velocities(own, other, heading: float, compensate: bool, speed: float) -> None:
-    state = facing(own, other, heading, motion_compensate=compensate)
-    assert state.velocities[0] == pytest.approx(speed, abs=1e-15)
-
-
 def test_outside_the_band_is_no_measurement() -> None:
     for options, read in (({"range_max": 2.0}, 2.0), ({"range_min": 2.7}, 2.7)):
         state = facing([0.5, 0], [0.8, 0], PI, **options)
@@ -124,22 +107,6 @@ def test_noise_has_its_streams() -> None:
         assert rows == 1
         np.testing.assert_allclose(state.velocities[start : start + n], speed, atol=1e-9)
     assert world.velocity_slices()[0][1] == 0
-
-
-def test_noise_statistics() -> None:
-    n = 4000
-    sensor = fmcw(n, angle_range=0.2, noise=True, std=0.15, velocity_noise_std=0.4)
-    world, state = scene(robot(sensors=[sensor]), obstacle(pose=[4, 0, 0], parts=[rectangle(1, 60)]), mode=1)
-    error = []
-    for _ in range(5):
-        core.advance(world, state, 1)
-        error.append([state.ranges - 3.5 / np.cos(state.beam_angles), state.velocities.copy()])
-    ranges, speed = np.array(error).transpose(1, 0, 2)
-    for sample, std in ((ranges, 0.15), (speed, 0.4)):
-        assert sample.mean() == pytest.approx(0.0, abs=4 * std / math.sqrt(sample.size))
-        assert sample.std() == pytest.approx(std, rel=0.03)
-        assert abs(np.corrcoef(sample[0], sample[1])[0, 1]) < 0.06
-    assert abs(np.corrcoef(ranges.ravel(), speed.ravel())[0, 1]) < 0.03
 
 
 def test_a_scan_from_elsewhere() -> None:

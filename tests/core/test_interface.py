@@ -11,18 +11,7 @@ import pytest
 from hypothesis import strategies as st
 
 import irsim._core as core
-from tests.core.worlds import (
-    DRIVES,
-    circle,
-    command,
-    decided,
-    fmcw,
-    lidar,
-    line,
-    polygon,
-    robot,
-    scene,
-)
+from tests.core.worlds import DRIVES, circle, command, decided, fmcw, lidar, line, polygon, robot, scene
 from tests.effort import for_all
 
 pytestmark = pytest.mark.every_python

@@ -66,14 +66,6 @@ def test_steering_is_limited_by_psi_max() -> None:
     assert state.extra[0, 0] == -0.3
 
 
-def test_steering_acts_one_period_late() -> None:
-    world, state = scene(robot(drive=DRIVES["steer"]))
-    apply(world, state, [1.0, 0.5])
-    assert state.pose[0, 2] == 0.0
-    apply(world, state, [1.0, 0.0])
-    assert state.pose[0, 2] == pytest.approx(math.tan(0.5) / 1.2 * 0.1)
-
-
 @pytest.mark.parametrize(("theta", "rate"), [(3.1, 1.0), (-3.1, -1.0), (0.5, 1.0)])
 def test_heading_stays_in_its_interval(theta: float, rate: float) -> None:
     world, state = scene(robot(pose=[0, 0, theta], angle_range=[0.0, 2 * PI]))

@@ -72,24 +72,6 @@ def test_spreads_are_kept(seed: int, position: float, heading: float, speed: flo
     assert ((state.start_step >= 0) & (state.start_step <= math.ceil(delay / 0.1))).all()
 
 
-def test_draws_fill_the_spread_evenly() -> None:
-    _, state = scene(
-        robot(pose=[5, 5, 0]),
-        seeds=range(4000),
-        perturbations=[spread(0, position=0.5, heading=1.0, speed=0.5, delay=10.0)],
-    )
-    for values, low, high in (
-        (state.pose[:, 0], 4.5, 5.5),
-        (state.pose[:, 1], 4.5, 5.5),
-        (state.pose[:, 2], -1, 1),
-        (state.pace, 0.5, 1.5),
-        (state.start_step * 0.1, 0, 10),
-    ):
-        shares = np.histogram(values, 10, (low, high))[0] / 4000
-        assert np.abs(shares - 0.1).max() < 0.025  # five standard deviations
-    assert abs(np.corrcoef(state.pose.T)[np.triu_indices(3, 1)]).max() < 0.06
-
-
 def crowd(given=(), seeds=(3,)) -> tuple[core.World, core.State]:
     """Robots with noise, one at random, one that wanders; an obstacle whose shape is drawn."""
     noisy = core.DiffOptions(noise=True, alpha=[0.03, 0.0, 0.0, 0.03])

@@ -181,21 +181,6 @@ def test_walls_are_never_run_into(drive: str, seed: int) -> None:
     assert not state.collided[0]
 
 
-@pytest.mark.parametrize("far", [2.0, 9.0])
-@pytest.mark.parametrize("thing", [line((0.0, -1.0), (0.0, 1.0)), rectangle(0.2, 2.0), circle(1.0)])
-def test_things_are_seen_within_the_threshold_however_they_are_written(thing: Any, far: float) -> None:
-    state = decided(agent(goals=[[20.0, 0.0]]), obstacle(parts=[thing], pose=[far, 0.1, 0.0]))
-    assert (abs(state.command[0, :2] - [0.95, 0.0]).max() < 1e-9) == (far > 3.0)
-
-
-def test_shown_are_those_of_the_role_targeted() -> None:
-    for roles, moves in ((0, False), (1, True), (2, False)):
-        state = decided(
-            agent(goals=[[6.0, 0.0]], target_roles=roles), obstacle(parts=[circle(0.5)], pose=[1.5, 0.0, 0.0])
-        )
-        assert (abs(state.command[0, 1]) < 1e-9) == moves
-
-
 def test_shifting_the_world_shifts_the_motion() -> None:
     def build(shift: float) -> tuple[core.World, core.State]:
         return scene(

@@ -105,14 +105,6 @@ def test_a_wall_before_the_goal_stops(wall: str) -> None:
     assert abs(state.control[0]).max() < 1e-3
 
 
-def test_each_corner_of_an_outline_counts_once() -> None:
-    corner = np.array([1.0, 1.0])
-    state = decided(walker(), obstacle(parts=[rectangle(2.0, 2.0)], pose=[2.0, 2.0, 0.0]))
-    distance = math.sqrt(2.0)
-    force = -10.0 * math.exp(-(distance - 0.3) / 0.8) * corner / distance
-    np.testing.assert_allclose(state.command[0, :2], 0.1 * force, atol=1e-12)
-
-
 def test_what_is_unobstructed_pushes_only_if_it_is_a_line_or_a_circle() -> None:
     kinds = {"box": rectangle(1.0, 1.0), "circle": circle(0.5), "line": line((0.0, -1.0), (0.0, 1.0))}
     for name, part in kinds.items():

@@ -10,7 +10,6 @@ import pytest
 
 import irsim
 from irsim.metrics import EPISODE_METRICS, METRICS, episode_metrics, robot_metrics
-from irsim.metrics.motion import curvatures, runs_of
 from irsim.scenario.open import read_scenario
 from irsim.simulation.events import Event
 from irsim.simulation.trace import Trace
@@ -382,14 +381,3 @@ def test_robots_of_an_episode_together() -> None:
     assert (both["success"], both["aggregated_time"]) == (1, pytest.approx(4.0))
     hit = episode_metrics(done, resolved, [event("collision", 20, one, other), event("arrival", 40, one)]).episode
     assert (hit["success"], hit["timeout"]) == (0, 0)
-
-
-def test_curvature_of_a_circle() -> None:
-    angle = np.linspace(0, 6, 400)
-    assert curvatures(np.stack([2 * np.cos(angle), 2 * np.sin(angle)], axis=1)) == pytest.approx(0.5)
-    assert len(curvatures(np.zeros((10, 2)))) == 0
-
-
-def test_runs() -> None:
-    assert runs_of(np.array([True, True, False, True])) == [(0, 2), (3, 4)]
-    assert runs_of(np.zeros(0, dtype=bool)) == []
