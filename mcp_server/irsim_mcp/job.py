@@ -6,17 +6,22 @@ starts, and at the end either ``{"result": …}`` or ``{"error": …}``.
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import sys
 import time
+import traceback
 from collections.abc import Callable
 from contextlib import nullcontext
+from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from irsim.common.child import answers, end_with_input, limit, write_all
 
 if TYPE_CHECKING:
+    from irsim.results.picture import SnapshotResult
     from irsim.scenario.limits import Limits
 
 __all__ = ["main"]
@@ -108,8 +113,6 @@ def _run(job: dict[str, Any], progress: _Progress) -> str:
 
 
 def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
-    import base64
-
     from irsim.api.take_snapshot import snapshot_of
     from irsim.episodes.opening import MAX_TRIES
     from irsim.results.findings import Finding
@@ -129,28 +132,31 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
             arguments["seed"] = report.dry_run.seed  # the picture and the check are of the same layout
     scenario, told = read_scenario(path, text=text, strict=True, limits=limits)
     if arguments["draw"]:
-        os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
-        import irsim.rendering.snapshot  # noqa: F401
-
-        os.chdir(job["workspace"])
-    arguments |= {
-        "warnings": [Finding.of(item) for item in told],
-        "strict": True,
-        "limits": limits,
-        "progress": progress,
-    }
+        _load_elsewhere("irsim.rendering.snapshot", job)
+    warnings = [Finding.of(item) for item in told]
+    arguments |= {"warnings": warnings, "strict": True, "limits": limits, "progress": progress}
     result = snapshot_of(scenario, path, tries=range(MAX_TRIES), **arguments)
-    png = base64.b64encode(result.png).decode()
     if checked:
         from irsim.validation.scene_table import scene_table
 
         checked += f', "table": {scene_table(scenario, result.seed).model_dump_json()}'
+    return _picture(result, checked)
+
+
+def _load_elsewhere(module: str, job: dict[str, Any]) -> None:
+    """Import a module outside the workspace, as Matplotlib obeys a matplotlibrc in the current directory."""
+    os.chdir(os.path.dirname(__file__))
+    import_module(module)
+    os.chdir(job["workspace"])
+
+
+def _picture(result: SnapshotResult, checked: str = "") -> str:
+    """The answer with a picture and the scene in it."""
+    png = base64.b64encode(result.png).decode()
     return f'{{"png": "{png}", "scene": {result.model_dump_json()}{checked}}}'
 
 
 def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
-    import base64
-
     from irsim.api.film_strip import moments_of
     from irsim.api.take_snapshot import snapshot_of_env
     from irsim.runs import open_run
@@ -167,22 +173,12 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
     env = resimulate(run, arguments["steps"] if moments is None else 0, limits=_limits(job), progress=progress)
     if arguments["draw"]:
         os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
-    result = snapshot_of_env(
-        env,
-        run.meta.get("scenario"),
-        size=arguments["size"],
-        overlays=arguments["overlays"],
-        region=arguments["region"],
-        moments=moments,
-        draw=arguments["draw"],
-        warnings=[],
-        reproduce="",
-        progress=progress,
-    )
+    shown = {key: arguments[key] for key in ("size", "overlays", "region", "draw")}
+    source = run.meta.get("scenario")
+    result = snapshot_of_env(env, source, **shown, moments=moments, warnings=[], reproduce="", progress=progress)
     if not has_modules(run):
         check_reproduced(run, env)
-    png = base64.b64encode(result.png).decode()
-    return f'{{"png": "{png}", "scene": {result.model_dump_json()}}}'
+    return _picture(result)
 
 
 def _inspect(job: dict[str, Any], progress: _Progress) -> str:
@@ -194,8 +190,6 @@ def _inspect(job: dict[str, Any], progress: _Progress) -> str:
 
 
 def _export(job: dict[str, Any], progress: _Progress) -> str:
-    from pathlib import Path
-
     from irsim.bridges.export.episode import CHOICES
     from irsim.bridges.export.export import export_run
     from irsim.bridges.export.registry import find_format
@@ -217,10 +211,7 @@ def _artifact(job: dict[str, Any], progress: _Progress) -> str:
     arguments = job["arguments"]
     run = open_run(arguments.pop("run_id"), job["workspace"])
     if arguments["name"] == "replay.json":
-        os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
-        import matplotlib.colors  # noqa: F401
-
-        os.chdir(job["workspace"])
+        _load_elsewhere("matplotlib.colors", job)
     return json.dumps({"text": artifact(run, arguments.pop("name"), limits=_limits(job), **arguments)})
 
 
@@ -247,8 +238,6 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
 
 def _logged(job: dict[str, Any], progress: _Progress) -> str:
     """Write the result of the episodes that a stopped benchmark had completed, beside its log."""
-    from pathlib import Path
-
     from irsim.benchmarks import logged
     from irsim.benchmarks.plan import Plan
     from irsim.benchmarks.stored import PLAN, result_of_plan
@@ -263,8 +252,6 @@ def _logged(job: dict[str, Any], progress: _Progress) -> str:
 
 
 def _suite_plan(job: dict[str, Any], progress: _Progress) -> str:
-    from pathlib import Path
-
     from irsim_mcp.suites import plan_of
 
     return plan_of(**job["arguments"], root=Path(job["workspace"])).model_dump_json()
@@ -324,14 +311,8 @@ def _error_data(error: Exception) -> dict[str, Any]:
     if isinstance(error, ScenarioError):
         errors = [item for item in error.diagnostics if item.severity == "error"]
         named = [
-            {
-                "code": item.code,
-                "what": item.message,
-                "where": format_path(item.path),
-                "line": item.line,
-                "file": item.file,
-            }
-            for item in errors[:_MAX_FINDINGS]
+            {"code": one.code, "what": one.message, "where": format_path(one.path), "line": one.line, "file": one.file}
+            for one in errors[:_MAX_FINDINGS]
         ]
         return {"code": "invalid-scenario", "errors": len(errors), "first": named}
     if isinstance(error, ScenarioNotFoundError):
@@ -342,13 +323,8 @@ def _error_data(error: Exception) -> dict[str, Any]:
         where = getattr(error, "where", None)
         return {"code": code, "what": what, "fix": getattr(error, "fix", None), "where": where}
     if isinstance(error, MemoryError):
-        return {
-            "code": "out-of-memory",
-            "what": "the work needs more memory than a worker may use",
-            "fix": "use fewer objects, lidar beams or steps",
-        }
-    import traceback
-
+        what = "the work needs more memory than a worker may use"
+        return {"code": "out-of-memory", "what": what, "fix": "use fewer objects, lidar beams or steps"}
     traceback.print_exception(error)
     frame = traceback.extract_tb(error.__traceback__)[-1]
     place = f"{os.path.basename(frame.filename)}:{frame.lineno}"

@@ -64,28 +64,28 @@ def add_resources(server: MCPServer, services: Services) -> None:
 
     server.resource(SCHEMA, title="JSON Schema of a part", mime_type="application/schema+json")(schema)
     server.resource(TEMPLATE, title="Scenario template", mime_type="application/yaml")(template)
+    deeper = "With units and defaults; irsim://schema/robot.sensors.lidar2d goes deeper."
     for section in SECTIONS:
-        server.add_resource(
-            FunctionResource.from_function(
-                functools.partial(schema, section),
-                uri=f"irsim://schema/{section}",
-                name=f"schema-{section}",
-                title=f"JSON Schema of {section}",
-                description="With units and defaults; irsim://schema/robot.sensors.lidar2d goes deeper.",
-                mime_type="application/schema+json",
-            )
-        )
+        _add(server, schema, "schema", section, "JSON Schema of", deeper, "application/schema+json")
+    others = "A complete scenario with its default parameters; the tool lookup fills in others."
     for name in template_names():
-        server.add_resource(
-            FunctionResource.from_function(
-                functools.partial(template, name),
-                uri=f"irsim://templates/{name}",
-                name=f"template-{name}",
-                title=f"Template {name}",
-                description="A complete scenario with its default parameters; the tool lookup fills in others.",
-                mime_type="application/yaml",
-            )
+        _add(server, template, "templates", name, "Template", others, "application/yaml")
+
+
+def _add(
+    server: MCPServer, read: Callable[[str], Any], kind: str, name: str, title: str, description: str, mime_type: str
+) -> None:
+    """Register ``irsim://KIND/NAME``, which a function reads by the name."""
+    server.add_resource(
+        FunctionResource.from_function(
+            functools.partial(read, name),
+            uri=f"irsim://{kind}/{name}",
+            name=f"{'template' if kind == 'templates' else kind}-{name}",
+            title=f"{title} {name}",
+            description=description,
+            mime_type=mime_type,
         )
+    )
 
 
 def template(name: str) -> str:
@@ -114,17 +114,9 @@ def add_docs(server: MCPServer) -> None:
     """Register the resource template and each page with a server."""
     description = "A page of the documentation as Markdown. At most 1 MB per read: offset and limit select characters."
     server.resource(DOC, name="docs", title="Documentation", description=description, mime_type="text/markdown")(page)
+    part = "?offset=…&limit=… selects a part, counted in characters."
     for topic in topics():
-        server.add_resource(
-            FunctionResource.from_function(
-                functools.partial(page, topic),
-                uri=f"irsim://docs/{topic}",
-                name=f"docs-{topic}",
-                title=f"Documentation: {topic}",
-                description="?offset=…&limit=… selects a part, counted in characters.",
-                mime_type="text/markdown",
-            )
-        )
+        _add(server, page, "docs", topic, "Documentation:", part, "text/markdown")
 
 
 def page(topic: str, offset: int = 0, limit: int = _MAX_BYTES) -> str:

@@ -19,7 +19,7 @@ from irsim_mcp.sandbox import Workspace
 from irsim_mcp.suites import suite_of
 from irsim_mcp.worker import Progress, Workers
 
-__all__ = ["RecentTexts", "RunId", "ScenarioPath", "ScenarioYaml", "Services", "line_of"]
+__all__ = ["RecentTexts", "RunId", "ScenarioPath", "ScenarioYaml", "Services", "as_failure"]
 
 
 ScenarioPath = Annotated[str | None, Field(description="Workspace file, or id of a text.")]
@@ -95,8 +95,7 @@ class Services:
         """
         question = json.dumps([task, arguments], sort_keys=True)
         if question not in self.known:
-            answer = await self.workers.read(task, arguments, seconds=self.limits.check_seconds)
-            text = str(_result(answer, argument)["text"])
+            text = str((await self._read(task, arguments, argument))["text"])
             if len(self.known) >= _MAX_CACHED:
                 del self.known[next(iter(self.known))]
             self.known[question] = text
@@ -247,16 +246,14 @@ class Services:
         if suite_of(given) is None:
             return None
         arguments = {"given": given, "argument": argument}
-        answer = await self.workers.read("suite_scene", arguments, seconds=self.limits.check_seconds)
-        return str(_result(answer, argument)["text"])
+        return str((await self._read("suite_scene", arguments, argument))["text"])
 
     async def suite_policy(self, given: str | None, policy: str | None) -> str | None:
         """The text of a policy, which may be one that the suite knows if ``given`` is a scenario of a suite."""
         if policy is None or given is None or suite_of(given) is None:
             return policy
         arguments = {"name": given, "policy": policy}
-        answer = await self.workers.read("suite_policy", arguments, seconds=self.limits.check_seconds)
-        return str(_result(answer, "policy")["text"])
+        return str((await self._read("suite_policy", arguments, "policy"))["text"])
 
     async def suite_plan(self, **arguments: Any) -> dict[str, Any]:
         """The plan of a benchmark of a suite, as data; arguments as of :func:`irsim_mcp.suites.plan_of`.
@@ -264,8 +261,11 @@ class Services:
         Raises:
             ToolError: A scenario is not of the suite, or a policy is not valid.
         """
-        answer = await self.workers.read("suite_plan", arguments, seconds=self.limits.check_seconds)
-        return dict(_result(answer, "policies"))
+        return dict(await self._read("suite_plan", arguments, "policies"))
+
+    async def _read(self, task: str, arguments: dict[str, Any], argument: str) -> WorkerResult:
+        """Have a worker do short work that is not about one scenario; errors name ``argument``."""
+        return _result(await self.workers.read(task, arguments, seconds=self.limits.check_seconds), argument)
 
     def scenario_source(self, given: str, argument: str = "scenarios") -> str:
         """Check a scenario given as a file of the workspace or, with a line break, as text.
@@ -299,28 +299,31 @@ def _result(answer: dict[str, Any], argument: str) -> WorkerResult:
         ToolError: The answer is an error, which names ``argument`` as its cause unless it names another.
     """
     if "error" in answer:
-        raise _as_failure(answer["error"], argument)
+        raise as_failure(answer["error"], argument)
     result = WorkerResult(answer["result"])
     result.text = answer["text"]
     return result
 
 
-def line_of(item: dict[str, Any]) -> str:
-    """The line of a problem, in words; empty without one."""
-    return "" if item["line"] is None else f" line {item['line']}"
+def as_failure(error: dict[str, Any], source: str | None) -> Exception:
+    """The error of a worker as the error of a call.
 
-
-def _as_failure(error: dict[str, Any], source: str) -> Exception:
-    argument = {"path": "scenario_path", "text": "scenario_yaml"}.get(source, source)
+    Args:
+        error: Code, words and fix.
+        source: Part of the task that names the scenario; None if there are several, so that each error names its file.
+    """
+    argument = {"path": "scenario_path", "text": "scenario_yaml", None: "scenarios"}.get(source, source)
     if error["code"] == "invalid-scenario":
-        first = "; ".join(f"{item['where']}{line_of(item)} {item['code']}: {item['what']}" for item in error["first"])
+        each = []
+        for item in error["first"]:
+            file = "" if source is not None else f"{item.get('file') or '(text)'} "
+            line = "" if item["line"] is None else f" line {item['line']}"
+            each.append(f"{file}{item['where']}{line} {item['code']}: {item['what']}")
         count = error["errors"]
+        what = f"{count} error{'s' * (count != 1)}: {'; '.join(each)}"
         return failure(
-            "invalid-scenario",
-            f"{count} error{'s' * (count != 1)}: {first}",
-            where=argument,
-            fix="validate_scenario lists every problem with its fix",
+            "invalid-scenario", what, where=argument, fix="validate_scenario lists every problem with its fix"
         )
-    ours = error["code"] == "internal-error"  # no argument is wrong
-    where = error.get("where") or (None if ours else argument)
+    nobody = source is None or error["code"] == "internal-error"  # no argument is wrong by itself
+    where = error.get("where") or (None if nobody else argument)
     return failure(error["code"], error["what"], where=where, fix=error.get("fix"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import pytest
 
@@ -26,6 +27,13 @@ ROBOT = """\
 """
 
 
+def looked(text: str, **options: Any) -> irsim.results.validation.DryRun:
+    """The dry run of a scenario that is valid."""
+    report = irsim.validate(text=text, simulate=True, **options)
+    assert report.dry_run is not None, report.findings
+    return report.dry_run
+
+
 def tried(
     *,
     state: str = "[1, 4, 0]",
@@ -37,9 +45,7 @@ def tried(
     text = f"world: {world}\nrobot:\n" + ROBOT.format(state=state, goal=goal, more=more)
     if obstacle:
         text += f"obstacle:\n  - {obstacle}\n"
-    report = irsim.validate(text=text, simulate=True)
-    assert report.dry_run is not None, report.findings
-    return report.dry_run
+    return looked(text)
 
 
 def test_tells_who_arrived() -> None:
@@ -90,15 +96,12 @@ def test_tells_who_left_the_world() -> None:
 
 def test_is_the_same_every_time_and_ends_within_its_budget() -> None:
     assert tried() == tried()
-    crowd = irsim.validate(
-        text="world: {width: 60, height: 60, time_limit: 100000}\n"
+    crowd = looked(
+        "world: {width: 60, height: 60, time_limit: 100000}\n"
         "robot: {number: 300, distribution: {name: random, range_low: [1, 1, -3], range_high: [59, 59, 3]},"
-        " kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: orca, wander: true}}\n",
-        simulate=True,
+        " kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, behavior: {name: orca, wander: true}}\n"
     )
-    assert crowd.dry_run is not None
-    assert crowd.dry_run.ended == "budget"
-    assert crowd.dry_run.steps == 1000
+    assert (crowd.ended, crowd.steps) == ("budget", 1000)
 
 
 SCANNER = """\
@@ -188,9 +191,7 @@ def test_how_often_it_looks_at_the_clock_changes_nothing(monkeypatch: pytest.Mon
 
 
 def test_a_world_without_objects_is_tried_too() -> None:
-    report = irsim.validate(text="world: {width: 10, height: 8, time_limit: 5}\n", simulate=True)
-    assert report.dry_run is not None
-    assert "no robots" in report.dry_run.summary
+    assert "no robots" in looked("world: {width: 10, height: 8, time_limit: 5}\n").summary
 
 
 def test_a_seed_without_room_is_a_finding() -> None:
@@ -237,11 +238,10 @@ obstacle:
 
 
 def test_people_who_stand_since_they_met_are_counted_though_all_robots_arrived() -> None:
-    report = irsim.validate(text=PEOPLE, simulate=True)
-    assert report.dry_run is not None
+    dry = looked(PEOPLE)
     told = "2 of 2 moving obstacles were stopped by a collision ('east' hit 'west' at "
-    assert report.dry_run.jammed == ["east", "west"]
-    assert told in report.dry_run.summary
+    assert dry.jammed == ["east", "west"]
+    assert told in dry.summary
     result = irsim.run(text=PEOPLE)
     assert (result.outcome, result.jammed) == ("success", ["east", "west"])
     assert told in result.summary
@@ -261,10 +261,8 @@ obstacle:
      shape: {name: rectangle, length: 6, width: 0.5}, state: [[2.4, 4, 0], [9.6, 4, 0]], goal: [[9, 4, 0], [1, 4, 0]],
      behavior: {name: dash}}
 """
-    report = irsim.validate(text=blocked, simulate=True)
-    assert report.dry_run is not None
-    assert "m from it and has been stopped since a collision at " in report.dry_run.stuck[0].why
-    assert "m from it and has been stopped since a collision at " in str(irsim.run(text=blocked).reason)
+    for why in (looked(blocked).stuck[0].why, str(irsim.run(text=blocked).reason)):
+        assert "m from it and has been stopped since a collision at " in why
 
 
 def test_more_robots_that_stand_than_are_listed_are_counted() -> None:
@@ -274,10 +272,9 @@ def test_more_robots_that_stand_than_are_listed_are_counted() -> None:
     )
     many = "world: {width: 40, height: 10, time_limit: 10}\nrobot:\n"
     many += "".join(robot.format(x=x) for x in range(1, 26))
-    report = irsim.validate(text=many, simulate=True)
-    assert report.dry_run is not None, report.findings
-    assert len(report.dry_run.stuck) == 10
-    assert "; 24 more make no progress" in report.dry_run.summary
+    dry = looked(many)
+    assert len(dry.stuck) == 10
+    assert "; 24 more make no progress" in dry.summary
 
 
 def test_a_slow_robot_does_not_stand_and_a_cut_look_says_so() -> None:
@@ -287,9 +284,7 @@ robot:
   - {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 4, 0], goal: [9, 4],
      vel_max: [0.001, 1], behavior: {name: dash}}
 """
-    report = irsim.validate(text=text, simulate=True, limits=Limits(steps=100))
-    outcome = report.dry_run
-    assert outcome is not None
+    outcome = looked(text, limits=Limits(steps=100))
     assert (outcome.ended, outcome.stuck) == ("budget", [])
     assert outcome.summary.startswith("in the first 10 s only: ")
     assert "still moved at 0.001 m/s" in str(irsim.run(text=text, steps=50).reason)
@@ -303,12 +298,11 @@ robot:
      state: [6, 6, 0, 0], goal: [6, 7.2, 0], goal_threshold: 0.1, vel_min: [0, -0.5], vel_max: [1, 0.5],
      behavior: {name: dash}}
 """
-    report = irsim.validate(text=car, simulate=True)
-    assert report.dry_run is not None
-    [stuck] = report.dry_run.stuck
+    dry = looked(car)
+    [stuck] = dry.stuck
     assert stuck.doing == "circles its goal"
     assert "raise goal_threshold" in stuck.why
-    assert "'car' circles its goal since" in report.dry_run.summary
+    assert "'car' circles its goal since" in dry.summary
     result = irsim.run(text=car)
     assert "'car' circles its goal: radius 1.5 m, never nearer than 1.16 m" in str(result.reason)
     assert irsim.run(text=car.replace("goal_threshold: 0.1", "goal_threshold: 1.3")).outcome == "success"
@@ -320,10 +314,9 @@ world: {width: 10, height: 10, time_limit: 2}
 robot:
   - {name: watcher, shape: {name: circle, radius: 0.2}, state: [1, 5]}
 """
-    report = irsim.validate(text=watcher, simulate=True)
-    assert report.dry_run is not None
-    assert (report.dry_run.parked, report.dry_run.stuck) == (["watcher"], [])
-    assert "1 is parked" in report.dry_run.summary
+    dry = looked(watcher)
+    assert (dry.parked, dry.stuck) == (["watcher"], [])
+    assert "1 is parked" in dry.summary
     result = irsim.run(text=watcher)
     assert str(result.reason).startswith("'watcher' is parked (cannot move, no goal written); the run ended at 2 s")
     assert result.robots[0].distance_to_goal is None

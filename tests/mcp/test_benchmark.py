@@ -1,4 +1,4 @@
-"""``benchmark`` and ``get_job``: the table, jobs that go on, jobs that end."""
+"""``benchmark`` and ``get_job``: the table, episodes that failed, policies of the workspace."""
 
 from __future__ import annotations
 
@@ -10,8 +10,11 @@ import pytest
 
 import irsim
 from irsim.lookup.topics import lookup
+from irsim.policies.networks import save_network
+from irsim.policies.registry import POLICIES
 from irsim_mcp.services import RecentTexts
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, Caller, data_of, error_of, text_of
+from tests.policies.networks.examples import go_to_goal
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
@@ -257,3 +260,52 @@ async def test_a_note_tells_what_deciding_costs(client: Caller, workspace: Path)
         assert 0 < float(mean) < 1000
         assert 0 < float(p95) < 1000
     assert note in text_of(result)
+
+
+SCENE = ROOM.replace("omni", "diff")
+
+
+async def test_a_network_of_the_workspace_is_compared_and_run(client: Caller, empty: Path) -> None:
+    save_network(empty / "net.npz", go_to_goal())
+    (empty / "scene.yaml").write_text(
+        "world: {time_limit: 20}\n"
+        "robot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 3], behavior: {name: dash}}\n"
+    )
+    table = await client.data("benchmark", scenarios=["scene.yaml"], policies=["dash", "net.npz", "random"], seeds=2)
+    one = await client.data("run_episode", scenario_path="scene.yaml", policy="net.npz")
+    last = {"run_id": one["run_id"], "step": -1, "return_image": False}
+    picture = await client.call_tool("render_snapshot", last)
+    shares = {row["behavior"]: row["success"][0] for row in table["rows"]}
+    assert shares == {"dash": 1.0, "net.npz": 1.0, "random": 0.0}
+    assert (one["outcome"], one["behavior"]) == ("success", "net.npz")
+    assert "--policy net.npz" in one["reproduce"]
+    assert not picture.is_error
+
+
+async def test_files_outside_and_plug_ins_are_refused(
+    client: Caller, empty: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    save_network(empty.parent / "outside.npz", go_to_goal())
+    (empty / "link.npz").symlink_to(empty.parent / "outside.npz")
+    (empty / "bad.npz").write_bytes(b"PK\x03\x04 nothing")
+    monkeypatch.setattr(POLICIES, "_makers", {"plugged": go_to_goal})
+    expected = {
+        "../outside.npz": "path-outside-workspace",
+        str(empty.parent / "outside.npz"): "path-outside-workspace",
+        "link.npz": "path-outside-workspace",
+        "gone.npz": "unknown-policy",
+        "plugged": "unknown-policy",
+        "bad.npz": "policy-file",
+    }
+    for policy, code in expected.items():
+        for name, arguments in (
+            ("run_episode", {"scenario_yaml": SCENE, "policy": policy}),
+            ("benchmark", {"scenarios": [SCENE], "policies": [policy], "seeds": 1}),
+        ):
+            assert (await client.error(name, **arguments)).split(":")[0] == code, policy
+
+
+async def test_two_names_of_one_argument_are_not_mixed(client: Caller) -> None:
+    assert (await client.error("run_episode", scenario_yaml=ROOM, policy="dash", behavior="dash")).startswith(
+        "bad-argument: policy and behavior are"
+    )

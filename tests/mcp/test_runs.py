@@ -1,7 +1,8 @@
-"""Recorded runs through the server: inspect_run, pictures of runs, resources, limits, and what a restart finds."""
+"""Recorded runs through the server: inspect_run, pictures, resources, the replay page, what a restart finds."""
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 from pathlib import Path
@@ -10,11 +11,14 @@ from typing import Any
 import anyio
 import pytest
 from mcp import Client
+from mcp.server.apps import APP_MIME_TYPE, EXTENSION_ID
 from mcp.shared.exceptions import MCPError
 
 from irsim.runs import list_runs, open_run
 from irsim.runs.inspection import inspect_run
+from irsim.runs.replay.page import page
 from irsim.runs.store import ARTIFACTS
+from irsim_mcp.resources import PAGE
 from tests.mcp.conftest import (
     CRASH,
     ERAS,
@@ -28,6 +32,7 @@ from tests.mcp.conftest import (
     image_of,
     text_of,
 )
+from tests.runs.replay.reading import unpacked
 
 pytestmark = [pytest.mark.one_python, pytest.mark.anyio]
 
@@ -215,3 +220,31 @@ async def test_what_cannot_be_recorded_runs_all_the_same(workspace: Path) -> Non
     assert "run_id" not in data
     assert re.search(r"render_snapshot scenario_path=\S+ strip=6 step=", data["next"])
     assert "Record: none" in text_of(result)
+
+
+@pytest.mark.parametrize("era", ERAS)
+async def test_run_episode_points_at_the_page(client: Caller, era: str) -> None:
+    tools = (await client.list_tools()).tools
+    listed = (await client.list_resources()).resources
+    (content,) = (await client.read_resource(PAGE)).contents
+    extensions = client.server_capabilities.extensions if client.server_capabilities else None
+    pages = {tool.name: tool.meta for tool in tools if tool.meta}
+    assert pages == {"run_episode": {"ui": {"resourceUri": PAGE}}}
+    assert [str(item.uri) for item in listed if item.mime_type == APP_MIME_TYPE] == [PAGE]
+    assert content.mime_type == APP_MIME_TYPE
+    assert content.text == page()
+    assert len(content.text.encode()) <= 3_000_000
+    assert content.meta == {"ui": {"prefersBorder": True}}
+    if era != "legacy":
+        assert EXTENSION_ID in (extensions or {})
+
+
+async def test_the_page_can_read_a_run(client: Caller, workspace: Path) -> None:
+    (workspace / "matplotlibrc").write_text("lines.linewidth: nonsense\n")
+    run_id = (await client.data("run_episode", scenario_yaml=CRASH, seed=3))["run_id"]
+    (content,) = (await client.read_resource(f"irsim://runs/{run_id}/replay.json?offset=0")).contents
+    part = json.loads(content.text)
+    assert len(part["data"]) == part["total"]
+    head, columns = unpacked(base64.b64decode(part["data"]))
+    assert columns["step"].tolist() == open_run(run_id, workspace).trace().step.tolist()
+    assert head["outcome"] == "collision"

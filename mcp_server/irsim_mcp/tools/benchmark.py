@@ -25,7 +25,7 @@ from irsim_mcp.limits import (
     MAX_STEPS,
     MAX_WAIT_SECONDS,
 )
-from irsim_mcp.services import RecentTexts, Services, line_of
+from irsim_mcp.services import RecentTexts, Services, as_failure
 from irsim_mcp.suites import call_to_repeat, policy_names, suite_of
 from irsim_mcp.tool import StrictTool, reporter, strict
 
@@ -216,7 +216,7 @@ def answer(state: dict[str, Any], detailed: bool = False) -> CallToolResult:
         ToolError: The job failed.
     """
     if "error" in state:
-        raise _as_failure(state["error"])
+        raise as_failure(state["error"], None)
     report = Benchmark(
         status=state["status"],
         summary=f"{state['status']}: {state['done']} of {state['total']} episodes",
@@ -383,15 +383,3 @@ def _lines(row: dict[str, Any], partly: bool = False) -> list[str]:
 def _shown(numbers: Sequence[float]) -> str:
     value, *interval = (f"{number:g}" for number in numbers)
     return f"{value} [{', '.join(interval)}]" if interval else value
-
-
-def _as_failure(error: dict[str, Any]) -> Exception:
-    if error["code"] == "invalid-scenario":
-        first = "; ".join(
-            f"{item.get('file') or '(text)'} {item['where']}{line_of(item)} {item['code']}: {item['what']}"
-            for item in error["first"]
-        )
-        what = f"{error['errors']} error{'s' * (error['errors'] != 1)}: {first}"
-        fix = "validate_scenario lists every problem with its fix"
-        return failure("invalid-scenario", what, where="scenarios", fix=fix)
-    return failure(error["code"], error["what"], where=error.get("where"), fix=error.get("fix"))
