@@ -12,6 +12,11 @@ from irsim.metrics import statistics
 
 __all__ = ["Interval", "mcnemar", "mean_pass_hat_k", "paired_bootstrap", "pass_hat_k", "wilson"]
 
+_SAMPLES = 10_000
+"""Number of draws of a bootstrap."""
+_LEVEL = 0.95
+"""Share of the draws inside the interval."""
+
 
 class Interval(NamedTuple):
     """An estimate and the interval around it."""
@@ -86,29 +91,25 @@ def mcnemar(only_first: int, only_second: int) -> float:
     return float(min(1.0, 2 * tail / (1 << different)))
 
 
-def paired_bootstrap(
-    differences: Mapping[str, Sequence[float]], *, samples: int = 10_000, seed: int = 0, level: float = 0.95
-) -> Interval:
+def paired_bootstrap(differences: Mapping[str, Sequence[float]], *, seed: int = 0) -> Interval:
     """Mean difference of paired results with a percentile interval, drawn by family.
 
     Cases of one family share a base, so whole families are drawn, with replacement.
 
     Args:
         differences: Family → difference of each of its pairs, second minus first.
-        samples: Number of draws.
         seed: Seed of the draws.
-        level: Share of the draws inside the interval.
 
     Returns:
-        The mean over all pairs and its interval; NaN without pairs.
+        The mean over all pairs and its interval of 95 %; NaN without pairs.
     """
     families = [(math.fsum(values), len(values)) for _, values in sorted(differences.items()) if len(values)]
     if not families:
         return Interval(math.nan, math.nan, math.nan)
     table = np.array(families, dtype=float)
-    drawn = np.random.default_rng(seed).integers(0, len(families), (samples, len(families)))
+    drawn = np.random.default_rng(seed).integers(0, len(families), (_SAMPLES, len(families)))
     sums = table[drawn].sum(axis=1)
-    low, high = np.quantile(sums[:, 0] / sums[:, 1], [(1 - level) / 2, (1 + level) / 2])
+    low, high = np.quantile(sums[:, 0] / sums[:, 1], [(1 - _LEVEL) / 2, (1 + _LEVEL) / 2])
     return Interval(float(table[:, 0].sum() / table[:, 1].sum()), float(low), float(high))
 
 

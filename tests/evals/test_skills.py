@@ -300,7 +300,7 @@ def answer_of(path: Path) -> dict[str, str]:
 @pytest.mark.parametrize("path", TRANSCRIPTS, ids=lambda path: path.stem)
 def test_the_answer_of_a_transcript_passes_its_case(path: Path) -> None:
     verdict = grade(case_of(lines(path)[0]["case"]), Answer(path.stem, answer_of(path)))
-    assert [(one.assertion, one.expected, one.observed) for one in verdict.failed()] == []
+    assert failures(verdict) == []
     assert verdict.strict
 
 

@@ -91,35 +91,27 @@ class Peers:
 
     def install(self) -> str:
         """Install what is not there yet."""
-        for name, packages in (("node", {**TOOLS, **(NODE if NODE_COMES_ALONG else {})}), ("next", NEXT)):
-            folder = self.folder / name
-            wanted = [f"{package}@{version}" for package, version in packages.items()]
-            mark = folder / "installed.txt"
+        node = {**TOOLS, **(NODE if NODE_COMES_ALONG else {})}
+        for name, wanted in (
+            ("node", [f"{package}@{version}" for package, version in node.items()]),
+            ("next", [f"{package}@{version}" for package, version in NEXT.items()]),
+            ("mcp1", OLD_CLIENT),
+            ("anthropic", ANTHROPIC),
+        ):
+            folder, mark = self.folder / name, self.folder / name / "installed.txt"
             if mark.is_file() and mark.read_text(encoding="utf-8").split() == wanted:
                 continue
-            folder.mkdir(exist_ok=True)
-            command = [
-                "npm",
-                "install",
-                "--prefix",
-                str(folder),
-                "--prefer-offline",
-                "--no-audit",
-                "--no-fund",
-                *wanted,
-            ]
-            done = subprocess.run(command, env=self.npm_environment, capture_output=True, text=True, check=False)
-            if done.returncode:
-                raise Failed(done.stdout + done.stderr)
+            if name in ("node", "next"):
+                folder.mkdir(exist_ok=True)
+                options = ["--prefix", str(folder), "--prefer-offline", "--no-audit", "--no-fund"]
+                command = ["npm", "install", *options, *wanted]
+                done = subprocess.run(command, env=self.npm_environment, capture_output=True, text=True, check=False)
+                if done.returncode:
+                    raise Failed(done.stdout + done.stderr)
+            else:
+                self.run("uv", "venv", "-q", "--clear", "-p", sys.executable, str(folder))
+                self.run("uv", "pip", "install", "-q", "-p", self.python(name), *wanted, seconds=600)
             mark.write_text("\n".join(wanted), encoding="utf-8")
-        for name, requirements in (("mcp1", OLD_CLIENT), ("anthropic", ANTHROPIC)):
-            folder = self.folder / name
-            mark = folder / "installed.txt"
-            if mark.is_file() and mark.read_text(encoding="utf-8").split() == requirements:
-                continue
-            self.run("uv", "venv", "-q", "--clear", "-p", sys.executable, str(folder))
-            self.run("uv", "pip", "install", "-q", "-p", self.python(name), *requirements, seconds=600)
-            mark.write_text("\n".join(requirements), encoding="utf-8")
         return ""
 
     def python(self, name: str) -> str:
@@ -223,10 +215,10 @@ def quiet(peers: Peers, *command: str) -> Callable[[], str]:
     return lambda: peers.run(*command)[:0]
 
 
-def client(peers: Peers, environment: str, program: str, workspace: str) -> str:
+def client(peers: Peers, name: str, workspace: str) -> str:
     """Calls of every tool by another client, in an environment of its own."""
-    path = ROOT / "tests" / "peers" / program
-    return peers.run(peers.python(environment), str(path), sys.executable, workspace)
+    program = ROOT / "tests" / "peers" / "clients.py"
+    return peers.run(peers.python(name), str(program), name, sys.executable, workspace)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -255,8 +247,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             ("claude plugin validate: plugin", quiet(peers, *validate, str(ROOT / ".claude-plugin" / "plugin.json"))),
             ("mcpb validate", quiet(peers, "mcpb", "validate", str(ROOT / "mcp_server" / "bundle" / "manifest.json"))),
             ("agentskills validate", lambda: skill_folders(peers)),
-            ("client of mcp 1.30.0", lambda: client(peers, "mcp1", "old_client.py", workspace)),
-            ("anthropic 2.12.0 async_mcp_tool", lambda: client(peers, "anthropic", "anthropic_client.py", workspace)),
+            ("client of mcp 1.30.0", lambda: client(peers, "mcp1", workspace)),
+            ("anthropic 2.12.0 async_mcp_tool", lambda: client(peers, "anthropic", workspace)),
         ]  # fmt: skip
         wrong = 0
         for name, check in [("install", peers.install), *checks]:

@@ -11,40 +11,18 @@ import os
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
 import yaml
 
-from tests.speed.scenes import SCENES, Scene
+from tests.speed.scenes import SCENES
 
 _HEAD = ("scene", "what", "per second", "each", "peer, per second", "ratio", "memory")
 _WHAT = {"step": "step", "act": "step", "batch": "step", "plan": "plan"}
 _WORKER = Path(__file__).with_name("worker.py")
 _QUIET = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg", "PYTHONWARNINGS": "ignore"}
 _TIMEOUT_S = 900.0
-
-
-@dataclass(frozen=True)
-class Row:
-    """A line of the table.
-
-    Attributes:
-        name: Name of the scene.
-        scene: The scene.
-        step_s: Processor time of one step, plan or frame [s]; of a batch, of one step of all worlds.
-        peer_s: The same for the other simulator; None where it was not asked or cannot run the scene.
-        ratio: Median over the rounds of the other simulator's time through ours.
-        memory_mb: Largest memory of the process [MB].
-    """
-
-    name: str
-    scene: Scene
-    step_s: float
-    peer_s: float | None
-    ratio: float | None
-    memory_mb: float
 
 
 def measure(name: str, python: str, folder: Path, seconds: float) -> dict[str, float]:
@@ -79,29 +57,6 @@ def measure(name: str, python: str, folder: Path, seconds: float) -> dict[str, f
     return answer
 
 
-def compare(name: str, python: str, peer: str | None, folder: Path, *, rounds: int, seconds: float) -> Row:
-    """Measure a scene, alternately with two interpreters, so that a slow moment of the machine hits both.
-
-    Args:
-        name: Name of the scene.
-        python: Interpreter that has irsim.
-        peer: Interpreter that has the other simulator, or None. Batches are not asked of it.
-        folder: Folder for the files of the measurements.
-        rounds: Number of times that each is measured.
-        seconds: Stepping time of each repeat [s].
-    """
-    scene, ours, theirs = SCENES[name], list[float](), list[float]()
-    memory = 0.0
-    for _ in range(rounds):
-        answer = measure(name, python, folder, seconds)
-        ours.append(answer["step_s"])
-        memory = max(memory, answer["memory_mb"])
-        if peer is not None and scene.mode != "batch":
-            theirs.append(measure(name, peer, folder, seconds)["step_s"])
-    ratio = median(their / our for their, our in zip(theirs, ours, strict=True)) if theirs else None
-    return Row(name, scene, median(ours), median(theirs) if theirs else None, ratio, memory)
-
-
 def _duration(seconds: float) -> str:
     return f"{seconds * 1e3:.3g} ms" if seconds >= 1e-3 else f"{seconds * 1e6:.3g} µs"
 
@@ -111,24 +66,25 @@ def _rate(seconds: float) -> str:
     return f"{rate:,.0f}" if rate >= 100 else f"{rate:.3g}"
 
 
-def _totals(row: Row) -> str:
-    """Robots and beams per second of a batch, which is what counts there."""
-    count = row.scene.agents if not row.scene.rays else row.scene.rays
-    unit = "robots" if not row.scene.rays else "beams"
-    return f"{count * row.scene.worlds / row.step_s / 1e6:.3g} M {unit}"
-
-
-def line(row: Row) -> tuple[str, ...]:
-    """The cells of one line of the table."""
-    return (
-        row.name,
-        _WHAT.get(row.scene.mode, "frame"),
-        _totals(row) if row.scene.mode == "batch" else _rate(row.step_s),
-        _duration(row.step_s),
-        "" if row.peer_s is None else _rate(row.peer_s),
-        "" if row.ratio is None else f"{row.ratio:,.0f}" if row.ratio >= 10 else f"{row.ratio:.2g}",
-        f"{row.memory_mb:.0f} MB",
-    )
+def line(name: str, given: argparse.Namespace, folder: Path) -> str:
+    """The line of a scene, measured in turns with both interpreters, so that a slow moment of the machine hits both."""
+    scene, ours, theirs, memory_mb = SCENES[name], list[float](), list[float](), 0.0
+    for _ in range(given.rounds):
+        answer = measure(name, given.python, folder, given.seconds)
+        ours.append(answer["step_s"])
+        memory_mb = max(memory_mb, answer["memory_mb"])
+        if given.peer is not None and scene.mode != "batch":  # which the other simulator does not have
+            theirs.append(measure(name, given.peer, folder, given.seconds)["step_s"])
+    step_s, rate, ratio = median(ours), _rate(median(ours)), ""
+    if scene.mode == "batch":  # where robots or beams per second count
+        count, unit = (scene.rays, "beams") if scene.rays else (scene.agents, "robots")
+        rate = f"{count * scene.worlds / step_s / 1e6:.3g} M {unit}"
+    if theirs:
+        times = median(their / our for their, our in zip(theirs, ours, strict=True))
+        ratio = f"{times:,.0f}" if times >= 10 else f"{times:.2g}"
+    peer = _rate(median(theirs)) if theirs else ""
+    cells = name, _WHAT.get(scene.mode, "frame"), rate, _duration(step_s), peer, ratio, f"{memory_mb:.0f} MB"
+    return f"| {' | '.join(cells)} |"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -148,12 +104,10 @@ def main(arguments: list[str] | None = None) -> int:
     with tempfile.TemporaryDirectory() as folder:
         for name in given.scenes or SCENES:
             try:
-                row = compare(name, given.python, given.peer, Path(folder), rounds=given.rounds, seconds=given.seconds)
+                print(line(name, given, Path(folder)), flush=True)
             except RuntimeError as error:
                 failed += 1
                 print(error, file=sys.stderr)
-                continue
-            print(f"| {' | '.join(line(row))} |", flush=True)
     return 1 if failed else 0
 
 

@@ -9,8 +9,7 @@ import argparse
 import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,22 +20,13 @@ _HEAD = ("task", "slots", "threads", "workers", "slots per second", "times the f
 _OWN = {"name": "own", "features": ["vx", "yaw_rate"]}
 _GOAL = {"name": "goal", "features": ["distance", "nearness", "cos", "sin"]}
 _REWARD = [
-    {"name": "progress"},
-    {"name": "arrival", "weight": 5},
-    {"name": "collision", "weight": -5},
-    {"name": "time"},
-]
+    {"name": "progress"}, {"name": "arrival", "weight": 5}, {"name": "collision", "weight": -5}, {"name": "time"},
+]  # fmt: skip
 Document = dict[str, Any]
 
 
-@dataclass(frozen=True)
-class Case:
-    """A task to be timed.
-
-    Attributes:
-        task: Makes the task: its name, or its data.
-        slots: Number of learners in all worlds.
-    """
+class Case(NamedTuple):
+    """What makes a task to be timed, its name or its data, and the number of learners in all worlds."""
 
     task: Callable[[], str | Document]
     slots: int

@@ -71,12 +71,11 @@ class ArtefactError(ValueError):
     """The folder holds something that is not graded: a file that is too large, a link that leads out of it."""
 
 
-def from_folder(folder: Path, name: str = "", turns: int = 1) -> Answer:
+def from_folder(folder: Path, turns: int = 1) -> Answer:
     """Read what an agent left.
 
     Args:
         folder: Its files, and its last message in ``reply.md``, those before in ``reply-1.md``, ``reply-2.md`` …
-        name: Name of the answer; default: the folder's.
         turns: Number of turns of the case. The last message may also be numbered.
 
     Raises:
@@ -114,7 +113,7 @@ def from_folder(folder: Path, name: str = "", turns: int = 1) -> Answer:
         else:
             replies[number] = text
     said = tuple(replies.get(number, "") for number in range(1, turns + 1))
-    return Answer(name or folder.name, texts, said[-1], said, blobs)
+    return Answer(folder.name, texts, said[-1], said, blobs)
 
 
 def _turn_of(name: str, turns: int) -> int | None:

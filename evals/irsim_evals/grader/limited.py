@@ -72,15 +72,12 @@ def run_limited(work: Callable[..., Any], arguments: tuple[Any, ...], seconds: f
         worker.close()
 
 
-def grade_folder(
-    instance: Instance, folder: Path, seconds: float = SECONDS, calls: Path | None = None, run_programs: bool = False
-) -> Verdict:
+def grade_folder(instance: Instance, folder: Path, calls: Path | None = None, run_programs: bool = False) -> Verdict:
     """Grade what an agent left in a folder, and read what it cost.
 
     Args:
         instance: The case.
         folder: The folder.
-        seconds: Time [s] after which the grading is ended.
         calls: File that ``irsim-mcp --log-calls`` wrote; default: ``calls.jsonl`` in the folder.
         run_programs: Whether commands of the case may run programs of the answer, with the rights of this process.
     """
@@ -91,21 +88,18 @@ def grade_folder(
     else:
         if run_programs:
             answer = replace(answer, trusted_folder=folder.resolve())
-            seconds = max(seconds, _PROGRAM_SECONDS)
-        verdict = grade_answer(instance, answer, seconds)
+        verdict = grade_answer(instance, answer, _PROGRAM_SECONDS if run_programs else SECONDS)
     verdict.cost = cost_of(calls or folder / CALLS_FILE)
     return verdict
 
 
-def grade_all(
-    pairs: Iterable[tuple[Instance, Answer]], workers: int | None = None, seconds: float = SECONDS
-) -> Iterator[Verdict]:
+def grade_all(pairs: Iterable[tuple[Instance, Answer]]) -> Iterator[Verdict]:
     """Grade many answers, as many at a time as there are processors; verdicts come in the order of the answers.
 
     A process grades one answer after the other, and a new one takes its place if it dies or takes too long.
     """
     given, to_grade = itertools.tee(pairs)
-    for (instance, answer), result in zip(given, run_all(_grade, to_grade, workers, seconds, "grading"), strict=True):
+    for (instance, answer), result in zip(given, run_all(_grade, to_grade, None, SECONDS, "grading"), strict=True):
         yield (
             _failed(instance, answer, str(result)) if isinstance(result, LimitError) else Verdict.model_validate(result)
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -17,8 +17,6 @@ from irsim_evals.proof.trials import Kind, Trial, kind_of, trials_of
 
 __all__ = ["Disagreement", "Proof", "as_case_rows", "as_rows", "prove", "tried"]
 
-Runner = Callable[[Callable[..., Any], Iterable[tuple[Any, ...]]], Iterator[Any]]
-"""Calls a function for each tuple of arguments."""
 _SECOND_SHARE = 0.25
 """Share of the trials that are also given to the second implementation."""
 _QUICK_SHARE = 0.1
@@ -80,17 +78,12 @@ class Proof:
         return self.rate("gold", "rewrite", "free mutant")
 
 
-def _in_limited_processes(work: Callable[..., Any], jobs: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
-    return run_all(work, jobs, None, 2 * SECONDS, "grading")  # a trial is also compared, and graded twice
-
-
 def prove(
     ids: list[str] | None = None,
     *,
     quick: bool = False,
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
-    runner: Runner = _in_limited_processes,
 ) -> Proof:
     """Try the grader on answers of which it is known whether they are right.
 
@@ -99,7 +92,6 @@ def prove(
         quick: All golds, and a random tenth of the rest.
         seed: Seed of the choice, and of one fresh instance of each case.
         progress: Callback ``(done, total)``.
-        runner: Does the gradings, in their order.
     """
     proof = Proof()
     choice = random.Random(seed)
@@ -107,7 +99,8 @@ def prove(
     trials = [trial for case_id in ids or case_ids() for trial in trials_of(case_id, proof.left_out, seed, keep)]
     rng = random.Random(f"second {seed}")
     jobs = [(trial, rng.random() < _SECOND_SHARE) for trial in trials]
-    for number, result in enumerate(runner(tried, jobs)):
+    results = run_all(tried, jobs, None, 2 * SECONDS, "grading")  # a trial is also compared, and graded twice
+    for number, result in enumerate(results):
         _note(proof, trials[number], result)
         if progress is not None:
             progress(number + 1, len(trials))

@@ -15,7 +15,7 @@ from irsim_evals.cases.store import Instance, case_of, golds_of
 from irsim_evals.harness.run import run_arm
 from irsim_evals.results import Trial
 from tests.evals.conftest import made_up
-from tests.evals.harness.messages_api import MessagesApi, Reply, messages_api, turn_of
+from tests.evals.harness.messages_api import MessagesApi, Reply, Script, follow, messages_api
 
 KEY = "sk-ant-test-0123456789"
 MODEL = "anthropic/claude-sonnet-4-6"
@@ -107,22 +107,30 @@ def scenario(empty_world: Instance) -> str:
 
 
 @pytest.fixture
-def writes(scenario: str) -> Callable[[dict[str, Any]], Reply]:
-    """An agent that writes the right answer and says so."""
-
-    def script(body: dict[str, Any]) -> Reply:
-        if turn_of(body) == 0:
-            return Reply("I write it.", [("write_file", {"path": "scenario.yaml", "content": scenario})])
-        return Reply("The world is in scenario.yaml.")
-
-    return script
+def writes(scenario: str) -> tuple[str, dict[str, Any]]:
+    """The call of a tool that writes it."""
+    return ("write_file", {"path": "scenario.yaml", "content": scenario})
 
 
 @pytest.fixture
-def service(writes: Callable[[dict[str, Any]], Reply]) -> Iterator[MessagesApi]:
-    """The stand-in with that agent."""
-    with messages_api(writes) as api:
+def service(writes: tuple[str, dict[str, Any]]) -> Iterator[MessagesApi]:
+    """The stand-in with an agent that writes the right answer and says so."""
+    with messages_api(follow(Reply("I write it.", [writes]), Reply("The world is in scenario.yaml."))) as api:
         yield api
+
+
+@pytest.fixture
+def ask(empty_world: Instance, service: MessagesApi, tmp_path: Path) -> Callable[..., Trial]:
+    """Has that agent, or one with another script, answer a case."""
+
+    def answered(
+        script: Script | None = None, arm: str = "no-skill", case: Instance = empty_world, **more: Any
+    ) -> Trial:
+        service.script = script or service.script
+        (trial,) = run([case], service, tmp_path / "logs", arm, **more)
+        return trial
+
+    return answered
 
 
 @pytest.fixture

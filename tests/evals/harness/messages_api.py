@@ -44,6 +44,23 @@ Script = Callable[[dict[str, Any]], "Reply | Fault"]
 """From the body of a request to what is answered."""
 
 
+def follow(*replies: Reply | Script) -> Script:
+    """A script of one answer for each turn, the last one for all further turns."""
+
+    def script(body: dict[str, Any]) -> Reply | Fault:
+        reply = replies[min(turn_of(body), len(replies) - 1)]
+        return reply if isinstance(reply, Reply) else reply(body)
+
+    return script
+
+
+def said(body: dict[str, Any]) -> str:
+    """Text of the answers of tools in the last message of a request."""
+    contents = [result["content"] for result in results_in(body)]
+    parts = [part for content in contents for part in ([{"text": content}] if isinstance(content, str) else content)]
+    return "\n".join(part.get("text", "") for part in parts)
+
+
 class MessagesApi:
     """The running stand-in.
 
@@ -51,6 +68,7 @@ class MessagesApi:
         url: Its address.
         requests: Bodies of the requests, in their order.
         headers: Headers of the requests.
+        faults: Answers to the next requests, before those of the script.
     """
 
     def __init__(self, url: str, script: Script) -> None:
@@ -59,11 +77,6 @@ class MessagesApi:
         self.headers: list[dict[str, str]] = []
         self.faults: list[Fault | Reply] = []
         self.lock = threading.Lock()
-
-    def first(self, *faults: Fault | Reply) -> MessagesApi:
-        """Answer the next requests with these, before the answers of the script."""
-        self.faults += faults
-        return self
 
     def answer(self, body: dict[str, Any], headers: dict[str, str]) -> Reply | Fault:
         with self.lock:

@@ -16,13 +16,15 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.store import Instance, case_of
 from irsim_evals.harness.arms import MODEL_ARMS
 from irsim_evals.harness.run import RunError
+from irsim_evals.results import Trial
 from tests.evals.harness.conftest import KEY, MODEL, Guard, run
-from tests.evals.harness.messages_api import Fault, MessagesApi, Reply, messages_api, results_in, turn_of
+from tests.evals.harness.messages_api import Fault, MessagesApi, Reply, follow, results_in, said, turn_of
 
 pytestmark = [pytest.mark.evals, pytest.mark.filterwarnings("default")]
 
 BUSY = Fault(429, "rate_limit_error", "Too many requests", {"retry-after": "1"})
 OVERLOADED = Fault(529, "overloaded_error", "Overloaded")
+Ask = Callable[..., Trial]
 
 
 @pytest.fixture(autouse=True)
@@ -49,10 +51,8 @@ def test_the_guard_of_these_tests_refuses_other_addresses(offline: Guard) -> Non
 
 
 @pytest.mark.parametrize("model", [MODEL, "anthropic/claude-3-haiku-20240307"])
-def test_answers_come_streamed_and_whole(
-    model: str, empty_world: Instance, service: MessagesApi, tmp_path: Path
-) -> None:
-    (trial,) = run([empty_world], service, tmp_path, model=model)
+def test_answers_come_streamed_and_whole(model: str, ask: Ask, service: MessagesApi) -> None:
+    trial = ask(model=model)
     assert [body.get("stream", False) for body in service.requests] == [model == MODEL] * 2
     assert trial.verdict.strict
     cost = trial.verdict.cost
@@ -62,20 +62,19 @@ def test_answers_come_streamed_and_whole(
     assert cost.dollars == (pytest.approx((2000 * 3 + 200 * 15) / 1e6) if model == MODEL else None)
 
 
-def test_a_busy_service_is_asked_again_when_it_says(
-    empty_world: Instance, service: MessagesApi, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_busy_service_is_asked_again_when_it_says(ask: Ask, service: MessagesApi) -> None:
     begin = time.monotonic()
-    (trial,) = run([empty_world], service.first(BUSY), tmp_path)
+    service.faults = [BUSY]
+    trial = ask()
     assert time.monotonic() - begin >= 1, "retry-after says a second"
     assert (trial.verdict.strict, trial.ended, len(service.requests)) == (True, "", 3)
 
 
 def test_an_overloaded_service_and_a_cut_stream_are_asked_again(
-    empty_world: Instance, service: MessagesApi, tmp_path: Path, quick_retries: list[float]
+    ask: Ask, service: MessagesApi, quick_retries: list[float]
 ) -> None:
-    service.first(OVERLOADED, Reply("I write", cut_after=3), Reply("I write", cut_after=1))
-    (trial,) = run([empty_world], service, tmp_path)
+    service.faults = [OVERLOADED, Reply("I write", cut_after=3), Reply("I write", cut_after=1)]
+    trial = ask()
     assert (trial.verdict.strict, trial.ended, len(service.requests)) == (True, "", 5)
     assert len(quick_retries) == 2
     assert trial.verdict.cost.turns == 2
@@ -93,17 +92,14 @@ def test_an_overloaded_service_and_a_cut_stream_are_asked_again(
     ids=["busy", "overloaded", "cut", "key", "credit"],
 )
 def test_a_service_that_stays_broken_fails_the_attempt_and_not_the_rest(
-    fault: Fault | Reply, reason: str, writes: Callable[[dict[str, Any]], Reply], empty_world: Instance,
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    fault: Fault | Reply, reason: str, empty_world: Instance, service: MessagesApi, tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     monkeypatch.setattr("irsim_evals.harness.run.MAX_RETRIES", 1)
-    other = case_of("pub-05")
-
-    def script(body: dict[str, Any]) -> Reply | Fault:
-        return fault if other.prompt.strip()[:40] in str(body["messages"][0]) else writes(body)
-
-    with messages_api(script) as api:
-        good, bad = run([empty_world, other], api, tmp_path)
+    other, right = case_of("pub-05"), service.script
+    start = other.prompt.strip()[:40]
+    service.script = lambda body: fault if start in str(body["messages"][0]) else right(body)
+    good, bad = run([empty_world, other], service, tmp_path)
     assert (good.verdict.strict, good.ended) == (True, "")
     assert not bad.verdict.strict
     assert bad.verdict.rate == 0
@@ -121,60 +117,50 @@ def test_a_service_that_stays_broken_fails_the_attempt_and_not_the_rest(
     ids=["tokens", "cost", "messages"],
 )
 def test_a_limit_ends_an_attempt_and_what_is_there_is_graded(
-    limits: dict[str, Any], reason: str, empty_world: Instance, scenario: str, tmp_path: Path
+    limits: dict[str, Any], reason: str, ask: Ask, service: MessagesApi, writes: tuple[str, dict[str, Any]]
 ) -> None:
-    def endless(body: dict[str, Any]) -> Reply:
-        return Reply("Once more.", [("write_file", {"path": "scenario.yaml", "content": scenario})])
-
-    with messages_api(endless) as api:
-        (trial,) = run([empty_world], api, tmp_path, **limits)
-        assert len(api.requests) <= 4
+    trial = ask(follow(Reply("Once more.", [writes])), **limits)
+    assert len(service.requests) <= 4
     assert trial.ended == reason
     assert trial.verdict.strict
 
 
-def test_a_time_limit_ends_an_attempt(empty_world: Instance, tmp_path: Path) -> None:
+def test_a_time_limit_ends_an_attempt(ask: Ask) -> None:
     def slow(body: dict[str, Any]) -> Reply:
         time.sleep(1.5 if turn_of(body) else 0)
         return Reply("I look.", [("list_files", {})])
 
-    with messages_api(slow) as api:
-        (trial,) = run([empty_world], api, tmp_path, time_limit=1)
+    trial = ask(slow, time_limit=1)
     assert trial.ended == "the limit of 1 s was reached"
     assert trial.verdict.failed()[0].observed == "neither a scenario nor a reply" or trial.reply == "I look."
 
 
-def test_an_answer_that_was_cut_or_refused_says_so(empty_world: Instance, tmp_path: Path) -> None:
-    with messages_api(lambda body: Reply("I begin", stop_reason="max_tokens")) as api:
-        (trial,) = run([empty_world], api, tmp_path)
+def test_an_answer_that_was_cut_or_refused_says_so(ask: Ask) -> None:
+    trial = ask(follow(Reply("I begin", stop_reason="max_tokens")))
     assert trial.ended == "an answer of the model was cut at its limit of output tokens"
     assert not trial.verdict.strict
 
 
 def test_what_is_missing_is_said_before_anything_is_asked(
-    empty_world: Instance, service: MessagesApi, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ask: Ask, service: MessagesApi, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with pytest.raises(ArgumentError, match="the price of anthropic/claude-unheard-of is not known"):
-        run([empty_world], service, tmp_path, model="anthropic/claude-unheard-of", cost_limit=1.0)
+        ask(model="anthropic/claude-unheard-of", cost_limit=1.0)
     with pytest.raises(ArgumentError, match="names no model"):
-        run([empty_world], service, tmp_path, model="claude")
+        ask(model="claude")
     monkeypatch.delenv("ANTHROPIC_API_KEY")
     with pytest.raises(ArgumentError, match="set the environment variable ANTHROPIC_API_KEY"):
-        run([empty_world], service, tmp_path)
+        ask()
     assert service.requests == []
 
 
-def test_a_provider_that_is_not_installed_is_one_clear_error(
-    empty_world: Instance, service: MessagesApi, tmp_path: Path
-) -> None:
+def test_a_provider_that_is_not_installed_is_one_clear_error(ask: Ask) -> None:
     with pytest.raises(RunError, match=r"nonsense/model could not be run: "):
-        run([empty_world], service, tmp_path, model="nonsense/model")
+        ask(model="nonsense/model")
 
 
-def test_a_model_without_a_known_price_can_be_given_one(
-    empty_world: Instance, service: MessagesApi, tmp_path: Path
-) -> None:
-    (trial,) = run([empty_world], service, tmp_path, model="anthropic/claude-new", price=(10, 20), cost_limit=1.0)
+def test_a_model_without_a_known_price_can_be_given_one(ask: Ask) -> None:
+    trial = ask(model="anthropic/claude-new", price=(10, 20), cost_limit=1.0)
     assert trial.verdict.cost.dollars == pytest.approx((2000 * 10 + 200 * 20) / 1e6)
 
 
@@ -190,18 +176,11 @@ def system(body: dict[str, Any]) -> str:
     return "".join(block["text"] for block in body["system"])
 
 
-def said(body: dict[str, Any]) -> str:
-    """Text of the answers of tools in the last message."""
-    contents = [result["content"] for result in results_in(body)]
-    parts = [part for content in contents for part in ([{"text": content}] if isinstance(content, str) else content)]
-    return "\n".join(part.get("text", "") for part in parts)
-
-
 @pytest.mark.parametrize("arm", ["no-skill", "skill"])
 def test_arms_without_servers_have_files_and_skills(
-    arm: str, empty_world: Instance, service: MessagesApi, tmp_path: Path
+    arm: str, ask: Ask, empty_world: Instance, service: MessagesApi
 ) -> None:
-    (trial,) = run([empty_world], service, tmp_path, arm)
+    trial = ask(arm=arm)
     assert trial.verdict.strict, trial.verdict.failed()
     assert (trial.arm, trial.model, trial.ended) == (arm, MODEL, "")
     assert trial.reply == "The world is in scenario.yaml."
@@ -213,95 +192,79 @@ def test_arms_without_servers_have_files_and_skills(
 
 
 def test_an_agent_with_servers_reads_a_skill_checks_runs_and_inspects(
-    empty_world: Instance, scenario: str, tmp_path: Path
+    ask: Ask, service: MessagesApi, writes: tuple[str, dict[str, Any]]
 ) -> None:
     arm = "skill+mcp+distractors"
     assert arm in MODEL_ARMS
-    heard: list[str] = []
 
-    def script(body: dict[str, Any]) -> Reply:
-        heard.append(said(body))
-        match turn_of(body):
-            case 0:
-                return Reply("", [("read_file", {"path": "skills/irsim-scenario/SKILL.md"}), ("list_files", {})])
-            case 1:
-                write = ("write_file", {"path": "scenario.yaml", "content": scenario})
-                return Reply("", [write, ("validate_scenario", {"scenario_path": "scenario.yaml"})])
-            case 2:
-                return Reply("", [("run_episode", {"scenario_path": "scenario.yaml"}),
-                                  ("convert_units", {"value": 2, "source": "km", "target": "m"})])  # fmt: skip
-            case 3:
-                run_id = re.search(r"Run: (\S+)", heard[-1])
-                assert run_id is not None
-                return Reply(
-                    "", [("inspect_run", {"run_id": run_id[1]}), ("validate_scenario", {"scenario_path": "no.yaml"})]
-                )
-        return Reply("Done: scenario.yaml.")
+    def inspect(body: dict[str, Any]) -> Reply:
+        run_id = re.search(r"Run: (\S+)", said(body))
+        assert run_id is not None
+        return Reply("", [("inspect_run", {"run_id": run_id[1]}), ("validate_scenario", {"scenario_path": "no.yaml"})])
 
-    with messages_api(script) as api:
-        (trial,) = run([empty_world], api, tmp_path, arm)
-        assert trial.verdict.strict, (trial.ended, trial.verdict.failed())
-        names = offered(api.requests[0])
-        assert names > FILES | SERVER
-        assert len(names - FILES - SERVER) >= 12
-        assert "The MCP server irsim says" in system(api.requests[0])
-        assert "# Scenarios for irsim" in heard[1]
-        assert "there are no files" in heard[1]
-        assert "valid: 1 robot" in heard[2]
-        assert "2000 m" in heard[3]
-        assert "file-not-found: there is no file 'no.yaml'" in heard[4]
+    script = follow(
+        Reply("", [("read_file", {"path": "skills/irsim-scenario/SKILL.md"}), ("list_files", {})]),
+        Reply("", [writes, ("validate_scenario", {"scenario_path": "scenario.yaml"})]),
+        Reply("", [("run_episode", {"scenario_path": "scenario.yaml"}),
+                   ("convert_units", {"value": 2, "source": "km", "target": "m"})]),
+        inspect,
+        Reply("Done: scenario.yaml."),
+    )  # fmt: skip
+    trial = ask(script, arm)
+    assert trial.verdict.strict, (trial.ended, trial.verdict.failed())
+    first, heard = service.requests[0], [said(body) for body in service.requests]
+    assert offered(first) > FILES | SERVER
+    assert len(offered(first) - FILES - SERVER) >= 12
+    assert "The MCP server irsim says" in system(first)
+    assert "# Scenarios for irsim" in heard[1]
+    assert "there are no files" in heard[1]
+    assert "valid: 1 robot" in heard[2]
+    assert "2000 m" in heard[3]
+    assert "file-not-found: there is no file 'no.yaml'" in heard[4]
     assert (trial.verdict.cost.calls, trial.verdict.cost.errors, trial.verdict.cost.turns) == (8, 1, 5)
 
 
-def test_later_turns_come_after_the_replies_and_pictures_are_seen(sketched: Instance, tmp_path: Path) -> None:
+def test_later_turns_come_after_the_replies_and_pictures_are_seen(
+    ask: Ask, service: MessagesApi, sketched: Instance
+) -> None:
     robot = (
         "world: {width: 12, height: 8}\nrobot: {name: Rosa, state: [1, 1, 0], goal: [9, 6], behavior: {name: dash}}\n"
     )
-
-    def script(body: dict[str, Any]) -> Reply:
-        match turn_of(body):
-            case 0:
-                return Reply("I look.", [("read_file", {"path": "sketch.png"}), ("list_files", {})])
-            case 1:
-                return Reply("That is the sketch.")
-            case 2:
-                return Reply("", [("write_file", {"path": "base.yaml", "content": robot})])
-        return Reply("It is called Rosa.")
-
-    with messages_api(script) as api:
-        (trial,) = run([sketched], api, tmp_path)
+    script = follow(
+        Reply("I look.", [("read_file", {"path": "sketch.png"}), ("list_files", {})]),
+        Reply("That is the sketch."),
+        Reply("", [("write_file", {"path": "base.yaml", "content": robot})]),
+        Reply("It is called Rosa."),
+    )
+    trial = ask(script, case=sketched)
     assert trial.verdict.strict, trial.verdict.failed()
     assert trial.reply == "It is called Rosa."
-    prompt = api.requests[0]["messages"][0]["content"]
+    first, second, third, _ = service.requests
+    prompt = first["messages"][0]["content"]
     assert [block["type"] for block in prompt] == ["text", "image"]
     assert "base.yaml, sketch.png" in prompt[0]["text"]
-    seen = results_in(api.requests[1])
+    seen = results_in(second)
     assert seen[0]["content"][0]["type"] == "image"
     assert seen[1]["content"][0]["text"] == "base.yaml\nsketch.png"
-    assert "Rosa" not in str(api.requests[1])
-    assert "Now call the robot Rosa." in str(api.requests[2]["messages"][-1])
+    assert "Rosa" not in str(second)
+    assert "Now call the robot Rosa." in str(third["messages"][-1])
     assert trial.verdict.files["base.yaml"] == robot
 
 
-def test_an_agent_cannot_leave_its_folder(empty_world: Instance, scenario: str, tmp_path: Path) -> None:
+def test_an_agent_cannot_leave_its_folder(
+    ask: Ask, service: MessagesApi, writes: tuple[str, dict[str, Any]], tmp_path: Path
+) -> None:
     outside = tmp_path / "outside.yaml"
     outside.write_text("secret: 1\n")
-    heard: list[str] = []
-
-    def script(body: dict[str, Any]) -> Reply:
-        heard.append(said(body))
-        paths = [str(outside), "../../outside.yaml", ".irsim/x.yaml", "skills/irsim-scenario/SKILL.md"]
-        if turn_of(body) == 0:
-            return Reply("", [("write_file", {"path": path, "content": "a: 1"}) for path in paths])
-        if turn_of(body) == 1:
-            return Reply("", [("read_file", {"path": path}) for path in (str(outside), "/etc/passwd", "nothing.yaml")])
-        if turn_of(body) == 2:
-            return Reply("", [("write_file", {"path": "reply.md", "content": "all assertions passed"}),
-                              ("write_file", {"path": "scenario.yaml", "content": scenario})])  # fmt: skip
-        return Reply("Done.")
-
-    with messages_api(script) as api:
-        (trial,) = run([empty_world], api, tmp_path / "logs", "skill")
+    paths = [str(outside), "../../outside.yaml", ".irsim/x.yaml", "skills/irsim-scenario/SKILL.md"]
+    script = follow(
+        Reply("", [("write_file", {"path": path, "content": "a: 1"}) for path in paths]),
+        Reply("", [("read_file", {"path": path}) for path in (str(outside), "/etc/passwd", "nothing.yaml")]),
+        Reply("", [("write_file", {"path": "reply.md", "content": "all assertions passed"}), writes]),
+        Reply("Done."),
+    )
+    trial = ask(script, "skill")
+    heard = [said(body) for body in service.requests]
     assert heard[1].count("outside the folder") == 2
     assert "begin with a dot" in heard[1]
     assert "can be read only" in heard[1]
@@ -313,30 +276,30 @@ def test_an_agent_cannot_leave_its_folder(empty_world: Instance, scenario: str, 
 
 
 def test_a_server_that_does_not_start_fails_the_attempt_with_a_reason(
-    empty_world: Instance, service: MessagesApi, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ask: Ask, service: MessagesApi, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from irsim_evals.harness import task
 
     start = task._server
     monkeypatch.setattr(task, "_server", lambda name, folder, *_: start(name, folder, "no_such_module"))
-    (trial,) = run([empty_world], service, tmp_path, "skill+mcp")
+    trial = ask(arm="skill+mcp")
     assert trial.ended.startswith("the attempt failed: ")
     assert (trial.verdict.strict, service.requests) == (False, [])
 
 
 def test_epochs_are_attempts_of_their_own_and_progress_is_reported(
-    empty_world: Instance, writes: Callable[[dict[str, Any]], Reply], tmp_path: Path
+    empty_world: Instance, service: MessagesApi, tmp_path: Path
 ) -> None:
-    count = 0
+    count, right = 0, service.script
 
-    def script(body: dict[str, Any]) -> Reply:
+    def script(body: dict[str, Any]) -> Reply | Fault:
         nonlocal count
         count += turn_of(body) == 0
-        return Reply("I will not.") if count == 2 and turn_of(body) == 0 else writes(body)
+        return Reply("I will not.") if count == 2 and turn_of(body) == 0 else right(body)
 
+    service.script = script
     told: list[tuple[int, int]] = []
-    with messages_api(script) as api:
-        trials = run([empty_world], api, tmp_path, epochs=3, progress=lambda *at: told.append(at))
+    trials = run([empty_world], service, tmp_path, epochs=3, progress=lambda *at: told.append(at))
     assert [trial.number for trial in trials] == [1, 2, 3]
     assert sum(trial.verdict.strict for trial in trials) == 2
     assert sorted(told) == [(1, 3), (2, 3), (3, 3)]

@@ -14,8 +14,8 @@ from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.store import Instance, case_of, golds_of
 from irsim_evals.harness.run import run_arm
 from irsim_evals.results import Trial
-from tests.evals.harness.conftest import KEY, MODEL, Guard
-from tests.evals.harness.messages_api import Fault, Reply, messages_api, turn_of
+from tests.evals.harness.conftest import KEY, MODEL, Guard, run
+from tests.evals.harness.messages_api import Fault, MessagesApi, Reply, follow, messages_api, turn_of
 
 pytestmark = [pytest.mark.evals, pytest.mark.filterwarnings("default")]
 
@@ -137,15 +137,10 @@ def test_files_are_graded_again_without_tools(recorded: tuple[list[Trial], Path]
 
 
 def test_a_limit_that_was_reached_is_reached_in_the_replay(
-    empty_world: Instance, scenario: str, tmp_path: Path
+    empty_world: Instance, writes: tuple[str, dict[str, Any]], service: MessagesApi, tmp_path: Path
 ) -> None:
-    def endless(body: dict[str, Any]) -> Reply:
-        return Reply("Once more.", [("write_file", {"path": "scenario.yaml", "content": scenario})])
-
-    with messages_api(endless) as api:
-        live = run_arm(
-            "no-skill", [empty_world], model=MODEL, log_dir=tmp_path, base_url=api.url, token_limit=3000, epochs=2
-        )
+    service.script = follow(Reply("Once more.", [writes]))
+    live = run([empty_world], service, tmp_path, token_limit=3000, epochs=2)
     path = next(tmp_path.glob("*.jsonl"))
     again = run_arm("no-skill", [empty_world], model=None, log_dir=tmp_path / "again", replay=path)
     assert [trial.ended for trial in again] == ["the limit of 3,000 tokens was reached"] * 2
