@@ -100,15 +100,6 @@ def test_several_learners_are_neighboring_slots() -> None:
         Env(crowd(3))
 
 
-def test_observations_can_share_their_memory() -> None:
-    env = VectorEnv(lidar_among_boxes(), 2, copy=False)
-    first, _ = env.reset(seed=0)
-    second = env.step(np.ones((2, 2)))[0]
-    assert np.shares_memory(first, second)
-    other = VectorEnv(lidar_among_boxes(), 2)
-    assert not np.shares_memory(other.reset(seed=0)[0], other.step(np.ones((2, 2)))[0])
-
-
 def test_wrappers_of_gymnasium_work() -> None:
     env = NormalizeObservation(RecordEpisodeStatistics(Env(task(horizon=0.5))))
     env.reset(seed=0)

@@ -138,9 +138,10 @@ def test_masks_seeds_and_levels_reach_the_worlds_of_all_processes() -> None:
 
 
 @pytest.mark.usefixtures("warm_workers")
+@pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("copy", [False, True])
-def test_observations_are_not_copied_unless_asked_for(copy: bool) -> None:
-    env = VectorEnv(lidar_among_boxes(), 4, copy=copy, workers=2)
+def test_observations_are_not_copied_unless_asked_for(copy: bool, workers: int) -> None:
+    env = VectorEnv(lidar_among_boxes(), 4, copy=copy, workers=workers)
     first, _ = env.reset(seed=0)
     before = first.copy()
     second = env.step(np.ones((4, 2)))[0]

@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 
 import irsim
 from irsim.cli.app import app
-from irsim.diagnostics.errors import ArgumentError, PolicyError, PolicyLostError
+from irsim.diagnostics.errors import ArgumentError, CodedError, PolicyError, PolicyLostError
 from irsim.lookup.topics import lookup
 from irsim.policies import open_policy
 from irsim.policies.catalog import UnknownPolicyError
@@ -206,38 +206,37 @@ def _serve(server: socket.socket, asked: list[dict[str, Any]]) -> None:
             stream.flush()
 
 
-@pytest.mark.parametrize(
-    ("options", "error", "why"),
-    [
-        ({}, ArgumentError, "is started by its command, or listens"),
-        ({"command": ["a"], "address": "b"}, ArgumentError, "is started by its command, or listens"),
-        ({"command": "python mine.py"}, ArgumentError, "command must be a list of texts"),
-        ({"command": []}, ArgumentError, "command must be a list of texts"),
-        ({"command": ["python"], "timeout": 0}, ArgumentError, "timeout must be a time"),
-        ({"command": ["no-such-program-here"]}, PolicyLostError, "cannot be started"),
-        ({"address": "example.com:80"}, PolicyLostError, "is not on this machine"),
-        ({"address": "127.0.0.1:9"}, PolicyLostError, "does not listen there"),
-        ({"address": "127.0.0.1:99999"}, PolicyLostError, "does not listen there"),
-        ({"address": "/no/such/socket"}, PolicyLostError, "does not listen there"),
-    ],
-)
-def test_options_that_cannot_be_used(options: dict[str, Any], error: type[Exception], why: str) -> None:
-    with pytest.raises(error, match=why):
-        open_policy({"name": "process", **options})
+SILENT = [sys.executable, "-c", "import time; time.sleep(9)"]
+TALKING = [sys.executable, "-c", "print('hello')"]
 
 
 @pytest.mark.parametrize(
-    ("options", "fix"),
+    ("options", "error", "why", "fix"),
     [
-        ({"command": ["no-such-program-here"]}, "correct its command"),
-        ({"address": "example.com:80"}, "start it on this machine and write 127.0.0.1:80"),
-        ({"address": "127.0.0.1"}, "write HOST:PORT such as 127.0.0.1:9000, or the path of its socket"),
-        ({"command": [sys.executable, "-c", "import time; time.sleep(9)"], "start_timeout": 0.2}, "start_timeout"),
-        ({"command": [sys.executable, "-c", "print('hello')"]}, "irsim describe process says what it must answer"),
+        ({}, ArgumentError, "is started by its command, or listens", ""),
+        ({"command": ["a"], "address": "b"}, ArgumentError, "is started by its command, or listens", ""),
+        ({"command": "python mine.py"}, ArgumentError, "command must be a list of texts", ""),
+        ({"command": []}, ArgumentError, "command must be a list of texts", ""),
+        ({"command": ["python"], "timeout": 0}, ArgumentError, "timeout must be a time", ""),
+        ({"command": ["no-such-program-here"]}, PolicyLostError, "cannot be started", "correct its command"),
+        ({"address": "example.com:80"}, PolicyLostError, "is not on this machine", "machine and write 127.0.0.1:80"),
+        ({"address": "127.0.0.1:9"}, PolicyLostError, "does not listen there", ""),
+        ({"address": "127.0.0.1:99999"}, PolicyLostError, "does not listen there", ""),
+        ({"address": "/no/such/socket"}, PolicyLostError, "does not listen there", ""),
+        (
+            {"address": "127.0.0.1"},
+            PolicyLostError,
+            "policy-lost",
+            "write HOST:PORT such as 127.0.0.1:9000, or the path of its",
+        ),
+        ({"command": SILENT, "start_timeout": 0.2}, PolicyLostError, "policy-lost", "start_timeout"),
+        ({"command": TALKING}, PolicyLostError, "policy-lost", "irsim describe process says what it must answer"),
     ],
 )
-def test_each_cause_has_its_own_fix(options: dict[str, Any], fix: str) -> None:
-    with pytest.raises(PolicyLostError) as raised:
+def test_options_that_cannot_be_used_have_their_own_fix(
+    options: dict[str, Any], error: type[CodedError], why: str, fix: str
+) -> None:
+    with pytest.raises(error, match=why) as raised:
         open_policy({"name": "process", **options})
     assert fix in str(raised.value.fix)
 

@@ -13,11 +13,9 @@ from typer.testing import CliRunner
 import irsim
 from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
-from irsim.options.registry import Feature
-from irsim.policies.converters.convert import CONVERTERS, convert_policy
+from irsim.policies.converters.convert import convert_policy
 from irsim.policies.networks import PolicyFileError, open_network
 from irsim.policies.networks.layout import observe
-from irsim.testing import conformance
 from tests.policies.converters.rl_rvo_weights import Weights, rl_rvo_weights
 from tests.policies.converters.torch_bytes import as_files, mapping, module, parameter, zip_file
 from tests.policies.networks.observed import observations
@@ -168,10 +166,3 @@ def test_the_command_converts_and_says_what_is_wrong(file: Path, tmp_path: Path)
     assert runner.invoke(app, ["convert", "rl_rvo", str(file), "-o", "out.onnx"]).exit_code == 2
     with pytest.raises(ArgumentError, match="choose from"):
         convert_policy("unknown", file, out)
-
-
-@pytest.mark.parametrize("feature", CONVERTERS.features(), ids=lambda feature: feature.name)
-def test_declaration(feature: Feature) -> None:
-    conformance.check_documented(feature)
-    conformance.check_units(feature)
-    conformance.check_defaults(feature)

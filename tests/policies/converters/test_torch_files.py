@@ -164,6 +164,9 @@ def test_zip_bombs_are_refused_by_their_directory() -> None:
         archive.writestr("net/data/0", bytes(200_000_000))
     assert len(target.getvalue()) < 1_000_000
     assert "too large when unpacked" in refused(target.getvalue())
+    content = bytearray(as_files({"w": np.ones(3, np.float32)})[0])
+    content[-22 + 12 : -22 + 16] = (0xFFFFFFF0).to_bytes(4, "little")  # a directory of 4 GB
+    refused(bytes(content))
     many = {str(k): b"" for k in range(3_000)}
     assert "directory is too large" in refused(zip_file(mapping({}), many))
     content = zip_file(mapping({"a": tensor("0", [4], count=6), "b": tensor("0", [4], count=6)}), {"0": SIX})

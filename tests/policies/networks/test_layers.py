@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from irsim.options.registry import Feature
+from irsim.policies.converters.convert import CONVERTERS
 from irsim.policies.networks.layers._options import LAYERS
 from irsim.policies.networks.network import GraphPlan, plan_graph, run_graph
+from irsim.policies.networks.parts._options import PARTS as PARTS_OF_LAYOUTS
 from irsim.policies.networks.values import Shape, Value
 from irsim.testing import conformance
 from tests.policies.networks.observed import same_bits
@@ -82,11 +84,16 @@ def test_all_layers_are_tried_here() -> None:
     assert sorted(ALL) == LAYERS.names()
 
 
-@pytest.mark.parametrize("feature", LAYERS.features(), ids=lambda feature: feature.name)
+FEATURES = [*LAYERS.features(), *PARTS_OF_LAYOUTS.features(), *CONVERTERS.features()]
+
+
+@pytest.mark.parametrize("feature", FEATURES, ids=lambda feature: feature.name)
 def test_declaration(feature: Feature) -> None:
     conformance.check_documented(feature)
     conformance.check_units(feature)
-    for example in feature.options.schema_extra["examples"]:
+    if feature.name not in ALL:  # inputs and units of a layer have no defaults
+        conformance.check_defaults(feature)
+    for example in feature.options.schema_extra.get("examples", ()):
         assert feature.options.model_validate(example).name == feature.name
 
 

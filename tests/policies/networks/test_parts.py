@@ -10,13 +10,11 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from irsim.options.registry import Feature
 from irsim.policies import Needs, Observations, Scan
 from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.layout import Layout, layout_bounds, layout_needs, layout_shapes, observe
 from irsim.policies.networks.parts import neighbors, robot
 from irsim.policies.networks.parts._options import PARTS
-from irsim.testing import conformance
 from tests.policies.networks.observed import Grid, assert_same_in_any_company, moved, observations, people, rows
 
 ALL: dict[str, dict[str, Any]] = {
@@ -49,13 +47,6 @@ def alone(pose: Any, **changed: Any) -> Observations:
 
 def test_all_parts_are_tried_here() -> None:
     assert sorted(ALL) == PARTS.names()
-
-
-@pytest.mark.parametrize("feature", PARTS.features(), ids=lambda feature: feature.name)
-def test_declaration(feature: Feature) -> None:
-    conformance.check_documented(feature)
-    conformance.check_units(feature)
-    conformance.check_defaults(feature)
 
 
 @pytest.mark.parametrize("frame", ["own", "goal", "world"])

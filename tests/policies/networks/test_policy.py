@@ -12,7 +12,7 @@ import pytest
 import irsim
 from irsim.policies import Observations
 from irsim.policies.networks import Network, PolicyInputError, mlp, network_policy, save_network
-from tests.policies.networks.examples import crowd, filled, go_to_goal
+from tests.policies.networks.examples import crowd, filled
 from tests.policies.networks.observed import observations, rows, same_bits
 
 
@@ -81,22 +81,6 @@ def test_a_perceptron_computes_what_plain_numpy_computes(opened: Any) -> None:
     np.testing.assert_allclose(policy.act(seen)[:-1], expected, rtol=1e-4, atol=1e-4)
 
 
-def test_a_network_made_by_hand_drives_a_robot_to_its_goal(tmp_path: Path) -> None:
-    save_network(tmp_path / "goal.npz", go_to_goal())
-    scene = tmp_path / "scene.yaml"
-    scene.write_text(
-        "world: {width: 10, height: 10}\n"
-        "robot: {kinematics: {name: diff}, state: [2, 2, -2], goal: [8, 7, 0], vel_max: [1, 2], vel_min: [-1, -2]}\n"
-    )
-    env = irsim.make(str(scene), headless=True, policy=str(tmp_path / "goal.npz"))
-    for _ in range(300):
-        env.step()
-        if env.robot.arrive:
-            break
-    assert env.robot.arrive
-    env.end()
-
-
 CROWD = """
 world: {width: 8, height: 8}
 robot:
@@ -117,15 +101,13 @@ def test_worlds_of_a_batch_are_those_of_single_environments(tmp_path: Path) -> N
     data["layout"]["parts"] += [{"name": "scan", "sectors": 8}, {"name": "map", "cells": 6, "size": 3.0}]
     data["network"][0]["inputs"] += ["scan", "map"]
     save_network(tmp_path / "crowd.npz", filled(data))
-    scene = tmp_path / "scene.yaml"
+    scene, path = tmp_path / "scene.yaml", str(tmp_path / "crowd.npz")
     scene.write_text(CROWD)
-    path = str(tmp_path / "crowd.npz")
-    batch = irsim.batch(str(scene), 3, seeds=[5, 6, 7], policy=path)
-    for _ in range(15):
-        batch.step()
+    batch = irsim.batch(scene, 3, seeds=[5, 6, 7], policy=path)
+    batch.advance(15)
     assert abs(batch.velocity[:, :4, 1]).min() > 0
     for k, seed in enumerate(batch.seeds):
-        env = irsim.make(str(scene), headless=True, seed=seed, policy=path)
+        env = irsim.make(scene, headless=True, seed=seed, policy=path)
         for _ in range(15):
             env.step()
         assert env.simulation.pose.tobytes() == batch.pose[k].tobytes()
