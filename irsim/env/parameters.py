@@ -13,16 +13,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.log import Logger
 from irsim.components.maps._site import OCCUPIED
 from irsim.objects.base import column
 from irsim.objects.describe import grid_values
+from irsim.objects.lifecycle import amend_world
 from irsim.objects.setters import refuse
 from irsim.simulation.active_env import last_used
 from irsim.simulation.build import COLLISION_MODES
 from irsim.simulation.fog import FogMap, fog_resolution
 
 if TYPE_CHECKING:
-    from irsim.common.log import Logger
     from irsim.compat.objects.view import ScriptObject
     from irsim.simulation.simulation import Simulation
 
@@ -60,8 +61,6 @@ def set_step_time(simulation: Simulation, seconds: float) -> None:
         raise ValueError(f"the period of a step is a positive number of seconds, not {seconds!r}")
     if simulation.count.any():
         refuse("the world", "step_time", "the clock counts steps of one length; `reset()` first, or " + _IN_SCENARIO)
-    from irsim.objects.lifecycle import amend_world
-
     amend_world(simulation, step_time=value)
 
 
@@ -334,9 +333,7 @@ class WorldView(_Clock):
             result: Logger = owner.logger
             return result
         if self._logger is None:
-            from irsim.common.log import Logger as Own
-
-            self._logger = Own()
+            self._logger = Logger()
         return self._logger
 
     @property

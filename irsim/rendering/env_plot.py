@@ -23,11 +23,9 @@ from irsim.graphics.scene.scene import Scene, region_extent
 from irsim.graphics.scene.style import STYLE_KEYS, Palette
 from irsim.objects.drawing.scene_builder import MODES, SceneBuilder
 from irsim.objects.views import views
-from irsim.rendering.live_window import LiveWindow
-from irsim.rendering.plot_steps import PlotSteps
+from irsim.rendering.plot_steps import PlotSteps, UserSensors
 from irsim.rendering.recording import Pictured
 from irsim.rendering.saving import Saving, saved_figure_options
-from irsim.rendering.script_drawings import ScriptDrawings, UserSensors
 
 if TYPE_CHECKING:
     from irsim.graphics.figure.window import Window
@@ -35,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["EnvPlot"]
 
 
-class EnvPlot(PlotSteps, ScriptDrawings, LiveWindow):
+class EnvPlot(PlotSteps):
     """Draws one environment.
 
     A picture always shows the state at the moment it is made; ``update`` only notes how to draw it. Artists are brought

@@ -1,34 +1,47 @@
-"""Drawing the parts of a frame one by one, with the method names that scripts of IR-SIM call."""
+"""Methods of the picture that scripts call: the parts of a frame one by one, drawings of their own, the window."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
+from irsim.graphics.figure import window
 from irsim.graphics.figure.layers import FogLayer, GridLayer
 from irsim.graphics.scene.scene import Fog, GridImage, Scene
 from irsim.objects.drawing.scene_builder import MODES
+from irsim.objects.sensors.sensors import PythonSensor
 from irsim.objects.views import views
 from irsim.simulation.fog import FOG_COLOR
 
 if TYPE_CHECKING:
+    from irsim.graphics.figure.figure import SceneFigure
+    from irsim.graphics.figure.overlay import Overlay
+    from irsim.graphics.figure.window import Window
+    from irsim.objects.view import ObjectView
     from irsim.rendering.recording import Pictured
 
-__all__ = ["PlotSteps"]
+__all__ = ["PlotSteps", "UserSensors"]
 
 
 class PlotSteps:
-    """Part of :class:`irsim.rendering.env_plot.EnvPlot` that scripts of IR-SIM call for each part of a frame.
+    """Part of :class:`irsim.rendering.env_plot.EnvPlot` with the methods that scripts call.
 
     A figure follows its environment anyway, so most methods just bring the whole figure up to date. ``objects`` that
     do not belong to the environment are drawn by their own method ``plot``.
     """
 
     env: Pictured
+    title: str | None
     _hidden: set[int]
+    _overlay: Overlay
+    _display: bool
+    _figure: SceneFigure | None
+    _window: Window | None
 
     if TYPE_CHECKING:
 
@@ -42,7 +55,13 @@ class PlotSteps:
         def save_animation(self, path: str | Path | None = None, **options: Any) -> Path | None:
             """See :class:`irsim.rendering.env_plot.EnvPlot`."""
 
-        def synced_figure(self) -> Any:
+        def made_figure(self) -> SceneFigure:
+            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
+
+        def synced_figure(self) -> SceneFigure:
+            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
+
+        def as_shown(self) -> AbstractContextManager[None]:
             """See :class:`irsim.rendering.env_plot.EnvPlot`."""
 
     @property
@@ -170,3 +189,83 @@ class PlotSteps:
         """Write the animation; see :meth:`irsim.rendering.env_plot.EnvPlot.save_animation`."""
         options = {"ani_name": ani_name, "suffix": suffix, "rm_fig_path": rm_fig_path, **kwargs}
         return self.save_animation(last_frame_duration=last_frame_duration, **options)
+
+    # drawings of scripts ---------------------------------------------------------------------------------------------
+    def set_title(self, title: str | None) -> None:
+        """Set a fixed title until the next reset; None shows time and status again."""
+        self.title = title
+
+    def draw_trajectory(self, traj: Any, traj_type: str = "-", **kwargs: Any) -> None:
+        """Draw a trajectory; see :meth:`Overlay.trajectory`."""
+        self._overlay.trajectory(self.made_figure().ax, traj, traj_type, **kwargs)
+
+    def draw_points(self, points: Any, s: float = 30, c: Any = None, refresh: bool = True, **kwargs: Any) -> None:
+        """Draw dots; see :meth:`Overlay.points`."""
+        if points is not None:
+            self._overlay.points(self.made_figure().ax, points, s, c, refresh, **kwargs)
+
+    def draw_box(self, vertex: Any, refresh: bool = False, color: str = "-") -> None:
+        """Draw a closed outline; see :meth:`Overlay.box`."""
+        self._overlay.box(self.made_figure().ax, vertex, refresh, color)
+
+    def draw_quiver(self, point: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
+        """Draw one arrow (x, y, u, v)."""
+        if point is not None:
+            self._overlay.quivers(self.made_figure().ax, [point], refresh, color, **kwargs)
+
+    def draw_quivers(self, points: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
+        """Draw arrows (x, y, u, v)."""
+        self._overlay.quivers(self.made_figure().ax, points, refresh, color, **kwargs)
+
+    # the window ------------------------------------------------------------------------------------------------------
+    def pause(self, interval: float) -> None:
+        """Show the present state in the window for ``interval`` seconds; without a window return at once."""
+        if not self._display:
+            return
+        if self._figure is None:
+            if not window.has_screen():
+                return
+            self.made_figure()
+        if self._window is not None and self._window.open:
+            figure = self.synced_figure()
+            with self.as_shown():
+                figure.draw()
+            self._window.refresh(interval)
+
+    def show(self) -> None:
+        """Show the window until the user closes it; without a window return at once."""
+        self.pause(0.001)
+        if self._window is not None:
+            self._window.wait()
+
+
+class UserSensors:
+    """Lets the user-defined sensors of an environment draw into the axes of one figure."""
+
+    def __init__(self) -> None:
+        self._drawn: dict[int, PythonSensor] = {}
+
+    def show(self, ax: Axes, objects: Sequence[ObjectView]) -> None:
+        """Bring the drawings of the sensors up to date.
+
+        Args:
+            ax: Axes in world coordinates.
+            objects: Objects whose sensors are shown.
+        """
+        sensors = [sensor for view in objects for sensor in view.sensors if isinstance(sensor, PythonSensor)]
+        for sensor in [*self._drawn.values()]:
+            if sensor not in sensors:
+                del self._drawn[id(sensor)]
+                if hasattr(sensor.instance, "plot_clear"):
+                    sensor.instance.plot_clear()
+        for sensor in sensors:
+            if id(sensor) in self._drawn:
+                if hasattr(sensor.instance, "step_plot"):
+                    sensor.instance.step_plot()
+            elif hasattr(sensor.instance, "plot"):
+                self._drawn[id(sensor)] = sensor
+                sensor.instance.plot(ax, sensor.parent.state)
+
+    def forget(self) -> None:
+        """Forget which sensors have drawn, because the axes are empty again."""
+        self._drawn.clear()

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.graphics.scene.scene import Line, Picture, Region
+from irsim.graphics.scene.style import tint_of
 from irsim.objects.view import ObjectView
 
 if TYPE_CHECKING:
@@ -168,8 +170,6 @@ class OldDrawing(ObjectView):
         """
         from irsim.graphics.figure.artists import add_picture
         from irsim.graphics.scene.bodies import read_body
-        from irsim.graphics.scene.scene import Picture
-        from irsim.graphics.scene.style import tint_of
 
         axes, name = self._on(ax), self.description if description is None else description
         images = self._images()
@@ -250,11 +250,8 @@ class OldDrawing(ObjectView):
     def plot_fov(self, ax: Any = None, **kwargs: Any) -> None:
         """Draw the field of view, if the object has one."""
         axes = self._on(ax)
-        if (
-            axes is not None
-            and getattr(self, "fov", None) is not None
-            and getattr(self, "fov_radius", None) is not None
-        ):
+        has_fov = None not in (getattr(self, "fov", None), getattr(self, "fov_radius", None))
+        if axes is not None and has_fov:
             self.fov_patch = self._add(axes, self._mark("fov", None, {**kwargs, "show_fov": True}))
 
     def plot_text(self, ax: Any = None, state: Any = None, **kwargs: Any) -> None:
@@ -365,7 +362,6 @@ class OldDrawing(ObjectView):
 
     def _add(self, axes: Any, mark: Any) -> Any:
         from irsim.graphics.figure.artists import add_mark
-        from irsim.graphics.scene.scene import Line
 
         artist = add_mark(axes, mark)
         (self.plot_line_list if isinstance(mark.geometry, Line) else self.plot_patch_list).append(artist)
@@ -373,8 +369,6 @@ class OldDrawing(ObjectView):
 
 
 def _region(vertices: Any) -> Any:
-    from irsim.graphics.scene.scene import Region
-
     return Region([np.asarray(vertices, dtype=float)[:2].T])
 
 

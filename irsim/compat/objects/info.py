@@ -12,6 +12,13 @@ from irsim.common.arrays import Floats
 __all__ = ["ObjectInfo", "ObstacleInfo"]
 
 
+_OF_VIEW = (
+    *("id", "shape", "kinematics", "role", "color", "static", "goal", "vel_min", "vel_max", "acce"),
+    *("goal_threshold", "wheelbase", "name", "inertia"),
+)
+"""Attributes of a description that have the same name at the object."""
+
+
 @dataclass
 class _Extensible:
     def add_property(self, key: str, value: Any) -> None:
@@ -72,28 +79,13 @@ class ObjectInfo(_Kept, _Extensible):
         record = view.record
         normals, right_side, cone, convex = view.get_init_Gh()
         made = cls(
-            view.id,
-            view.shape,
-            view.kinematics,
-            view.role,
-            view.color,
-            view.static,
-            view.goal,
-            view.vel_min,
-            view.vel_max,
-            view.acce,
-            np.array(record.angle_range, dtype=np.float64).reshape(2, 1),
-            view.goal_threshold,
-            view.wheelbase,
-            normals,
-            right_side,
-            cone,
-            convex,
-            view.name,
-            record.mass,
-            record.friction,
-            view.inertia,
-            record.restitution,
+            **{name: getattr(view, name) for name in _OF_VIEW},
+            **{name: getattr(record, name) for name in ("mass", "friction", "restitution")},
+            angle_range=np.array(record.angle_range, dtype=np.float64).reshape(2, 1),
+            G=normals,
+            h=right_side,
+            cone_type=cone,
+            convex_flag=convex,
         )
         made._keep(view.__dict__.setdefault("_info_properties", {}))
         return made

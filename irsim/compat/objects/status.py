@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,15 @@ __all__ = ["OldStatus"]
 
 _STOPS = {0: ("robot", "obstacle"), 2: ("robot",)}
 """Roles of the objects that a contact stops, by collision mode of the core."""
+
+
+def _settable(name: str, setter: str) -> Any:
+    """Return a property that reads an attribute, and that calls a method when it is assigned to."""
+
+    def assign(view: ObjectView, value: Any) -> None:
+        getattr(view, setter)(value)
+
+    return property(attrgetter(name), assign, doc=f"``{name}``; assigning to it calls ``{setter}``.")
 
 
 class OldStatus(ObjectView):
@@ -49,32 +59,9 @@ class OldStatus(ObjectView):
         """Height above the ground [m]; always 0, because the world is flat."""
         return 0.0
 
-    @property
-    def _state(self) -> Floats:
-        """The state; assigning to it calls ``set_state``."""
-        return self.state
-
-    @_state.setter
-    def _state(self, value: Any) -> None:
-        self.set_state(value)
-
-    @property
-    def _velocity(self) -> Floats:
-        """The control; assigning to it calls ``set_velocity``."""
-        return self.velocity
-
-    @_velocity.setter
-    def _velocity(self, value: Any) -> None:
-        self.set_velocity(value)
-
-    @property
-    def _goal(self) -> list[Floats]:
-        """The goals; assigning to them calls ``set_goal``."""
-        return self.goals
-
-    @_goal.setter
-    def _goal(self, value: Any) -> None:
-        self.set_goal(value)
+    _state = _settable("state", "set_state")
+    _velocity = _settable("velocity", "set_velocity")
+    _goal = _settable("goals", "set_goal")
 
     @property
     def arrive_flag(self) -> bool:
