@@ -174,7 +174,7 @@ def run(
 
 
 def _goals_missing(scenario: ResolvedScenario, bridges: Sequence[Any]) -> list[Finding]:
-    """Warnings of robots without a goal that added bridges may drive; the checker knows those of the scenario."""
+    """Warnings of robots without a goal that added bridges may drive; the checker knows the bridges in the scenario."""
     return [Finding.of(one.diagnostic) for one in driven_without_goal(scenario, bridges)] if bridges else []
 
 

@@ -1,4 +1,4 @@
-"""What is installed: the version of this package, and PyPI's ``ir-sim``, which cannot be in one environment with it.
+"""The installed packages: the version of this one, and PyPI's ``ir-sim``, which cannot be beside it.
 
 Both distributions provide the import package ``irsim``: pip lets them overwrite each other's files without a warning.
 """

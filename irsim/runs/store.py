@@ -1,4 +1,4 @@
-"""Folders of runs: their names, dates, status and omissions, and which of them make room for others.
+"""Folders of runs: their names, dates, status and omissions, and the deletion of old ones.
 
 Uses the standard library only, no NumPy.
 """

@@ -1,4 +1,4 @@
-"""What a result says in words: the step that decided an episode, who stood since, fog, maps, people, headings."""
+"""Results in words: the step that decided an episode, who stood since, fog, maps, people, headings."""
 
 from __future__ import annotations
 

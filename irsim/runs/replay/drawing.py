@@ -1,4 +1,4 @@
-"""What the replay page reads of a run: shapes, colours, sensors and map cells, and compact series of numbers."""
+"""Parts of a run as the replay page reads them: shapes, colours, sensors, map cells, and series of numbers."""
 
 from __future__ import annotations
 

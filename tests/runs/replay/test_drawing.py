@@ -1,4 +1,4 @@
-"""What the replay page draws and reads: bodies, map cells, compact series of numbers."""
+"""Data of the replay page: bodies, map cells, compact series of numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What happens late or within a step, on the page: objects that set off or appear later, contacts, passages."""
+"""Late events and events within a step, on the page: objects that set off or appear later, contacts, passages."""
 
 from __future__ import annotations
 
