@@ -69,7 +69,7 @@ def graded(instance: Instance, text: str, reply: str = "") -> Verdict:
 
 
 def failures(verdict: Verdict) -> list[tuple[str, str, str]]:
-    """What does not hold, with what was expected and observed."""
+    """Assertions that do not hold, with the expected and the observed value."""
     return [(one.assertion, one.expected, one.observed) for one in verdict.failed()]
 
 

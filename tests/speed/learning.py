@@ -26,7 +26,7 @@ Document = dict[str, Any]
 
 
 class Case(NamedTuple):
-    """What makes a task to be timed, its name or its data, and the number of learners in all worlds."""
+    """A task to be timed: a function that makes its name or its data, and the number of learners in all worlds."""
 
     task: Callable[[], str | Document]
     slots: int

@@ -68,7 +68,7 @@ class MessagesApi:
         url: Its address.
         requests: Bodies of the requests, in their order.
         headers: Headers of the requests.
-        faults: Answers to the next requests, before those of the script.
+        faults: Answers to the next requests; the script answers the ones after them.
     """
 
     def __init__(self, url: str, script: Script) -> None:

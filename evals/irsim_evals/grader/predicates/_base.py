@@ -130,7 +130,7 @@ def judged(
     Args:
         expected: The requirement, for people.
         seen: The bodies with what they are.
-        wrong: Those of them that are not as expected.
+        wrong: The wrong ones among them.
         key: Key of an entry that decides it.
         right: The observed value if no body is wrong; default: what they are.
         said: Words before the observed value.
