@@ -179,9 +179,12 @@ def configurations() -> list[dict[str, Any]]:
     return [block.get("mcpServers", block.get("servers", block.get("mcp_servers")))["irsim"] for block in loaded]
 
 
-def test_each_host_has_a_block() -> None:
+def test_each_host_has_a_block_and_each_skill_a_link() -> None:
     for host in ("Claude Code", "Claude Desktop", "Cursor", "Codex", "VS Code"):
         assert host in SECTION
+    for page in (ROOT / "skills").glob("*/SKILL.md"):
+        assert f"({page.relative_to(ROOT).as_posix()})" in SECTION
+    assert f"<!-- mcp-name: {SERVER['name']} -->" in README  # shows the registry that the package is ours
     keys = [next(iter(json.loads(block))) for block in blocks("json")]
     assert keys == ["mcpServers", "servers"]
     assert [list(tomllib.loads(block)) for block in blocks("toml")] == [["mcp_servers"]]
@@ -225,15 +228,6 @@ def test_the_skills_are_installed_where_hosts_look(tmp_path: Path) -> None:
         command, _, place = line.partition("  #")
         subprocess.run(warm([sys.executable, "-m", *shlex.split(command)]), cwd=tmp_path, check=True, timeout=60)
         assert (tmp_path / place.split(",")[0].strip() / "irsim-scenario" / "SKILL.md").is_file()
-
-
-def test_every_skill_is_named() -> None:
-    for page in (ROOT / "skills").glob("*/SKILL.md"):
-        assert f"({page.relative_to(ROOT).as_posix()})" in SECTION
-
-
-def test_the_registry_can_see_that_the_package_is_ours() -> None:
-    assert f"<!-- mcp-name: {SERVER['name']} -->" in README
 
 
 def test_server_json_follows_the_registrys_rules() -> None:

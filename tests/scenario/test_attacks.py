@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 import os
@@ -169,19 +170,19 @@ def test_monstrous_numbers_and_what_is_no_scenario_are_refused(text: str) -> Non
     assert reading.errors
 
 
-@pytest.mark.parametrize("kind", ["directory", "/dev/null", "/dev/zero", "fifo", "binary", "unreadable"])
+SPECIAL: dict[str, Callable[[Path], object]] = {
+    "directory": Path.mkdir,
+    "fifo": os.mkfifo,
+    "binary": lambda path: path.write_bytes(bytes(range(256)) * 100),
+    "unreadable": lambda path: path.symlink_to(path),
+    **{device: functools.partial(Path.symlink_to, target=device) for device in ("/dev/null", "/dev/zero")},
+}
+
+
+@pytest.mark.parametrize("kind", SPECIAL)
 def test_a_file_that_is_not_text_is_reported(kind: str, tmp_path: Path) -> None:
     path = tmp_path / "scenario.yaml"
-    if kind == "directory":
-        path.mkdir()
-    elif kind.startswith("/dev"):
-        path = Path(kind)
-    elif kind == "fifo":
-        os.mkfifo(path)
-    elif kind == "binary":
-        path.write_bytes(bytes(range(256)) * 100)
-    else:
-        path.symlink_to(path)
+    SPECIAL[kind](path)
     with within(0.2 * SLOW_MACHINE):
         (problem,) = read(path).errors
     assert problem.code in ("not-a-file", "not-text", "unreadable")

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from irsim.components.shapes.circle import Circle
 from irsim.options.colors import CYCLE
 from irsim.scenario.read import read
 from irsim.scenario.resolve.per_object import kind_of, spread
@@ -56,14 +57,46 @@ def test_group_numbers(data: dict[str, Any], groups: list[int]) -> None:
     assert [o.group for o in resolved(data).objects] == groups
 
 
-def test_defaults_of_a_bare_object() -> None:
-    record = one()
-    assert (record.state, record.goals) == ([1, 1, 0], [[1, 9, 0]])
-    assert (getattr(record.shape, "radius", None), record.kinematics, record.static) == (1, None, True)
-    assert (record.mass, record.friction, record.restitution, record.inertia) == (math.inf, 0.5, 0, None)
-    assert (record.color, record.description, record.sensors) == ("k", None, [])
-    assert (record.fov, record.fov_radius, record.wheelbase) == (None, None, None)
-    assert (record.wander, record.target_roles) == (False, "all")
+ACKER = {"kinematics": {"name": "acker"}}
+LONG = {"name": "rectangle", "wheelbase": 3}
+BARE = {
+    "state": [1, 1, 0], "goals": [[1, 9, 0]], "shape": Circle(radius=1), "kinematics": None, "static": True,
+    "mass": math.inf, "friction": 0.5, "restitution": 0, "inertia": None, "color": "k", "description": None,
+    "sensors": [], "fov": None, "fov_radius": None, "wheelbase": None, "wander": False, "target_roles": "all",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("keys", "expected"),
+    [
+        ({}, BARE),
+        ({"state": [5]}, {"state": [5, 0, 0]}),
+        ({"state": []}, {"state": [0, 0, 0]}),
+        ({"state": [5, 6]}, {"state": [5, 6, 0]}),
+        ({"state": [5, 6, 7, 8]}, {"state": [5, 6, 7]}),
+        ({"state": [5, 6, 7, 8], **ACKER}, {"state": [5, 6, 7, 8]}),
+        ({"state": [5, 6, 7], **ACKER}, {"state": [5, 6, 7, 0]}),
+        ({"state": [1, 2, 3, 4, 5], "state_dim": 5}, {"state": [1, 2, 3, 4, 5]}),
+        ({"state": None}, {"state": [1, 1, 0]}),
+        ({"waypoints": [[1, 2], [3, 4, 0]]}, {"goals": [[1, 2], [3, 4, 0]]}),
+        ({"fov": 1.0, "fov_radius": 2}, {"fov": 1.0, "fov_radius": 2}),
+        ({"fov": 6.2832, "fov_radius": 2}, {"fov": 2 * math.pi, "fov_radius": 2}),
+        ({"fov_radius": 2}, {"fov": None, "fov_radius": None}),
+        ({"sensors": [{}]}, {"fov": math.pi, "fov_radius": 10}),
+        ({"sensors": [{}], "fov_radius": 2}, {"fov": math.pi, "fov_radius": 10}),
+        ({"sensors": [{}], "fov": 1.0}, {"fov": 1.0, "fov_radius": 10}),
+        ({"sensors": [{"angle_range": 6.2832, "range_max": 4}]}, {"fov": 2 * math.pi, "fov_radius": 4}),
+        (ACKER, {"description": "car_green.png"}),
+        ({**ACKER, "description": "mine.png"}, {"description": "mine.png"}),
+        ({**ACKER, "shape": LONG}, {"wheelbase": 3}),
+        ({"kinematics": {"name": "acker", "wheelbase": 2}, "shape": LONG}, {"wheelbase": 2}),
+        ({"tags": ["pedestrian"]}, {"tags": ("pedestrian",)}),
+    ],
+    ids=str,
+)
+def test_what_follows_from_the_keys_of_a_robot(keys: dict[str, Any], expected: dict[str, Any]) -> None:
+    record = one(**keys)
+    assert {key: getattr(record, key) for key in expected} == expected
 
 
 @pytest.mark.parametrize(
@@ -75,23 +108,6 @@ def test_dimensions_and_limits(name: str, state: int, vel: int) -> None:
     assert (record.vel_min, record.vel_max) == ([-1] * vel, [1] * vel)
     assert (record.acce, record.velocity) == ([math.inf] * vel, [0] * vel)
     assert (record.angle_range, record.static, record.mass) == ((-math.pi, math.pi), False, 1)
-
-
-@pytest.mark.parametrize(
-    ("keys", "state"),
-    [
-        ({"state": [5]}, [5, 0, 0]),
-        ({"state": []}, [0, 0, 0]),
-        ({"state": [5, 6]}, [5, 6, 0]),
-        ({"state": [5, 6, 7, 8]}, [5, 6, 7]),
-        ({"state": [5, 6, 7, 8], "kinematics": {"name": "acker"}}, [5, 6, 7, 8]),
-        ({"state": [5, 6, 7], "kinematics": {"name": "acker"}}, [5, 6, 7, 0]),
-        ({"state": [1, 2, 3, 4, 5], "state_dim": 5}, [1, 2, 3, 4, 5]),
-        ({"state": None}, [1, 1, 0]),
-    ],
-)
-def test_states_are_padded_and_cut(keys: dict[str, Any], state: list[float]) -> None:
-    assert one(**keys).state == state
 
 
 @pytest.mark.parametrize(
@@ -108,12 +124,6 @@ def test_states_are_padded_and_cut(keys: dict[str, Any], state: list[float]) -> 
 def test_goals(goal: Any, goals: list[list[list[float]]]) -> None:
     scenario = resolved({"robot": {**DIFF, "number": 3, "goal": goal, "state": [[1, 1], [2, 2], [3, 3]]}})
     assert [o.goals for o in scenario.objects] == goals
-
-
-def test_waypoints() -> None:
-    assert one(waypoints=[[1, 2], [3, 4, 0]]).goals == [[1, 2], [3, 4, 0]]
-    scenario = resolved({"robot": {"number": 2, "waypoints": [[[1, 2], [3, 4]], [[5, 6]]], "state": [[1, 1], [2, 2]]}})
-    assert [o.goals for o in scenario.objects] == [[[1, 2], [3, 4]], [[5, 6]]]
 
 
 @given(st.integers(1, 12), st.floats(0.5, 8), st.floats(-20, 20), st.floats(-20, 20))
@@ -171,6 +181,7 @@ def test_wander_box_is_the_world_unless_given() -> None:
         ("robot", {}, "k"),
         ("robot", {"mass": 2}, "#E69F00"),
         ("obstacle", DIFF, "k"),
+        ("obstacle", ACKER, "k"),
         ("obstacle", {"mass": 2}, "#E69F00"),
         ("obstacle", {"mass": 2, "static": True}, "k"),
         ("obstacle", {"mass": math.inf}, "k"),
@@ -178,7 +189,9 @@ def test_wander_box_is_the_world_unless_given() -> None:
     ],
 )
 def test_default_colors(role: str, keys: dict[str, Any], color: Any) -> None:
-    assert resolved({role: keys}).objects[0].color == color
+    record = resolved({role: keys}).objects[0]
+    assert record.color == color
+    assert role == "robot" or record.description is None
 
 
 def test_cycle_starts_anew_with_every_entry() -> None:
@@ -189,41 +202,11 @@ def test_cycle_starts_anew_with_every_entry() -> None:
     assert [o.color for o in resolved({"robot": listed}).objects] == [CYCLE[0], "r", "r"]
 
 
-def test_pictures() -> None:
-    assert one(kinematics={"name": "acker"}).description == "car_green.png"
-    assert one(kinematics={"name": "acker"}, description="mine.png").description == "mine.png"
-    assert resolved({"obstacle": {"kinematics": {"name": "acker"}}}).objects[0].description is None
-
-
-@pytest.mark.parametrize(
-    ("keys", "view"),
-    [
-        ({}, (None, None)),
-        ({"fov": 1.0, "fov_radius": 2}, (1.0, 2)),
-        ({"fov": 6.2832, "fov_radius": 2}, (2 * math.pi, 2)),
-        ({"fov_radius": 2}, (None, None)),
-        ({"sensors": [{}]}, (math.pi, 10)),
-        ({"sensors": [{}], "fov_radius": 2}, (math.pi, 10)),
-        ({"sensors": [{}], "fov": 1.0}, (1.0, 10)),
-        ({"sensors": [{"angle_range": 6.2832, "range_max": 4}]}, (2 * math.pi, 4)),
-    ],
-)
-def test_field_of_view(keys: dict[str, Any], view: tuple[float | None, float | None]) -> None:
-    record = one(**keys)
-    assert (record.fov, record.fov_radius) == view
-
-
 def test_sensors_for_all_or_each() -> None:
     lidar = {"name": "lidar2d", "number": 5}
     for sensors, counts in (([lidar, lidar], [2, 2, 2]), ([[lidar], []], [1, 0, 0])):
         scenario = resolved({"robot": {"number": 3, "state": [[1, 1], [2, 2], [3, 3]], "sensors": sensors}})
         assert [len(o.sensors) for o in scenario.objects] == counts
-
-
-def test_wheelbase_of_kinematics_first() -> None:
-    shape = {"name": "rectangle", "wheelbase": 3}
-    assert one(kinematics={"name": "acker"}, shape=shape).wheelbase == 3
-    assert one(kinematics={"name": "acker", "wheelbase": 2}, shape=shape).wheelbase == 2
 
 
 def test_world_values_are_defaults_of_objects() -> None:
@@ -247,10 +230,13 @@ def test_document_is_kept_as_written() -> None:
     assert (scenario.custom, scenario.text) == ({"a": [1]}, text)
 
 
-def test_tags() -> None:
-    assert one(tags=["pedestrian"]).tags == ("pedestrian",)
-    scenario = resolved({"robot": {"number": 2, "tags": [["a"], ["b", "c"]], "state": [[1, 1], [2, 2]]}})
-    assert [o.tags for o in scenario.objects] == [("a",), ("b", "c")]
+@pytest.mark.parametrize(
+    ("key", "values"), [("goals", [[[1, 2], [3, 4]], [[5, 6]]]), ("tags", [("a",), ("b", "c")])], ids=str
+)
+def test_each_object_has_its_own_waypoints_and_tags(key: str, values: list[Any]) -> None:
+    given = {"waypoints" if key == "goals" else key: [list(value) for value in values]}
+    scenario = resolved({"robot": {"number": 2, "state": [[1, 1], [2, 2]], **given}})
+    assert [getattr(o, key) for o in scenario.objects] == values
 
 
 def test_nothing_is_shared_that_changes() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 from typing import Any
 
@@ -41,27 +42,11 @@ obstacle:
     state: [3, 3, 0]  # ignored
 """
 
-MENDED = """\
-# my scene
-world:
-  width: 12          # m
-  height: 10
-  step_time: 0.1    # s
-robot:
-  - kinematics: {name: diff}   # two wheels
-    shape: {name: circle, radius: 0.3}
-    state: [1, 1, 0]
-    waypoints: [[9, 1], [9, 9]]    # route
-    behavior: {name: dash, wander: true}
-    vel_max: [1.0, 1.5]
-    wheels: 3
-    # last
-obstacle:
-  - number: 2
-    shape: {name: rectangle, length: 1, width: 1}
-    distribution: {name: random}
-    # ignored
-"""
+REPAIRS = {
+    "widht": "width", "1e-1": "0.1", "dif}": "diff}", "goal:": "waypoints:", "behaviour": "behavior", "loop: yes, ": "",
+    "number: 2.0": "number: 2", "lenght": "length", "state: [3, 3, 0]  #": "#",
+}  # fmt: skip
+MENDED = functools.reduce(lambda text, repair: text.replace(*repair), REPAIRS.items(), FLAWED)
 
 
 def test_mends_slips_and_keeps_every_other_character() -> None:
