@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import ast
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -34,16 +34,13 @@ def test_a_report_reads_like_a_compiler() -> None:
     text = (
         "world: {height: 10}\n"
         "robot:\n"
-        "  - kinematics: {name: diff}\n"
-        "    shape: {name: circle}\n"
-        "    behavior: {name: rov}\n"
-        "    goal: [9, 9]\n"
-        "    state: [1, 1, 0]\n"
+        "  - {kinematics: {name: diff}, shape: {name: circle}, goal: [9, 9], state: [1, 1, 0],\n"
+        "    behavior: {name: rov}}\n"
     )
     reading = read(text, strict=True, name="crossing.yaml")
     assert format_diagnostics(reading.diagnostics, text) == (
-        "crossing.yaml:5:22  error unknown-behavior  robot[0].behavior.name\n"
-        "   5 |     behavior: {name: rov}\n"
+        "crossing.yaml:4:22  error unknown-behavior  robot[0].behavior.name\n"
+        "   4 |     behavior: {name: rov}}\n"
         "     |                      ^^^ 'rov' is not a behavior\n"
         "  allowed: avocado, dash, follow, footprint_orca, orca, replay, rvo, sfm. Did you mean 'rvo'?   "
         "fix: name: rvo\n"
@@ -197,19 +194,10 @@ def test_edits_mend_what_they_are_for(path: Path) -> None:
     assert not left & gone
 
 
-def test_lenient_ignores_what_the_suggestion_would_rename() -> None:
-    text = "world: {widht: 30}\n"
-    (item,) = read(text, strict=True).diagnostics
-    assert item.edit is not None
-    assert (item.edit.action, item.edit.value) == ("rename", "width")
-    scenario = read(text).scenario
-    assert scenario is not None
-    assert scenario.world.width == 10
-
-
 @pytest.mark.parametrize(
     ("data", "check"),
     [
+        ({"world": {"widht": 30}}, lambda s: s.world.width == 10),
         ({"world": {"collision_mode": "stopp"}}, lambda s: s.world.collision_mode == "unobstructed"),
         ({"world": {"control_mode": "joystick"}}, lambda s: s.world.control_mode == "auto"),
         ({"world": {"offset": [1, 2, 3]}}, lambda s: s.world.offset == [1, 2]),
@@ -234,15 +222,10 @@ def test_lenient_does_what_2_12_does(data: dict[str, Any], check: Any) -> None:
 
 
 def test_codes_are_a_closed_documented_list() -> None:
-    used = set()
-    for path in PACKAGE.rglob("*.py"):
-        if path.parent.name == "codes":
-            continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in CODES:
-                used.add(node.value)
+    sources = [path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py") if path.parent.name != "codes"]
+    written = set(re.findall(r'"([a-z0-9-]+)"', "\n".join(sources)))
     computed = {code for code in CODES if code.startswith(("unknown-", "yaml-"))}
-    assert set(CODES) - used - computed == set()
+    assert set(CODES) - written - computed == set()
     for name, code in CODES.items():
         assert name == name.lower()
         assert code.title[0].islower() or code.title.split()[0] in ("YAML", "NaN")
@@ -288,6 +271,12 @@ ROOM = "world: {width: 10, height: 10}\n"
 DIFF = "kinematics: {name: diff}, behavior: {name: dash}"
 
 
+def named(code: str, keys: str, world: str = ROOM) -> Diagnostic:
+    """The one finding with this code about a robot that drives straight."""
+    (item,) = [d for d in read(f"{world}robot: {{{DIFF}, {keys}}}\n", strict=True).diagnostics if d.code == code]
+    return item
+
+
 @pytest.mark.parametrize(
     ("keys", "code", "fix"),
     [
@@ -306,8 +295,7 @@ DIFF = "kinematics: {name: diff}, behavior: {name: dash}"
     ],
 )
 def test_decimal_commas_are_recognised(keys: str, code: str, fix: str | None) -> None:
-    diagnostics = read(f"{ROOM}robot: {{{DIFF}, {keys}}}\n", strict=True).diagnostics
-    (item,) = [item for item in diagnostics if item.code == code]
+    item = named(code, keys)
     assert item.fix == fix
     assert item.severity == ("hint" if code == "state-truncated" and fix is None else item.severity)
 
@@ -369,13 +357,10 @@ def test_a_mistake_behind_an_anchor_is_told_once() -> None:
 
 def test_speeds_may_be_meant_in_kilometres_an_hour() -> None:
     keys = "vel_max: [50, 1], vel_min: [-50, -1], state: [1, 1, 0], goal: [9, 9]"
-    diagnostics = read(f"{ROOM}robot: {{{DIFF}, {keys}}}\n", strict=True).diagnostics
-    (item,) = [item for item in diagnostics if item.code == "speed-in-centimetres"]
-    assert item.fix == "speeds are in m/s: 50 km/h are 13.89, 50 cm/s are 0.5"
+    assert named("speed-in-centimetres", keys).fix == "speeds are in m/s: 50 km/h are 13.89, 50 cm/s are 0.5"
 
 
 @pytest.mark.parametrize(("step", "severity"), [(100, "warning"), (12, "warning"), (2, "hint")])
 def test_steps_as_long_as_the_way_through_the_world_are_warned_of(step: int, severity: str) -> None:
-    text = f"world: {{width: 10, height: 10, step_time: {step}}}\nrobot: {{{DIFF}, state: [1, 1, 0], goal: [9, 9]}}\n"
-    (item,) = [item for item in read(text, strict=True).diagnostics if item.code == "step-time-long"]
-    assert item.severity == severity
+    world = f"world: {{width: 10, height: 10, step_time: {step}}}\n"
+    assert named("step-time-long", "state: [1, 1, 0], goal: [9, 9]", world).severity == severity

@@ -84,13 +84,11 @@ def test_a_zone_outside_the_world_is_a_warning() -> None:
 
 
 def test_zones_do_not_change_what_objects_do() -> None:
-    robots = (
-        "robot: {number: 5, kinematics: {name: diff, noise: true}, distribution: {name: random}, "
-        "behavior: {name: orca}, sensors: [{number: 9}]}\n"
-    )
-    plain = irsim.make(read("world: {width: 10}\n" + robots).scenario, seed=3, headless=True)
-    zones = "world: {width: 10, zones: [{name: all, rectangle: [0, 0, 10, 10]}, {name: l, line: [[5, 0], [5, 10]]}]}\n"
-    watched = irsim.make(read(zones + robots).scenario, seed=3, headless=True)
+    drive = {"kinematics": {"name": "diff", "noise": True}, "behavior": {"name": "orca"}, "sensors": [{"number": 9}]}
+    robots = {"number": 5, "distribution": {"name": "random"}, **drive}
+    zones = [{"name": "all", "rectangle": [0, 0, 10, 10]}, {"name": "l", "line": [[5, 0], [5, 10]]}]
+    worlds = [read({"world": {"width": 10, **more}, "robot": robots}).scenario for more in ({}, {"zones": zones})]
+    plain, watched = (irsim.make(world, seed=3, headless=True) for world in worlds)
     for env in (plain, watched):
         env.advance(150)
     assert plain.simulation.pose.tobytes() == watched.simulation.pose.tobytes()
