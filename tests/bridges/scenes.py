@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,26 @@ from irsim.common.outline import BodyPart, Circle, Line, Polygon
 from irsim.runs import Run, open_run
 from irsim.simulation.scene import Grid, Lidar, SceneDescription, SceneObject
 
-__all__ = ["environment", "gallery", "motion_of", "recorded", "state_of"]
+__all__ = ["STAGE", "environment", "gallery", "motion_of", "record_stage", "recorded", "state_of"]
 
+STAGE = """
+world: {width: 12, height: 8, step_time: 0.1, time_limit: 6, boundary: walls, collision_mode: unobstructed_obstacles,
+        obstacle_map: {name: perlin, resolution: 0.5, seed: 3, fill: 0.08}}
+robot:
+  - {name: "robot 1", state: [1, 4, 3], goal: [11, 4], kinematics: {name: diff}, behavior: {name: dash},
+     shape: {name: rectangle, length: 0.5, width: 0.3}}
+  - {name: spinner, state: [2, 1.5, 0], goal: [2.2, 1.5], kinematics: {name: omni_angular},
+     shape: {name: circle, radius: 0.2}, behavior: {name: replay, times: [0, 1, 2, 3, 4, 5], poses: [[2, 1.5, 0],
+     [2, 1.5, 2], [2, 1.5, 4], [2, 1.5, 6], [2, 1.5, 8], [2, 1.5, 10]]}}
+obstacle:
+  - {name: "robot_1", state: [6, 6, 0.3], shape: {name: polygon, vertices: [[0, 0], [1.5, 0], [1.5, 1.5], [1, 1.5],
+     [1, 0.5], [0.5, 0.5], [0.5, 1.5], [0, 1.5]]}}
+  - {name: wall, state: [0, 0, 0], shape: {name: linestring, vertices: [[8, 1], [9, 1], [9, 2]]}}
+  - {name: disc, state: [4, 7, 0], shape: {name: circle, radius: 0.3, center: [0.1, 0]}}
+  - {name: walker, kinematics: {name: omni_angular}, shape: {name: circle, radius: 0.25},
+     behavior: {name: replay, times: [0.4, 1.2, 4.0], poses: [[5, 1], [5, 3], [5, 7]]}}
+"""
+"""A scenario with everything that a stage of OpenUSD shows."""
 _U = np.array([[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]], dtype=float)
 _FENCE = np.array([[-3.0, 0.0], [3.0, 0.0], [4.0, -1.0]])
 _CAR = np.array([[-0.8, -0.9], [3.8, -0.9], [3.8, 0.9], [-0.8, 0.9]])
@@ -30,6 +49,12 @@ def environment(text: str, seed: int | None = None) -> irsim.Env:
 def recorded(text: str, steps: int | None = None, seed: int = 1) -> Run:
     """A run of a scenario, recorded below the current directory."""
     return open_run(str(irsim.run(text=text, seed=seed, steps=steps, record=True).run_id))
+
+
+def record_stage(folder: Path) -> Run:
+    """A run of that scenario, recorded in a folder."""
+    irsim.run(text=STAGE, record=folder / "run")
+    return open_run(folder / "run")
 
 
 def agent(index: int, name: str, drive: str | None, parts: tuple[BodyPart, ...], **more: Any) -> SceneObject:

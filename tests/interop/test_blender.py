@@ -16,7 +16,7 @@ import pytest
 
 from irsim.bridges.export.export import export_run
 from irsim.bridges.recorded import recorded_states
-from tests.interop.usd_run import record
+from tests.bridges.scenes import record_stage
 
 pytestmark = [
     pytest.mark.slow(30),
@@ -44,7 +44,7 @@ print("FOUND" + json.dumps(found))
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    return record(tmp_path_factory.mktemp("usd"))
+    return record_stage(tmp_path_factory.mktemp("usd"))
 
 
 def test_blender_reads_a_run(run, tmp_path: Path) -> None:

@@ -20,8 +20,7 @@ from irsim.bridges.maps import import_map, read_sidecar
 from irsim.cli.app import app
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.read import read
-from tests.bridges.maps.flat import box, flat, house, storey, write_glb, write_obj, y_up
-from tests.bridges.maps.navmesh_files import TWO_ROOMS, mesh_set, tile
+from tests.bridges.maps.scenes import TWO_ROOMS, box, flat, house, mesh_set, storey, tile, write_glb, write_obj, y_up
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("meshes")]
 trimesh = pytest.importorskip("trimesh")

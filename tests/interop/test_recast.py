@@ -13,7 +13,7 @@ from irsim.bridges.maps.grid import Grid
 from irsim.bridges.maps.importing import import_map, read_occupancy
 from irsim.bridges.maps.occupancy import eroded
 from irsim.bridges.maps.source import FREE, ImportLimits, ImportOptions, Occupancy
-from tests.bridges.maps.flat import flat, house, write_glb, y_up
+from tests.bridges.maps.scenes import flat, house, write_glb, y_up
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("recast")]
 SOURCE = Path(__file__).with_name("recast_flat.cpp")

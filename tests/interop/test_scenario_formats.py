@@ -15,8 +15,7 @@ import irsim
 from irsim.bridges.export.export import export_run
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.runs import Run
-from tests.bridges.scenes import recorded
-from tests.interop.usd_run import record
+from tests.bridges.scenes import record_stage, recorded
 
 pytestmark = pytest.mark.interop
 SCENE = """
@@ -95,7 +94,7 @@ def test_scenariogeneration_reads_the_trajectories(run: Run) -> None:
 @pytest.fixture(scope="module")
 def shapes(tmp_path_factory):
     pytest.importorskip("commonroad")
-    return record(tmp_path_factory.mktemp("commonroad"))
+    return record_stage(tmp_path_factory.mktemp("commonroad"))
 
 
 def test_commonroad_reads_what_was_simulated(shapes, tmp_path) -> None:

@@ -29,7 +29,7 @@ from irsim.bridges.splats.page import write_page
 from irsim.bridges.splats.reading import read_splats
 from irsim.bridges.splats.render import View, picture
 from irsim.runs import Run, open_run
-from tests.bridges.maps.flat import flat
+from tests.bridges.maps.scenes import flat
 from tests.bridges.splats.conftest import ROBOT
 from tests.bridges.splats.scenes import FIELDS, room, write_ply
 from tests.browser import NAMES, until

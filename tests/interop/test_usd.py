@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from irsim.bridges.recorded import recorded_scene, recorded_states
 from irsim.cli.app import app
 from irsim.common.data_files import skills_directory
-from tests.interop.usd_run import TEXT, record
+from tests.bridges.scenes import STAGE, record_stage
 from tests.skills.conftest import fences
 
 pytestmark = pytest.mark.interop
@@ -33,7 +33,7 @@ PERSON = '#usda 1.0\n(\n defaultPrim = "P"\n)\ndef Sphere "P" {\n double radius 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    return record(tmp_path_factory.mktemp("usd"))
+    return record_stage(tmp_path_factory.mktemp("usd"))
 
 
 def validate(stage) -> list[str]:
@@ -117,7 +117,7 @@ def test_bodies_are_where_they_are_simulated_and_collide(run) -> None:
 
 
 def test_a_scenario_that_was_not_run(tmp_path: Path) -> None:
-    (tmp_path / "scene.yaml").write_text(TEXT)
+    (tmp_path / "scene.yaml").write_text(STAGE)
     target = export_scene(tmp_path / "scene.yaml", tmp_path / "start.usda")
     stage = Usd.Stage.Open(str(target))
     assert validate(stage) == []
@@ -244,7 +244,7 @@ def test_follow_stands_alone() -> None:
 
 
 def test_commands_of_the_page(tmp_path: Path) -> None:
-    (tmp_path / "scene.yaml").write_text(TEXT)
+    (tmp_path / "scene.yaml").write_text(STAGE)
     page = (skills_directory() / "irsim-runner" / "bridges" / "usd.md").read_text(encoding="utf-8")
     for command in (line for block in fences(page, "bash") for line in block.splitlines()):
         if command.startswith("irsim "):

@@ -13,14 +13,15 @@ import pytest
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps import import_map, read_sidecar
 from irsim.bridges.maps.importing import read_occupancy
-from irsim.bridges.maps.kinds._usd_process import Collector
 from irsim.bridges.maps.source import FREE, ImportLimits, ImportOptions
 from irsim.scenario.read import read
-from tests.bridges.maps.flat import box, flat, house, y_up
+from tests.bridges.maps.scenes import box, flat, house, y_up
 
 pytestmark = [pytest.mark.interop, pytest.mark.xdist_group("usd")]
 pxr = pytest.importorskip("pxr")
 from pxr import Gf, Usd, UsdGeom, UsdUtils, Vt  # noqa: E402
+
+from irsim.bridges.maps.kinds._usd_process import Collector  # noqa: E402
 
 
 def add_mesh(stage, path: str, triangles: np.ndarray):

@@ -25,8 +25,7 @@ from irsim.common.extras import ExtraError
 from irsim.common.files import TargetError
 from irsim.diagnostics.errors import ArgumentError
 from irsim.scenario.read import read
-from tests.bridges.maps.flat import box, write_glb, write_obj
-from tests.bridges.maps.navmesh_files import TWO_ROOMS, UPSTAIRS, mesh_set, tile
+from tests.bridges.maps.scenes import TWO_ROOMS, UPSTAIRS, box, mesh_set, tile, write_glb, write_obj
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from irsim.bridges.maps.occupancy import eroded, occupancy_of, within
 from irsim.bridges.maps.regions import connected, masked_regions
 from irsim.bridges.maps.source import FREE, OCCUPIED, UNKNOWN, ImportLimits, ImportOptions, Occupancy, Scene
 from irsim.bridges.maps.writing import suggest_trip
-from tests.bridges.maps.flat import box, flat, house
+from tests.bridges.maps.scenes import box, flat, house
 
 
 def occupancy(triangles: np.ndarray, **options) -> Occupancy:

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from irsim.bridges.base import BridgeError
 from irsim.bridges.maps.kinds import _gltf, mesh
 from irsim.bridges.maps.source import ImportLimits
-from tests.bridges.maps.flat import box, write_glb
+from tests.bridges.maps.scenes import box, write_glb
 
 LIMITS = ImportLimits()
 BOX = box([0, 0, 0], [2, 2, 1])

@@ -19,7 +19,7 @@ from irsim.bridges.maps import import_map, read_sidecar
 from irsim.bridges.maps.grid import Grid, grid_over, rows_of
 from irsim.bridges.maps.kinds.navmesh import read_tiles
 from irsim.bridges.maps.voxels import floors_of, spans_of, walkable_of
-from tests.bridges.maps.navmesh_files import TWO_ROOMS, UPSTAIRS, mesh_set, tile
+from tests.bridges.maps.scenes import TWO_ROOMS, UPSTAIRS, mesh_set, tile
 
 
 def write(folder: Path, content: bytes) -> Path:

@@ -19,8 +19,7 @@ import irsim
 from irsim.bridges.base import BridgeError, BridgeLostError
 from irsim.cli.app import app
 from irsim.policies import FunctionPolicy, Needs, Observations
-from tests.interop.carla.conftest import StartTown, free_ports
-from tests.interop.carla.scenes import CROWD, in_town
+from tests.interop.carla.conftest import CROWD, StartTown, free_ports, in_town
 
 pytestmark = pytest.mark.interop
 

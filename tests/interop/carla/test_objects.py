@@ -11,8 +11,7 @@ import pytest
 import irsim
 from irsim.bridges.doctor import LEFT_CURVE
 from tests.bridges.scenes import environment
-from tests.interop.carla.conftest import StandIn, StartTown
-from tests.interop.carla.scenes import CROWD, DRIVE, YARD, in_town
+from tests.interop.carla.conftest import CROWD, DRIVE, YARD, StandIn, StartTown, in_town
 
 pytestmark = pytest.mark.interop
 PLACE = (100.0, -50.0, 30.0)

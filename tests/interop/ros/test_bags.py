@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.bridges.ros.backends.dds import dds_type_name, struct_type
 from irsim.bridges.ros.messages import Messages
 from irsim.bridges.ros.outgoing import Outgoing
 from irsim.bridges.ros.topics import TABLE, scene_topics
@@ -87,6 +86,8 @@ def test_a_run_that_does_not_begin_leaves_no_bag(make_env: MakeEnv) -> None:
 
 
 def test_all_messages_of_a_scene_have_equal_bytes(make_env: MakeEnv) -> None:
+    from irsim.bridges.ros.backends.dds import struct_type
+
     env = make_env(SCENE)
     for _ in range(3):
         env.step()
@@ -108,6 +109,8 @@ def test_all_messages_of_a_scene_have_equal_bytes(make_env: MakeEnv) -> None:
 
 @pytest.mark.parametrize("distro", ["humble", "jazzy"])
 def test_identifiers_have_the_length_of_the_release(distro: Any) -> None:
+    from irsim.bridges.ros.backends.dds import dds_type_name
+
     messages = Messages(distro)
     [(_, (_, detail))] = messages.store.fielddefs["rmw_dds_common/msg/Gid"][1]
     assert detail[1] == messages.gid_size

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.interop.carla.standin.actors import Actor
+from tests.interop.carla.standin.town import Actor
 
 LIDAR, SNAPSHOT = 11, 17
 """Places of the kinds of sensors in the registry of the client."""

@@ -13,8 +13,7 @@ from typing import Any, TextIO
 import msgpack
 
 from tests.interop.carla.standin import layouts
-from tests.interop.carla.standin.actors import WHEELBASE, Actor
-from tests.interop.carla.standin.town import Town
+from tests.interop.carla.standin.town import WHEELBASE, Actor, Town
 
 LIDAR_KEYS = {
     "role_name": "lidar", "channels": "32", "range": "10.0", "points_per_second": "56000", "rotation_frequency": "10.0",
