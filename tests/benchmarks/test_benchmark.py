@@ -59,12 +59,17 @@ def test_each_episode_equals_a_run_with_its_seed(files) -> None:
         assert mean == (pytest.approx(sum(times) / len(times)) if times else None)
 
 
-def test_results_do_not_depend_on_the_number_of_processes(files, at_once) -> None:
+@pytest.mark.parametrize(
+    ("perturb", "episodes"), [(None, 14), (["position=0.5,heading=20deg", "speed=10%,delay=3,objects=robot"], 24)]
+)
+def test_results_do_not_depend_on_the_number_of_processes(files, at_once, perturb, episodes) -> None:
     told = []
-    one = irsim.benchmark(files, ["rvo", "orca"], 6, workers=1)
-    many = irsim.benchmark(files, ["rvo", "orca"], 6, workers=3, progress=lambda *now: told.append(now))
+    one = irsim.benchmark(files, ["rvo", "orca"], 6, workers=1, perturb=perturb)
+    many = irsim.benchmark(
+        files, ["rvo", "orca"], 6, workers=3, perturb=perturb, progress=lambda *now: told.append(now)
+    )
     assert one.model_dump_json() == many.model_dump_json()
-    assert (told, told[-1][1]) == (sorted(told), 14)
+    assert (told, told[-1][1]) == (sorted(told), episodes)
 
 
 def test_a_log_has_every_episode_from_the_moment_it_is_done(files, tmp_path) -> None:

@@ -58,13 +58,6 @@ def test_spread_zero_is_the_scenario_as_written(crossing: str) -> None:
     assert (zero.episodes, zero.rows) == (plain.episodes, plain.rows)
 
 
-def test_results_do_not_depend_on_the_number_of_processes(crossing: str, at_once: None) -> None:
-    asked = {"perturb": ["position=0.5,heading=20deg", "speed=10%,delay=3,objects=pedestrian"], "seeds": 8}
-    one = irsim.benchmark(crossing, ["dash", "orca"], workers=1, **asked)
-    four = irsim.benchmark(crossing, ["dash", "orca"], workers=4, **asked)
-    assert one.model_dump_json() == four.model_dump_json()
-
-
 def test_behaviors_meet_the_same_starts(crossing: str) -> None:
     result = irsim.benchmark(crossing, ["dash", "{name: dash, wander: false}"], 6, perturb="position=0.5,speed=0.2")
     assert [e.metrics for e in result.episodes[:6]] == [e.metrics for e in result.episodes[6:]]

@@ -15,7 +15,7 @@ from pettingzoo.test import parallel_api_test, parallel_seed_test
 import irsim.learning
 from irsim.diagnostics.errors import ArgumentError
 from irsim.learning import Env, ParallelEnv, VectorEnv
-from irsim.learning.tasks.files import TASKS, TaskError, environment_id
+from irsim.learning.tasks.files import TASKS, TaskError, environment_id, open_task
 from tests.learning.tasks import CHOICES, crowd, lidar_among_boxes, task
 
 MADE = {"controls": lidar_among_boxes(), "choices": lidar_among_boxes(action=CHOICES)}
@@ -34,11 +34,13 @@ def test_the_checker_of_gymnasium_has_no_complaint(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", TASKS.names())
-def test_bundled_tasks_are_registered(name: str) -> None:
-    assert irsim.learning.__doc__
-    made = gymnasium.make_vec(environment_id(name), num_envs=irsim.learning.Worlds(TASKS.bundled(name)).learners)
-    seen, _ = made.reset(seed=0)
-    assert made.observation_space.contains(seen)
+def test_bundled_tasks_are_named_like_their_files_and_registered(name: str) -> None:
+    made, _ = open_task(TASKS.bundled(name))
+    assert (made.task, bool(made.title), bool(made.about)) == (name, True, True)
+    learners = irsim.learning.Worlds(made).learners
+    env = gymnasium.make_vec(environment_id(name), num_envs=2 * learners)
+    seen, _ = env.reset(seed=0)
+    assert (env.observation_space.contains(seen), len(seen)) == (True, 2 * learners)
 
 
 @pytest.mark.parametrize("made", MADE.values(), ids=MADE)

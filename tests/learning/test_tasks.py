@@ -32,14 +32,6 @@ def test_reward_terms_are_documented(feature: Feature) -> None:
     conformance.check_defaults(feature)
 
 
-@pytest.mark.parametrize("name", TASKS.names())
-def test_bundled_tasks_are_named_like_their_files_and_step(name: str) -> None:
-    made, _ = open_task(TASKS.bundled(name))
-    assert (made.task, bool(made.title), bool(made.about)) == (name, True, True)
-    worlds = Worlds(TASKS.bundled(name), 2)
-    assert worlds.observe().shape == (2 * worlds.learners, worlds.eyes.size)
-
-
 def test_scenarios_come_from_files_and_templates(tmp_path: Path) -> None:
     data = task()
     (tmp_path / "scene.yaml").write_text(yaml.safe_dump(data.pop("scenario")))

@@ -51,19 +51,15 @@ def straight(seen: irsim.policies.Observations) -> np.ndarray:
 straight.output = "velocity"  # type: ignore[attr-defined]
 
 
-def test_the_program_of_the_guide_drives_as_the_same_function_here(tmp_path: Path) -> None:
-    file, there = tmp_path / "scene.yaml", program(tmp_path)
-    file.write_text(FREE)
+def test_the_program_of_the_guide_drives_as_the_same_function_here(make: Any, tmp_path: Path) -> None:
+    there = program(tmp_path)
     assert (there.output, there.stochastic) == ("velocity", False)
-    here = irsim.make(file, policy=straight, headless=True, seed=3)
-    away = irsim.make(file, policy=there, headless=True, seed=3)
+    here, away = (make(FREE, policy=policy) for policy in (straight, there))
     for _ in range(40):
         here.step()
         away.step()
     np.testing.assert_array_equal(here.simulation.pose, away.simulation.pose)
     assert np.abs(here.simulation.pose[:, :2]).max() > 1
-    here.end(ending_time=0)
-    away.end(ending_time=0)
 
 
 @pytest.mark.parametrize(
@@ -119,12 +115,10 @@ def test_what_is_declared_is_checked_like_that_of_any_policy(tmp_path: Path) -> 
 
 
 def test_lost_episodes_of_a_benchmark_are_counted_and_the_others_go_on(tmp_path: Path) -> None:
-    file = tmp_path / "scene.yaml"
-    file.write_text(FREE)
     before = f'if {ACT} and asked["time"][0] > 1 and seed % 2: sys.exit()'
     text = PROGRAM.replace('answer = {"type": "ready"}', 'answer, seed = {"type": "ready"}, asked["seed"]')
     policy = f"{{name: process, command: [{sys.executable}, {script(tmp_path, before, text)}]}}"
-    result = irsim.benchmark(file, ["dash", policy], 8, perturb="position=0.1")
+    result = irsim.benchmark(FREE, ["dash", policy], 8, perturb="position=0.1")
     mine = [episode for episode in result.episodes if episode.behavior != "dash"]
     lost = [episode for episode in mine if episode.lost]
     assert 0 < len(lost) < 8
@@ -133,7 +127,7 @@ def test_lost_episodes_of_a_benchmark_are_counted_and_the_others_go_on(tmp_path:
     assert {episode.outcome for episode in mine if not episode.lost} == {"success"}
     assert result.rows[1].incidents["policy-lost"] == len(lost)
     assert any(f"the policy was lost in {len(lost)} of 16 episodes" in text for text in result.incidents)
-    again = irsim.benchmark(file, [result.behaviors[1]], 8, perturb="position=0.1")
+    again = irsim.benchmark(FREE, [result.behaviors[1]], 8, perturb="position=0.1")
     assert [episode.lost for episode in again.episodes] == [episode.lost for episode in mine]  # seeds decide
 
 

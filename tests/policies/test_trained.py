@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,12 +38,11 @@ TRAINED_ON = {"sarl": "sarl_circle"}
 
 @pytest.mark.slow(15)
 @pytest.mark.parametrize("name", trained_policies())
-def test_it_reaches_its_success_in_scenes_of_its_task(name: str, tmp_path: Path) -> None:
+def test_it_reaches_its_success_in_scenes_of_its_task(name: str) -> None:
     task, folder = open_task(TRAINED_ON.get(name, name))
-    (tmp_path / "scene.yaml").write_text(scenario_text(task, folder))
     spreads = "; ".join(perturbation_text(one) for one in task.perturb) or None
-    result = irsim.benchmark(tmp_path / "scene.yaml", policies=[name], seeds=20, perturb=spreads, workers=1)
-    [row] = result.rows
+    scene = scenario_text(task, folder)
+    [row] = irsim.benchmark(scene, policies=[name], seeds=20, perturb=spreads, workers=1).rows
     assert row.success.rate >= LEAST[name]
 
 
@@ -101,15 +101,12 @@ def test_it_crosses_a_circle_of_people_in_the_command() -> None:
     assert "success" in made.output
 
 
-def test_benchmarks_have_a_row_of_it(tmp_path: Path) -> None:
+def test_benchmarks_have_a_row_of_it() -> None:
     """ORCA fails in each of these scenes."""
-    scene = tmp_path / "scene.yaml"
-    scene.write_text(scenario_text(*open_task("sarl_circle")))
+    scene = scenario_text(*open_task("sarl_circle"))
     orca = "{name: orca, timeHorizon: 5, safe_radius: 0.01, responsibility: 0.5, approach_time: 1}"
-    result = irsim.benchmark(scene, policies=["sarl", orca], seeds="1000-1003", workers=1)
-    mine, theirs = result.rows
-    assert mine.behavior == "sarl"
-    assert (mine.success.count, theirs.success.count) == (4, 0)
+    mine, theirs = irsim.benchmark(scene, policies=["sarl", orca], seeds="1000-1003", workers=1).rows
+    assert (mine.behavior, mine.success.count, theirs.success.count) == ("sarl", 4, 0)
 
 
 def test_robots_with_a_differential_drive_cross_each_other(tmp_path: Path) -> None:
@@ -128,17 +125,13 @@ def test_robots_with_a_differential_drive_cross_each_other(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(("step_time", "every"), [(0.1, 3), (0.25, 1), (0.05, 5)])
-def test_its_decisions_are_rounded_to_whole_steps(tmp_path: Path, step_time: float, every: int) -> None:
+def test_its_decisions_are_rounded_to_whole_steps(make: Any, step_time: float, every: int) -> None:
     """With a step of 0.1 s, 0.25 s become three steps."""
-    scene = tmp_path / "scene.yaml"
     text = ROBOTS.replace("name: diff", "name: omni").replace("[1, 3]", "[1, 1]").replace("[-1, -3]", "[-1, -1]")
-    scene.write_text(text.replace("step_time: 0.1", f"step_time: {step_time}"))
-    env = irsim.make(scene, headless=True, seed=0, policy="sarl")
+    env = make(text.replace("step_time: 0.1", f"step_time: {step_time}"), seed=0, policy="sarl")
     velocities = []
     for _ in range(40):
         env.step()
         velocities.append(env.simulation.twist[:, :2].copy())
     changes = [k for k in range(1, 40) if not np.allclose(velocities[k], velocities[k - 1], atol=1e-9)]
-    assert changes
-    assert all(k % every == 0 for k in changes)
-    env.end()
+    assert {k % every for k in changes} == {0}

@@ -88,10 +88,9 @@ def test_the_card_says_where_weights_come_from(file: Path, tmp_path: Path) -> No
 
 
 def test_a_converted_policy_drives_robots_of_every_drive(file: Path, tmp_path: Path) -> None:
-    (tmp_path / "scene.yaml").write_text(SCENE)
     convert_policy("rl_rvo", file, tmp_path / "out.npz")
     policy = str(tmp_path / "out.npz")
-    first, second = (irsim.run(tmp_path / "scene.yaml", policy=policy, steps=40, seed=1) for _ in range(2))
+    first, second = (irsim.run(text=SCENE, policy=policy, steps=40, seed=1) for _ in range(2))
     assert (first.steps, first.robots) == (second.steps, second.robots)
     assert all(robot.path_length > 0 for robot in first.robots)
 

@@ -98,8 +98,7 @@ def test_a_converted_file_has_the_values_of_its_weights(tmp_path: Path, old: boo
     assert policy.describe()["parameters"] == parameters
     assert policy.head.card.license == "MIT"
     assert (assert_values(policy, weights)[:, 2] != 0).any() == (kind == "unicycle")
-    (tmp_path / "scene.yaml").write_text(SCENE)
-    result = irsim.benchmark(tmp_path / "scene.yaml", policies=[str(tmp_path / "net.npz")], seeds=2, workers=1)
+    result = irsim.benchmark(SCENE, policies=[str(tmp_path / "net.npz")], seeds=2, workers=1)
     assert result.rows[0].episodes == 2
 
 

@@ -196,8 +196,8 @@ def test_every_drive_reaches_its_goal_beside_a_person(opened: Any, tmp_path: Pat
     unicycle = {"output": {"input": "value", "returns": "control"}, "drives": ["diff"]} if moves == "unicycle" else {}
     ahead = {"moves": {"kind": moves, "headings": 16 if moves == "holonomic" else 7}}
     opened(greedy(ahead, slope=-0.1, **unicycle))
-    (tmp_path / "scene.yaml").write_text(SCENE.format(drive=drive, most=1 if drive == "omni" else 3))
-    result = irsim.benchmark(tmp_path / "scene.yaml", policies=[str(tmp_path / "net.npz")], seeds=1, workers=1)
+    scene = SCENE.format(drive=drive, most=1 if drive == "omni" else 3)
+    result = irsim.benchmark(scene, policies=[str(tmp_path / "net.npz")], seeds=1, workers=1)
     assert result.rows[0].success.rate == 1
 
 
