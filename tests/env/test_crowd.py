@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 import shapely
 
-from irsim.objects.surroundings import centres, discs
 from tests.env.driving import Make, take_steps
 
 TEXT = """
@@ -85,12 +84,6 @@ def test_a_view_with_a_state_of_its_own_counts(env: Any) -> None:
 
     other.__class__ = Shifted
     assert env.robot.rvo_neighbors[0] == [1, 2, 3, 4, 5]
-
-
-def test_every_world_of_a_batch(env: Any) -> None:
-    simulation = env._simulation
-    assert discs(simulation, 0).shape == (len(env.objects), 5)
-    assert centres(simulation, 0) is centres(simulation, 0)
 
 
 @pytest.mark.parametrize(("name", "most"), [("rvo_neighbors", 0.1), ("possible_collision_objects", 0.05)])

@@ -176,13 +176,6 @@ def test_lidars_tell_angles_and_carrier(env: Any) -> None:
     np.testing.assert_array_equal(lidar.state, env.robot.state[:3])
 
 
-def test_modules_are_attributes_of_their_packages() -> None:
-    assert irsim.env.env_plot.EnvPlot.__name__ == "EnvPlot"
-    assert irsim.world.object_group.ObjectGroup.__name__ == "ObjectGroup"
-    with pytest.raises(AttributeError, match="Wrld"):
-        _ = irsim.world.Wrld
-
-
 def test_what_a_subclass_overrides_is_called(env: Any) -> None:
     called = []
 

@@ -37,11 +37,16 @@ def color_at() -> Look:
     """``color_at(env, x, y)``: (r, g, b) of the picture at a point of the world [m]."""
 
     def look(env: Any, x: float, y: float) -> tuple[int, ...]:
-        picture = whole_picture(env)
-        column, row = env._env_plot.ax.transData.transform((x, y))
-        return tuple(int(level) for level in picture[picture.shape[0] - 1 - int(row), int(column)])
+        return tuple(colors_at(env, [(x, y)])[0].tolist())
 
     return look
+
+
+def colors_at(env: Any, points: Any) -> np.ndarray:
+    """(N, 3) colours of one picture at points of the world, (N, 2) [m]."""
+    picture = whole_picture(env)
+    columns, rows = env._env_plot.ax.transData.transform(points).astype(int).T
+    return picture[picture.shape[0] - 1 - rows, columns]
 
 
 @pytest.fixture

@@ -31,9 +31,6 @@ obstacle:
 def test_beams_have_the_colour_of_their_velocity(make: Make) -> None:
     env = make(WORLD % ("", ", velocity_color_max: 2.0"))
     (beams,) = SceneBuilder(env.simulation).build().beams
-    assert beams.colors is not None
-    assert beams.widths is not None
-    assert beams.dots is not None
     rest, away = np.array(to_rgba("#56B4E9")), np.array(to_rgba("#CC3311"))
     np.testing.assert_allclose(beams.colors[2], rest + 0.5 * (away - rest))  # recedes at 1 of 2 m/s
     np.testing.assert_allclose(beams.colors[0], to_rgba("lightgray", 0.03))
@@ -71,7 +68,6 @@ def test_fog_covers_what_nobody_has_seen(make: Make, color_at: Look) -> None:
     env.reset()
     assert color_at(env, 4.7, 5.3) == fog
     scene = SceneBuilder(env.simulation).build()
-    assert scene.fog is not None
     assert scene.fog.extent == (0.0, 10.0, 0.0, 10.0)
     assert SceneBuilder(make(WORLD % ("", "")).simulation).build().fog is None
 

@@ -122,7 +122,7 @@ def test_an_environment_that_is_gone_leaves_no_figure(make):
     env.render(0)
     _ = env._env_plot.fig
     del env
-    gc.collect()
+    gc.collect(1)  # what is young
     assert plt.get_fignums() == []
 
 
@@ -228,9 +228,10 @@ def test_windows_need_a_screen(monkeypatch, platform, variables, screen):
     assert window.has_screen() is screen
 
 
-def test_without_a_screen_nothing_is_drawn_before_someone_looks(make, monkeypatch):
+@pytest.mark.parametrize("display", [True, False])
+def test_without_a_window_nothing_is_drawn_before_someone_looks(make, monkeypatch, display):
     monkeypatch.setattr(window, "has_screen", lambda: False)
-    env = make(ONE, display=True)
+    env = make(ONE, display=display)
     drive(env, 3)
     assert not env._env_plot.made
     assert read(env._env_plot.fig).min() == 0

@@ -29,9 +29,7 @@ robot: {{kinematics: {{name: diff}}, state: [1, 6, 0], goal: [2, 7]}}
 
 
 def zones() -> Any:
-    scenario = read(WORLD.format(show="false")).scenario
-    assert scenario is not None
-    return scenario.world.zones
+    return read(WORLD.format(show="false")).scenario.world.zones
 
 
 def test_each_zone_is_marked_in_its_place_and_color_and_named() -> None:
